@@ -1,0 +1,14 @@
+//! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
+//!
+//! Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
+//! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
+
+pub mod dynamics;
+pub mod effects;
+pub mod error;
+pub mod log;
+pub mod model;
+pub mod sim;
+
+pub use error::{Error, Place, Result};
+pub use model::Model;

@@ -1,0 +1,59 @@
+//! One motion: samples recorded without interruption, in SI and in the model's angle convention.
+
+use std::path::PathBuf;
+
+/// Where a motion came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The file as the user named it.
+    pub path: PathBuf,
+    /// SHA-256 of the whole file, lower-case hexadecimal.
+    pub sha256: String,
+    /// First and last line of the file that belong to the motion, counted from 1.
+    pub lines: (usize, usize),
+}
+
+/// One motion. Every vector is as long as `time_s`; an input holds from its sample to the next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// File name, and the segment where a file holds several: `single_id.csv#3`.
+    pub name: String,
+    /// File, hash and lines.
+    pub source: Source,
+    /// Strictly increasing, s.
+    pub time_s: Vec<f64>,
+    /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the model says).
+    pub position_rad: Vec<Vec<f64>>,
+    /// Per joint: measured speed, rad/s, where logged.
+    pub velocity_rad_s: Vec<Option<Vec<f64>>>,
+    /// Per joint: what the drive was told, in SI of its kind; none for a passive joint.
+    pub input: Vec<Option<Vec<f64>>>,
+    /// Supply, V, where logged.
+    pub supply_v: Option<Vec<f64>>,
+    /// Whether the drives were energised, where logged; without it they always are.
+    pub torque_on: Option<Vec<bool>>,
+    /// Known mass bolted to the last link, kg.
+    pub payload_kg: f64,
+    /// Whether the rig stood turned by 180 degrees about the vertical.
+    pub turned: bool,
+}
+
+impl Motion {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// From the first sample to the last, s.
+    pub fn duration_s(&self) -> f64 {
+        match (self.time_s.first(), self.time_s.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! How a rig's logs name and scale their columns.
+
+use super::unit::Unit;
+
+/// One quantity of the log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// The header's name.
+    pub name: String,
+    /// The unit it is written in.
+    pub unit: Unit,
+    /// Added after scaling to SI; a bench that counts from another zero says so here.
+    pub offset: f64,
+    /// Whether the column counts the other way round.
+    pub reversed: bool,
+    /// Smallest step of the value in SI, if the sensor's resolution is known.
+    pub resolution: Option<f64>,
+}
+
+impl Column {
+    /// The SI value of a number written in this column.
+    pub fn to_si(&self, written: f64) -> f64 {
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        sign * self.unit.to_si(written) + self.offset
+    }
+}
+
+/// The columns of one joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointColumns {
+    /// Measured angle in the model's convention.
+    pub position: Column,
+    /// Measured speed, if logged.
+    pub velocity: Option<Column>,
+    /// What the drive was told: torque, duty, goal angle or goal speed; passive joints have none.
+    pub input: Option<Column>,
+}
+
+/// Every column the model reads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogColumns {
+    /// Time.
+    pub time: Column,
+    /// Marks separate motions: each run of equal values is one.
+    pub segment: Option<String>,
+    /// Supply voltage.
+    pub supply: Option<Column>,
+    /// 1 while the drives are energised, 0 while they are released.
+    pub torque_on: Option<String>,
+    /// Mass bolted onto the last link during a motion; constant within one.
+    pub payload: Option<Column>,
+    /// Where the payload sits, m from the last joint along the link.
+    pub payload_at_m: f64,
+    /// 1 when the rig was turned by 180 degrees about the vertical, 0 otherwise; constant within a motion.
+    pub turned: Option<String>,
+    /// One entry per joint.
+    pub joints: Vec<JointColumns>,
+    /// A new motion begins where time jumps by more than this, s; without it a gap is an error.
+    pub split_at_gap_s: Option<f64>,
+}

@@ -1,0 +1,201 @@
+//! A robot or a bench arm as plain numbers: one planar chain of n links for everything.
+//!
+//! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line; [`edit`]
+//! writes effects and fitted values back without losing a comment.
+
+mod columns;
+pub mod edit;
+mod parse;
+mod path;
+mod reader;
+mod unit;
+
+pub use columns::{Column, JointColumns, LogColumns};
+pub use path::ParameterPath;
+pub use unit::{Dimension, Unit};
+
+use crate::error::Result;
+use std::path::Path;
+
+/// A planar chain of links hanging from, or standing on, a fixed base.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// Name for reports.
+    pub name: String,
+    /// Where the log's angles are zero.
+    pub angle_zero: AngleZero,
+    /// Whether angle i is measured from the previous link or from the world.
+    pub angles: Angles,
+    /// Gravity, m/s^2, downwards.
+    pub gravity_m_s2: f64,
+    /// Longest integration step, s.
+    pub step_s: f64,
+    /// Links from the base outwards; link i follows joint i.
+    pub links: Vec<Link>,
+    /// Joints from the base outwards, as many as links.
+    pub joints: Vec<Joint>,
+    /// Physical effects beyond the rigid chain and its ideal drives.
+    pub effects: Vec<EffectInstance>,
+    /// Base parameters to refit along with every candidate effect.
+    pub free: Vec<ParameterPath>,
+    /// How this rig's logs name and scale their columns.
+    pub log: LogColumns,
+}
+
+/// Where the log's absolute angles are zero; all grow counter-clockwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AngleZero {
+    /// Straight down.
+    Hanging,
+    /// Straight up.
+    Upright,
+    /// To the right of the base.
+    Horizontal,
+}
+
+impl AngleZero {
+    /// The log's zero as an angle from hanging, rad.
+    pub fn from_hanging_rad(self) -> f64 {
+        match self {
+            AngleZero::Hanging => 0.0,
+            AngleZero::Horizontal => std::f64::consts::FRAC_PI_2,
+            AngleZero::Upright => std::f64::consts::PI,
+        }
+    }
+}
+
+/// What the log's angles are measured from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Angles {
+    /// Each from the link before it.
+    Relative,
+    /// Each from the world.
+    Absolute,
+}
+
+/// A rigid link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Link {
+    /// Joint to next joint, m.
+    pub length_m: f64,
+    /// Joint to centre of mass, m, along the link.
+    pub com_m: f64,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Moment of inertia about the centre of mass, kg m^2.
+    pub inertia_kg_m2: f64,
+}
+
+/// A joint: what drives it, and how its motor's inertia counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// What moves it.
+    pub drive: Drive,
+}
+
+/// What moves a joint. Duty is the share of the full voltage, -1 to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drive {
+    /// Nothing: swings freely.
+    Passive,
+    /// The log's input is a torque, N m.
+    Torque,
+    /// The log's input is a duty; torque = stall torque * duty.
+    Duty(Motor),
+    /// The log's input is a goal angle, rad; duty = gain * error, clipped at 1.
+    Position {
+        /// Duty per rad of error.
+        gain_per_rad: f64,
+        /// The motor behind it.
+        motor: Motor,
+    },
+    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped at 1.
+    Speed {
+        /// Duty per rad/s of error.
+        gain_s_per_rad: f64,
+        /// The motor behind it.
+        motor: Motor,
+    },
+}
+
+impl Drive {
+    /// The motor, if there is one.
+    pub fn motor(&self) -> Option<&Motor> {
+        match self {
+            Drive::Passive | Drive::Torque => None,
+            Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
+                Some(motor)
+            }
+        }
+    }
+
+    /// Whether anything moves the joint.
+    pub fn is_driven(&self) -> bool {
+        !matches!(self, Drive::Passive)
+    }
+
+    /// The key that names it in a model file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Drive::Passive => "passive",
+            Drive::Torque => "torque",
+            Drive::Duty(_) => "duty",
+            Drive::Position { .. } => "position",
+            Drive::Speed { .. } => "speed",
+        }
+    }
+}
+
+/// A direct-current motor with its gear, at the joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motor {
+    /// Torque at standstill and full duty at the nominal supply, N m.
+    pub stall_torque_nm: f64,
+    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not fall with speed.
+    pub no_load_speed_rad_s: f64,
+    /// Supply for which the figures hold, V.
+    pub nominal_supply_v: Option<f64>,
+}
+
+/// One effect of the library with its values, at a joint or on the whole rig.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectInstance {
+    /// Which effect.
+    pub effect: &'static dyn crate::effects::Effect,
+    /// Joint index from 0; `None` acts on the whole rig.
+    pub joint: Option<usize>,
+    /// Values in the order of the effect's card.
+    pub values: Vec<f64>,
+}
+
+impl Model {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// Unknown keys, wrong types and impossible values, each with file, line and remedy.
+    pub fn load(path: &Path) -> Result<Model> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| crate::error::Error::file(path, "read", source))?;
+        Model::parse(&text, path)
+    }
+
+    /// Reads a model from text; `path` only names it in errors.
+    ///
+    /// # Errors
+    /// As [`Model::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Model> {
+        parse::model(text, path)
+    }
+
+    /// Number of links.
+    pub fn link_count(&self) -> usize {
+        self.links.len()
+    }
+
+    /// Whether the model already holds this effect at this joint.
+    pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
+        self.effects
+            .iter()
+            .any(|e| e.effect.card().id == id && e.joint == joint)
+    }
+}

@@ -1,0 +1,88 @@
+//! Units a log may be written in; declared, never guessed.
+
+use std::f64::consts::{PI, TAU};
+
+/// What a unit measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Time, SI s.
+    Time,
+    /// Angle, SI rad.
+    Angle,
+    /// Angular speed, SI rad/s.
+    Speed,
+    /// Torque, SI N m.
+    Torque,
+    /// Voltage, SI V.
+    Voltage,
+    /// Mass, SI kg.
+    Mass,
+    /// A share, SI 1.
+    Ratio,
+}
+
+impl Dimension {
+    /// Names of the units that measure this, for error messages.
+    pub fn unit_names(self) -> impl Iterator<Item = &'static str> {
+        UNITS
+            .iter()
+            .filter(move |(_, dimension, _)| *dimension == self)
+            .map(|(name, _, _)| *name)
+    }
+}
+
+/// Name, dimension, and how many SI units one is. Ticks need their count per turn.
+const UNITS: &[(&str, Dimension, f64)] = &[
+    ("s", Dimension::Time, 1.0),
+    ("ms", Dimension::Time, 1e-3),
+    ("us", Dimension::Time, 1e-6),
+    ("ns", Dimension::Time, 1e-9),
+    ("rad", Dimension::Angle, 1.0),
+    ("deg", Dimension::Angle, PI / 180.0),
+    ("turn", Dimension::Angle, TAU),
+    ("ticks", Dimension::Angle, f64::NAN),
+    ("rad/s", Dimension::Speed, 1.0),
+    ("deg/s", Dimension::Speed, PI / 180.0),
+    ("rpm", Dimension::Speed, TAU / 60.0),
+    ("N m", Dimension::Torque, 1.0),
+    ("mN m", Dimension::Torque, 1e-3),
+    ("kgf cm", Dimension::Torque, 0.098_066_5),
+    ("V", Dimension::Voltage, 1.0),
+    ("mV", Dimension::Voltage, 1e-3),
+    ("kg", Dimension::Mass, 1.0),
+    ("g", Dimension::Mass, 1e-3),
+    ("1", Dimension::Ratio, 1.0),
+    ("%", Dimension::Ratio, 1e-2),
+];
+
+/// A unit with its factor to SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// Name as written in the model file.
+    pub name: &'static str,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// SI units per one of these.
+    pub si: f64,
+}
+
+impl Unit {
+    /// The unit of this name; `ticks` needs `ticks_per_turn`.
+    pub fn named(name: &str, ticks_per_turn: Option<f64>) -> Option<Unit> {
+        let (name, dimension, factor) = UNITS.iter().find(|(known, _, _)| *known == name)?;
+        let si = match ticks_per_turn {
+            Some(ticks) if *name == "ticks" => TAU / ticks,
+            _ => *factor,
+        };
+        Some(Unit {
+            name,
+            dimension: *dimension,
+            si,
+        })
+    }
+
+    /// Scales a written number to SI.
+    pub fn to_si(self, written: f64) -> f64 {
+        written * self.si
+    }
+}
