@@ -1,0 +1,53 @@
+//! Coulomb friction: the same resistance at every speed, and a hold at rest.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+
+/// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
+#[derive(Debug)]
+pub struct Coulomb;
+
+static CARD: Card = Card {
+    id: "coulomb",
+    title: "Coulomb friction",
+    site: Site::Friction,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "friction = torque_nm * sgn(w), against the motion; at rest it holds up to torque_nm",
+    parameters: &[Parameter {
+        key: "torque_nm",
+        unit: "N m",
+        meaning: "friction torque, the same at every speed",
+        off: Some(0.0),
+        typical: (0.005, 0.2),
+        bounds: (0.0, 10.0),
+        starts: &[0.02, 0.1],
+    }],
+    looks_like: "the residual torque is a square wave in step with the sign of the speed; a free swing loses the \
+                 same angle every half period (straight envelope) and stops off the bottom",
+    confused_with: &[
+        Confusion {
+            with: "dead_zone",
+            why: "both swallow small commands; with the torque off only friction remains",
+        },
+        Confusion {
+            with: "stribeck",
+            why: "both jump at reversal; Stribeck's part fades as speed grows",
+        },
+        Confusion {
+            with: "load_friction",
+            why: "the same at one load; change the mass or the arm's length",
+        },
+    ],
+    experiment: "let the arm swing freely with the torque off, or move it slowly up and down at two constant speeds",
+    reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+};
+
+impl Effect for Coulomb {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn friction(&self, values: &[f64], _at: &Slide) -> f64 {
+        values[0]
+    }
+}

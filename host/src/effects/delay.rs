@@ -1,0 +1,49 @@
+//! Transport delay: the drive acts on an input that is some time old.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+
+/// u(t - T).
+#[derive(Debug)]
+pub struct Delay;
+
+static CARD: Card = Card {
+    id: "delay",
+    title: "transport delay",
+    site: Site::Timing,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "the drive applies u(t - delay_s)",
+    parameters: &[Parameter {
+        key: "delay_s",
+        unit: "s",
+        meaning: "age of the input when it acts",
+        off: Some(0.0),
+        typical: (0.005, 0.1),
+        bounds: (0.0, 0.5),
+        starts: &[0.02, 0.08],
+    }],
+    looks_like: "the simulated motion runs ahead of the measured one by the same time at every speed; input and \
+                 residual correlate best at that lag",
+    confused_with: &[
+        Confusion {
+            with: "sensor_lag",
+            why: "both lag; a filter also flattens fast motion, and it lags a free swing too",
+        },
+        Confusion {
+            with: "viscous",
+            why: "both trail the input; friction trails less as the motion slows",
+        },
+    ],
+    experiment: "drive a chirp: only a delay's phase grows in proportion to the frequency",
+    reference: "Ljung, System Identification, 2nd ed., section 4.2",
+};
+
+impl Effect for Delay {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn delay_s(&self, values: &[f64]) -> f64 {
+        values[0]
+    }
+}

@@ -1,0 +1,128 @@
+//! The library of physical effects: each states its law once, and describes itself for people.
+//!
+//! Adding one is a file with a `card()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
+//! the glossary, the candidates, the fit's bounds and the law tests all iterate that list.
+
+mod card;
+mod coulomb;
+mod delay;
+
+pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
+
+use crate::dynamics::Chain;
+use std::fmt;
+
+/// Every effect there is, in the order in which those of one site act.
+pub const EFFECTS: &[&dyn Effect] = &[&coulomb::Coulomb, &delay::Delay];
+
+/// The effect of this id.
+pub fn named(id: &str) -> Option<&'static dyn Effect> {
+    EFFECTS.iter().copied().find(|effect| effect.card().id == id)
+}
+
+/// A departure from the rigid chain with ideal drives and sensors.
+///
+/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in the
+/// order of the card's parameters.
+pub trait Effect: Sync + fmt::Debug {
+    /// What people and tools need to know of it.
+    fn card(&self) -> &'static Card;
+
+    /// Body: changes the rig's constants before a motion is simulated.
+    fn body(&self, _values: &[f64], _joint: usize, _rig: &mut Rig) {}
+
+    /// Timing: seconds by which the drive's input arrives late.
+    fn delay_s(&self, _values: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Command: the duty (share of full range, -1 to 1) the drive really applies.
+    fn command(&self, _values: &[f64], duty: f64) -> f64 {
+        duty
+    }
+
+    /// Drive: the torque that arrives at the joint, N m, while the drive is energised.
+    fn drive(&self, _values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
+        torque_nm
+    }
+
+    /// Joint: a torque on the joint, N m, smooth in angle and speed.
+    fn torque(&self, _values: &[f64], _at: &JointState) -> f64 {
+        0.0
+    }
+
+    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it is the
+    /// breakaway torque: a joint at rest is held until pushed harder than that.
+    fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
+        0.0
+    }
+
+    /// Sensor, static: what the encoder reads at this joint angle, rad.
+    fn encode(&self, _values: &[f64], angle_rad: f64) -> f64 {
+        angle_rad
+    }
+
+    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
+    /// `memory` is the effect's own; `None` before the first call of a motion.
+    fn sense(
+        &self,
+        _values: &[f64],
+        _memory: &mut Option<f64>,
+        angle_rad: f64,
+        _step_s: f64,
+    ) -> f64 {
+        angle_rad
+    }
+}
+
+impl PartialEq for dyn Effect {
+    fn eq(&self, other: &dyn Effect) -> bool {
+        self.card().id == other.card().id
+    }
+}
+
+/// What body effects may change.
+#[derive(Debug, Clone)]
+pub struct Rig {
+    /// The rigid chain.
+    pub chain: Chain,
+    /// Angle by which gravity is turned in the rig's plane, rad, counter-clockwise.
+    pub gravity_turn_rad: f64,
+    /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
+    pub turned: bool,
+}
+
+/// The motor at an instant.
+#[derive(Debug, Clone, Copy)]
+pub struct DriveState {
+    /// Joint speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Duty after the command effects, -1 to 1.
+    pub duty: f64,
+    /// Torque at full duty and standstill, N m.
+    pub full_torque_nm: f64,
+    /// Supply over nominal supply; 1 where either is unknown.
+    pub supply_ratio: f64,
+}
+
+/// A joint at an instant.
+#[derive(Debug, Clone, Copy)]
+pub struct JointState {
+    /// Angle from the previous link, rad; of the first joint from the model's zero.
+    pub angle_rad: f64,
+    /// Speed relative to the previous link, rad/s.
+    pub speed_rad_s: f64,
+}
+
+/// A joint that slides, or is about to.
+#[derive(Debug, Clone, Copy)]
+pub struct Slide {
+    /// Magnitude of the joint speed, rad/s; 0 asks for breakaway.
+    pub speed_rad_s: f64,
+    /// +1 or -1: the direction of motion, or of the push at rest.
+    pub direction: f64,
+    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear transmits.
+    pub gear_load_nm: f64,
+    /// Magnitude of the force in the bearing, N.
+    pub bearing_load_n: f64,
+}
