@@ -6,6 +6,7 @@
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod identify;
 pub mod log;
 pub mod model;
 pub mod sim;

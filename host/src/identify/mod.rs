@@ -1,0 +1,18 @@
+//! Fitting a model's free parameters to measured motions by multiple shooting.
+
+mod covariance;
+mod data;
+mod fit;
+mod horizon;
+mod noise;
+mod node;
+mod normal;
+mod residual;
+
+pub use covariance::{Interval, intervals};
+pub use data::{Data, Horizon, Window};
+pub use fit::{Fit, FitOptions, fit, settle};
+pub use horizon::longest_stable;
+pub use noise::{found_resolution_rad, noise_rad};
+pub use node::Node;
+pub use residual::{Residuals, residuals};

@@ -1,0 +1,82 @@
+//! Normal equations of a multiple-shooting fit, with every window's own unknowns eliminated.
+//!
+//! The Jacobian is an arrow: parameters shared by all windows, and a start state per window. Eliminating the
+//! start states window by window (Schur complement) leaves a system of the parameters' size, however many
+//! windows there are.
+
+use nalgebra::{DMatrix, DVector};
+
+/// One window's part.
+#[derive(Debug, Clone)]
+struct Block {
+    /// Inverse of the node's own normal matrix.
+    inverse: DMatrix<f64>,
+    /// Node rows of the gradient.
+    gradient: DVector<f64>,
+    /// Node by parameter.
+    coupling: DMatrix<f64>,
+}
+
+/// Reduced normal equations and what is needed to recover the nodes' steps.
+#[derive(Debug, Clone)]
+pub(super) struct Normal {
+    /// Parameter by parameter, nodes eliminated.
+    pub matrix: DMatrix<f64>,
+    /// Descent direction: J' r.
+    pub gradient: DVector<f64>,
+    /// Per window: its share of the reduced gradient, for cluster-robust covariance.
+    pub scores: Vec<DVector<f64>>,
+    blocks: Vec<Block>,
+}
+
+/// Derivatives of one window's residual: rows are residuals.
+pub(super) struct WindowJacobian {
+    pub residual: DVector<f64>,
+    /// d(prediction) / d(parameter), weighted.
+    pub parameters: DMatrix<f64>,
+    /// d(prediction) / d(node), weighted.
+    pub node: DMatrix<f64>,
+    /// Prior on the node: precision of each unknown and its pull towards the guess.
+    pub node_precision: DVector<f64>,
+    pub node_pull: DVector<f64>,
+}
+
+impl Normal {
+    pub fn assemble(parameters: usize, windows: &[WindowJacobian], damping: f64) -> Normal {
+        let mut normal = Normal {
+            matrix: DMatrix::zeros(parameters, parameters),
+            gradient: DVector::zeros(parameters),
+            scores: Vec::with_capacity(windows.len()),
+            blocks: Vec::with_capacity(windows.len()),
+        };
+        for window in windows {
+            let mut own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
+            for i in 0..own.nrows() {
+                own[(i, i)] *= 1.0 + damping;
+                own[(i, i)] += 1e-12;
+            }
+            let size = own.nrows();
+            let inverse = own.try_inverse().unwrap_or_else(|| DMatrix::zeros(size, size));
+            let coupling = window.node.tr_mul(&window.parameters);
+            let gradient = window.node.tr_mul(&window.residual)
+                + window.node_precision.component_mul(&window.node_pull);
+            let spent = coupling.tr_mul(&inverse);
+            let score = window.parameters.tr_mul(&window.residual) - &spent * &gradient;
+            normal.matrix += window.parameters.tr_mul(&window.parameters) - &spent * &coupling;
+            normal.gradient += &score;
+            normal.scores.push(score);
+            normal.blocks.push(Block {
+                inverse,
+                gradient,
+                coupling,
+            });
+        }
+        normal
+    }
+
+    /// Step of window `window`'s node that goes with this parameter step.
+    pub fn node_step(&self, window: usize, parameter_step: &DVector<f64>) -> DVector<f64> {
+        let block = &self.blocks[window];
+        &block.inverse * (&block.gradient - &block.coupling * parameter_step)
+    }
+}

@@ -1,0 +1,10 @@
+//! Simulation of a model along a motion's recorded inputs.
+
+mod drive;
+mod input;
+mod plant;
+mod run;
+mod stepper;
+
+pub use plant::Plant;
+pub use run::{Memory, Start, predict};

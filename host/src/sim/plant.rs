@@ -1,0 +1,183 @@
+//! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
+
+use crate::dynamics::Chain;
+use crate::effects::{Effect, Needs, Rig, Site};
+use crate::log::Motion;
+use crate::model::{Angles, Drive, Model};
+
+/// Most values an effect has.
+const MOST_VALUES: usize = 4;
+
+/// An effect with its values, stored in place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Active {
+    pub effect: &'static dyn Effect,
+    values: [f64; MOST_VALUES],
+    count: usize,
+}
+
+impl Active {
+    #[inline]
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+/// What acts on one joint.
+#[derive(Debug, Clone)]
+pub(super) struct JointPlan {
+    pub drive: Drive,
+    pub full_torque_nm: f64,
+    pub delay_s: f64,
+    pub command: Vec<Active>,
+    pub torque: Vec<Active>,
+    pub friction: Vec<Active>,
+    pub output: Vec<Active>,
+    pub encode: Vec<Active>,
+    pub sense: Vec<Active>,
+}
+
+/// A model compiled for one motion.
+#[derive(Debug, Clone)]
+pub struct Plant {
+    pub(super) rig: Rig,
+    pub(super) joints: Vec<JointPlan>,
+    pub(super) zero_rad: f64,
+    pub(super) absolute: bool,
+    pub(super) step_s: f64,
+    pub(super) needs_gear_load: bool,
+    pub(super) needs_bearing_load: bool,
+}
+
+impl Plant {
+    /// Compiles `model` for the conditions of `motion` (payload, attitude).
+    pub fn new(model: &Model, motion: &Motion) -> Plant {
+        let mut chain = Chain::of(model);
+        let mut joints: Vec<JointPlan> = model.joints.iter().map(|j| JointPlan::ideal(&j.drive)).collect();
+        let mut rig = Rig {
+            chain: chain.clone(),
+            gravity_turn_rad: 0.0,
+            turned: motion.turned,
+        };
+        for instance in &model.effects {
+            if instance.effect.card().site == Site::Body {
+                instance.effect.body(&instance.values, instance.joint.unwrap_or(0), &mut rig);
+            }
+        }
+        chain.clone_from(&rig.chain);
+        if motion.payload_kg > 0.0 {
+            chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
+        }
+        rig.chain = chain;
+        // Those of one site act in the library's order, however the file lists them.
+        let mut needs = Vec::new();
+        for effect in crate::effects::EFFECTS {
+            for instance in model.effects.iter().filter(|e| e.effect == *effect) {
+                let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) else {
+                    continue;
+                };
+                joint.add(*effect, &instance.values);
+                needs.push(effect.card().needs);
+            }
+        }
+        Plant {
+            rig,
+            joints,
+            zero_rad: model.angle_zero.from_hanging_rad(),
+            absolute: model.angles == Angles::Absolute,
+            step_s: model.step_s,
+            needs_gear_load: needs.contains(&Needs::GearLoad),
+            needs_bearing_load: needs.contains(&Needs::BearingLoad),
+        }
+    }
+
+    /// Whether the log's angles are measured from the world.
+    pub fn is_absolute(&self) -> bool {
+        self.absolute
+    }
+
+    /// Number of joints.
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Whether there is no joint.
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+    }
+
+    /// What the encoders read at these relative angles (joint 1 from hanging), rad in the log's convention,
+    /// before any effect with memory.
+    pub(super) fn encoded_rad(&self, joint: usize, angle_rad: &[f64]) -> f64 {
+        let true_angle = if self.absolute {
+            angle_rad[..=joint].iter().sum::<f64>() - self.zero_rad
+        } else if joint == 0 {
+            angle_rad[0] - self.zero_rad
+        } else {
+            angle_rad[joint]
+        };
+        self.joints[joint]
+            .encode
+            .iter()
+            .fold(true_angle, |angle, e| e.effect.encode(e.values(), angle))
+    }
+
+    /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes `encoded_rad`.
+    pub fn decode_rad(&self, reading_rad: &[f64]) -> Vec<f64> {
+        let mut angles = Vec::with_capacity(reading_rad.len());
+        let mut before = self.zero_rad;
+        for (joint, &reading) in self.joints.iter().zip(reading_rad) {
+            // Encoders are straight lines: two points give the inverse.
+            let line = |x: f64| joint.encode.iter().fold(x, |a, e| e.effect.encode(e.values(), a));
+            let (at_zero, at_one) = (line(0.0), line(1.0));
+            let angle = (reading - at_zero) / (at_one - at_zero);
+            if self.absolute {
+                angles.push(angle + self.zero_rad - if angles.is_empty() { 0.0 } else { before });
+                before = angle + self.zero_rad;
+            } else if angles.is_empty() {
+                angles.push(angle + self.zero_rad);
+            } else {
+                angles.push(angle);
+            }
+        }
+        angles
+    }
+}
+
+impl JointPlan {
+    fn ideal(drive: &Drive) -> JointPlan {
+        JointPlan {
+            drive: drive.clone(),
+            full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
+            delay_s: 0.0,
+            command: Vec::new(),
+            torque: Vec::new(),
+            friction: Vec::new(),
+            output: Vec::new(),
+            encode: Vec::new(),
+            sense: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {
+        let mut active = Active {
+            effect,
+            values: [0.0; MOST_VALUES],
+            count: values.len(),
+        };
+        active.values[..values.len()].copy_from_slice(values);
+        match effect.card().site {
+            Site::Timing => self.delay_s += effect.delay_s(values),
+            Site::Command => self.command.push(active),
+            Site::Drive => self.output.push(active),
+            Site::Friction => self.friction.push(active),
+            Site::Joint => self.torque.push(active),
+            Site::Body => {}
+            Site::Sensor => {
+                // A sensor effect overrides one of the two hooks; the other is identity.
+                self.encode.push(active);
+                self.sense.push(active);
+            }
+        }
+    }
+}
