@@ -288,7 +288,7 @@ impl<'a> Search<'a> {
         if let Some(path) = self.free.get(column) {
             let value = path.get(&self.model).unwrap_or(0.0);
             let (_, high) = path.bounds(&self.model);
-            let size = 2e-4 * value.abs().max(path.scale(&self.model));
+            let size = 2e-4 * value.abs().max(scale(path));
             let delta = if value + size > high { -size } else { size };
             let mut model = self.model.clone();
             path.set(&mut model, value + delta);
@@ -335,4 +335,15 @@ fn solve_damped(normal: &Normal, fixed: &[bool], moved: &DVector<f64>, damping: 
         step[i] = solution[k] / scale[k];
     }
     step
+}
+
+/// A value's natural size, for the step of a finite difference where the value itself is zero.
+fn scale(path: &ParameterPath) -> f64 {
+    match path {
+        ParameterPath::Effect { id, parameter, .. } => crate::effects::named(id)
+            .and_then(|effect| effect.card().parameters.get(*parameter))
+            .and_then(|parameter| parameter.starts.first())
+            .map_or(1e-3, |start| start.abs().max(1e-6)),
+        _ => 1e-9,
+    }
 }

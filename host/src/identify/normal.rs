@@ -30,6 +30,7 @@ pub(super) struct Normal {
 }
 
 /// Derivatives of one window's residual: rows are residuals.
+#[derive(Debug, Clone)]
 pub(super) struct WindowJacobian {
     pub residual: DVector<f64>,
     /// d(prediction) / d(parameter), weighted.

@@ -13,6 +13,8 @@ pub(super) struct Told {
     pub supply_ratio: f64,
     /// Whether the drive is energised.
     pub energised: bool,
+    /// Measured speed of another moment, rad/s, for a sham.
+    pub shuffled_rad_s: f64,
 }
 
 impl JointPlan {

@@ -1,7 +1,7 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
 use crate::dynamics::Chain;
-use crate::effects::{Effect, Needs, Rig, Site};
+use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, Rig, SHAM, Site};
 use crate::log::Motion;
 use crate::model::{Angles, Drive, Model};
 
@@ -47,6 +47,8 @@ pub struct Plant {
     pub(super) step_s: f64,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
+    /// Per joint, per sample: the measured speed of another moment; empty without a sham.
+    pub(super) shuffled_rad_s: Vec<Vec<f64>>,
 }
 
 impl Plant {
@@ -71,7 +73,7 @@ impl Plant {
         rig.chain = chain;
         // Those of one site act in the library's order, however the file lists them.
         let mut needs = Vec::new();
-        for effect in crate::effects::EFFECTS {
+        for effect in EFFECTS.iter().chain(CONTROLS) {
             for instance in model.effects.iter().filter(|e| e.effect == *effect) {
                 let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) else {
                     continue;
@@ -88,6 +90,7 @@ impl Plant {
             step_s: model.step_s,
             needs_gear_load: needs.contains(&Needs::GearLoad),
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
+            shuffled_rad_s: shuffled(model, motion),
         }
     }
 
@@ -180,4 +183,25 @@ impl JointPlan {
             }
         }
     }
+}
+
+/// Measured speeds of a motion, turned in time by a bit more than a third of it.
+fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
+    if !model.effects.iter().any(|e| e.effect.card().id == SHAM) {
+        return Vec::new();
+    }
+    motion
+        .position_rad
+        .iter()
+        .map(|position| {
+            let last = position.len() - 1;
+            let reach = 3.min(last);
+            let speed = |k: usize| {
+                let (a, b) = (k.saturating_sub(reach), (k + reach).min(last));
+                let speed = (position[b] - position[a]) / (motion.time_s[b] - motion.time_s[a]);
+                if speed.is_finite() { speed } else { 0.0 }
+            };
+            (0..=last).map(|k| speed((k + 3 * (last + 1) / 8) % (last + 1))).collect()
+        })
+        .collect()
 }

@@ -45,6 +45,7 @@ pub fn predict(
             input: 0.0,
             supply_ratio: 1.0,
             energised: true,
+            shuffled_rad_s: 0.0,
         };
         n
     ];
@@ -86,6 +87,9 @@ fn tell(
     told: &mut [Told],
 ) {
     for (joint, plan) in plant.joints.iter().enumerate() {
+        if let Some(shuffled) = plant.shuffled_rad_s.get(joint) {
+            told[joint].shuffled_rad_s = shuffled[sample];
+        }
         if plan.drive == Drive::Passive {
             continue;
         }
