@@ -1,6 +1,7 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
 use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use std::f64::consts::PI;
 
 /// A sin(N q + p).
 #[derive(Debug)]
@@ -39,9 +40,9 @@ static CARD: Card = Card {
             unit: "rad",
             meaning: "phase of the ripple at angle zero",
             off: None,
-            typical: (-3.1416, 3.1416),
+            typical: (-PI, PI),
             bounds: (-3.5, 3.5),
-            starts: &[0.0, 1.57, 3.14, -1.57],
+            starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
         },
     ],
     looks_like: "the residual torque repeats over the joint angle at every speed; in time its frequency grows \

@@ -1,19 +1,20 @@
 //! The effects explained to people: a page for each, and a table of all. Every word and curve comes from the
 //! cards and the laws.
 
-use super::signature::{Signature, off_values, signature};
+use super::canvas::{plot, rounded};
+use super::signature::signature;
 use super::{Card, EFFECTS, Effect, Needs, Parameter, Scope, Site, named};
-use comfy_table::{ContentArrangement, Table, presets};
+use comfy_table::{ContentArrangement, Table, TableComponent, presets};
 
 /// Columns of a page.
 const WIDTH: usize = 90;
 
 /// One line for each effect.
 pub fn overview() -> Table {
-    let mut table = table(["Name", "Effect", "Acts on", "Law"]);
+    let mut table = table(["Name", "Effect", "Law"]);
     for effect in EFFECTS {
         let card = effect.card();
-        table.add_row([card.id, card.title, site(card.site), card.law]);
+        table.add_row([card.id, card.title, card.law]);
     }
     table
 }
@@ -107,7 +108,7 @@ fn off(parameter: &Parameter) -> String {
 }
 
 fn range((low, high): (f64, f64)) -> String {
-    format!("{low} to {high}")
+    format!("{} to {}", rounded(low), rounded(high))
 }
 
 fn confusions(card: &Card) -> String {
@@ -124,151 +125,28 @@ fn confusions(card: &Card) -> String {
 /// The signature with its axes, and what it is drawn for.
 fn drawn(effect: &dyn Effect) -> String {
     let signature = signature(effect);
-    let off = off_values(effect);
-    let pairs = effect
+    let pairs = effect.card().parameters.iter().zip(&signature.values);
+    let values: Vec<String> = pairs
+        .map(|(parameter, value)| format!("{} = {}", parameter.key, rounded(*value)))
+        .collect();
+    let exaggerated = effect
         .card()
         .parameters
         .iter()
-        .zip(signature.values.iter().zip(&off));
-    let values: Vec<String> = pairs
-        .map(|(parameter, (value, _))| format!("{} = {value}", parameter.key))
-        .collect();
-    let legend = format!("line: with {}; dots: without", values.join(", "));
+        .zip(&signature.values)
+        .any(beyond_typical);
+    let note = if exaggerated {
+        " (more than typical, to be seen)"
+    } else {
+        ""
+    };
+    let legend = format!("line: with {}{note}; dots: without", values.join(", "));
     format!("{}\n{}", plot(&signature), wrapped(&legend))
 }
 
-/// Text columns and rows of a drawing.
-const COLUMNS: usize = 60;
-const ROWS: usize = 12;
-/// Dots of a braille sign, across and down.
-const ACROSS: usize = 2;
-const DOWN: usize = 4;
-
-/// Text art of a signature.
-fn plot(signature: &Signature) -> String {
-    let points = || signature.without.iter().chain(&signature.with);
-    let x = span(points().map(|point| point.0), 0.0);
-    let y = span(points().map(|point| point.1), 0.05);
-    let mut canvas = Canvas::new(x, y);
-    canvas.dotted(&signature.without);
-    canvas.line(&signature.with);
-    canvas.framed(signature.x_label, signature.y_label)
-}
-
-/// Lowest and highest value, with a share of the span to spare; never empty.
-fn span(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
-    let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    let spare = if high > low {
-        margin * (high - low)
-    } else {
-        1.0
-    };
-    (low - spare, high + spare)
-}
-
-/// Braille signs of 2 x 4 dots each.
-struct Canvas {
-    x: (f64, f64),
-    y: (f64, f64),
-    signs: Vec<[u8; COLUMNS]>,
-}
-
-impl Canvas {
-    fn new(x: (f64, f64), y: (f64, f64)) -> Self {
-        Self {
-            x,
-            y,
-            signs: vec![[0; COLUMNS]; ROWS],
-        }
-    }
-
-    /// The nearest dot, from the top left.
-    fn dot(&self, point: (f64, f64)) -> (f64, f64) {
-        let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
-        let across = share(point.0, self.x) * (COLUMNS * ACROSS - 1) as f64;
-        let down = (1.0 - share(point.1, self.y)) * (ROWS * DOWN - 1) as f64;
-        (across.round(), down.round())
-    }
-
-    fn set(&mut self, (across, down): (f64, f64)) {
-        // Unicode numbers the dots 1 2 3 7 down the left and 4 5 6 8 down the right.
-        const BITS: [[u8; DOWN]; ACROSS] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
-        let (across, down) = (across as usize, down as usize);
-        self.signs[down / DOWN][across / ACROSS] |= BITS[across % ACROSS][down % DOWN];
-    }
-
-    /// Every dot from point to point.
-    fn line(&mut self, points: &[(f64, f64)]) {
-        for dot in self.trail(points) {
-            self.set(dot);
-        }
-    }
-
-    /// Every fifth dot.
-    fn dotted(&mut self, points: &[(f64, f64)]) {
-        for dot in self.trail(points).into_iter().step_by(5) {
-            self.set(dot);
-        }
-    }
-
-    fn trail(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        let dots: Vec<(f64, f64)> = points.iter().map(|point| self.dot(*point)).collect();
-        let mut trail: Vec<(f64, f64)> = dots
-            .windows(2)
-            .flat_map(|ends| joined(ends[0], ends[1]))
-            .collect();
-        trail.dedup();
-        trail
-    }
-
-    fn framed(&self, x_label: &str, y_label: &str) -> String {
-        let sign = |bits: &u8| char::from_u32(0x2800 + u32::from(*bits)).unwrap_or(' ');
-        let blank = " ".repeat(9);
-        let mut lines = vec![format!("{blank} {y_label}")];
-        for (row, signs) in self.signs.iter().enumerate() {
-            let mark = match row {
-                0 => format!("{:>9}", rounded(self.y.1)),
-                row if row == ROWS - 1 => format!("{:>9}", rounded(self.y.0)),
-                _ => blank.clone(),
-            };
-            let drawn: String = signs.iter().map(sign).collect();
-            lines.push(format!("{mark} │{drawn}"));
-        }
-        lines.push(format!("{blank} └{}", "─".repeat(COLUMNS)));
-        let (low, high) = (rounded(self.x.0), rounded(self.x.1));
-        let room = COLUMNS.saturating_sub(low.len() + high.len());
-        lines.push(format!("{blank}  {low}{x_label:^room$}{high}"));
-        lines.join("\n")
-    }
-}
-
-/// Dots from one to the next without a gap, both ends included.
-fn joined(from: (f64, f64), to: (f64, f64)) -> Vec<(f64, f64)> {
-    let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).max(1.0);
-    let at = |step: usize| {
-        let share = step as f64 / steps;
-        (
-            (from.0 + share * (to.0 - from.0)).round(),
-            (from.1 + share * (to.1 - from.1)).round(),
-        )
-    };
-    (0..=steps as usize).map(at).collect()
-}
-
-/// Three significant digits, without trailing zeros.
-fn rounded(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_string();
-    }
-    let places = (2.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{value:.places$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
-    }
+fn beyond_typical((parameter, value): (&Parameter, &f64)) -> bool {
+    let (low, high) = parameter.typical;
+    !(low..=high).contains(value) && parameter.off.is_some()
 }
 
 fn table<const N: usize>(header: [&str; N]) -> Table {
@@ -277,7 +155,9 @@ fn table<const N: usize>(header: [&str; N]) -> Table {
         .load_preset(presets::UTF8_HORIZONTAL_ONLY)
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDTH as u16)
-        .set_header(header);
+        .set_header(header)
+        .remove_style(TableComponent::HorizontalLines)
+        .remove_style(TableComponent::MiddleIntersections);
     table
 }
 
@@ -326,7 +206,7 @@ mod tests {
                 .chars()
                 .filter(|sign| ('\u{2801}'..='\u{28ff}').contains(sign))
                 .count();
-            assert!(dots >= COLUMNS / 2, "{}: {dots} signs drawn", card.id);
+            assert!(dots >= 30, "{}: {dots} signs drawn", card.id);
         }
     }
 
@@ -334,25 +214,5 @@ mod tests {
     fn overview_lists_all() {
         let text = overview().to_string();
         assert!(EFFECTS.iter().all(|effect| text.contains(effect.card().id)));
-    }
-
-    #[test]
-    fn a_rising_line_goes_from_the_lower_left_to_the_upper_right() {
-        let mut canvas = Canvas::new((0.0, 1.0), (0.0, 1.0));
-        canvas.line(&[(0.0, 0.0), (1.0, 1.0)]);
-        assert_eq!(canvas.signs[ROWS - 1][0] & 0x40, 0x40);
-        assert_eq!(
-            canvas.signs[0][COLUMNS - 1] & 0x08 | canvas.signs[0][COLUMNS - 1] & 0x80,
-            0x08
-        );
-        assert_eq!(canvas.signs[0][0], 0);
-    }
-
-    #[test]
-    fn numbers_on_axes_are_short() {
-        assert_eq!(rounded(0.0), "0");
-        assert_eq!(rounded(-1.5), "-1.5");
-        assert_eq!(rounded(0.012345), "0.0123");
-        assert_eq!(rounded(50.0), "50");
     }
 }

@@ -9,6 +9,7 @@ mod backlash;
 mod base_tilt;
 mod bearing_friction;
 mod cable_spring;
+mod canvas;
 mod card;
 mod cogging;
 mod com_angle;

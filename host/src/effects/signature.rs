@@ -23,7 +23,7 @@ const FULL_TORQUE_NM: f64 = 1.5;
 /// Points of a curve.
 const POINTS: usize = 241;
 /// Share of the picture's height by which the curves must part to be seen.
-const VISIBLE_SHARE: f64 = 0.08;
+const VISIBLE_SHARE: f64 = 0.065;
 
 /// The signature of an effect at the far end of its typical range; where that is too small to be seen, at up
 /// to nine times as much.
@@ -100,19 +100,18 @@ fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
     }
 }
 
+/// Points of an effect with these values.
+type Curve = fn(&dyn Effect, &[f64]) -> Vec<(f64, f64)>;
+
 /// What to plot over what.
 struct Axes {
     x_label: &'static str,
     y_label: &'static str,
-    curve: fn(&dyn Effect, &[f64]) -> Vec<(f64, f64)>,
+    curve: Curve,
 }
 
 impl Axes {
-    fn new(
-        x_label: &'static str,
-        y_label: &'static str,
-        curve: fn(&dyn Effect, &[f64]) -> Vec<(f64, f64)>,
-    ) -> Self {
+    fn new(x_label: &'static str, y_label: &'static str, curve: Curve) -> Self {
         Self {
             x_label,
             y_label,
