@@ -37,6 +37,10 @@ static CARD: Card = Card {
             with: "load_friction",
             why: "the same at one load; change the mass or the arm's length",
         },
+        Confusion {
+            with: "bearing_friction",
+            why: "the same under one force; add mass at the joint, which loads the bearing alone",
+        },
     ],
     experiment: "let the arm swing freely with the torque off, or move it slowly up and down at two constant speeds",
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

@@ -3,9 +3,38 @@
 //! Adding one is a file with a `card()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
 //! the glossary, the candidates, the fit's bounds and the law tests all iterate that list.
 
+mod air_drag;
+mod armature;
+mod backlash;
+mod base_tilt;
+mod bearing_friction;
+mod cable_spring;
+mod canvas;
 mod card;
+mod cogging;
+mod com_angle;
 mod coulomb;
+mod dead_zone;
 mod delay;
+mod direction_asymmetry;
+mod encoder_scale;
+mod encoder_zero;
+mod load_friction;
+mod mass;
+mod sensor_lag;
+mod speed_limit;
+mod stribeck;
+mod supply_sag;
+mod supply_sensitivity;
+mod torque_saturation;
+mod torque_scale;
+mod viscous;
+
+pub mod glossary;
+pub mod signature;
+
+#[cfg(test)]
+mod tests;
 
 pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
 
@@ -13,11 +42,39 @@ use crate::dynamics::Chain;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
-pub const EFFECTS: &[&dyn Effect] = &[&coulomb::Coulomb, &delay::Delay];
+pub const EFFECTS: &[&dyn Effect] = &[
+    &delay::Delay,
+    &dead_zone::DeadZone,
+    &supply_sensitivity::SupplySensitivity,
+    &supply_sag::SupplySag,
+    &torque_scale::TorqueScale,
+    &speed_limit::SpeedLimit,
+    &torque_saturation::TorqueSaturation,
+    &coulomb::Coulomb,
+    &stribeck::Stribeck,
+    &load_friction::LoadFriction,
+    &bearing_friction::BearingFriction,
+    &direction_asymmetry::DirectionAsymmetry,
+    &viscous::Viscous,
+    &air_drag::AirDrag,
+    &cable_spring::CableSpring,
+    &cogging::Cogging,
+    &com_angle::ComAngle,
+    &mass::Mass,
+    &armature::Armature,
+    &base_tilt::BaseTilt,
+    &encoder_scale::EncoderScale,
+    &encoder_zero::EncoderZero,
+    &backlash::Backlash,
+    &sensor_lag::SensorLag,
+];
 
 /// The effect of this id.
 pub fn named(id: &str) -> Option<&'static dyn Effect> {
-    EFFECTS.iter().copied().find(|effect| effect.card().id == id)
+    EFFECTS
+        .iter()
+        .copied()
+        .find(|effect| effect.card().id == id)
 }
 
 /// A departure from the rigid chain with ideal drives and sensors.
@@ -63,11 +120,12 @@ pub trait Effect: Sync + fmt::Debug {
     }
 
     /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
-    /// `memory` is the effect's own; `None` before the first call of a motion.
+    /// `memory` is the effect's own, [encoded angle, reading] of the call before; `None` before the first call
+    /// of a motion, which reads the angle itself.
     fn sense(
         &self,
         _values: &[f64],
-        _memory: &mut Option<f64>,
+        _memory: &mut Option<[f64; 2]>,
         angle_rad: f64,
         _step_s: f64,
     ) -> f64 {

@@ -1,0 +1,53 @@
+//! Air drag: resistance in proportion to the square of speed.
+
+use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+
+/// -c w |w|.
+#[derive(Debug)]
+pub struct AirDrag;
+
+static CARD: Card = Card {
+    id: "air_drag",
+    title: "air drag",
+    site: Site::Joint,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "torque = -coefficient_nm_s2_rad2 * w * |w|",
+    parameters: &[Parameter {
+        key: "coefficient_nm_s2_rad2",
+        unit: "N m s^2/rad^2",
+        meaning: "resistance per square of speed",
+        off: Some(0.0),
+        typical: (0.0001, 0.005),
+        bounds: (0.0, 1.0),
+        starts: &[0.001, 0.0001],
+    }],
+    looks_like: "wide swings shrink fast and narrow ones hardly; the residual torque is a parabola over speed \
+     with the sign of the speed",
+    confused_with: &[
+        Confusion {
+            with: "viscous",
+            why: "both grow with speed; viscous friction keeps its share in slow motion",
+        },
+        Confusion {
+            with: "load_friction",
+            why: "fast motion loads the gear too; repeat slowly, where only load friction remains",
+        },
+        Confusion {
+            with: "bearing_friction",
+            why: "both take more from a wide swing; the bearing also stops the last narrow swings",
+        },
+    ],
+    experiment: "let the arm swing freely from a wide angle, bare and with a light card that catches the air",
+    reference: "Nelson, Olsson, American Journal of Physics 54 (1986) 112",
+};
+
+impl Effect for AirDrag {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        -values[0] * at.speed_rad_s * at.speed_rad_s.abs()
+    }
+}

@@ -1,0 +1,51 @@
+//! Armature: the rotor, seen through the gear, adds inertia without weight.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+
+/// J + N^2 J_r at the joint, with gear ratio N and rotor inertia J_r.
+#[derive(Debug)]
+pub struct Armature;
+
+static CARD: Card = Card {
+    id: "armature",
+    title: "armature inertia",
+    site: Site::Body,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "inertia at the joint + inertia_kg_m2, without weight",
+    parameters: &[Parameter {
+        key: "inertia_kg_m2",
+        unit: "kg m^2",
+        meaning: "rotor inertia times the square of the gear ratio",
+        off: Some(0.0),
+        typical: (0.0005, 0.02),
+        bounds: (0.0, 1.0),
+        starts: &[0.002, 0.01],
+    }],
+    looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is slower \
+     than the model says",
+    confused_with: &[
+        Confusion {
+            with: "mass",
+            why: "both make the arm sluggish; mass also adds gravity: hold still first",
+        },
+        Confusion {
+            with: "encoder_scale",
+            why: "both change the acceleration that is read; a scale also changes the angle between \
+             two stops",
+        },
+    ],
+    experiment: "hold still at several angles, then swing freely with and without the motor in gear",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
+     chapter 7",
+};
+
+impl Effect for Armature {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
+        rig.chain.links[joint].armature_kg_m2 += values[0];
+    }
+}

@@ -1,0 +1,66 @@
+//! Backlash: play between joint and encoder.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+
+/// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap / 2 behind.
+#[derive(Debug)]
+pub struct Backlash;
+
+static CARD: Card = Card {
+    id: "backlash",
+    title: "backlash before the encoder",
+    site: Site::Sensor,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "the reading stays while |q - reading| <= gap_rad / 2, else it follows at that distance",
+    parameters: &[Parameter {
+        key: "gap_rad",
+        unit: "rad",
+        meaning: "free play, from flank to flank",
+        off: Some(0.0),
+        typical: (0.002, 0.05),
+        bounds: (0.0, 0.5),
+        starts: &[0.01, 0.03],
+    }],
+    looks_like: "after each reversal the reading stands still over a fixed angle, whatever the amplitude, the \
+     load or the speed",
+    confused_with: &[
+        Confusion {
+            with: "dead_zone",
+            why: "both leave a plateau; a dead zone has a fixed width in command and lets the arm \
+             drift in angle",
+        },
+        Confusion {
+            with: "stribeck",
+            why: "both halt the reading at reversal; stiction lasts until a fixed torque, not over a \
+             fixed angle",
+        },
+        Confusion {
+            with: "sensor_lag",
+            why: "both trail the motion; a lag is wider the faster the motion, backlash always the \
+             same",
+        },
+    ],
+    experiment: "move in triangles of three amplitudes, slowly: the width of the loop must not change",
+    reference: "Nordin, Gutman, Automatica 38 (2002) 1633",
+};
+
+impl Effect for Backlash {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn sense(
+        &self,
+        values: &[f64],
+        memory: &mut Option<[f64; 2]>,
+        angle_rad: f64,
+        _step_s: f64,
+    ) -> f64 {
+        let half_rad = values[0] / 2.0;
+        let before_rad = memory.map_or(angle_rad, |[_, reading_rad]| reading_rad);
+        let reading_rad = before_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
+        *memory = Some([angle_rad, reading_rad]);
+        reading_rad
+    }
+}

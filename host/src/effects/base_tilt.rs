@@ -1,0 +1,52 @@
+//! Base tilt: the rig does not stand plumb.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+
+/// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands turned by 180 degrees
+/// about the vertical.
+#[derive(Debug)]
+pub struct BaseTilt;
+
+static CARD: Card = Card {
+    id: "base_tilt",
+    title: "base tilt",
+    site: Site::Body,
+    scope: Scope::WholeRig,
+    needs: Needs::Nothing,
+    law: "gravity turned by angle_rad in the plane of the rig",
+    parameters: &[Parameter {
+        key: "angle_rad",
+        unit: "rad",
+        meaning: "tilt of the base, counter-clockwise",
+        off: Some(0.0),
+        typical: (-0.05, 0.05),
+        bounds: (-1.6, 1.6),
+        starts: &[0.02, -0.02],
+    }],
+    looks_like: "a static error with the same phase in the world on every link",
+    confused_with: &[
+        Confusion {
+            with: "com_angle",
+            why: "both shift the angle at which gravity vanishes; a centre of mass keeps its side of \
+             the body when the rig is turned, and belongs to one link",
+        },
+        Confusion {
+            with: "encoder_zero",
+            why: "both shift the angle at which gravity vanishes; an offset keeps its sign at the \
+             joint when the rig is turned",
+        },
+    ],
+    experiment: "repeat a slow motion with the rig turned by 180 degrees about the vertical: the error of a \
+     tilt changes sides",
+    reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
+};
+
+impl Effect for BaseTilt {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
+        rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] };
+    }
+}

@@ -1,0 +1,52 @@
+//! Load friction of a plain bearing: the weight it carries and the swing press on it.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+
+/// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
+#[derive(Debug)]
+pub struct BearingFriction;
+
+static CARD: Card = Card {
+    id: "bearing_friction",
+    title: "load friction of a plain bearing",
+    site: Site::Friction,
+    scope: Scope::PassiveJoint,
+    needs: Needs::BearingLoad,
+    law: "friction = radius_m * bearing force, against the motion",
+    parameters: &[Parameter {
+        key: "radius_m",
+        unit: "m",
+        meaning: "friction coefficient times bearing radius",
+        off: Some(0.0),
+        typical: (1e-5, 0.005),
+        bounds: (0.0, 0.05),
+        starts: &[0.001, 0.0001],
+    }],
+    looks_like: "a free swing loses more angle per period while it is wide, since the swing itself loads the \
+     bearing, and still stops off the bottom",
+    confused_with: &[
+        Confusion {
+            with: "coulomb",
+            why: "the same under one force; add mass at the joint, which loads the bearing without \
+             changing the swing",
+        },
+        Confusion {
+            with: "air_drag",
+            why: "both take more from a wide swing; air drag lets the swing fade slowly at the end, \
+             the bearing stops it",
+        },
+    ],
+    experiment: "let the chain swing freely from a wide angle until it stops, then repeat with a mass added \
+     close to the bearing",
+    reference: "Bowden, Tabor, The Friction and Lubrication of Solids (1950)",
+};
+
+impl Effect for BearingFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+        values[0] * at.bearing_load_n
+    }
+}

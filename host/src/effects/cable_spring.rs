@@ -1,0 +1,69 @@
+//! Cable spring: a cable across the joint pulls it toward a rest angle.
+
+use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+
+/// -k (q - q_0).
+#[derive(Debug)]
+pub struct CableSpring;
+
+static CARD: Card = Card {
+    id: "cable_spring",
+    title: "cable spring",
+    site: Site::Joint,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "torque = -stiffness_nm_rad * (q - rest_angle_rad)",
+    parameters: &[
+        Parameter {
+            key: "stiffness_nm_rad",
+            unit: "N m/rad",
+            meaning: "torque per angle",
+            off: Some(0.0),
+            typical: (0.002, 0.1),
+            bounds: (0.0, 50.0),
+            starts: &[0.01, 0.05],
+        },
+        Parameter {
+            key: "rest_angle_rad",
+            unit: "rad",
+            meaning: "angle at which the cable does not pull",
+            off: None,
+            typical: (-1.6, 1.6),
+            bounds: (-3.2, 3.2),
+            starts: &[0.0, -1.0, 1.0],
+        },
+    ],
+    looks_like: "a static error that is a straight line over the joint angle, the same at every speed",
+    confused_with: &[
+        Confusion {
+            with: "mass",
+            why: "near hanging, gravity is a straight line over angle too; turn the rig or add a mass, \
+             which leaves the cable alone",
+        },
+        Confusion {
+            with: "com_angle",
+            why: "both shift where the arm rests; the cable keeps its angle at the joint when the rig \
+             is turned",
+        },
+        Confusion {
+            with: "cogging",
+            why: "over a short range one ripple is a straight line too; go around a wider range",
+        },
+    ],
+    experiment: "hold the joint still at many angles over its whole range, then repeat with the cable \
+     loosened",
+    reference: "Hooke, Lectures de Potentia Restitutiva (1678)",
+};
+
+impl Effect for CableSpring {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        let [stiffness_nm_rad, rest_rad] = values else {
+            return 0.0;
+        };
+        -stiffness_nm_rad * (at.angle_rad - rest_rad)
+    }
+}

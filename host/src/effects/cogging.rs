@@ -1,0 +1,81 @@
+//! Cogging and gear ripple: a torque that repeats around the turn.
+
+use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use std::f64::consts::PI;
+
+/// A sin(N q + p).
+#[derive(Debug)]
+pub struct Cogging;
+
+static CARD: Card = Card {
+    id: "cogging",
+    title: "cogging and gear ripple",
+    site: Site::Joint,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque = amplitude_nm * sin(periods_per_turn * q + phase_rad)",
+    parameters: &[
+        Parameter {
+            key: "amplitude_nm",
+            unit: "N m",
+            meaning: "height of the ripple",
+            off: Some(0.0),
+            typical: (0.002, 0.1),
+            bounds: (0.0, 5.0),
+            starts: &[0.01, 0.05],
+        },
+        Parameter {
+            key: "periods_per_turn",
+            unit: "1",
+            meaning: "ripples in one turn of the joint",
+            off: None,
+            typical: (4.0, 60.0),
+            bounds: (1.0, 200.0),
+            starts: &[
+                12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
+            ],
+        },
+        Parameter {
+            key: "phase_rad",
+            unit: "rad",
+            meaning: "phase of the ripple at angle zero",
+            off: None,
+            typical: (-PI, PI),
+            bounds: (-3.5, 3.5),
+            starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
+        },
+    ],
+    looks_like: "the residual torque repeats over the joint angle at every speed; in time its frequency grows \
+     with the speed",
+    confused_with: &[
+        Confusion {
+            with: "cable_spring",
+            why: "over a short range one ripple is a straight line too; go around a wider range",
+        },
+        Confusion {
+            with: "com_angle",
+            why: "one period per turn is a shifted centre of mass; more than one cannot be",
+        },
+        Confusion {
+            with: "encoder_scale",
+            why: "an angle read wrongly makes gravity look wrong periodically too; turn the axis \
+             upright, where only the ripple remains",
+        },
+    ],
+    experiment: "turn slowly at two constant speeds and plot the torque over the angle: the curves must lie \
+     on each other",
+    reference: "Holtz, Springob, IEEE Transactions on Industrial Electronics 43 (1996) 309",
+};
+
+impl Effect for Cogging {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        let [amplitude_nm, periods_per_turn, phase_rad] = values else {
+            return 0.0;
+        };
+        amplitude_nm * (periods_per_turn * at.angle_rad + phase_rad).sin()
+    }
+}

@@ -1,0 +1,72 @@
+//! Dead zone: the drive swallows small commands.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+
+/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed, never beyond full range.
+#[derive(Debug)]
+pub struct DeadZone;
+
+static CARD: Card = Card {
+    id: "dead_zone",
+    title: "dead zone of the drive",
+    site: Site::Command,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "applied duty = 0 while |u| <= width, else u + punch * sgn(u)",
+    parameters: &[
+        Parameter {
+            key: "width",
+            unit: "1",
+            meaning: "share of full range below which the command does nothing",
+            off: Some(0.0),
+            typical: (0.02, 0.15),
+            bounds: (0.0, 0.6),
+            starts: &[0.05, 0.12],
+        },
+        Parameter {
+            key: "punch",
+            unit: "1",
+            meaning: "duty added to every command outside the zone; below zero it takes away",
+            off: Some(0.0),
+            typical: (0.0, 0.05),
+            bounds: (-0.3, 0.3),
+            starts: &[0.0, 0.03],
+        },
+    ],
+    looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it hunts in a \
+     limit cycle; with the torque off nothing remains of it",
+    confused_with: &[
+        Confusion {
+            with: "coulomb",
+            why: "both swallow small commands; with the torque off only friction remains",
+        },
+        Confusion {
+            with: "backlash",
+            why: "both leave a plateau; backlash has a fixed width in angle after each reversal, a \
+             dead zone a fixed width in command",
+        },
+        Confusion {
+            with: "stribeck",
+            why: "both leave small commands without motion; breakaway grows neither with the supply \
+             nor with the duty, and stays with the torque off",
+        },
+    ],
+    experiment: "ramp the command slowly through zero at two loads, then drop the arm with the torque off",
+    reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996); \
+     ROBOTIS AX-12 manual, compliance margin and punch",
+};
+
+impl Effect for DeadZone {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn command(&self, values: &[f64], duty: f64) -> f64 {
+        let [width, punch] = values else { return duty };
+        if duty.abs() <= *width {
+            0.0
+        } else {
+            (duty.abs() + punch).clamp(0.0, 1.0).copysign(duty)
+        }
+    }
+}

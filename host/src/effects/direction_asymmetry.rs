@@ -1,0 +1,52 @@
+//! Direction asymmetry: one direction resists more than the other.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+
+/// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
+#[derive(Debug)]
+pub struct DirectionAsymmetry;
+
+static CARD: Card = Card {
+    id: "direction_asymmetry",
+    title: "direction asymmetry of friction",
+    site: Site::Friction,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "friction += half_difference_nm * sgn(w)",
+    parameters: &[Parameter {
+        key: "half_difference_nm",
+        unit: "N m",
+        meaning: "half of forward minus backward friction",
+        off: Some(0.0),
+        typical: (-0.05, 0.05),
+        bounds: (-5.0, 5.0),
+        starts: &[0.01, -0.01],
+    }],
+    looks_like: "the residual torque has one constant sign while the joint moves, whichever way it goes, and \
+     none while it rests",
+    confused_with: &[
+        Confusion {
+            with: "encoder_zero",
+            why: "gravity at a shifted angle is a near constant torque too, but it is there at rest \
+             and changes with the angle",
+        },
+        Confusion {
+            with: "com_angle",
+            why: "a shifted centre of mass pulls one way too, also at rest; turn the arm to another \
+             angle",
+        },
+    ],
+    experiment: "move slowly both ways through the same angles, then mount the joint reversed and repeat: the \
+     sign must turn",
+    reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+};
+
+impl Effect for DirectionAsymmetry {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+        values[0] * at.direction
+    }
+}

@@ -1,0 +1,59 @@
+//! Encoder scale: the reading stretches the angle.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+
+/// s q.
+#[derive(Debug)]
+pub struct EncoderScale;
+
+static CARD: Card = Card {
+    id: "encoder_scale",
+    title: "encoder scale",
+    site: Site::Sensor,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "reading = factor * q",
+    parameters: &[Parameter {
+        key: "factor",
+        unit: "1",
+        meaning: "angle read over true angle",
+        off: Some(1.0),
+        typical: (0.95, 1.05),
+        bounds: (0.5, 2.0),
+        starts: &[0.98, 1.02],
+    }],
+    looks_like: "an error in proportion to the angle from the encoder's zero, the same at rest and in motion",
+    confused_with: &[
+        Confusion {
+            with: "mass",
+            why: "both make gravity look wrong over the angle; mass leaves the angle between two stops \
+             alone",
+        },
+        Confusion {
+            with: "armature",
+            why: "both change the acceleration that is read; armature leaves the angle between two \
+             stops alone",
+        },
+        Confusion {
+            with: "encoder_zero",
+            why: "the same at one angle; read at two stops far apart",
+        },
+        Confusion {
+            with: "cogging",
+            why: "both make the torque wrong over the angle; a ripple leaves the angle between two \
+             stops alone",
+        },
+    ],
+    experiment: "move between two stops at a known angle from each other",
+    reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
+};
+
+impl Effect for EncoderScale {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
+        values[0] * angle_rad
+    }
+}

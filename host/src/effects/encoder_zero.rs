@@ -1,0 +1,58 @@
+//! Encoder zero: the reading is off by a constant.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+
+/// q + o.
+#[derive(Debug)]
+pub struct EncoderZero;
+
+static CARD: Card = Card {
+    id: "encoder_zero",
+    title: "encoder zero",
+    site: Site::Sensor,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "reading = q + offset_rad",
+    parameters: &[Parameter {
+        key: "offset_rad",
+        unit: "rad",
+        meaning: "reading at true angle zero",
+        off: Some(0.0),
+        typical: (-0.1, 0.1),
+        bounds: (-3.2, 3.2),
+        starts: &[0.02, -0.02],
+    }],
+    looks_like: "a constant error of the angle; the torque of gravity peaks at the wrong reading",
+    confused_with: &[
+        Confusion {
+            with: "com_angle",
+            why: "both shift the angle at which gravity vanishes; in a chain an encoder offset turns \
+             the outer links too",
+        },
+        Confusion {
+            with: "base_tilt",
+            why: "both shift the angle at which gravity vanishes; a tilt changes its sign at the joint \
+             when the rig is turned",
+        },
+        Confusion {
+            with: "encoder_scale",
+            why: "the same at one angle; read at two stops far apart",
+        },
+        Confusion {
+            with: "direction_asymmetry",
+            why: "both leave a torque of one sign; the asymmetry is gone at rest",
+        },
+    ],
+    experiment: "move against a stop at a known angle, then turn the rig by 180 degrees and repeat",
+    reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
+};
+
+impl Effect for EncoderZero {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
+        angle_rad + values[0]
+    }
+}

@@ -1,0 +1,50 @@
+//! Load friction: what the gear transmits presses its teeth together.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+
+/// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
+#[derive(Debug)]
+pub struct LoadFriction;
+
+static CARD: Card = Card {
+    id: "load_friction",
+    title: "load-dependent friction of the gear",
+    site: Site::Friction,
+    scope: Scope::DrivenJoint,
+    needs: Needs::GearLoad,
+    law: "friction = factor * gear load, against the motion",
+    parameters: &[Parameter {
+        key: "factor",
+        unit: "1",
+        meaning: "friction over the torque the gear transmits",
+        off: Some(0.0),
+        typical: (0.02, 0.3),
+        bounds: (0.0, 2.0),
+        starts: &[0.05, 0.2],
+    }],
+    looks_like: "the resistance grows where the arm is held level and falls where it hangs; a heavier load \
+     sticks harder",
+    confused_with: &[
+        Confusion {
+            with: "coulomb",
+            why: "the same at one load; change the mass or the length of the arm",
+        },
+        Confusion {
+            with: "air_drag",
+            why: "fast motion loads the gear too; repeat slowly, where only load friction remains",
+        },
+    ],
+    experiment: "lift and lower slowly with two masses, and compare the width between lifting and lowering",
+    reference: "Duclusaud, Passault, Padois, Ly, Extended Friction Models for the Physics Simulation of \
+     Servo Actuators, arXiv:2410.08650, model M3",
+};
+
+impl Effect for LoadFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+        values[0] * at.gear_load_nm
+    }
+}

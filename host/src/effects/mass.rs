@@ -1,0 +1,72 @@
+//! Mass: the link is heavier or lighter than in the model.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+
+/// m + dm at the same centre of mass, with the inertia about it in the same proportion.
+///
+/// At least 1 % of the mass is left, however much is taken away; a link without mass gains no inertia of its own.
+#[derive(Debug)]
+pub struct Mass;
+
+/// Smallest share of the mass that is left; a chain without inertia cannot be solved.
+const LEAST_SHARE: f64 = 0.01;
+
+static CARD: Card = Card {
+    id: "mass",
+    title: "mass or payload",
+    site: Site::Body,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "mass + added_kg; the inertia about the centre of mass grows in the same proportion",
+    parameters: &[Parameter {
+        key: "added_kg",
+        unit: "kg",
+        meaning: "mass missing in the model; below zero: too much in it",
+        off: Some(0.0),
+        typical: (-0.1, 0.3),
+        bounds: (-1.0, 5.0),
+        starts: &[0.05, -0.05],
+    }],
+    looks_like: "gravity and inertia are wrong by the same share: the arm holds at another duty, but swings \
+     freely with the right period",
+    confused_with: &[
+        Confusion {
+            with: "armature",
+            why: "both make the arm sluggish; armature adds no gravity: hold still first",
+        },
+        Confusion {
+            with: "encoder_scale",
+            why: "both make gravity look wrong over the angle; a scale also changes the angle between \
+             two stops",
+        },
+        Confusion {
+            with: "torque_scale",
+            why: "a weaker drive answers less too, and one log may not tell; weigh the link, or hold a \
+             known added mass",
+        },
+        Confusion {
+            with: "cable_spring",
+            why: "near hanging, a spring is like gravity; turn the rig or add a mass, which leaves the \
+             cable alone",
+        },
+    ],
+    experiment: "hold still at several angles, then swing freely, then repeat with a known mass added",
+    reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
+};
+
+impl Effect for Mass {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
+        let link = &mut rig.chain.links[joint];
+        if link.mass_kg > 0.0 {
+            let factor = (1.0 + values[0] / link.mass_kg).max(LEAST_SHARE);
+            link.mass_kg *= factor;
+            link.inertia_kg_m2 *= factor;
+        } else {
+            link.mass_kg = values[0].max(0.0);
+        }
+    }
+}

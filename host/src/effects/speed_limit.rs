@@ -1,0 +1,59 @@
+//! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
+
+use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+
+/// tau - tau_full w / w_0, with the no-load speed w_0.
+#[derive(Debug)]
+pub struct SpeedLimit;
+
+static CARD: Card = Card {
+    id: "speed_limit",
+    title: "speed limit by back-EMF",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque - full_torque * w / no_load_speed_rad_s, while energised",
+    parameters: &[Parameter {
+        key: "no_load_speed_rad_s",
+        unit: "rad/s",
+        meaning: "speed at which full duty leaves no torque",
+        off: Some(f64::INFINITY),
+        typical: (4.0, 12.0),
+        bounds: (0.5, 10000.0),
+        starts: &[8.0, 20.0],
+    }],
+    looks_like: "at full duty the arm accelerates less the faster it turns; the residual torque is linear in \
+     speed, but only while the drive is energised",
+    confused_with: &[
+        Confusion {
+            with: "viscous",
+            why: "both are linear in speed; repeat the drop with the torque on and off: back-EMF needs \
+             the energised drive",
+        },
+        Confusion {
+            with: "supply_sag",
+            why: "strong commands are fast ones too; hold a load at rest, where only sag remains",
+        },
+        Confusion {
+            with: "torque_saturation",
+            why: "both cap the acceleration at full duty; a torque limit acts at rest too",
+        },
+        Confusion {
+            with: "torque_scale",
+            why: "both weaken the drive; a scale acts at rest too",
+        },
+    ],
+    experiment: "drive at full duty from rest to the top speed, then drop the arm with the torque off",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
+     chapter 5",
+};
+
+impl Effect for SpeedLimit {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm - at.full_torque_nm * at.speed_rad_s / values[0]
+    }
+}

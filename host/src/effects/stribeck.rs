@@ -1,0 +1,73 @@
+//! Stiction and Stribeck friction: more resistance at rest than in motion.
+
+use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+
+/// tau_x exp(-|w| / w_s), on top of the sliding friction.
+///
+/// Bo and Pavelescu measured exponents of |w| / w_s between 0.5 and 1; here it is fixed at 1, since motion this
+/// slow is too rare in a log to tell them apart.
+#[derive(Debug)]
+pub struct Stribeck;
+
+static CARD: Card = Card {
+    id: "stribeck",
+    title: "stiction and Stribeck friction",
+    site: Site::Friction,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "friction = excess_nm * exp(-|w| / speed_rad_s), against the motion",
+    parameters: &[
+        Parameter {
+            key: "excess_nm",
+            unit: "N m",
+            meaning: "breakaway torque above the sliding friction",
+            off: Some(0.0),
+            typical: (0.005, 0.2),
+            bounds: (0.0, 10.0),
+            starts: &[0.02, 0.1],
+        },
+        Parameter {
+            key: "speed_rad_s",
+            unit: "rad/s",
+            meaning: "Stribeck speed, at which 37 % of the excess is left",
+            off: None,
+            typical: (0.05, 0.8),
+            bounds: (0.005, 10.0),
+            starts: &[0.15, 0.6],
+        },
+    ],
+    looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that fades as \
+     the speed grows",
+    confused_with: &[
+        Confusion {
+            with: "coulomb",
+            why: "both jump at reversal; Coulomb friction stays at every speed",
+        },
+        Confusion {
+            with: "dead_zone",
+            why: "both leave small commands without motion; a dead zone is gone with the torque off",
+        },
+        Confusion {
+            with: "backlash",
+            why: "both halt the reading at reversal; backlash halts it over a fixed angle, stiction \
+             until a fixed torque",
+        },
+    ],
+    experiment: "move slowly at several constant speeds from 0.05 rad/s up, and note the torque at which the \
+     resting arm breaks away",
+    reference: "Bo, Pavelescu, Wear 82 (1982) 277; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 \
+     (1994) 1083",
+};
+
+impl Effect for Stribeck {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+        let [excess_nm, stribeck_rad_s] = values else {
+            return 0.0;
+        };
+        excess_nm * (-at.speed_rad_s / stribeck_rad_s).exp()
+    }
+}

@@ -1,0 +1,60 @@
+//! Supply sag: the source gives way under the current the drive draws.
+
+use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+
+/// tau (1 - d |u|).
+#[derive(Debug)]
+pub struct SupplySag;
+
+static CARD: Card = Card {
+    id: "supply_sag",
+    title: "supply sag",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque * (1 - drop_share * |u|)",
+    parameters: &[Parameter {
+        key: "drop_share",
+        unit: "1",
+        meaning: "share of the supply lost at full duty",
+        off: Some(0.0),
+        typical: (0.05, 0.35),
+        bounds: (0.0, 0.9),
+        starts: &[0.1, 0.25],
+    }],
+    looks_like: "strong commands give less than their share of torque; the torque bends over duty, alike in \
+     both directions",
+    confused_with: &[
+        Confusion {
+            with: "supply_sensitivity",
+            why: "both weaken the torque as the volts fall; log the volts and repeat from a stiff \
+             source",
+        },
+        Confusion {
+            with: "torque_saturation",
+            why: "both bend the torque at strong commands; sag bends from zero on, a limit only above \
+             one torque",
+        },
+        Confusion {
+            with: "speed_limit",
+            why: "strong commands are fast ones too; hold a load at rest, where only sag remains",
+        },
+        Confusion {
+            with: "torque_scale",
+            why: "the same at one duty; compare weak and strong commands",
+        },
+    ],
+    experiment: "hold a heavy and a light load at rest and compare the duties; then repeat from a supply with \
+     less resistance",
+    reference: "Horowitz, Hill, The Art of Electronics, 3rd ed., chapter 1 (source resistance)",
+};
+
+impl Effect for SupplySag {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm * (1.0 - values[0] * at.duty.abs())
+    }
+}

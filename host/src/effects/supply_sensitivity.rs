@@ -1,0 +1,50 @@
+//! Supply sensitivity: the torque follows the volts.
+
+use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+
+/// tau (1 + s (V / V_n - 1)).
+#[derive(Debug)]
+pub struct SupplySensitivity;
+
+static CARD: Card = Card {
+    id: "supply_sensitivity",
+    title: "torque depends on the supply",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Supply,
+    law: "torque * (1 + sensitivity * (V / V_nominal - 1))",
+    parameters: &[Parameter {
+        key: "sensitivity",
+        unit: "1",
+        meaning: "relative change of torque over relative change of supply",
+        off: Some(0.0),
+        typical: (0.5, 1.2),
+        bounds: (0.0, 3.0),
+        starts: &[1.0, 0.6],
+    }],
+    looks_like: "the same command gives more motion on a full battery; the residual follows the logged volts",
+    confused_with: &[
+        Confusion {
+            with: "supply_sag",
+            why: "both weaken the torque as the volts fall; sag follows the duty even where no volts \
+             are logged",
+        },
+        Confusion {
+            with: "torque_scale",
+            why: "the same at one supply; repeat at a second one",
+        },
+    ],
+    experiment: "repeat one motion at two supplies a volt or more apart, with the volts logged",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
+     chapter 5",
+};
+
+impl Effect for SupplySensitivity {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm * (1.0 + values[0] * (at.supply_ratio - 1.0))
+    }
+}

@@ -1,0 +1,49 @@
+//! Torque saturation: the drive gives no more than a limit.
+
+use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+
+/// max(-limit, min(limit, tau)).
+#[derive(Debug)]
+pub struct TorqueSaturation;
+
+static CARD: Card = Card {
+    id: "torque_saturation",
+    title: "torque saturation",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque clipped to -limit_nm..limit_nm",
+    parameters: &[Parameter {
+        key: "limit_nm",
+        unit: "N m",
+        meaning: "largest torque in either direction",
+        off: Some(f64::INFINITY),
+        typical: (0.5, 2.0),
+        bounds: (0.001, 100.0),
+        starts: &[0.3, 1.0, 3.0],
+    }],
+    looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is zero below it",
+    confused_with: &[
+        Confusion {
+            with: "supply_sag",
+            why: "both bend the torque at strong commands; sag bends from zero on, a limit only above \
+             one torque",
+        },
+        Confusion {
+            with: "speed_limit",
+            why: "both cap the acceleration at full duty; a torque limit acts at rest too",
+        },
+    ],
+    experiment: "hold a load that grows step by step until the arm gives way, then repeat at another supply",
+    reference: "ROBOTIS AX-12 manual, stall torque and torque limit",
+};
+
+impl Effect for TorqueSaturation {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
+        torque_nm.clamp(-values[0], values[0])
+    }
+}

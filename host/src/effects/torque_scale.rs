@@ -1,0 +1,60 @@
+//! Torque scale: the torque constant or the gear ratio differs from the data sheet.
+
+use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+
+/// s tau.
+#[derive(Debug)]
+pub struct TorqueScale;
+
+static CARD: Card = Card {
+    id: "torque_scale",
+    title: "torque scale",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "factor * torque",
+    parameters: &[Parameter {
+        key: "factor",
+        unit: "1",
+        meaning: "torque that arrives over torque in the model",
+        off: Some(1.0),
+        typical: (0.7, 1.3),
+        bounds: (0.05, 10.0),
+        starts: &[0.85, 1.15],
+    }],
+    looks_like: "every response to the drive is too strong or too weak by one share, at every speed and in \
+     both directions",
+    confused_with: &[
+        Confusion {
+            with: "mass",
+            why: "a heavier arm answers the drive less too, and one log may not tell; weigh the link, \
+             or hold a known added mass",
+        },
+        Confusion {
+            with: "supply_sag",
+            why: "the same at one duty; compare weak and strong commands",
+        },
+        Confusion {
+            with: "supply_sensitivity",
+            why: "the same at one supply; repeat at a second one",
+        },
+        Confusion {
+            with: "speed_limit",
+            why: "a wrong no-load speed also weakens the drive; hold a load at rest, where only the \
+             scale remains",
+        },
+    ],
+    experiment: "hold a known mass at a known arm and compare the duty with the model",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
+     chapter 5",
+};
+
+impl Effect for TorqueScale {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
+        values[0] * torque_nm
+    }
+}

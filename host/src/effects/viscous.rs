@@ -1,0 +1,60 @@
+//! Viscous friction: resistance in proportion to speed.
+
+use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+
+/// -c w.
+#[derive(Debug)]
+pub struct Viscous;
+
+static CARD: Card = Card {
+    id: "viscous",
+    title: "viscous friction",
+    site: Site::Joint,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "torque = -coefficient_nm_s_rad * w",
+    parameters: &[Parameter {
+        key: "coefficient_nm_s_rad",
+        unit: "N m s/rad",
+        meaning: "resistance per speed",
+        off: Some(0.0),
+        typical: (0.001, 0.1),
+        bounds: (0.0, 10.0),
+        starts: &[0.01, 0.05],
+    }],
+    looks_like: "the residual torque is a straight line over speed; a free swing shrinks by the same share \
+     every period",
+    confused_with: &[
+        Confusion {
+            with: "speed_limit",
+            why: "both are linear in speed; repeat the drop with the torque on and off: friction \
+             remains with it off",
+        },
+        Confusion {
+            with: "air_drag",
+            why: "both grow with speed; drag is weak while slow and grows with the square",
+        },
+        Confusion {
+            with: "delay",
+            why: "both trail the input; friction trails less as the motion slows",
+        },
+        Confusion {
+            with: "sensor_lag",
+            why: "both make the reading trail; a lag in the sensor leaves the loss of energy of a free \
+             swing unchanged",
+        },
+    ],
+    experiment: "let the arm swing freely with the torque off and plot the logarithm of its amplitude over \
+     time: a straight line",
+    reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+};
+
+impl Effect for Viscous {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        -values[0] * at.speed_rad_s
+    }
+}
