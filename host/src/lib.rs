@@ -8,6 +8,7 @@ pub mod effects;
 pub mod error;
 pub mod log;
 pub mod model;
+pub mod output;
 pub mod sim;
 
 pub use error::{Error, Place, Result};
