@@ -9,6 +9,7 @@ pub mod error;
 pub mod identify;
 pub mod log;
 pub mod model;
+pub mod output;
 pub mod sim;
 
 pub use error::{Error, Place, Result};

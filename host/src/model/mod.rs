@@ -11,7 +11,7 @@ mod reader;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};
-pub use path::ParameterPath;
+pub use path::{JointField, LinkField, ParameterPath};
 pub use unit::{Dimension, Unit};
 
 use crate::error::Result;

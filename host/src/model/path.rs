@@ -1,0 +1,470 @@
+//! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`, `coulomb@1.torque_nm`.
+
+use super::{Drive, Link, Model, Motor};
+use crate::effects::{self, Card};
+use crate::error::Error;
+use std::fmt;
+use std::str::FromStr;
+
+/// Range of a quantity that must be above zero; far wider than any rig on a bench.
+pub(super) const POSITIVE: (f64, f64) = (1e-9, 1e3);
+
+/// A number of a link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LinkField {
+    /// Joint to next joint, m.
+    Length,
+    /// Joint to centre of mass, m.
+    Com,
+    /// Mass, kg.
+    Mass,
+    /// Moment of inertia about the centre of mass, kg m^2.
+    Inertia,
+}
+
+impl LinkField {
+    /// Every one, in the order of a model file.
+    pub const ALL: [LinkField; 4] = [
+        LinkField::Length,
+        LinkField::Com,
+        LinkField::Mass,
+        LinkField::Inertia,
+    ];
+
+    /// Key in model files.
+    pub fn key(self) -> &'static str {
+        match self {
+            LinkField::Length => "length_m",
+            LinkField::Com => "com_m",
+            LinkField::Mass => "mass_kg",
+            LinkField::Inertia => "inertia_kg_m2",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            LinkField::Length | LinkField::Com => "m",
+            LinkField::Mass => "kg",
+            LinkField::Inertia => "kg m^2",
+        }
+    }
+
+    fn bounds(self) -> (f64, f64) {
+        match self {
+            // A counterweight's centre of mass lies behind its joint.
+            LinkField::Com => (-POSITIVE.1, POSITIVE.1),
+            LinkField::Length | LinkField::Mass | LinkField::Inertia => POSITIVE,
+        }
+    }
+
+    fn of(self, link: &mut Link) -> &mut f64 {
+        match self {
+            LinkField::Length => &mut link.length_m,
+            LinkField::Com => &mut link.com_m,
+            LinkField::Mass => &mut link.mass_kg,
+            LinkField::Inertia => &mut link.inertia_kg_m2,
+        }
+    }
+
+    fn read(self, link: &Link) -> f64 {
+        match self {
+            LinkField::Length => link.length_m,
+            LinkField::Com => link.com_m,
+            LinkField::Mass => link.mass_kg,
+            LinkField::Inertia => link.inertia_kg_m2,
+        }
+    }
+}
+
+/// A number of a joint's drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JointField {
+    /// Position drive: duty per rad of error.
+    GainPerRad,
+    /// Speed drive: duty per rad/s of error.
+    GainSPerRad,
+    /// Torque at standstill, N m.
+    StallTorque,
+    /// Speed without load, rad/s.
+    NoLoadSpeed,
+}
+
+impl JointField {
+    /// Every one, in the order of a model file.
+    pub const ALL: [JointField; 4] = [
+        JointField::GainPerRad,
+        JointField::GainSPerRad,
+        JointField::StallTorque,
+        JointField::NoLoadSpeed,
+    ];
+
+    /// Key in model files.
+    pub fn key(self) -> &'static str {
+        match self {
+            JointField::GainPerRad => "gain_per_rad",
+            JointField::GainSPerRad => "gain_s_per_rad",
+            JointField::StallTorque => "stall_torque_nm",
+            JointField::NoLoadSpeed => "no_load_speed_rad_s",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            JointField::GainPerRad => "1/rad",
+            JointField::GainSPerRad => "s/rad",
+            JointField::StallTorque => "N m",
+            JointField::NoLoadSpeed => "rad/s",
+        }
+    }
+
+    fn of(self, drive: &mut Drive) -> Option<&mut f64> {
+        match (self, drive) {
+            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(gain_per_rad),
+            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(gain_s_per_rad),
+            (field, Drive::Duty(motor))
+            | (field, Drive::Position { motor, .. })
+            | (field, Drive::Speed { motor, .. }) => field.of_motor(motor),
+            _ => None,
+        }
+    }
+
+    fn of_motor(self, motor: &mut Motor) -> Option<&mut f64> {
+        match self {
+            JointField::StallTorque => Some(&mut motor.stall_torque_nm),
+            JointField::NoLoadSpeed => Some(&mut motor.no_load_speed_rad_s),
+            JointField::GainPerRad | JointField::GainSPerRad => None,
+        }
+    }
+
+    fn read(self, drive: &Drive) -> Option<f64> {
+        match (self, drive) {
+            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(*gain_per_rad),
+            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(*gain_s_per_rad),
+            (JointField::StallTorque, drive) => drive.motor().map(|motor| motor.stall_torque_nm),
+            (JointField::NoLoadSpeed, drive) => {
+                drive.motor().map(|motor| motor.no_load_speed_rad_s)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Where one number of a model is. Indices count from 0 here, and from 1 in text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ParameterPath {
+    /// A number of a link: `link1.mass_kg`.
+    Link {
+        /// Link from the base.
+        index: usize,
+        /// Which number.
+        field: LinkField,
+    },
+    /// A number of a joint's drive: `joint1.stall_torque_nm`.
+    Joint {
+        /// Joint from the base.
+        index: usize,
+        /// Which number.
+        field: JointField,
+    },
+    /// A value of an effect: `coulomb@1.torque_nm`, or `base_tilt.angle_rad` for the whole rig.
+    Effect {
+        /// The effect's id on its card.
+        id: &'static str,
+        /// Joint from the base; `None` for the whole rig.
+        joint: Option<usize>,
+        /// Position on the card.
+        parameter: usize,
+    },
+}
+
+impl ParameterPath {
+    /// The number there; `None` if the model has no such link, joint, drive figure or effect.
+    pub fn get(&self, model: &Model) -> Option<f64> {
+        match *self {
+            ParameterPath::Link { index, field } => {
+                model.links.get(index).map(|link| field.read(link))
+            }
+            ParameterPath::Joint { index, field } => field.read(&model.joints.get(index)?.drive),
+            ParameterPath::Effect {
+                id,
+                joint,
+                parameter,
+            } => model
+                .effects
+                .iter()
+                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
+                .and_then(|effect| effect.values.get(parameter).copied()),
+        }
+    }
+
+    /// Writes the number there, unchecked against [`bounds`](Self::bounds); `false` if there is no such place.
+    #[must_use]
+    pub fn set(&self, model: &mut Model, value: f64) -> bool {
+        let place = match *self {
+            ParameterPath::Link { index, field } => {
+                model.links.get_mut(index).map(|link| field.of(link))
+            }
+            ParameterPath::Joint { index, field } => model
+                .joints
+                .get_mut(index)
+                .and_then(|joint| field.of(&mut joint.drive)),
+            ParameterPath::Effect {
+                id,
+                joint,
+                parameter,
+            } => model
+                .effects
+                .iter_mut()
+                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
+                .and_then(|effect| effect.values.get_mut(parameter)),
+        };
+        place.map(|place| *place = value).is_some()
+    }
+
+    /// Lowest and highest possible value: an effect's card's bounds, else what is physical.
+    pub fn bounds(&self, _model: &Model) -> (f64, f64) {
+        match *self {
+            ParameterPath::Link { field, .. } => field.bounds(),
+            ParameterPath::Joint { .. } => POSITIVE,
+            ParameterPath::Effect { id, parameter, .. } => {
+                on_card(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
+            }
+        }
+    }
+
+    /// Unit as shown to people: `N m`, `kg m^2`.
+    pub fn unit(&self) -> &'static str {
+        match *self {
+            ParameterPath::Link { field, .. } => field.unit(),
+            ParameterPath::Joint { field, .. } => field.unit(),
+            ParameterPath::Effect { id, parameter, .. } => {
+                on_card(id, parameter).map_or("", |p| p.unit)
+            }
+        }
+    }
+
+    /// The key of its number in a model file: `torque_nm`.
+    pub fn key(&self) -> &'static str {
+        match *self {
+            ParameterPath::Link { field, .. } => field.key(),
+            ParameterPath::Joint { field, .. } => field.key(),
+            ParameterPath::Effect { id, parameter, .. } => {
+                on_card(id, parameter).map_or("", |p| p.key)
+            }
+        }
+    }
+}
+
+fn on_card(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
+    effects::named(id)?.card().parameters.get(parameter)
+}
+
+impl fmt::Display for ParameterPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            ParameterPath::Link { index, .. } => write!(f, "link{}", index + 1)?,
+            ParameterPath::Joint { index, .. } => write!(f, "joint{}", index + 1)?,
+            ParameterPath::Effect { id, joint, .. } => match joint {
+                Some(joint) => write!(f, "{id}@{}", joint + 1)?,
+                None => write!(f, "{id}")?,
+            },
+        }
+        write!(f, ".{}", self.key())
+    }
+}
+
+impl FromStr for ParameterPath {
+    type Err = Error;
+
+    /// Reads a path as [`Display`](fmt::Display) writes it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the nearest known name.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let (owner, key) = text.split_once('.').ok_or_else(|| {
+            Error::usage(
+                format!("`{text}` names no parameter"),
+                "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`",
+            )
+        })?;
+        if let Some(index) = numbered(owner, "link") {
+            let field = choose(text, key, LinkField::ALL.map(|f| (f.key(), f)))?;
+            return Ok(ParameterPath::Link { index, field });
+        }
+        if let Some(index) = numbered(owner, "joint") {
+            let field = choose(text, key, JointField::ALL.map(|f| (f.key(), f)))?;
+            return Ok(ParameterPath::Joint { index, field });
+        }
+        effect_path(text, owner, key)
+    }
+}
+
+fn effect_path(text: &str, owner: &str, key: &str) -> Result<ParameterPath, Error> {
+    let (id, joint) = match owner.split_once('@') {
+        Some((id, joint)) => (id, Some(joint)),
+        None => (owner, None),
+    };
+    let cards = effects::EFFECTS.iter().map(|effect| effect.card());
+    let card: &'static Card = choose(text, id, cards.map(|card| (card.id, card)))?;
+    let whole_rig = card.scope == effects::Scope::WholeRig;
+    let joint = match joint {
+        Some(joint) if !whole_rig => {
+            let joint = counted(joint).ok_or_else(|| {
+                Error::usage(
+                    format!("`{text}`: `{joint}` is no joint"),
+                    "joints count from 1",
+                )
+            })?;
+            Some(joint)
+        }
+        None if whole_rig => None,
+        Some(_) => {
+            return Err(Error::usage(
+                format!("`{text}`: `{id}` acts on the whole rig, not on one joint"),
+                format!("write `{id}.{key}`"),
+            ));
+        }
+        None => {
+            return Err(Error::usage(
+                format!("`{text}` does not say at which joint"),
+                format!("write `{id}@1.{key}` for the first joint"),
+            ));
+        }
+    };
+    let keys = card.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
+    Ok(ParameterPath::Effect {
+        id: card.id,
+        joint,
+        parameter: choose(text, key, keys)?,
+    })
+}
+
+/// The index from 0 in `link3`, if the name is of that kind.
+fn numbered(owner: &str, kind: &str) -> Option<usize> {
+    counted(owner.strip_prefix(kind)?)
+}
+
+/// A count from 1, written without sign or leading zero, as an index from 0.
+fn counted(text: &str) -> Option<usize> {
+    let plain = text.bytes().all(|b| b.is_ascii_digit()) && !text.starts_with('0');
+    text.parse::<usize>()
+        .ok()
+        .filter(|_| plain)
+        .and_then(|n| n.checked_sub(1))
+}
+
+fn choose<T>(
+    text: &str,
+    name: &str,
+    known: impl IntoIterator<Item = (&'static str, T)>,
+) -> Result<T, Error> {
+    let mut names = Vec::new();
+    for (known, value) in known {
+        if known == name {
+            return Ok(value);
+        }
+        names.push(known);
+    }
+    Err(Error::usage(
+        format!("`{text}`: unknown name `{name}`"),
+        super::reader::suggest(name, &names),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODEL: &str = include_str!("testdata/full.toml");
+
+    fn model() -> Model {
+        Model::parse(MODEL, "full.toml".as_ref()).unwrap()
+    }
+
+    #[test]
+    fn text_round_trips() {
+        for text in [
+            "link1.length_m",
+            "link2.com_m",
+            "link1.mass_kg",
+            "link1.inertia_kg_m2",
+            "joint2.gain_per_rad",
+            "joint1.gain_s_per_rad",
+            "joint2.stall_torque_nm",
+            "joint2.no_load_speed_rad_s",
+            "coulomb@1.torque_nm",
+            "delay@2.delay_s",
+        ] {
+            let path: ParameterPath = text.parse().unwrap();
+            assert_eq!(path.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn wrong_text_is_refused_with_a_remedy() {
+        for (text, what, remedy) in [
+            ("mass_kg", "names no parameter", "link1.mass_kg"),
+            ("link1.mass", "unknown name `mass`", "`mass_kg`"),
+            ("link0.mass_kg", "unknown name `link0`", "known"),
+            ("link01.mass_kg", "unknown name `link01`", "known"),
+            ("link+1.mass_kg", "unknown name `link+1`", "known"),
+            ("colomb@1.torque_nm", "`colomb`", "did you mean `coulomb`?"),
+            ("coulomb.torque_nm", "which joint", "coulomb@1.torque_nm"),
+            ("coulomb@0.torque_nm", "no joint", "count from 1"),
+            ("coulomb@1.torque", "unknown name `torque`", "`torque_nm`"),
+            ("", "names no parameter", ""),
+        ] {
+            let error = text.parse::<ParameterPath>().unwrap_err();
+            assert!(error.to_string().contains(what), "{text}: {error}");
+            let found = error.remedy().unwrap();
+            assert!(found.contains(remedy), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn get_reads_what_set_wrote() {
+        let mut model = model();
+        for text in [
+            "link2.mass_kg",
+            "link1.com_m",
+            "joint2.gain_per_rad",
+            "joint2.stall_torque_nm",
+            "joint2.no_load_speed_rad_s",
+            "coulomb@1.torque_nm",
+        ] {
+            let path: ParameterPath = text.parse().unwrap();
+            let before = model.clone();
+            assert!(path.get(&model).is_some(), "{text}");
+            assert!(path.set(&mut model, 0.123), "{text}");
+            assert_eq!(path.get(&model), Some(0.123), "{text}");
+            assert_ne!(before, model, "{text} changes the model");
+        }
+    }
+
+    #[test]
+    fn a_place_the_model_lacks_is_none() {
+        let mut model = model();
+        for text in [
+            "link9.mass_kg",
+            "joint9.stall_torque_nm",
+            "joint1.stall_torque_nm",
+            "joint2.gain_s_per_rad",
+            "coulomb@2.torque_nm",
+        ] {
+            let path: ParameterPath = text.parse().unwrap();
+            assert_eq!(path.get(&model), None, "{text}");
+            assert!(!path.set(&mut model, 1.0), "{text}");
+        }
+    }
+
+    #[test]
+    fn bounds_and_units_come_from_the_card_or_the_quantity() {
+        let model = model();
+        let coulomb: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
+        assert_eq!(coulomb.bounds(&model), (0.0, 10.0));
+        assert_eq!(coulomb.unit(), "N m");
+        let mass: ParameterPath = "link1.mass_kg".parse().unwrap();
+        assert_eq!(mass.bounds(&model), POSITIVE);
+        assert_eq!(mass.unit(), "kg");
+    }
+}

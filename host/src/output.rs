@@ -1,0 +1,80 @@
+//! Files this program makes: whole or not at all, and never over another's work unasked.
+
+use crate::error::{Error, Result};
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes `text` to `path` through a temporary file beside it, synced before it takes the name.
+///
+/// # Errors
+/// [`Error::Usage`] if the file exists and `force` is false; [`Error::File`] if the system refuses.
+pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
+    let exists = || {
+        Error::usage(
+            format!("{} exists", path.display()),
+            "choose another name or pass --force",
+        )
+    };
+    if !force && path.symlink_metadata().is_ok() {
+        return Err(exists());
+    }
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let refused = |source| Error::file(path, "write", source);
+    let mut file = temporary(folder).map_err(refused)?;
+    file.write_all(text.as_bytes()).map_err(refused)?;
+    file.as_file().sync_all().map_err(refused)?;
+    if force {
+        file.persist(path).map_err(|error| refused(error.error))?;
+        return Ok(());
+    }
+    match file.persist_noclobber(path) {
+        Ok(_) => Ok(()),
+        Err(error) if error.error.kind() == std::io::ErrorKind::AlreadyExists => Err(exists()),
+        Err(error) => Err(refused(error.error)),
+    }
+}
+
+/// A new file with the permissions any new file gets; a temporary one would be closed to others.
+fn temporary(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".handstand-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_existing_file_stays_unless_forced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.toml");
+        write_new(&path, "first", false).unwrap();
+        let error = write_new(&path, "second", false).unwrap_err();
+        assert!(error.to_string().ends_with("exists"), "{error}");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.remedy().unwrap().contains("--force"));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "first");
+        write_new(&path, "second", true).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "second");
+        let left = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 1, "no temporary file stays behind");
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("nowhere").join("model.toml");
+        let error = write_new(&path, "text", false).unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        assert!(error.to_string().contains("nowhere"), "{error}");
+    }
+}
