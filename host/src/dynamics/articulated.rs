@@ -63,7 +63,8 @@ impl Chain {
     ) {
         let n = self.links.len();
         let scratch = &mut work.links[..n];
-        let (angle_rad, speed_rad_s, torque_nm) = (&angle_rad[..n], &speed_rad_s[..n], &torque_nm[..n]);
+        let (angle_rad, speed_rad_s, torque_nm) =
+            (&angle_rad[..n], &speed_rad_s[..n], &torque_nm[..n]);
         let (held, out) = (&held[..n], &mut out[..n]);
 
         let (mut angle, mut speed) = (0.0, 0.0);
@@ -107,7 +108,11 @@ impl Chain {
                 // A held joint carries whatever moment comes.
             } else {
                 s.inverse = 1.0 / (s.inertia + self.links[i].armature_kg_m2);
-                let (ui, ux, uy) = (s.inertia * s.inverse, s.b[0] * s.inverse, s.b[1] * s.inverse);
+                let (ui, ux, uy) = (
+                    s.inertia * s.inverse,
+                    s.b[0] * s.inverse,
+                    s.b[1] * s.inverse,
+                );
                 inertia -= s.inertia * ui;
                 b = [b[0] - s.inertia * ux, b[1] - s.inertia * uy];
                 mass = [
@@ -121,7 +126,10 @@ impl Chain {
             if i > 0 {
                 let parent = &mut scratch[i - 1];
                 let (l, c) = (parent.lever, parent.centripetal);
-                let ml = [mass[0] * l[0] + mass[1] * l[1], mass[1] * l[0] + mass[2] * l[1]];
+                let ml = [
+                    mass[0] * l[0] + mass[1] * l[1],
+                    mass[1] * l[0] + mass[2] * l[1],
+                ];
                 let force = [
                     bias_force[0] + mass[0] * c[0] + mass[1] * c[1],
                     bias_force[1] + mass[1] * c[0] + mass[2] * c[1],
@@ -132,11 +140,8 @@ impl Chain {
                 for k in 0..3 {
                     parent.mass[k] += mass[k];
                 }
-                parent.bias_moment += bias_moment
-                    + b[0] * c[0]
-                    + b[1] * c[1]
-                    + l[0] * force[0]
-                    + l[1] * force[1];
+                parent.bias_moment +=
+                    bias_moment + b[0] * c[0] + b[1] * c[1] + l[0] * force[0] + l[1] * force[1];
                 parent.bias_force = [
                     parent.bias_force[0] + force[0],
                     parent.bias_force[1] + force[1],
@@ -146,10 +151,7 @@ impl Chain {
 
         let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
         // Gravity as an acceleration of the base against it.
-        let mut linear = [
-            -self.gravity_m_s2 * down_sin,
-            self.gravity_m_s2 * down_cos,
-        ];
+        let mut linear = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
         let mut angular = 0.0;
         for i in 0..n {
             let s = &scratch[i];

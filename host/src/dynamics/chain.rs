@@ -68,7 +68,8 @@ impl Chain {
         let total_kg = link.mass_kg + mass_kg;
         let along_m = (link.mass_kg * link.com_m * cos + mass_kg * at_m) / total_kg;
         let across_m = link.mass_kg * link.com_m * sin / total_kg;
-        let about_joint = link.inertia_kg_m2 + link.mass_kg * link.com_m.powi(2) + mass_kg * at_m * at_m;
+        let about_joint =
+            link.inertia_kg_m2 + link.mass_kg * link.com_m.powi(2) + mass_kg * at_m * at_m;
         link.com_m = along_m.hypot(across_m);
         link.com_angle_rad = across_m.atan2(along_m);
         link.mass_kg = total_kg;

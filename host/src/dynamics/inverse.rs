@@ -15,11 +15,14 @@ impl Chain {
         out: &mut [f64],
     ) {
         let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
-        let base = [
-            -self.gravity_m_s2 * down_sin,
-            self.gravity_m_s2 * down_cos,
-        ];
-        self.inverse_from(0, [0.0; 3], base, [angle_rad, speed_rad_s, acceleration_rad_s2], out);
+        let base = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
+        self.inverse_from(
+            0,
+            [0.0; 3],
+            base,
+            [angle_rad, speed_rad_s, acceleration_rad_s2],
+            out,
+        );
     }
 
     /// Torque at joint `i` into `out[i]`, and the force and moment link `i` asks of its joint.
@@ -82,10 +85,7 @@ impl Chain {
         out: &mut [f64],
     ) {
         let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
-        let mut linear = [
-            -self.gravity_m_s2 * down_sin,
-            self.gravity_m_s2 * down_cos,
-        ];
+        let mut linear = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
         let (mut angle, mut speed, mut acceleration) = (0.0, 0.0, 0.0);
         let mut sum = [0.0, 0.0];
         // Forces of the links add up from the tip; keep the running sum from the base and subtract.
@@ -103,7 +103,10 @@ impl Chain {
                 ]
             };
             let com = at(link.com_m, angle + link.com_angle_rad, linear);
-            sum = [sum[0] + link.mass_kg * com[0], sum[1] + link.mass_kg * com[1]];
+            sum = [
+                sum[0] + link.mass_kg * com[0],
+                sum[1] + link.mass_kg * com[1],
+            ];
             linear = at(link.length_m, angle, linear);
         }
         for (force, before) in out.iter_mut().zip(&before) {

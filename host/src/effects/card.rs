@@ -15,7 +15,9 @@ pub enum Site {
     Joint,
     /// On masses and gravity.
     Body,
-    /// On what is read.
+    /// On what is read, at once.
+    Encoder,
+    /// On what is read, with memory.
     Sensor,
 }
 

@@ -9,7 +9,7 @@ pub struct EncoderScale;
 static CARD: Card = Card {
     id: "encoder_scale",
     title: "encoder scale",
-    site: Site::Sensor,
+    site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
     law: "reading = factor * q",

@@ -9,7 +9,7 @@ pub struct EncoderZero;
 static CARD: Card = Card {
     id: "encoder_zero",
     title: "encoder zero",
-    site: Site::Sensor,
+    site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
     law: "reading = q + offset_rad",

@@ -62,7 +62,7 @@ fn site(site: Site) -> &'static str {
         Site::Friction => "friction",
         Site::Joint => "torque on the joint",
         Site::Body => "masses and gravity",
-        Site::Sensor => "reading",
+        Site::Encoder | Site::Sensor => "reading",
     }
 }
 

@@ -22,6 +22,7 @@ mod encoder_zero;
 mod load_friction;
 mod mass;
 mod sensor_lag;
+mod sham;
 mod speed_limit;
 mod stribeck;
 mod supply_sag;
@@ -37,6 +38,7 @@ pub mod signature;
 mod tests;
 
 pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
+pub use sham::SHAM;
 
 use crate::dynamics::Chain;
 use std::fmt;
@@ -69,10 +71,14 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &sensor_lag::SensorLag,
 ];
 
-/// The effect of this id.
+/// Not physics: what diagnosis runs along to learn what chance gains.
+pub const CONTROLS: &[&dyn Effect] = &[&sham::Sham];
+
+/// The effect (or control) of this id.
 pub fn named(id: &str) -> Option<&'static dyn Effect> {
     EFFECTS
         .iter()
+        .chain(CONTROLS)
         .copied()
         .find(|effect| effect.card().id == id)
 }
@@ -170,6 +176,8 @@ pub struct JointState {
     pub angle_rad: f64,
     /// Speed relative to the previous link, rad/s.
     pub speed_rad_s: f64,
+    /// Measured speed of another moment, rad/s: what a sham acts on.
+    pub shuffled_rad_s: f64,
 }
 
 /// A joint that slides, or is about to.

@@ -158,7 +158,9 @@ fn axes(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Axes {
             Axes::new("acceleration, rad/s^2", "torque it takes, N m", inertia)
         }
         (Site::Body, _) => Axes::new("angle from hanging, rad", "torque of gravity, N m", gravity),
-        (Site::Sensor, _) => Axes::new("angle, to and fro, rad", "reading, rad", reading),
+        (Site::Encoder | Site::Sensor, _) => {
+            Axes::new("angle, to and fro, rad", "reading, rad", reading)
+        }
     }
 }
 
@@ -173,6 +175,7 @@ fn depends_on_angle(effect: &dyn Effect, values: &[f64]) -> bool {
             &JointState {
                 angle_rad,
                 speed_rad_s: 0.0,
+                shuffled_rad_s: 0.0,
             },
         )
     };
@@ -262,6 +265,7 @@ fn joint_over_angle(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
             &JointState {
                 angle_rad,
                 speed_rad_s: 0.0,
+                shuffled_rad_s: 0.0,
             },
         )
     })
@@ -274,6 +278,7 @@ fn joint_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
             &JointState {
                 angle_rad: 0.0,
                 speed_rad_s,
+                shuffled_rad_s: 0.0,
             },
         )
     })

@@ -39,7 +39,12 @@ pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)
     let inverse = scaled.try_inverse()?;
     let inverse = DMatrix::from_fn(count, count, |r, c| inverse[(r, c)] / (scale[r] * scale[c]));
 
-    let unknowns = count + fit.nodes.iter().map(super::node::Node::unknowns).sum::<usize>();
+    let unknowns = count
+        + fit
+            .nodes
+            .iter()
+            .map(super::node::Node::unknowns)
+            .sum::<usize>();
     let freedom = fit.residuals.count().saturating_sub(unknowns).max(1) as f64;
     let variance = fit.residuals.cost() / freedom;
     let robust = &inverse * block_scores(fit, data, &projected) * &inverse;
@@ -47,7 +52,10 @@ pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)
     let values = fit.values();
     let intervals = (0..count)
         .map(|i| {
-            let standard_error = (variance * inverse[(i, i)]).max(robust[(i, i)]).max(0.0).sqrt();
+            let standard_error = (variance * inverse[(i, i)])
+                .max(robust[(i, i)])
+                .max(0.0)
+                .sqrt();
             let (low, high) = fit.free[i].bounds(&fit.model);
             Interval {
                 standard_error,

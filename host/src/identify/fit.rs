@@ -51,7 +51,10 @@ pub struct Fit {
 impl Fit {
     /// Fitted values in the order of `free`.
     pub fn values(&self) -> Vec<f64> {
-        self.free.iter().map(|path| path.get(&self.model).unwrap_or(f64::NAN)).collect()
+        self.free
+            .iter()
+            .map(|path| path.get(&self.model).unwrap_or(f64::NAN))
+            .collect()
     }
 
     /// Which values lie on a bound: a warning, not a result.
@@ -83,7 +86,16 @@ pub fn fit(
 
 /// Fits only the windows' start states: how the model, as it is, does on these motions.
 pub fn settle(model: &Model, data: &Data) -> Fit {
-    fit(model, &[], data, None, FitOptions { iterations: 8, tolerance: 1e-5 })
+    fit(
+        model,
+        &[],
+        data,
+        None,
+        FitOptions {
+            iterations: 8,
+            tolerance: 1e-5,
+        },
+    )
 }
 
 struct Search<'a> {
@@ -97,7 +109,13 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(model: &Model, free: &'a [ParameterPath], data: &'a Data, guesses: Vec<Node>, nodes: Vec<Node>) -> Self {
+    fn new(
+        model: &Model,
+        free: &'a [ParameterPath],
+        data: &'a Data,
+        guesses: Vec<Node>,
+        nodes: Vec<Node>,
+    ) -> Self {
         let residuals = residuals(model, data, &nodes);
         Search {
             free,
@@ -122,7 +140,11 @@ impl<'a> Search<'a> {
                 break;
             };
             jacobian = self.jacobian();
-            quiet = if fall < options.tolerance * before { quiet + 1 } else { 0 };
+            quiet = if fall < options.tolerance * before {
+                quiet + 1
+            } else {
+                0
+            };
             if quiet >= 2 || before - fall <= 0.0 {
                 converged = true;
                 break;
@@ -201,12 +223,17 @@ impl<'a> Search<'a> {
     /// The model after a damped, bounded step, and the step really taken.
     fn moved(&self, normal: &Normal, damping: f64) -> (Model, DVector<f64>) {
         let count = self.free.len();
-        let values: Vec<f64> = self.free.iter().map(|p| p.get(&self.model).unwrap_or(0.0)).collect();
+        let values: Vec<f64> = self
+            .free
+            .iter()
+            .map(|p| p.get(&self.model).unwrap_or(0.0))
+            .collect();
         let bounds: Vec<(f64, f64)> = self.free.iter().map(|p| p.bounds(&self.model)).collect();
         let mut fixed: Vec<bool> = (0..count)
             .map(|i| {
                 let outward = normal.gradient[i];
-                (values[i] <= bounds[i].0 && outward < 0.0) || (values[i] >= bounds[i].1 && outward > 0.0)
+                (values[i] <= bounds[i].0 && outward < 0.0)
+                    || (values[i] >= bounds[i].1 && outward > 0.0)
             })
             .collect();
         let mut moved = DVector::zeros(count);
@@ -214,7 +241,8 @@ impl<'a> Search<'a> {
         for _ in 0..=count {
             let step = solve_damped(normal, &fixed, &moved, damping);
             let hit = (0..count).find(|&i| {
-                !fixed[i] && (values[i] + step[i] < bounds[i].0 || values[i] + step[i] > bounds[i].1)
+                !fixed[i]
+                    && (values[i] + step[i] < bounds[i].0 || values[i] + step[i] > bounds[i].1)
             });
             match hit {
                 Some(i) => {
@@ -223,7 +251,7 @@ impl<'a> Search<'a> {
                 }
                 None => {
                     for i in (0..count).filter(|&i| !fixed[i]) {
-                        moved[i] = self.limited(i, values[i], bounds[i], step[i]);
+                        moved[i] = limited(values[i], bounds[i], step[i]);
                     }
                     break;
                 }
@@ -231,18 +259,10 @@ impl<'a> Search<'a> {
         }
         let mut model = self.model.clone();
         for i in 0..count {
-            self.free[i].set(&mut model, values[i] + moved[i]);
+            let known = self.free[i].set(&mut model, values[i] + moved[i]);
+            debug_assert!(known, "a free parameter is one of the model's");
         }
         (model, moved)
-    }
-
-    /// A quantity that is always positive is not moved by more than a factor of 4 at once.
-    fn limited(&self, _i: usize, value: f64, bounds: (f64, f64), step: f64) -> f64 {
-        if bounds.0 > 0.0 {
-            (value + step).clamp(value / 4.0, value * 4.0) - value
-        } else {
-            step
-        }
     }
 
     fn jacobian(&mut self) -> Vec<WindowJacobian> {
@@ -275,7 +295,9 @@ impl<'a> Search<'a> {
                 WindowJacobian {
                     residual: DVector::from_column_slice(base),
                     parameters: DMatrix::from_fn(base.len(), parameters, |r, c| derivative(r, c)),
-                    node: DMatrix::from_fn(base.len(), unknowns, |r, c| derivative(r, parameters + c)),
+                    node: DMatrix::from_fn(base.len(), unknowns, |r, c| {
+                        derivative(r, parameters + c)
+                    }),
                     node_precision,
                     node_pull,
                 }
@@ -291,8 +313,12 @@ impl<'a> Search<'a> {
             let size = 2e-4 * value.abs().max(scale(path));
             let delta = if value + size > high { -size } else { size };
             let mut model = self.model.clone();
-            path.set(&mut model, value + delta);
-            return (delta, motion_residuals(&model, self.data, &self.nodes, motion));
+            let known = path.set(&mut model, value + delta);
+            debug_assert!(known, "a free parameter is one of the model's");
+            return (
+                delta,
+                motion_residuals(&model, self.data, &self.nodes, motion),
+            );
         }
         let unknown = column - self.free.len();
         let joints = self.data.sigma_rad.len();
@@ -302,21 +328,36 @@ impl<'a> Search<'a> {
         for node in &mut nodes {
             *node.at(unknown) += delta;
         }
-        (delta, motion_residuals(&self.model, self.data, &nodes, motion))
+        (
+            delta,
+            motion_residuals(&self.model, self.data, &nodes, motion),
+        )
     }
 }
 
 /// Solves (H + damping diag H) step = gradient over the unfixed parameters, given the fixed ones' steps.
-fn solve_damped(normal: &Normal, fixed: &[bool], moved: &DVector<f64>, damping: f64) -> DVector<f64> {
+fn solve_damped(
+    normal: &Normal,
+    fixed: &[bool],
+    moved: &DVector<f64>,
+    damping: f64,
+) -> DVector<f64> {
     let open: Vec<usize> = (0..fixed.len()).filter(|&i| !fixed[i]).collect();
     let mut step = moved.clone();
     if open.is_empty() {
         return step;
     }
-    let scale: Vec<f64> = open.iter().map(|&i| normal.matrix[(i, i)].max(1e-30).sqrt()).collect();
+    let scale: Vec<f64> = open
+        .iter()
+        .map(|&i| normal.matrix[(i, i)].max(1e-30).sqrt())
+        .collect();
     let matrix = DMatrix::from_fn(open.len(), open.len(), |r, c| {
         let value = normal.matrix[(open[r], open[c])] / (scale[r] * scale[c]);
-        if r == c { value * (1.0 + damping) + 1e-12 } else { value }
+        if r == c {
+            value * (1.0 + damping) + 1e-12
+        } else {
+            value
+        }
     });
     let right = DVector::from_fn(open.len(), |r, _| {
         let known: f64 = (0..fixed.len())
@@ -345,5 +386,14 @@ fn scale(path: &ParameterPath) -> f64 {
             .and_then(|parameter| parameter.starts.first())
             .map_or(1e-3, |start| start.abs().max(1e-6)),
         _ => 1e-9,
+    }
+}
+
+/// A quantity that is always positive is not moved by more than a factor of 4 at once.
+fn limited(value: f64, bounds: (f64, f64), step: f64) -> f64 {
+    if bounds.0 > 0.0 {
+        (value + step).clamp(value / 4.0, value * 4.0) - value
+    } else {
+        step
     }
 }

@@ -11,7 +11,11 @@ const MOST_GROWTH: f64 = 30.0;
 /// The longest horizon at which start errors grow by less than thirty times: a whole run for a stable plant,
 /// windows for an unstable or chaotic one.
 pub fn longest_stable(model: &Model, data: &Data) -> Horizon {
-    let longest = data.motions.iter().map(|m| m.duration_s()).fold(0.0, f64::max);
+    let longest = data
+        .motions
+        .iter()
+        .map(|m| m.duration_s())
+        .fold(0.0, f64::max);
     let mut horizon = Horizon::Whole;
     let mut seconds = longest;
     while growth(model, &data.recut(horizon)) > MOST_GROWTH && seconds > 0.2 {

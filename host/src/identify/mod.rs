@@ -4,8 +4,8 @@ mod covariance;
 mod data;
 mod fit;
 mod horizon;
-mod noise;
 mod node;
+mod noise;
 mod normal;
 mod residual;
 
@@ -13,6 +13,6 @@ pub use covariance::{Interval, intervals};
 pub use data::{Data, Horizon, Window};
 pub use fit::{Fit, FitOptions, fit, settle};
 pub use horizon::longest_stable;
-pub use noise::{found_resolution_rad, noise_rad};
 pub use node::Node;
+pub use noise::{found_resolution_rad, noise_rad};
 pub use residual::{Residuals, residuals};

@@ -27,9 +27,12 @@ impl Node {
                 &motion.position_rad[joint],
                 window.samples.start,
             );
-            let logged = motion.velocity_rad_s[joint].as_ref().map(|v| v[window.samples.start]);
+            let logged = motion.velocity_rad_s[joint]
+                .as_ref()
+                .map(|v| v[window.samples.start]);
             node.reading_rad.push(angle);
-            node.speed_rad_s.push(logged.filter(|v| v.is_finite()).unwrap_or(speed));
+            node.speed_rad_s
+                .push(logged.filter(|v| v.is_finite()).unwrap_or(speed));
         }
         node
     }

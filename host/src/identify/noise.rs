@@ -14,7 +14,11 @@ pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Opti
     let differences = (2..=6)
         .map(|order| difference_noise_rad(motions, joint, order))
         .fold(f64::INFINITY, f64::min);
-    let noise = rounding.max(if differences.is_finite() { differences } else { 0.0 });
+    let noise = rounding.max(if differences.is_finite() {
+        differences
+    } else {
+        0.0
+    });
     noise.max(1e-6)
 }
 

@@ -51,13 +51,16 @@ impl Normal {
             blocks: Vec::with_capacity(windows.len()),
         };
         for window in windows {
-            let mut own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
+            let mut own =
+                window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
             for i in 0..own.nrows() {
                 own[(i, i)] *= 1.0 + damping;
                 own[(i, i)] += 1e-12;
             }
             let size = own.nrows();
-            let inverse = own.try_inverse().unwrap_or_else(|| DMatrix::zeros(size, size));
+            let inverse = own
+                .try_inverse()
+                .unwrap_or_else(|| DMatrix::zeros(size, size));
             let coupling = window.node.tr_mul(&window.parameters);
             let gradient = window.node.tr_mul(&window.residual)
                 + window.node_precision.component_mul(&window.node_pull);

@@ -40,7 +40,12 @@ pub fn residuals(model: &Model, data: &Data, nodes: &[Node]) -> Residuals {
 }
 
 /// Residuals of one motion's windows, in order: sensor memory runs on from window to window.
-pub(super) fn motion_residuals(model: &Model, data: &Data, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
+pub(super) fn motion_residuals(
+    model: &Model,
+    data: &Data,
+    nodes: &[Node],
+    motion: usize,
+) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
     let mut memory = Memory::default();
@@ -52,7 +57,14 @@ pub(super) fn motion_residuals(model: &Model, data: &Data, nodes: &[Node], motio
             let samples = window.samples.len();
             let mut out = vec![0.0; samples * plant.len()];
             let start = node.start(&plant);
-            predict(&plant, log, window.samples.clone(), &start, &mut memory, &mut out);
+            predict(
+                &plant,
+                log,
+                window.samples.clone(),
+                &start,
+                &mut memory,
+                &mut out,
+            );
             for (joint, part) in out.chunks_mut(samples).enumerate() {
                 let measured = &log.position_rad[joint][window.samples.clone()];
                 let weight = 1.0 / data.sigma_rad[joint];

@@ -28,11 +28,17 @@ impl JointPlan {
             Drive::Passive => return 0.0,
             Drive::Torque => (told.input / self.full_torque_nm, 0.0),
             Drive::Duty(motor) => (told.input, 1.0 / motor.no_load_speed_rad_s),
-            Drive::Position { gain_per_rad, motor } => (
+            Drive::Position {
+                gain_per_rad,
+                motor,
+            } => (
                 (gain_per_rad * (told.input - reading_rad)).clamp(-1.0, 1.0),
                 1.0 / motor.no_load_speed_rad_s,
             ),
-            Drive::Speed { gain_s_per_rad, motor } => {
+            Drive::Speed {
+                gain_s_per_rad,
+                motor,
+            } => {
                 let forward = if motor.no_load_speed_rad_s.is_finite() {
                     told.input / motor.no_load_speed_rad_s
                 } else {
@@ -55,8 +61,8 @@ impl JointPlan {
             supply_ratio: told.supply_ratio,
         };
         let torque = self.full_torque_nm * (duty - slope * speed_rad_s);
-        self.output
-            .iter()
-            .fold(torque, |torque, e| e.effect.drive(e.values(), torque, &state))
+        self.output.iter().fold(torque, |torque, e| {
+            e.effect.drive(e.values(), torque, &state)
+        })
     }
 }

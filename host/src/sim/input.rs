@@ -4,13 +4,25 @@
 ///
 /// The mean, rather than the value, makes the result continuous in the delay, which a fit needs. `cursor` is
 /// the index of a sample at or before `from_s` from an earlier call; it only moves forward.
-pub(super) fn held_mean(time_s: &[f64], input: &[f64], from_s: f64, to_s: f64, cursor: &mut usize) -> f64 {
+pub(super) fn held_mean(
+    time_s: &[f64],
+    input: &[f64],
+    from_s: f64,
+    to_s: f64,
+    cursor: &mut usize,
+) -> f64 {
     let last = time_s.len() - 1;
     while *cursor < last && time_s[*cursor + 1] <= from_s {
         *cursor += 1;
     }
     let mut k = *cursor;
-    let next = |k: usize| if k < last { time_s[k + 1] } else { f64::INFINITY };
+    let next = |k: usize| {
+        if k < last {
+            time_s[k + 1]
+        } else {
+            f64::INFINITY
+        }
+    };
     if next(k) >= to_s {
         return input[k];
     }

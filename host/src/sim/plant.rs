@@ -55,7 +55,11 @@ impl Plant {
     /// Compiles `model` for the conditions of `motion` (payload, attitude).
     pub fn new(model: &Model, motion: &Motion) -> Plant {
         let mut chain = Chain::of(model);
-        let mut joints: Vec<JointPlan> = model.joints.iter().map(|j| JointPlan::ideal(&j.drive)).collect();
+        let mut joints: Vec<JointPlan> = model
+            .joints
+            .iter()
+            .map(|j| JointPlan::ideal(&j.drive))
+            .collect();
         let mut rig = Rig {
             chain: chain.clone(),
             gravity_turn_rad: 0.0,
@@ -63,7 +67,9 @@ impl Plant {
         };
         for instance in &model.effects {
             if instance.effect.card().site == Site::Body {
-                instance.effect.body(&instance.values, instance.joint.unwrap_or(0), &mut rig);
+                instance
+                    .effect
+                    .body(&instance.values, instance.joint.unwrap_or(0), &mut rig);
             }
         }
         chain.clone_from(&rig.chain);
@@ -131,7 +137,12 @@ impl Plant {
         let mut before = self.zero_rad;
         for (joint, &reading) in self.joints.iter().zip(reading_rad) {
             // Encoders are straight lines: two points give the inverse.
-            let line = |x: f64| joint.encode.iter().fold(x, |a, e| e.effect.encode(e.values(), a));
+            let line = |x: f64| {
+                joint
+                    .encode
+                    .iter()
+                    .fold(x, |a, e| e.effect.encode(e.values(), a))
+            };
             let (at_zero, at_one) = (line(0.0), line(1.0));
             let angle = (reading - at_zero) / (at_one - at_zero);
             if self.absolute {
@@ -176,11 +187,8 @@ impl JointPlan {
             Site::Friction => self.friction.push(active),
             Site::Joint => self.torque.push(active),
             Site::Body => {}
-            Site::Sensor => {
-                // A sensor effect overrides one of the two hooks; the other is identity.
-                self.encode.push(active);
-                self.sense.push(active);
-            }
+            Site::Encoder => self.encode.push(active),
+            Site::Sensor => self.sense.push(active),
         }
     }
 }
@@ -201,7 +209,9 @@ fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
                 let speed = (position[b] - position[a]) / (motion.time_s[b] - motion.time_s[a]);
                 if speed.is_finite() { speed } else { 0.0 }
             };
-            (0..=last).map(|k| speed((k + 3 * (last + 1) / 8) % (last + 1))).collect()
+            (0..=last)
+                .map(|k| speed((k + 3 * (last + 1) / 8) % (last + 1)))
+                .collect()
         })
         .collect()
 }

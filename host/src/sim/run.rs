@@ -64,7 +64,8 @@ pub fn predict(
         }
         if !stepper.angle.iter().all(|a| a.abs() < 1e6) {
             for joint in 0..n {
-                readings[joint * samples + k + 1 - stretch.start..(joint + 1) * samples].fill(f64::NAN);
+                readings[joint * samples + k + 1 - stretch.start..(joint + 1) * samples]
+                    .fill(f64::NAN);
             }
             break;
         }

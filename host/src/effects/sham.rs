@@ -1,0 +1,44 @@
+//! A regressor that can't be the cause: the measured speed of another moment.
+//!
+//! Shams run along with the real candidates. Whatever a sham gains, chance gains: if one ranks, nothing is named.
+
+use super::{Card, Effect, JointState, Needs, Parameter, Scope, Site};
+
+/// tau = c * (measured speed, turned in time by `shift` of the motion).
+#[derive(Debug)]
+pub struct Sham;
+
+/// Id of the sham.
+pub const SHAM: &str = "sham";
+
+static CARD: Card = Card {
+    id: SHAM,
+    title: "sham (shuffled speed)",
+    site: Site::Joint,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "torque = coefficient_nm_s_rad * speed measured at another moment",
+    parameters: &[Parameter {
+        key: "coefficient_nm_s_rad",
+        unit: "N m s/rad",
+        meaning: "weight of the shuffled speed",
+        off: Some(0.0),
+        typical: (-0.1, 0.1),
+        bounds: (-10.0, 10.0),
+        starts: &[0.003, -0.003],
+    }],
+    looks_like: "nothing: it has no cause",
+    confused_with: &[],
+    experiment: "none",
+    reference: "permutation control; Good, Permutation, Parametric and Bootstrap Tests of Hypotheses, 3rd ed. (2005)",
+};
+
+impl Effect for Sham {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        values[0] * at.shuffled_rad_s
+    }
+}
