@@ -1,7 +1,7 @@
 //! Measurements: reading logs as rigs write them, gating them, holding motions out.
 
 mod bam;
-
+pub mod check;
 mod csv;
 mod header;
 mod holdout;
@@ -17,6 +17,7 @@ mod fixture;
 #[cfg(test)]
 mod tests;
 
+pub use check::{Finding, Severity, check};
 pub use csv::{FileFacts, visit};
 pub use holdout::{Split, split};
 pub use motion::{Motion, Source};

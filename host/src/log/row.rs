@@ -52,6 +52,34 @@ pub struct Row {
 }
 
 impl Row {
+    /// Sample `index` of a motion that came from no CSV.
+    pub(super) fn of(motion: &super::Motion, index: usize) -> Row {
+        let joints = motion.position_rad.len();
+        let at = |series: &Option<Vec<f64>>| series.as_ref().map(|values| values[index]);
+        Row {
+            path: motion.source.path.clone(),
+            number: index,
+            fields: Fields {
+                position: vec![0; joints],
+                input: vec![0; joints],
+                ..Fields::default()
+            },
+            time_s: motion.time_s[index],
+            position_rad: motion
+                .position_rad
+                .iter()
+                .map(|values| values[index])
+                .collect(),
+            velocity_rad_s: motion.velocity_rad_s.iter().map(at).collect(),
+            input: motion.input.iter().map(at).collect(),
+            supply_v: at(&motion.supply_v),
+            torque_on: motion.torque_on.as_ref().map(|values| values[index]),
+            payload_kg: motion.payload_kg,
+            turned: motion.turned,
+            ..Row::default()
+        }
+    }
+
     /// The place of a field of this row, counted from 1.
     pub fn place(&self, field: usize) -> Place {
         match self.line {

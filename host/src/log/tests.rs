@@ -504,3 +504,110 @@ fn reads_the_real_logs() {
         (1, 10000)
     );
 }
+
+#[test]
+fn real_logs_are_judged() {
+    let Some(data) = data() else { return };
+    for (files, model) in real(&data) {
+        let requests: Vec<_> = files
+            .iter()
+            .map(|f| f.parse::<LogRequest>().unwrap())
+            .collect();
+        for finding in check(&requests, &model).unwrap() {
+            println!(
+                "{}",
+                finding.to_string().replace(&data.display().to_string(), "")
+            );
+            assert_ne!(finding.severity, Severity::Refuse, "{finding}");
+        }
+        println!();
+    }
+}
+
+/// The public logs with models that read them.
+fn real(data: &std::path::Path) -> Vec<(Vec<String>, crate::model::Model)> {
+    use super::fixture::{model, position_drive};
+    use crate::model::{AngleZero, Angles, Drive};
+    let files = |names: &[&str]| -> Vec<String> {
+        names
+            .iter()
+            .map(|name| data.join(name).display().to_string())
+            .collect()
+    };
+    let mut drop = model(Drive::Passive, free("t_s", &[("pos_rad", None, None)]));
+    drop.angle_zero = AngleZero::Horizontal;
+    drop.log.joints[0].position.resolution = Some(0.001534);
+    let mut servo = model(
+        position_drive(),
+        free("t_s", &[("position_rad", None, Some(("goal_rad", "rad")))]),
+    );
+    servo.log.torque_on = Some("torque_on".into());
+    servo.log.supply = Some(column("supply_v", "V"));
+    let mut single = model(
+        Drive::Passive,
+        free("t", &[("theta1", Some("dtheta1"), None)]),
+    );
+    single.angle_zero = AngleZero::Upright;
+    single.log.segment = Some("segment".into());
+    let mut triple = model(
+        Drive::Passive,
+        free(
+            "t",
+            &[
+                ("theta1", Some("dtheta1"), None),
+                ("theta2", Some("dtheta2"), None),
+                ("theta3", Some("dtheta3"), None),
+            ],
+        ),
+    );
+    triple.angle_zero = AngleZero::Upright;
+    triple.angles = Angles::Absolute;
+    triple.log.segment = Some("segment".into());
+    let torque = |position, speed, torque| (position, Some(speed), Some((torque, "N m")));
+    let pd = model(
+        Drive::Torque,
+        free("time", &[torque("position", "velocity", "torque")]),
+    );
+    let fft = model(
+        Drive::Torque,
+        free("time", &[torque("pos", "vel", "torque")]),
+    );
+    let double = model(
+        Drive::Torque,
+        free(
+            "time",
+            &[
+                torque("pos_meas1", "vel_meas1", "tau_meas1"),
+                torque("pos_meas2", "vel_meas2", "tau_meas2"),
+            ],
+        ),
+    );
+    vec![
+        (files(&["mx106_drop/drop.csv"]), drop.clone()),
+        (files(&["mx106_drop/drop.csv:26-139"]), drop),
+        (
+            files(&[
+                "htd45h/sin_sin.csv",
+                "htd45h/sin_time_square.csv",
+                "htd45h/up_and_down.csv",
+                "htd45h/lift_and_drop.csv",
+            ]),
+            servo,
+        ),
+        (files(&["multiarm/single_id.csv"]), single),
+        (files(&["multiarm/triple_id.csv"]), triple),
+        (files(&["dfki_pendulum/pd_sysid_measured.csv"]), pd),
+        (files(&["dfki_pendulum/fft_excitation_measured.csv"]), fft),
+        (
+            files(&[
+                "dfki_double/design_A.0_20220815_sys_id_trajectory_00.csv",
+                "dfki_double/design_A.0_20220815_sys_id_trajectory_05.csv",
+            ]),
+            double.clone(),
+        ),
+        (
+            files(&["dfki_double/design_C.0_20220914_172144_acrobot_lqr_video_trajectory.csv"]),
+            double,
+        ),
+    ]
+}
