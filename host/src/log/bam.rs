@@ -1,0 +1,180 @@
+//! The JSON logs of Rhoban's BAM bench: one position-driven joint, angles in rad.
+//!
+//! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and `entries`, each
+//! with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`, `input_volts`, `torque_enable`.
+
+use super::read::LEAST_ROWS;
+use super::request::LogRequest;
+use super::{Motion, Source};
+use crate::error::{Error, Place, Result};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Reads the log, or the entries asked for, as one motion.
+///
+/// The mass in the file belongs to the model, so the motion carries no payload. Speed, supply and
+/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from 1.
+///
+/// # Errors
+/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that does
+/// not increase; fewer than [`LEAST_ROWS`] entries.
+pub(super) fn read(request: &LogRequest) -> Result<Motion> {
+    let path = &request.path;
+    let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
+    let log: Value = serde_json::from_slice(&bytes).map_err(|error| {
+        Error::data(
+            Place::at(path, error.line().max(1), error.column().max(1)),
+            format!("not JSON: {error}"),
+            "was the recording broken off? Record again, or export CSV",
+        )
+    })?;
+    let all = log
+        .get("entries")
+        .and_then(Value::as_array)
+        .ok_or_else(|| {
+            refuse(
+                path,
+                "no list 'entries'".into(),
+                "a BAM log is an object with a list 'entries'",
+            )
+        })?;
+    let (first, last) = request.rows.unwrap_or((0, all.len().saturating_sub(1)));
+    if first >= all.len() || last >= all.len() || last - first + 1 < LEAST_ROWS {
+        return Err(refuse(
+            path,
+            format!(
+                "entries {first}-{last} of {}; at least {LEAST_ROWS} are needed",
+                all.len()
+            ),
+            "entries count from 0; record longer if there are too few",
+        ));
+    }
+    let entries = Entries {
+        path,
+        list: &all[first..=last],
+        first,
+    };
+    let time_s = entries.numbers("timestamp")?;
+    if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(refuse(
+            path,
+            format!(
+                "entry {}, timestamp: time does not increase: {} s after {} s",
+                first + late + 1,
+                time_s[late + 1],
+                time_s[late]
+            ),
+            "ask for a range of entries without the step, such as log.json:0-99",
+        ));
+    }
+    Ok(Motion {
+        name: request.name(),
+        source: Source {
+            path: path.clone(),
+            sha256: Sha256::digest(&bytes)
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+            lines: (first + 1, last + 1),
+        },
+        position_rad: vec![entries.numbers("position")?],
+        velocity_rad_s: vec![entries.optional("speed")?],
+        input: vec![Some(entries.goals()?)],
+        supply_v: entries.optional("input_volts")?,
+        torque_on: entries.flags("torque_enable")?,
+        time_s,
+        payload_kg: 0.0,
+        turned: false,
+    })
+}
+
+struct Entries<'a> {
+    path: &'a Path,
+    list: &'a [Value],
+    first: usize,
+}
+
+impl Entries<'_> {
+    fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+        let numbered = self.list.iter().enumerate();
+        numbered
+            .map(|(index, entry)| self.number(index, key, entry.get(key)))
+            .collect()
+    }
+
+    fn optional(&self, key: &str) -> Result<Option<Vec<f64>>> {
+        match self.has(key) {
+            true => self.numbers(key).map(Some),
+            false => Ok(None),
+        }
+    }
+
+    /// Goals; a released servo may have none, and then keeps its last.
+    fn goals(&self) -> Result<Vec<f64>> {
+        let key = "goal_position";
+        let mut held = None;
+        let mut goals = Vec::with_capacity(self.list.len());
+        for (index, entry) in self.list.iter().enumerate() {
+            let released = entry
+                .get("torque_enable")
+                .is_some_and(|on| flag(on) == Some(false));
+            match (entry.get(key), held) {
+                (None | Some(Value::Null), Some(goal)) if released => goals.push(goal),
+                (value, _) => goals.push(self.number(index, key, value)?),
+            }
+            held = goals.last().copied();
+        }
+        Ok(goals)
+    }
+
+    fn flags(&self, key: &str) -> Result<Option<Vec<bool>>> {
+        if !self.has(key) {
+            return Ok(None);
+        }
+        let numbered = self.list.iter().enumerate();
+        let flags = numbered.map(|(index, entry)| {
+            let value = entry.get(key);
+            value
+                .and_then(flag)
+                .ok_or_else(|| self.wrong(index, key, value, "true or false"))
+        });
+        flags.collect::<Result<_>>().map(Some)
+    }
+
+    fn has(&self, key: &str) -> bool {
+        self.list
+            .iter()
+            .all(|entry| entry.get(key).is_some_and(|value| !value.is_null()))
+    }
+
+    fn number(&self, index: usize, key: &str, value: Option<&Value>) -> Result<f64> {
+        value
+            .and_then(Value::as_f64)
+            .ok_or_else(|| self.wrong(index, key, value, "a number"))
+    }
+
+    fn wrong(&self, index: usize, key: &str, value: Option<&Value>, wanted: &str) -> Error {
+        let found = value.map_or("nothing".to_string(), |value| {
+            value.to_string().chars().take(40).collect()
+        });
+        refuse(
+            self.path,
+            format!(
+                "entry {}, {key}: {found} is not {wanted}",
+                self.first + index
+            ),
+            "leave the entry out by a range such as log.json:0-99, or record again",
+        )
+    }
+}
+
+fn flag(value: &Value) -> Option<bool> {
+    value
+        .as_bool()
+        .or_else(|| value.as_f64().map(|number| number != 0.0))
+}
+
+fn refuse(path: &Path, what: String, remedy: &str) -> Error {
+    Error::data(Place::file(path), what, remedy)
+}

@@ -1,0 +1,294 @@
+//! Columns against each other: a wrong sign, scale or zero shows in how one follows the other.
+
+use super::block::{Block, Blocks};
+use super::finding::{Findings, Severity};
+use super::fit::{Line, Regression};
+use crate::error::Place;
+use crate::log::row::Row;
+use crate::model::{AngleZero, Angles, Drive, Model};
+use std::collections::VecDeque;
+
+/// Samples by which a goal may run ahead of the motion.
+const LAGS: [usize; 6] = [0, 1, 2, 4, 8, 16];
+/// A joint slower than this may be held by stiction, rad/s.
+const MOVING_RAD_S: f64 = 0.1;
+/// Standard errors for a sign to be believed; blocks are not quite independent.
+const SURE: f64 = 8.0;
+
+/// Running sums of one file.
+pub(super) struct Relations {
+    zero: AngleZero,
+    angles: Angles,
+    /// Per joint: how the input drives it.
+    drives: Vec<Kind>,
+    /// Recent samples' inputs, newest first.
+    recent: VecDeque<Vec<Option<f64>>>,
+    /// Per joint and lag: measured against goal.
+    follow: Vec<[Line; LAGS.len()]>,
+    /// Per joint: logged speed against the angle's.
+    speed: Vec<Line>,
+    /// Per joint: acceleration on inputs, gravity, speed and the direction of motion.
+    push: Vec<Regression>,
+    blocks: Blocks,
+    /// Smallest and largest supply, V.
+    supply_v: Option<(f64, f64)>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    None,
+    Push,
+    Angle,
+    Speed,
+}
+
+impl Relations {
+    pub fn new(model: &Model) -> Self {
+        let n = model.log.joints.len();
+        let kind = |drive: &Drive| match drive {
+            Drive::Passive => Kind::None,
+            Drive::Torque | Drive::Duty(_) => Kind::Push,
+            Drive::Position { .. } => Kind::Angle,
+            Drive::Speed { .. } => Kind::Speed,
+        };
+        Relations {
+            zero: model.angle_zero,
+            angles: model.angles,
+            drives: model
+                .joints
+                .iter()
+                .map(|joint| kind(&joint.drive))
+                .collect(),
+            recent: VecDeque::new(),
+            follow: vec![[Line::default(); LAGS.len()]; n],
+            speed: vec![Line::default(); n],
+            push: (0..n).map(|_| Regression::new(5 * n + 1)).collect(),
+            blocks: Blocks::default(),
+            supply_v: None,
+        }
+    }
+
+    pub fn take(&mut self, row: &Row, fresh: bool) {
+        if fresh || row.torque_on == Some(false) {
+            self.recent.clear();
+            self.blocks.reset();
+        }
+        if let Some(volts) = row.supply_v {
+            let (low, high) = self.supply_v.unwrap_or((volts, volts));
+            self.supply_v = Some((low.min(volts), high.max(volts)));
+        }
+        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != Kind::None) {
+            return;
+        }
+        self.recent.push_front(row.input.clone());
+        self.recent.truncate(LAGS[LAGS.len() - 1] + 1);
+        for joint in 0..self.drives.len() {
+            let measured = match self.drives[joint] {
+                Kind::Angle => Some(row.position_rad[joint]),
+                Kind::Speed => row.velocity_rad_s[joint],
+                _ => None,
+            };
+            let Some(measured) = measured else { continue };
+            for (line, lag) in self.follow[joint].iter_mut().zip(LAGS) {
+                if let Some(goal) = self.recent.get(lag).and_then(|inputs| inputs[joint]) {
+                    line.add(goal, measured);
+                }
+            }
+        }
+        if let Some(block) = self.blocks.take(row) {
+            self.take_block(&block, row);
+        }
+    }
+
+    fn take_block(&mut self, block: &Block, row: &Row) {
+        let n = self.drives.len();
+        // Relative angles drive; absolute ones feel gravity.
+        let relative = |values: &[f64], i: usize| match (self.angles, i) {
+            (Angles::Absolute, 1..) => values[i] - values[i - 1],
+            _ => values[i],
+        };
+        let mut x = Vec::with_capacity(5 * n + 1);
+        let mut absolute = self.zero.from_hanging_rad();
+        for i in 0..n {
+            absolute = match self.angles {
+                Angles::Relative => absolute + block.position_rad[i],
+                Angles::Absolute => self.zero.from_hanging_rad() + block.position_rad[i],
+            };
+            let speed = relative(&block.speed_rad_s, i);
+            let input = if self.drives[i] == Kind::Push {
+                block.input[i]
+            } else {
+                0.0
+            };
+            x.extend([input, absolute.sin(), absolute.cos(), speed, speed.signum()]);
+        }
+        x.push(1.0);
+        for i in 0..n {
+            if row.velocity_rad_s[i].is_some() {
+                self.speed[i].add(block.speed_rad_s[i], block.logged_speed_rad_s[i]);
+            }
+            if relative(&block.speed_rad_s, i).abs() > MOVING_RAD_S {
+                self.push[i].add(&x, relative(&block.acceleration_rad_s2, i));
+            }
+        }
+    }
+
+    pub fn judge(&mut self, place: &Place, model: &Model, findings: &mut Findings) {
+        for joint in 0..self.drives.len() {
+            let columns = &model.log.joints[joint];
+            let measured = match (self.drives[joint], &columns.velocity) {
+                (Kind::Speed, Some(speed)) => &speed.name,
+                _ => &columns.position.name,
+            };
+            if let Some(input) = &columns.input {
+                self.judge_follow(joint, &input.name, measured, place, findings);
+                self.judge_push(joint, &input.name, place, findings);
+            }
+            if let Some(speed) = &columns.velocity {
+                let names = (&*speed.name, &*columns.position.name);
+                judge_speed(&self.speed[joint], names, place, findings);
+            }
+            let nominal = model.joints[joint]
+                .drive
+                .motor()
+                .and_then(|motor| motor.nominal_supply_v);
+            self.judge_supply(nominal, place, findings);
+        }
+        self.judge_gravity(model, place, findings);
+    }
+
+    fn judge_follow(
+        &self,
+        joint: usize,
+        goal: &str,
+        measured: &str,
+        place: &Place,
+        findings: &mut Findings,
+    ) {
+        let lines = &self.follow[joint];
+        let by_correlation = |a: &&Line, b: &&Line| a.correlation().total_cmp(&b.correlation());
+        let enough = lines
+            .iter()
+            .filter(|line| line.count() >= 20 && line.spread() > 0.02);
+        let Some(best) = enough.clone().max_by(by_correlation) else {
+            return;
+        };
+        let worst = enough.min_by(by_correlation).unwrap_or(best);
+        let mut warn = |what: String, remedy: &str| {
+            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+        };
+        if best.correlation() < 0.3 && worst.correlation() < -0.5 {
+            warn(
+                format!(
+                    "{measured} runs against {goal} (correlation {:.2})",
+                    worst.correlation()
+                ),
+                "one of the two counts the other way round: set reversed on it",
+            );
+            return;
+        }
+        if best.correlation() < 0.8 {
+            warn(
+                format!(
+                    "{measured} hardly follows {goal} (correlation {:.2})",
+                    best.correlation()
+                ),
+                "was the drive saturated, stuck, or off? Are the columns named right?",
+            );
+            return;
+        }
+        let slope = best.slope();
+        if !(0.8..1.25).contains(&slope) {
+            let guess = match slope.max(1.0 / slope) {
+                ratio if (45.0..72.0).contains(&ratio) => {
+                    "degrees on one side, radians on the other?"
+                }
+                _ => {
+                    "a wrong unit, count per turn or gear ratio, or a drive too weak for its goal?"
+                }
+            };
+            warn(
+                format!("{measured} moves {slope:.3} times as far as {goal}: {guess}"),
+                "check both columns' units in the model's [log]",
+            );
+        } else if self.drives[joint] == Kind::Angle && best.offset().abs() > 0.1 {
+            warn(
+                format!(
+                    "{measured} lies {:.3} rad from {goal} on the mean: a wrong zero?",
+                    best.offset()
+                ),
+                "set the offset of one of them, unless the load really makes the joint sag so far",
+            );
+        }
+    }
+
+    fn judge_push(&self, joint: usize, input: &str, place: &Place, findings: &mut Findings) {
+        if self.drives[joint] != Kind::Push {
+            return;
+        }
+        let Some(own) = self.push[joint].solve().map(|all| all[5 * joint]) else {
+            return;
+        };
+        if own.t < -SURE {
+            let what = format!(
+                "{input} pushes the joint the wrong way ({:.1} standard errors)",
+                own.t
+            );
+            let remedy = "the input or the angle counts the other way round: set reversed on it";
+            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+        }
+    }
+
+    /// A single link must be pulled towards hanging.
+    fn judge_gravity(&self, model: &Model, place: &Place, findings: &mut Findings) {
+        if self.drives.len() != 1 || matches!(self.drives[0], Kind::Angle | Kind::Speed) {
+            return;
+        }
+        let Some(all) = self.push[0].solve() else {
+            return;
+        };
+        let (sine, cosine) = (all[1], all[2]);
+        let tilt = cosine.value.atan2(-sine.value);
+        if tilt.abs() > 0.35 && sine.t.hypot(cosine.t) > 3.0 * SURE {
+            let name = &model.log.joints[0].position.name;
+            let what = format!(
+                "gravity pulls {:.2} rad beside where {name} has it hang: a wrong angle_zero, sign or unit, or a tilted rig",
+                tilt
+            );
+            let remedy = "compare the resting angle in the log with the model's angle_zero";
+            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+        }
+    }
+
+    fn judge_supply(&self, nominal: Option<f64>, place: &Place, findings: &mut Findings) {
+        let (Some((low, high)), Some(nominal)) = (self.supply_v, nominal) else {
+            return;
+        };
+        if low < 0.5 * nominal || high > 1.5 * nominal {
+            let what =
+                format!("the supply ranges from {low:.2} to {high:.2} V; {nominal} V is nominal");
+            let remedy = "check the supply column's unit, and the wiring";
+            findings.add("supply", Severity::Warn, place.clone(), what, remedy);
+        }
+    }
+}
+
+fn judge_speed(line: &Line, (speed, angle): (&str, &str), place: &Place, findings: &mut Findings) {
+    if line.count() < 20 || line.spread() < MOVING_RAD_S {
+        return;
+    }
+    let what = if line.correlation() < -0.5 {
+        format!("{speed} runs against the change of {angle}")
+    } else if line.correlation() > 0.8 && !(0.8..1.25).contains(&line.slope()) {
+        format!("{speed} is {:.3} times the change of {angle}", line.slope())
+    } else if line.correlation() < 0.8 {
+        format!(
+            "{speed} is not the change of {angle} (correlation {:.2})",
+            line.correlation()
+        )
+    } else {
+        return;
+    };
+    let remedy = "check names, units and signs of both columns, and the unit of time";
+    findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+}

@@ -1,0 +1,63 @@
+//! The streaming core: a CSV log row by row, in memory that does not grow with it.
+
+use super::header::Header;
+use super::lines::Lines;
+use super::row::{Reader, Row};
+use crate::error::Result;
+use crate::model::LogColumns;
+use std::path::Path;
+
+/// What is known of a file once it has been read through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileFacts {
+    /// SHA-256 of all its bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// Data rows, unreadable ones included.
+    pub rows: usize,
+}
+
+/// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
+///
+/// A row that cannot be read arrives as an error with file, line and column; the visitor decides whether
+/// that ends the reading. The separator (`,`, `;`, tab) comes from the header line; byte-order mark, CR LF,
+/// quotes, blank lines and `#` comments are taken as they come.
+///
+/// # Errors
+/// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.
+pub fn visit(
+    path: &Path,
+    columns: &LogColumns,
+    visitor: &mut dyn FnMut(usize, Result<&Row>) -> Result<()>,
+) -> Result<FileFacts> {
+    let mut lines = Lines::open(path)?;
+    let (header, first) = Header::read(path, &mut lines, &columns.time.name)?;
+    let reader = Reader::new(path, columns, &header)?;
+    let mut row = Row {
+        path: path.to_path_buf(),
+        fields: reader.fields(),
+        ..Row::default()
+    };
+    let mut rows = 0;
+    let mut give = |text: &str, at: usize| {
+        row.line = at;
+        row.number = rows;
+        rows += 1;
+        let filled = reader.fill(text, at, &mut row);
+        visitor(row.number, filled.map(|()| &row))
+    };
+    if let Some(text) = first {
+        give(&text, lines.number)?;
+    }
+    loop {
+        let at = lines.number + 1;
+        match lines.next()? {
+            None => break,
+            Some(text) if text.trim().is_empty() || text.trim_start().starts_with('#') => {}
+            Some(text) => give(text, at)?,
+        }
+    }
+    Ok(FileFacts {
+        sha256: lines.sha256(),
+        rows,
+    })
+}

@@ -1,0 +1,231 @@
+//! What stands before the data: separator, column names, constants in comments.
+
+use super::lines::Lines;
+use crate::error::{Error, Place, Result};
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// Columns and constants of one file.
+#[derive(Debug)]
+pub(super) struct Header {
+    /// The file, for errors.
+    path: PathBuf,
+    /// Between two fields: `,`, `;` or tab.
+    pub separator: u8,
+    /// Column names in the file's order, trimmed.
+    pub names: Vec<String>,
+    /// Line of the names, counted from 1.
+    line: usize,
+    /// `# key = value` before the names, with their line.
+    constants: Vec<(String, f64, usize)>,
+}
+
+/// Where a quantity's value comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Cell {
+    /// Field of each row, counted from 0.
+    Field(usize),
+    /// One number for the whole file, from the comment on this line.
+    Constant(f64, usize),
+}
+
+impl Cell {
+    /// The field counted from 1, as places count; 1 for a constant.
+    pub fn column(&self) -> usize {
+        match self {
+            Cell::Field(index) => index + 1,
+            Cell::Constant(..) => 1,
+        }
+    }
+}
+
+impl Header {
+    /// Reads up to and including the names. Also returns the first data line where the names stood in a
+    /// comment just above it, as numpy writes them.
+    ///
+    /// # Errors
+    /// An empty file, UTF-16, or data without names.
+    pub fn read(path: &Path, lines: &mut Lines, time: &str) -> Result<(Header, Option<String>)> {
+        let mut constants = Vec::new();
+        let mut comment = None;
+        loop {
+            let number = lines.number + 1;
+            let Some(text) = lines.next()? else {
+                return Err(Error::data(
+                    Place::file(path),
+                    "the log holds no header line",
+                    "record again: a log is a line of column names, then a line per sample",
+                ));
+            };
+            if text.trim().is_empty() {
+                continue;
+            }
+            if let Some(words) = text.trim_start().strip_prefix('#') {
+                if let Some((key, value)) = constant(words) {
+                    constants.push((key, value, number));
+                }
+                comment = Some((words.to_string(), number));
+                continue;
+            }
+            let (names, line, first) = match comment.filter(|_| is_data(text)) {
+                Some((words, line)) if names(&words).contains(&time.to_string()) => {
+                    (words, line, Some(text.to_string()))
+                }
+                _ => (text.to_string(), number, None),
+            };
+            let header = Header {
+                path: path.to_path_buf(),
+                separator: separator(&names),
+                names: self::names(&names),
+                line,
+                constants,
+            };
+            return Ok((header, first));
+        }
+    }
+
+    /// Where the column of this name is.
+    ///
+    /// # Errors
+    /// No such column, with those found and the likeliest meant; a name that stands there twice.
+    pub fn cell(&self, name: &str) -> Result<Cell> {
+        let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
+        match (found.next(), found.next()) {
+            (Some(_), Some(second)) => Err(Error::data(
+                Place::at(&self.path, self.line, second + 1),
+                format!("column '{name}' stands there twice"),
+                "rename one of them, so that it is clear which is meant",
+            )),
+            (Some(index), None) => Ok(Cell::Field(index)),
+            (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
+                Some((_, value, line)) => Ok(Cell::Constant(*value, *line)),
+                None => Err(self.missing(name)),
+            },
+        }
+    }
+
+    fn missing(&self, name: &str) -> Error {
+        if self
+            .names
+            .iter()
+            .all(|name| number(name, self.separator).is_some())
+        {
+            return Error::data(
+                Place::at(&self.path, self.line, 1),
+                format!("numbers where the column names should be, and no column '{name}'"),
+                "put a line of column names above the first sample",
+            );
+        }
+        let constants = self.constants.iter().map(|(key, ..)| key);
+        let plain = |name: &str| -> String {
+            let letters = name.chars().filter(|letter| letter.is_alphanumeric());
+            letters.flat_map(char::to_lowercase).collect()
+        };
+        let likeness = |known: &str| strsim::jaro_winkler(&plain(known), &plain(name));
+        let nearest = self
+            .names
+            .iter()
+            .chain(constants)
+            .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+            .filter(|known| likeness(known) > 0.8);
+        let meant = match nearest {
+            Some(known) => format!("; did you mean '{known}'?"),
+            None => ".".to_string(),
+        };
+        let shown: Vec<&str> = self
+            .names
+            .iter()
+            .take(40)
+            .map(|name| match name.as_str() {
+                "" => "(unnamed)",
+                name => name,
+            })
+            .collect();
+        let more = if self.names.len() > 40 { ", ..." } else { "" };
+        Error::data(
+            Place::at(&self.path, self.line, 1),
+            format!(
+                "no column '{name}'{meant} The log has: {}{more}",
+                shown.join(", ")
+            ),
+            format!(
+                "name the column under [log] in the model, or, if it never changes, write '# {name} = VALUE' above the header"
+            ),
+        )
+    }
+}
+
+/// Splits a line at separators outside quotes.
+pub(super) fn fields(line: &str, separator: u8) -> Vec<Cow<'_, str>> {
+    if !line.contains('"') {
+        return line
+            .split(char::from(separator))
+            .map(|field| Cow::Borrowed(field.trim()))
+            .collect();
+    }
+    let mut reader = ::csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .has_headers(false)
+        .buffer_capacity(line.len())
+        .from_reader(line.as_bytes());
+    let mut record = ::csv::StringRecord::new();
+    match reader.read_record(&mut record) {
+        Ok(true) => record
+            .iter()
+            .map(|field| Cow::Owned(unquoted(field.trim()).to_string()))
+            .collect(),
+        _ => vec![Cow::Borrowed(line)],
+    }
+}
+
+/// Without the quotes that the csv crate leaves on when a blank stands before them.
+fn unquoted(field: &str) -> &str {
+    let inner = field
+        .strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'));
+    inner.unwrap_or(field)
+}
+
+/// The number in a field; a comma counts as the decimal point where it cannot separate fields.
+pub(super) fn number(field: &str, separator: u8) -> Option<f64> {
+    match field.parse() {
+        Ok(value) => Some(value),
+        Err(_) if separator != b',' && field.matches(',').count() == 1 && !field.contains('.') => {
+            field.replace(',', ".").parse().ok()
+        }
+        Err(_) => None,
+    }
+}
+
+/// The separator of a header line: the most frequent of `;`, tab and comma.
+fn separator(line: &str) -> u8 {
+    let count = |separator: u8| fields(line, separator).len();
+    let mut best = b',';
+    for candidate in [b';', b'\t'] {
+        if count(candidate) > count(best) {
+            best = candidate;
+        }
+    }
+    best
+}
+
+fn names(line: &str) -> Vec<String> {
+    fields(line, separator(line))
+        .into_iter()
+        .map(Cow::into_owned)
+        .collect()
+}
+
+fn is_data(line: &str) -> bool {
+    let separator = separator(line);
+    fields(line, separator)
+        .iter()
+        .all(|field| number(field, separator).is_some())
+}
+
+/// Key and value of `key = value` or `key: value` with a numeric value.
+fn constant(words: &str) -> Option<(String, f64)> {
+    let (key, value) = words.split_once(['=', ':'])?;
+    let value = number(value.trim(), b';').filter(|value| value.is_finite())?;
+    Some((key.trim().to_string(), value))
+}

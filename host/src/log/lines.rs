@@ -1,0 +1,87 @@
+//! A file line by line, hashed on the way; holds one line at a time.
+
+use crate::error::{Error, Place, Result};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// Longest line accepted, bytes; a longer one is no log and would fill the memory.
+const LONGEST_LINE: usize = 1 << 20;
+
+/// Lines of a text file without their ends (LF or CR LF) and without a byte-order mark.
+pub(super) struct Lines {
+    path: PathBuf,
+    reader: BufReader<File>,
+    hash: Sha256,
+    line: Vec<u8>,
+    /// The present line's number, counted from 1; 0 before the first.
+    pub number: usize,
+}
+
+impl Lines {
+    /// Opens `path`.
+    pub fn open(path: &Path) -> Result<Self> {
+        let file = File::open(path).map_err(|source| Error::file(path, "read", source))?;
+        Ok(Lines {
+            path: path.to_path_buf(),
+            reader: BufReader::new(file),
+            hash: Sha256::new(),
+            line: Vec::new(),
+            number: 0,
+        })
+    }
+
+    /// The next line, or `None` at the end.
+    ///
+    /// # Errors
+    /// A line that is too long or not UTF-8, with its place; the system's refusal.
+    pub fn next(&mut self) -> Result<Option<&str>> {
+        self.line.clear();
+        let read = (&mut self.reader)
+            .take(LONGEST_LINE as u64 + 1)
+            .read_until(b'\n', &mut self.line)
+            .map_err(|source| Error::file(&self.path, "read", source))?;
+        if read == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        self.hash.update(&self.line);
+        if read > LONGEST_LINE {
+            return Err(Error::data(
+                Place::at(&self.path, self.number, 1),
+                format!("a line longer than {LONGEST_LINE} bytes"),
+                "this is no CSV log; name a text file with one sample per line",
+            ));
+        }
+        let mut line = &self.line[..];
+        line = line.strip_suffix(b"\n").unwrap_or(line);
+        line = line.strip_suffix(b"\r").unwrap_or(line);
+        if self.number == 1 {
+            line = line.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(line);
+        }
+        match std::str::from_utf8(line) {
+            Ok(text) => Ok(Some(text)),
+            // Comments are for people: an odd letter in one does no harm.
+            Err(_) if line.trim_ascii_start().starts_with(b"#") => Ok(Some("#")),
+            Err(error) => {
+                let before = &line[..error.valid_up_to()];
+                let separators = before.iter().filter(|byte| b",;\t".contains(byte));
+                Err(Error::data(
+                    Place::at(&self.path, self.number, separators.count() + 1),
+                    format!("not UTF-8: byte 0x{:02x}", line[before.len()]),
+                    "save the log as UTF-8 text",
+                ))
+            }
+        }
+    }
+
+    /// SHA-256 of all bytes read, lower-case hexadecimal.
+    pub fn sha256(self) -> String {
+        self.hash
+            .finalize()
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    }
+}

@@ -1,0 +1,124 @@
+//! Which rows of which file the user asked for.
+
+use crate::error::{Error, Result};
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// A log file, whole or in part, as named on the command line: `drop.csv` or `drop.csv:26-139`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogRequest {
+    /// The file as the user named it.
+    pub path: PathBuf,
+    /// First and last data row wanted, counted from 0 after the header; all without it.
+    pub rows: Option<(usize, usize)>,
+}
+
+impl LogRequest {
+    /// The whole file.
+    pub fn whole(path: impl Into<PathBuf>) -> Self {
+        LogRequest {
+            path: path.into(),
+            rows: None,
+        }
+    }
+
+    /// Whether data row `number` is wanted.
+    pub fn wants(&self, number: usize) -> bool {
+        self.rows
+            .is_none_or(|(first, last)| (first..=last).contains(&number))
+    }
+
+    /// File name without its folder, and the rows where a part is wanted: `drop.csv:26-139`.
+    pub fn name(&self) -> String {
+        let file = self.path.file_name().unwrap_or(self.path.as_os_str());
+        let file = file.to_string_lossy();
+        match self.rows {
+            Some((first, last)) => format!("{file}:{first}-{last}"),
+            None => file.into_owned(),
+        }
+    }
+
+    /// Whether it is a JSON log rather than CSV.
+    pub fn is_json(&self) -> bool {
+        self.path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    }
+}
+
+impl FromStr for LogRequest {
+    type Err = Error;
+
+    /// Parses `path[:first-last]`.
+    ///
+    /// # Errors
+    /// An empty path, a lone row number, or rows that run backwards.
+    fn from_str(text: &str) -> Result<Self> {
+        let is_range = |tail: &str| tail.chars().all(|c| c.is_ascii_digit() || c == '-');
+        let (path, rows) = match text.rsplit_once(':') {
+            Some((path, tail)) if is_range(tail) => (path, Some(range(text, tail)?)),
+            _ => (text, None),
+        };
+        if path.is_empty() {
+            return Err(Error::usage(
+                format!("'{text}' names no log file"),
+                "write the path of a log, such as drop.csv or drop.csv:26-139",
+            ));
+        }
+        Ok(LogRequest {
+            path: PathBuf::from(path),
+            rows,
+        })
+    }
+}
+
+fn range(text: &str, tail: &str) -> Result<(usize, usize)> {
+    let bounds = tail
+        .split_once('-')
+        .and_then(|(first, last)| Some((first.parse().ok()?, last.parse().ok()?)));
+    match bounds {
+        Some((first, last)) if first <= last => Ok((first, last)),
+        _ => Err(Error::usage(
+            format!("'{text}': rows '{tail}' are not a range"),
+            "write the first and the last data row, counted from 0, such as drop.csv:26-139",
+        )),
+    }
+}
+
+impl fmt::Display for LogRequest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        match self.rows {
+            Some((first, last)) => write!(f, ":{first}-{last}"),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parses_paths_with_and_without_rows() {
+        let request: LogRequest = "a/drop.csv:26-139".parse().unwrap();
+        assert_eq!(request.path, PathBuf::from("a/drop.csv"));
+        assert_eq!(request.rows, Some((26, 139)));
+        assert_eq!(request.name(), "drop.csv:26-139");
+        assert_eq!(request.to_string(), "a/drop.csv:26-139");
+        assert!(request.wants(26) && request.wants(139) && !request.wants(140));
+        assert_eq!("c:drop.csv".parse::<LogRequest>().unwrap().rows, None);
+    }
+
+    #[test]
+    fn refuses_what_is_no_range() {
+        for text in ["", ":1-2", "a.csv:", "a.csv:5", "a.csv:9-3", "a.csv:1-2-3"] {
+            assert_eq!(
+                text.parse::<LogRequest>().unwrap_err().exit_code(),
+                2,
+                "{text}"
+            );
+        }
+    }
+}
