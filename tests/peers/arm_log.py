@@ -48,7 +48,7 @@ def command(sines, seed, samples):
     for i in range(samples):
         t = i / RATE
         u = sum(a * math.sin(2.0 * math.pi * f * t + p) for a, f, p in waves)
-        torque.append(round(u * min(1.0, t / 0.5), 6))
+        torque.append(round(u * min(1.0, t / 0.5), 6) + 0.0)  # no -0
     return torque
 
 

@@ -30,8 +30,7 @@ import arm_log
 
 NAMES = ["viscous", "coulomb", "inertia", "torque_constant"]
 SUBSTEPS = 10  # RK4 steps of 1 ms per sample
-# One fixed start, a factor 2 off the truth: too much friction and torque
-# constant for the viscous half, too little for the rest.
+# One fixed start, each parameter a factor 2 off the truth, in the order of NAMES.
 FIXED_START = np.log([2.0, 0.5, 2.0, 0.5])
 LOST = 1e3  # rad, in place of an angle that overflowed
 RANGE = math.log(100.0)  # CMA-ES stays within a factor 100 of its start
