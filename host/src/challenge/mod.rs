@@ -14,7 +14,7 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use rig::KINDS;
+pub use rig::{KINDS, kind_named};
 pub use seal::{seal, unseal};
 
 use crate::error::{Error, Result};
@@ -34,7 +34,7 @@ pub enum Hidden {
     Random,
     /// Nothing: the model is complete but for its friction values.
     Nothing,
-    /// This effect, one of [`KINDS`]; any other name hides nothing.
+    /// This effect, one of [`KINDS`]; see [`kind_named`]. Any other name hides nothing.
     Effect(&'static str),
 }
 

@@ -21,6 +21,10 @@ const NOISE: (f64, f64) = (0.5e-3, 0.03);
 const MOST_DUTY: f64 = 0.6;
 /// Beyond this reading, rad, the motion is repeated more gently.
 const MOST_READING_RAD: f64 = 2.5;
+/// Beyond this speed, rad/s, over [`SPEED_SAMPLES`], likewise.
+const MOST_SPEED_RAD_S: f64 = 15.0;
+/// Samples over which speed is taken from readings.
+const SPEED_SAMPLES: usize = 4;
 /// Share of samples at the largest duty beyond which the controller counts as rattling.
 const MOST_CLIPPED: f64 = 0.04;
 
@@ -53,18 +57,7 @@ pub fn record(
         let controller = Controller::new(believed, mount, gentleness);
         let goal = goal.scaled(gentleness);
         let recording = attempt(truth, mount, &goal, &supply, controller, &mut noise);
-        let widest = recording
-            .position
-            .iter()
-            .fold(0.0_f64, |most, q| most.max(q.abs()));
-        let clipped = recording
-            .commands
-            .duty
-            .iter()
-            .filter(|u| u.abs() >= MOST_DUTY)
-            .count();
-        let rattles = clipped as f64 > MOST_CLIPPED * recording.position.len() as f64;
-        if (widest <= MOST_READING_RAD && !rattles) || gentleness < 0.1 {
+        if recording.is_tame() || gentleness < 0.1 {
             return recording;
         }
         gentleness *= 0.85;
@@ -120,6 +113,32 @@ fn span_before(times: &[f64], k: usize) -> f64 {
 }
 
 impl Recording {
+    /// Largest reading, rad.
+    pub fn widest(&self) -> f64 {
+        self.position.iter().fold(0.0, |most, q| most.max(q.abs()))
+    }
+
+    /// Largest speed of the readings, rad/s.
+    pub fn fastest(&self) -> f64 {
+        let span_s = SPEED_SAMPLES as f64 * PERIOD_S;
+        let ends = self.position.iter().zip(&self.position[SPEED_SAMPLES..]);
+        ends.map(|(from, to)| (to - from).abs() / span_s)
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether the arm kept clear of upright and the controller didn't rattle.
+    fn is_tame(&self) -> bool {
+        let clipped = self
+            .commands
+            .duty
+            .iter()
+            .filter(|duty| duty.abs() >= MOST_DUTY)
+            .count();
+        self.widest() <= MOST_READING_RAD
+            && self.fastest() <= MOST_SPEED_RAD_S
+            && (clipped as f64) <= MOST_CLIPPED * self.position.len() as f64
+    }
+
     /// The log as a file.
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
@@ -206,9 +225,9 @@ impl Supply {
     }
 }
 
-/// What a 10-bit encoder with hanging in the middle makes of an angle, rad.
+/// What a 10-bit encoder with hanging in the middle makes of an angle, rad; never a negative zero.
 fn quantised(angle: f64) -> f64 {
-    (angle / RESOLUTION_RAD).round().clamp(-512.0, 511.0) * RESOLUTION_RAD
+    (angle / RESOLUTION_RAD).round().clamp(-512.0, 511.0) * RESOLUTION_RAD + 0.0
 }
 
 /// A draw from the standard normal distribution (Box and Muller).

@@ -38,6 +38,11 @@ pub const KINDS: [&str; 23] = [
     "torque_scale",
 ];
 
+/// The effect of this name, if it can be hidden.
+pub fn kind_named(name: &str) -> Option<&'static str> {
+    KINDS.into_iter().find(|kind| *kind == name)
+}
+
 /// Friction of an arm: each is absent where it is the hidden effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
@@ -129,7 +134,7 @@ impl Secret {
     pub fn random(rng: &mut ChaCha8Rng, hidden: Hidden) -> Option<Secret> {
         let kind = match hidden {
             Hidden::Nothing => return None,
-            Hidden::Effect(kind) => KINDS.into_iter().find(|known| *known == kind)?,
+            Hidden::Effect(kind) => kind_named(kind)?,
             Hidden::Random if rng.random_range(0..12) == 0 => return None,
             Hidden::Random => KINDS[rng.random_range(0..KINDS.len())],
         };
@@ -179,8 +184,8 @@ fn parameters(rng: &mut ChaCha8Rng, kind: &str) -> Vec<(&'static str, f64)> {
     }
 }
 
-/// To `digits` decimal places, so that files hold exactly what was simulated.
+/// To `digits` decimal places, so that files hold exactly what was simulated; never a negative zero.
 pub fn rounded(value: f64, digits: i32) -> f64 {
     let unit = 10_f64.powi(digits);
-    (value * unit).round() / unit
+    (value * unit).round() / unit + 0.0
 }

@@ -93,19 +93,11 @@ fn the_replay_of_the_truth_is_the_log() {
     }
 }
 
-/// Largest speed over 40 ms of readings, rad/s.
-fn fastest(recording: &Recording) -> f64 {
-    let ends = recording.position.windows(5);
-    ends.map(|q| (q[4] - q[0]).abs() / 0.04).fold(0.0, f64::max)
-}
-
 #[test]
 fn the_arm_stays_clear_of_upright_and_moves_enough() {
     for kind in KINDS {
         for seed in 0..5 {
             let (_, secret, recordings) = stage(seed, Hidden::Effect(kind));
-            let widest =
-                |r: &Recording| r.position.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
             let duty = |r: &Recording| {
                 r.commands
                     .duty
@@ -113,7 +105,7 @@ fn the_arm_stays_clear_of_upright_and_moves_enough() {
                     .fold(0.0_f64, |most, u| most.max(u.abs()))
             };
             for (name, recording) in ["a", "b", "c"].iter().zip(&recordings) {
-                let (q, w, u) = (widest(recording), fastest(recording), duty(recording));
+                let (q, w, u) = (recording.widest(), recording.fastest(), duty(recording));
                 println!("{kind:20} {seed} {name}: {q:.2} rad {w:5.1} rad/s duty {u:.2}");
                 assert!(q < 2.6, "{kind} {seed}: {secret:?}");
                 assert!(q > 0.5, "{kind} {seed} hardly moves: {secret:?}");
