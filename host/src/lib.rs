@@ -3,6 +3,7 @@
 //! Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
 
+pub mod challenge;
 pub mod compare;
 pub mod diagnose;
 pub mod dynamics;
