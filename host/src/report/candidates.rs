@@ -21,9 +21,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "candidates",
         title: "What else was tried",
-        lead: "Every candidate was fitted on the same motions and then had to predict motions it had not seen. A wrong \
-               candidate may fit well and yet predict badly. BIC weighs the gain against the number of added \
-               parameters: the more negative, the better.",
+        lead: "Every candidate was fitted on the same motions; the promising ones then had to predict motions they had \
+               not seen. A wrong candidate may fit well and yet predict badly. BIC weighs the gain against the number \
+               of added parameters: the more negative, the better.",
         body,
     })
 }

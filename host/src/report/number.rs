@@ -15,6 +15,16 @@ pub(super) fn short(value: f64) -> String {
     plain(value, decimals(2 - power))
 }
 
+/// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
+pub(super) fn given(value: f64) -> String {
+    let text = short(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
+    }
+}
+
 /// An angle in milliradians, without the unit.
 pub(super) fn mrad(value_rad: f64) -> String {
     short(1e3 * value_rad)
@@ -85,6 +95,8 @@ mod tests {
         assert_eq!(short(-123.456), "-123");
         assert_eq!(short(41.234), "41.2");
         assert_eq!(short(1.5e-9), "1.50e-9");
+        assert_eq!(given(0.1), "0.1");
+        assert_eq!(given(100.0), "100");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
     }

@@ -1,7 +1,7 @@
 //! What is left: how much a free form could still gain, how the error grows with time, tests of the residual.
 
 use super::Report;
-use super::number::{NONE, mrad, percent, short};
+use super::number::{NONE, given, mrad, percent, short};
 use super::page::Section;
 use crate::compare::{Comparison, HorizonError, ResidualTest};
 use crate::diagnose::Remainder;
@@ -70,7 +70,7 @@ fn growth(comparisons: &[Comparison], horizons: &[Option<f64>]) -> Markup {
             thead { tr {
                 th { "Model" }
                 @for horizon in horizons {
-                    th.number { @match horizon { Some(s) => { (short(*s)) " s" }, None => "whole motion" } }
+                    th.number { @match horizon { Some(s) => { (given(*s)) " s" }, None => "whole motion" } }
                 }
             } }
             tbody { @for comparison in comparisons.iter().filter(|c| !c.horizons.is_empty()) {

@@ -1,7 +1,7 @@
 //! What a named effect is: its law, and the curve it leaves, drawn from that law.
 
 use super::Report;
-use super::number::short;
+use super::number::given;
 use super::page::Section;
 use super::scale::{Scale, span};
 use super::svg::{Plot, Tone};
@@ -72,7 +72,7 @@ fn explained(effect: &dyn Effect) -> Markup {
 fn values(effect: &dyn Effect, signature: &Signature) -> String {
     let pairs = effect.card().parameters.iter().zip(&signature.values);
     let values: Vec<String> = pairs
-        .map(|(parameter, value)| format!("{} = {}", parameter.key, short(*value)))
+        .map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)))
         .collect();
     if values.is_empty() {
         String::new()

@@ -82,6 +82,14 @@ fn each_verdict_has_its_words_and_colour() {
 }
 
 #[test]
+fn rivals_are_named_in_the_headline() {
+    let mut report = sample::report();
+    report.diagnosis.as_mut().unwrap().verdict = Verdict::Ambiguous;
+    let rivals = "Coulomb friction at joint 1 and Backlash at joint 1, or Dead zone at joint 1.";
+    assert!(html(&report).contains(&format!("Equally good explanations: {rivals}")));
+}
+
+#[test]
 fn a_model_alone_has_a_page() {
     let mut report = sample::report();
     report.diagnosis = None;

@@ -1,6 +1,6 @@
 //! Words that the page and the text share.
 
-use super::number::{interval, mrad, percent};
+use super::number::{given, interval, mrad, percent};
 use crate::diagnose::{Diagnosis, ErrorFall, FittedEffect, FittedValue, RuledOut, Verdict};
 use crate::effects::named;
 
@@ -21,13 +21,23 @@ pub(super) fn verdict_sentence(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
         Verdict::Nominal => "The model already explains the measurement".into(),
         Verdict::Named => format!("The model lacks {effects}"),
-        Verdict::Ambiguous => "Several explanations fit equally well".into(),
+        Verdict::Ambiguous => format!("Equally good explanations: {}", rivals(diagnosis)),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
             "Something is missing, and no known effect explains it".into()
         }
         Verdict::Unexplained => format!("The model lacks more than {effects}"),
         Verdict::Unfit => "These data can't answer the question".into(),
     }
+}
+
+/// "A at joint 1, or B and C".
+fn rivals(diagnosis: &Diagnosis) -> String {
+    let others = diagnosis.alternatives.iter().map(|rival| &rival.effects);
+    let sets: Vec<String> = std::iter::once(&diagnosis.effects)
+        .chain(others)
+        .map(|set| joined(set))
+        .collect();
+    sets.join(", or ")
 }
 
 /// "Coulomb friction at joint 1".
@@ -127,7 +137,7 @@ pub(super) fn unit(unit: &str) -> &str {
 /// What limits the judgement in time, as a clause.
 pub(super) fn window(horizon_s: Option<f64>) -> String {
     match horizon_s {
-        Some(horizon_s) => format!("in windows of {} s", super::number::short(horizon_s)),
+        Some(horizon_s) => format!("in windows of {} s", given(horizon_s)),
         None => "over whole motions".into(),
     }
 }
