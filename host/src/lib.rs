@@ -13,6 +13,7 @@ pub mod identify;
 pub mod log;
 pub mod model;
 pub mod output;
+pub mod report;
 pub mod sim;
 
 pub use error::{Error, Place, Result};
