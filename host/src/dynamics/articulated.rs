@@ -46,7 +46,7 @@ impl Workspace {
 impl Chain {
     /// Accelerations of the joints, rad/s^2, into `out`.
     ///
-    /// `gravity_turn_rad` turns gravity counter-clockwise. Where `held[i]`, the joint does not move (its speed
+    /// `base_m_s2` is the acceleration of the base that stands for gravity, from [`Chain::base_m_s2`]. Where `held[i]`, the joint does not move (its speed
     /// must be 0) and `out[i]` is instead the torque, N m, that must be added to `torque_nm[i]` to keep it so.
     /// All slices have the chain's length.
     #[inline]
@@ -54,7 +54,7 @@ impl Chain {
     pub fn forward(
         &self,
         work: &mut Workspace,
-        gravity_turn_rad: f64,
+        base_m_s2: [f64; 2],
         angle_rad: &[f64],
         speed_rad_s: &[f64],
         torque_nm: &[f64],
@@ -149,9 +149,7 @@ impl Chain {
             }
         }
 
-        let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
-        // Gravity as an acceleration of the base against it.
-        let mut linear = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
+        let mut linear = base_m_s2;
         let mut angular = 0.0;
         for i in 0..n {
             let s = &scratch[i];
@@ -206,7 +204,7 @@ mod tests {
             let mut torque = vec![0.0; n];
             chain.inverse(turn, q, w, a, &mut torque);
             let mut out = vec![0.0; n];
-            chain.forward(&mut Workspace::new(n), turn, q, w, &torque, &vec![false; n], &mut out);
+            chain.forward(&mut Workspace::new(n), chain.base_m_s2(turn), q, w, &torque, &vec![false; n], &mut out);
             for i in 0..n {
                 prop_assert!((out[i] - a[i]).abs() < 1e-8, "{out:?} {a:?}");
             }
@@ -224,10 +222,10 @@ mod tests {
             let held = [false, true, false];
             let mut out = [0.0; 3];
             let mut work = Workspace::new(3);
-            chain.forward(&mut work, 0.0, q, &w, torque, &held, &mut out);
+            chain.forward(&mut work, chain.base_m_s2(0.0), q, &w, torque, &held, &mut out);
             let pushed = [torque[0], torque[1] + out[1], torque[2]];
             let mut free = [0.0; 3];
-            chain.forward(&mut work, 0.0, q, &w, &pushed, &[false; 3], &mut free);
+            chain.forward(&mut work, chain.base_m_s2(0.0), q, &w, &pushed, &[false; 3], &mut free);
             prop_assert!(free[1].abs() < 1e-7);
             prop_assert!((free[0] - out[0]).abs() < 1e-7);
             prop_assert!((free[2] - out[2]).abs() < 1e-7);
@@ -248,7 +246,15 @@ mod tests {
         for _ in 0..20_000 {
             let mut accelerate = |q: &[f64], w: &[f64]| {
                 let mut out = vec![0.0; 3];
-                chain.forward(&mut work, 0.0, q, w, &[0.0; 3], &[false; 3], &mut out);
+                chain.forward(
+                    &mut work,
+                    chain.base_m_s2(0.0),
+                    q,
+                    w,
+                    &[0.0; 3],
+                    &[false; 3],
+                    &mut out,
+                );
                 out
             };
             let add = |x: &[f64], k: f64, dx: &[f64]| -> Vec<f64> {

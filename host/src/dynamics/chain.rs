@@ -59,6 +59,13 @@ impl Chain {
         self.links.is_empty()
     }
 
+    /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned counter-clockwise by
+    /// `turn_rad`: against its pull.
+    pub fn base_m_s2(&self, turn_rad: f64) -> [f64; 2] {
+        let (sin, cos) = turn_rad.sin_cos();
+        [-self.gravity_m_s2 * sin, self.gravity_m_s2 * cos]
+    }
+
     /// Adds a point mass to the last link, `at_m` from its joint on the link's line.
     pub fn bolt_on(&mut self, mass_kg: f64, at_m: f64) {
         let Some(link) = self.links.last_mut() else {

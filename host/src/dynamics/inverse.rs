@@ -14,8 +14,7 @@ impl Chain {
         acceleration_rad_s2: &[f64],
         out: &mut [f64],
     ) {
-        let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
-        let base = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
+        let base = self.base_m_s2(gravity_turn_rad);
         self.inverse_from(
             0,
             [0.0; 3],
@@ -84,8 +83,7 @@ impl Chain {
         acceleration_rad_s2: &[f64],
         out: &mut [f64],
     ) {
-        let (down_sin, down_cos) = gravity_turn_rad.sin_cos();
-        let mut linear = [-self.gravity_m_s2 * down_sin, self.gravity_m_s2 * down_cos];
+        let mut linear = self.base_m_s2(gravity_turn_rad);
         let (mut angle, mut speed, mut acceleration) = (0.0, 0.0, 0.0);
         let mut sum = [0.0, 0.0];
         // Forces of the links add up from the tip; keep the running sum from the base and subtract.

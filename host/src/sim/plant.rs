@@ -42,8 +42,12 @@ pub(super) struct JointPlan {
 pub struct Plant {
     pub(super) rig: Rig,
     pub(super) joints: Vec<JointPlan>,
+    /// Stands for gravity: see [`Chain::base_m_s2`].
+    pub(super) base_m_s2: [f64; 2],
     pub(super) zero_rad: f64,
     pub(super) absolute: bool,
+    /// Whether any reading has a memory that must follow every step.
+    pub(super) senses: bool,
     pub(super) step_s: f64,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
@@ -88,7 +92,10 @@ impl Plant {
                 needs.push(effect.card().needs);
             }
         }
+        let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
+            senses,
+            base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             joints,
             zero_rad: model.angle_zero.from_hanging_rad(),

@@ -60,7 +60,12 @@ pub fn predict(
             let begin = from + step as f64 * h;
             tell(plant, motion, k, begin, begin + h, &mut cursors, &mut told);
             stepper.advance(plant, &told, h);
-            recorder.step(plant, &stepper.angle, h);
+            if plant.senses {
+                recorder.step(plant, &stepper.angle, h);
+            }
+        }
+        if !plant.senses {
+            recorder.step(plant, &stepper.angle, to - from);
         }
         if !stepper.angle.iter().all(|a| a.abs() < 1e6) {
             for joint in 0..n {

@@ -8,6 +8,7 @@ use super::drive::Told;
 use super::plant::Plant;
 use crate::dynamics::Workspace;
 use crate::effects::{JointState, Slide};
+use crate::model::Drive;
 
 /// How friction acts on a joint until the next event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,11 +181,12 @@ impl Stepper {
             let speed = self.stage_speed[joint];
             self.held[joint] = self.contact[joint] == Contact::Held;
             let drive = match plan.drive {
-                crate::model::Drive::Passive => 0.0,
-                _ => {
+                Drive::Passive => 0.0,
+                Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, &self.stage_angle);
                     plan.drive_torque_nm(told[joint], reading, speed)
                 }
+                _ => plan.drive_torque_nm(told[joint], 0.0, speed),
             };
             let state = JointState {
                 angle_rad: self.stage_angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
@@ -216,7 +218,7 @@ impl Stepper {
     fn solve(&mut self, plant: &Plant, stage: usize) {
         plant.rig.chain.forward(
             &mut self.work,
-            plant.rig.gravity_turn_rad,
+            plant.base_m_s2,
             &self.stage_angle,
             &self.stage_speed,
             &self.torque,
