@@ -6,7 +6,7 @@
 
 use super::candidate::Candidate;
 use super::findings::Remainder;
-use super::score::{Score, resampled};
+use super::score::{AT_FLOOR, Score, resampled};
 use super::trial::change;
 use crate::effects::Along;
 use crate::identify::{Data, Fit, Projector, settle};
@@ -14,8 +14,8 @@ use crate::model::{Drive, Model};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Ridge on columns of unit length, against a residual of unit weight.
-const RIDGE: f64 = 1e-3;
+/// Ridge on columns of unit length, against a residual of unit weight: a term must stand out of the noise.
+const RIDGE: f64 = 2.0;
 
 /// A probe with the amplitude at which its effect is measured.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ pub(super) fn remainder(
     let held_out = held_out?;
     let settled = settle(&fit.model, held_out);
     let before = Score::of(&settled, held_out);
-    if before.mean() < 1.05 {
+    if before.rms() < AT_FLOOR {
         return None;
     }
     let terms = terms(&fit.model, training);

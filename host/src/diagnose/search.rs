@@ -6,7 +6,7 @@
 use super::candidate::{Candidate, candidates};
 use super::findings::Diagnosis;
 use super::remainder::remainder;
-use super::score::{Score, fall};
+use super::score::{AT_FLOOR, Score, fall};
 use super::trial::{Opening, Trial, openings};
 use super::verdict::{Case, conclude};
 use crate::effects::{CONTROLS, SHAM};
@@ -51,7 +51,7 @@ pub struct Progress {
 }
 
 /// Iterations of a first look at a candidate.
-const LOOK: usize = 5;
+const LOOK: usize = 3;
 /// Iterations of a finalist.
 const FINISH: usize = 25;
 /// Finalists of each size.
@@ -173,7 +173,7 @@ impl Bench {
 
     /// Whether a trial leaves nothing but noise.
     pub fn at_floor(&self, trial: &Trial) -> bool {
-        trial.deciding().rms() < 1.15 && trial.training.rms() < 1.15
+        trial.deciding().rms() < AT_FLOOR && trial.training.rms() < AT_FLOOR
     }
 
     fn try_shams(&self, joints: usize) -> Vec<Trial> {
@@ -197,7 +197,9 @@ impl Bench {
     }
 
     fn singles(&self) -> Vec<Trial> {
-        let trials = self.first_look(&self.base, &self.candidates, 2);
+        // Few samples: simulations are cheap, and a single motion has more false valleys.
+        let starts = if self.training.samples() < 3000 { 6 } else { 1 };
+        let trials = self.first_look(&self.base, &self.candidates, starts);
         self.finals(trials)
     }
 
@@ -225,12 +227,19 @@ impl Bench {
     fn finals(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
         let by_error = |a: &Trial, b: &Trial| a.training.mean().total_cmp(&b.training.mean());
         trials.sort_by(by_error);
+        // Halving: many get a second look, few go to the end.
+        let heats = [(3 * FINALISTS, LOOK), (FINALISTS, FINISH)];
+        for (places, iterations) in heats {
+            let places = places.min(trials.len());
+            trials[..places]
+                .par_iter_mut()
+                .for_each(|trial| trial.finish(&self.training, iterations));
+            trials.sort_by(by_error);
+        }
         let finalists = FINALISTS.min(trials.len());
-        trials[..finalists].par_iter_mut().for_each(|trial| {
-            trial.finish(&self.training, FINISH);
-            trial.judge(self.held_out.as_ref());
-        });
-        trials.sort_by(by_error);
+        trials[..finalists]
+            .par_iter_mut()
+            .for_each(|trial| trial.judge(self.held_out.as_ref()));
         trials
     }
 
@@ -391,10 +400,10 @@ fn longest_useful(model: &Model, whole: &Data) -> (Horizon, Fit, Data) {
         let fit = base_fit(model, &data);
         let lost = fit.residuals.cost() / fit.residuals.count().max(1) as f64
             > (0.25 * spread(&data)).powi(2);
-        if !lost || seconds < 0.4 {
+        if !lost || seconds <= 1.0 {
             return (horizon, fit, data);
         }
-        seconds = (seconds / 2.0).min(4.0);
+        seconds = (seconds / 2.0).clamp(1.0, 4.0);
         horizon = Horizon::Seconds(seconds);
     }
 }

@@ -61,6 +61,10 @@ impl Effect for DeadZone {
         &CARD
     }
 
+    fn difference(&self) -> f64 {
+        2e-2
+    }
+
     fn command(&self, values: &[f64], duty: f64) -> f64 {
         let [width, punch] = values else { return duty };
         if duty.abs() <= *width {

@@ -101,6 +101,12 @@ pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
     fn card(&self) -> &'static Card;
 
+    /// Relative step of a finite difference in its values: large where the law jumps, so that a difference sees
+    /// the jumps pass.
+    fn difference(&self) -> f64 {
+        2e-4
+    }
+
     /// Body: changes the rig's constants before a motion is simulated.
     fn body(&self, _values: &[f64], _joint: usize, _rig: &mut Rig) {}
 

@@ -306,7 +306,7 @@ impl<'a> Search<'a> {
         if let Some(path) = self.free.get(column) {
             let value = path.get(&self.model).unwrap_or(0.0);
             let (_, high) = path.bounds(&self.model);
-            let size = 2e-4 * value.abs().max(scale(path));
+            let size = difference(path) * value.abs().max(scale(path));
             let delta = if value + size > high { -size } else { size };
             let mut model = self.model.clone();
             let known = path.set(&mut model, value + delta);
@@ -391,5 +391,14 @@ fn limited(value: f64, bounds: (f64, f64), step: f64) -> f64 {
         (value + step).clamp(value / 4.0, value * 4.0) - value
     } else {
         step
+    }
+}
+
+fn difference(path: &ParameterPath) -> f64 {
+    match path {
+        ParameterPath::Effect { id, .. } => {
+            crate::effects::named(id).map_or(2e-4, |effect| effect.difference())
+        }
+        _ => 2e-4,
     }
 }

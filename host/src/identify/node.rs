@@ -20,6 +20,9 @@ pub(super) struct Guess {
     pub deviation: Vec<f64>,
 }
 
+/// Half the span of the samples that tell a window's start.
+const REACH_S: f64 = 0.06;
+
 impl Guess {
     /// From a parabola through the samples around the window's start.
     pub fn of(data: &Data, window: &Window) -> Guess {
@@ -33,16 +36,16 @@ impl Guess {
             deviation: vec![0.0; 2 * joints],
         };
         for joint in 0..joints {
-            let line = local_line(
-                &motion.time_s,
-                &motion.position_rad[joint],
-                window.samples.start,
-            );
+            let (time, position) = (&motion.time_s, &motion.position_rad[joint]);
+            let line = local_line(time, position, window.samples.start, REACH_S);
+            let near = local_line(time, position, window.samples.start, REACH_S / 2.0);
             let sigma = data.sigma_rad[joint];
             guess.node.reading_rad[joint] = line.value;
             guess.node.speed_rad_s[joint] = line.slope;
-            guess.deviation[joint] = sigma * line.value_gain;
-            guess.deviation[joints + joint] = sigma * line.slope_gain + 0.02 * line.slope.abs();
+            // Where a shorter parabola says otherwise, the motion is no parabola.
+            guess.deviation[joint] = sigma * line.value_gain + (line.value - near.value).abs();
+            guess.deviation[joints + joint] =
+                sigma * line.slope_gain + (line.slope - near.slope).abs();
             let logged = motion.velocity_rad_s[joint]
                 .as_ref()
                 .map(|v| v[window.samples.start]);
@@ -112,9 +115,8 @@ struct LocalLine {
     slope_gain: f64,
 }
 
-/// Fits a parabola around sample `at` to its neighbours within about 60 ms (at least 5 samples).
-fn local_line(time_s: &[f64], values: &[f64], at: usize) -> LocalLine {
-    let reach = 0.06;
+/// Fits a parabola around sample `at` to its neighbours within `reach` seconds (at least 5 samples).
+fn local_line(time_s: &[f64], values: &[f64], at: usize, reach: f64) -> LocalLine {
     let mut first = at;
     while first > 0 && time_s[at] - time_s[first - 1] <= reach {
         first -= 1;

@@ -42,7 +42,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
             .ok_or_else(|| rig.lacks("angle_zero"))?,
         angles: rig.choice("angles", &ANGLES)?.unwrap_or(Angles::Relative),
         gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(9.81),
-        step_s: rig.number("step_s", STEP)?.unwrap_or(0.0025),
+        step_s: rig.number("step_s", STEP)?.unwrap_or(0.005),
         links,
         joints,
         effects,

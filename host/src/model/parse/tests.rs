@@ -60,7 +60,7 @@ fn what_is_left_out_takes_its_default() {
     let start = text.find("[fit]").unwrap();
     let end = text.find("[log]").unwrap();
     let model = parse(&format!("{}{}", &text[..start], &text[end..])).unwrap();
-    assert_eq!((model.gravity_m_s2, model.step_s), (9.81, 0.0025));
+    assert_eq!((model.gravity_m_s2, model.step_s), (9.81, 0.005));
     assert_eq!(model.angles, Angles::Relative);
     let motor = model.joints[1].drive.motor().unwrap();
     assert!(motor.no_load_speed_rad_s.is_infinite());
