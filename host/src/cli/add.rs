@@ -37,7 +37,7 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     holdout: Vec<LogRequest>,
     /// Seconds the model runs without correction, or `whole`; chosen by its stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon)]
+    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
     horizon: Option<Horizon>,
     /// New model file
     #[arg(long, short, value_name = "NEW.toml")]
