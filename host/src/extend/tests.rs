@@ -91,7 +91,7 @@ fn an_added_effect_gets_its_true_value_and_new_motions_are_foretold() {
     assert!((value.value - 0.004).abs() < 4e-5, "{value:?}");
     assert!(value.low <= value.value && value.value <= value.high);
     let error = extension.error;
-    assert!(error.held_out && error.before_rad > 0.1, "{error:?}");
+    assert!(error.held_out && error.before_rad > 0.05, "{error:?}");
     assert!(error.after_rad < 2.0 * error.floor_rad, "{error:?}");
 }
 
