@@ -8,7 +8,9 @@ use common::{Bench, MODEL};
 fn help_lists_every_command() {
     let help = Bench::new().run("help");
     assert_eq!(help.code, Some(0));
-    for command in ["effects", "log", "fit", "add"] {
+    for command in [
+        "compare", "diagnose", "effects", "log", "fit", "add", "challenge", "demo",
+    ] {
         assert!(
             help.stdout.contains(&format!("\n  {command} ")),
             "{command}: {}",

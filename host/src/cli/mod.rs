@@ -4,11 +4,16 @@
 //! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a bug.
 
 mod add;
+mod challenge;
+mod compare;
+mod demo;
+mod diagnose;
 mod effects;
 mod fit;
 mod input;
 mod log;
 mod name;
+mod page;
 mod show;
 mod talk;
 
@@ -46,6 +51,10 @@ impl Cli {
 /// What there is to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Compare models with logs
+    Compare(compare::Args),
+    /// Find the physical effect that is missing from a model
+    Diagnose(diagnose::Args),
     /// Explain the physical effects the library knows
     Effects(effects::Args),
     /// Judge logs before they are learned from
@@ -55,6 +64,11 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Try yourself, or the program, on a virtual bench with a hidden effect
+    #[command(subcommand)]
+    Challenge(challenge::Command),
+    /// Watch the whole loop on such a bench
+    Demo(demo::Args),
 }
 
 impl Command {
@@ -64,10 +78,14 @@ impl Command {
     /// Requests that make no sense, files that cannot be read or are refused.
     pub fn run(&self, talk: &Talk) -> Result<Outcome> {
         match self {
+            Command::Compare(args) => compare::run(args, talk),
+            Command::Diagnose(args) => diagnose::run(args, talk),
             Command::Effects(args) => effects::run(args, talk),
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Challenge(command) => challenge::run(command, talk),
+            Command::Demo(args) => demo::run(args, talk),
         }
     }
 }

@@ -6,18 +6,40 @@ use serde::Serialize;
 use std::io::{ErrorKind, Write as _};
 
 /// One run's manner of speaking.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Talk {
     /// Data as JSON.
     pub json: bool,
+    /// The command line that says it again.
+    pub command: String,
     quiet: bool,
+    /// Whether data goes to stderr too, as part of a transcript.
+    transcript: bool,
 }
 
 impl Talk {
     /// Data to stdout, as JSON if asked; talk to stderr unless quiet.
     pub fn new(json: bool, quiet: bool) -> Self {
-        Talk { json, quiet }
+        let words = std::env::args_os().skip(1);
+        let words = words.map(|word| format!(" {}", word.to_string_lossy()));
+        Talk {
+            json,
+            command: format!("handstand{}", words.collect::<String>()),
+            quiet,
+            transcript: false,
+        }
     }
+
+    /// For a step of a longer run: its data are part of the talk.
+    pub fn transcript(&self, command: String) -> Self {
+        Talk {
+            json: false,
+            command,
+            quiet: self.quiet,
+            transcript: true,
+        }
+    }
+
 
     /// A line of talk.
     pub fn say(&self, line: &str) {
@@ -33,6 +55,10 @@ impl Talk {
     /// Any other refusal of the system.
     pub fn print(&self, text: &str) -> Result<()> {
         let text = format!("{}\n", text.trim_end());
+        if self.transcript {
+            self.say(text.trim_end());
+            return Ok(());
+        }
         let mut out = std::io::stdout().lock();
         match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
