@@ -9,7 +9,14 @@ fn help_lists_every_command() {
     let help = Bench::new().run("help");
     assert_eq!(help.code, Some(0));
     for command in [
-        "compare", "diagnose", "effects", "log", "fit", "add", "challenge", "demo",
+        "compare",
+        "diagnose",
+        "effects",
+        "log",
+        "fit",
+        "add",
+        "challenge",
+        "demo",
     ] {
         assert!(
             help.stdout.contains(&format!("\n  {command} ")),

@@ -46,7 +46,8 @@ pub struct ScoredValue {
 /// Files of the challenge that are missing or were changed.
 pub fn score(dir: &Path, model: &Model) -> Result<Score> {
     let sealed = dir.join("answer.sealed");
-    let text = std::fs::read_to_string(&sealed).map_err(|error| Error::file(&sealed, "read", error))?;
+    let text =
+        std::fs::read_to_string(&sealed).map_err(|error| Error::file(&sealed, "read", error))?;
     let answer = unseal(&text, &sealed)?;
     let nominal = Model::load(&dir.join("nominal.toml"))?;
     let truth = Model::parse(&answer.true_model_toml, &sealed)?;
@@ -55,7 +56,11 @@ pub fn score(dir: &Path, model: &Model) -> Result<Score> {
     let hidden = beyond(&truth, &nominal).first().map(|effect| name(effect));
     let last = LogRequest::whole(dir.join("c.csv"));
     let error = |model: &Model| -> Result<f64> {
-        let data = Data::new(model, read(std::slice::from_ref(&last), &model.log)?, Horizon::Whole);
+        let data = Data::new(
+            model,
+            read(std::slice::from_ref(&last), &model.log)?,
+            Horizon::Whole,
+        );
         Ok(rms_rad(&settle(model, &data), &data))
     };
     Ok(Score {
@@ -85,10 +90,17 @@ fn name(effect: &EffectInstance) -> String {
 
 fn values(answer: &Answer, added: &[&EffectInstance]) -> Vec<ScoredValue> {
     let kind = answer.kind.as_deref();
-    let found = added.iter().find(|effect| Some(effect.effect.card().id) == kind);
+    let found = added
+        .iter()
+        .find(|effect| Some(effect.effect.card().id) == kind);
     let value = |key: &str| {
         let effect = found?;
-        let at = effect.effect.card().parameters.iter().position(|p| p.key == key)?;
+        let at = effect
+            .effect
+            .card()
+            .parameters
+            .iter()
+            .position(|p| p.key == key)?;
         effect.values.get(at).copied()
     };
     let hidden = answer.parameters.iter().map(|(key, hidden)| ScoredValue {

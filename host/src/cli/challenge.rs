@@ -79,7 +79,10 @@ fn new(args: &New, talk: &Talk) -> Result<Outcome> {
             "logs": made.logs.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         }))?;
     } else {
-        talk.say(&format!("wrote {}: its README.txt says what to do", args.output.display()));
+        talk.say(&format!(
+            "wrote {}: its README.txt says what to do",
+            args.output.display()
+        ));
     }
     Ok(Outcome::Done)
 }
@@ -108,13 +111,21 @@ pub fn text(score: &Score) -> String {
         [] => nothing(),
         added => added.join(", "),
     };
-    table.add_row(["effect".into(), score.hidden.clone().unwrap_or_else(nothing), found]);
+    table.add_row([
+        "effect".into(),
+        score.hidden.clone().unwrap_or_else(nothing),
+        found,
+    ]);
     for value in &score.values {
         let found = value.found.map_or("-".to_string(), show::number);
         table.add_row([value.key.clone(), show::number(value.hidden), found]);
     }
     let truth = show::number(score.true_error_rad);
-    table.add_row(["error on c.csv, rad".into(), truth, show::number(score.error_rad)]);
+    table.add_row([
+        "error on c.csv, rad".into(),
+        truth,
+        show::number(score.error_rad),
+    ]);
     let said = match score.solved {
         true => "Solved: the model names what was hidden.",
         false => "Not solved: the model does not name what was hidden.",

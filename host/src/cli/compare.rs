@@ -53,9 +53,16 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let model = Model::load(file)?;
         // Each model names columns and zeros its own way.
         split.training = read(&args.logs, &model.log)?;
-        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+        let name = file
+            .file_name()
+            .unwrap_or(file.as_os_str())
+            .to_string_lossy();
         let comparison = compare::compare(&model, &name, &split.training, horizon);
-        horizon = horizon.or(Some(comparison.horizon_s.map_or(Horizon::Whole, Horizon::Seconds)));
+        horizon = horizon.or(Some(
+            comparison
+                .horizon_s
+                .map_or(Horizon::Whole, Horizon::Seconds),
+        ));
         comparisons.push(comparison);
     }
     let text = compare::text(&comparisons);

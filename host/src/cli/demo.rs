@@ -33,7 +33,11 @@ pub struct Args {
 /// Runs the loop.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let at = |name: &str| args.output.join(name).to_string_lossy().into_owned();
-    let (folder, nominal, model) = (args.output.to_string_lossy(), at("nominal.toml"), at("model.toml"));
+    let (folder, nominal, model) = (
+        args.output.to_string_lossy(),
+        at("nominal.toml"),
+        at("model.toml"),
+    );
     let (a, b, c) = (&at("a.csv"), &at("b.csv"), &at("c.csv"));
     let seed = args.seed.to_string();
 
@@ -45,13 +49,41 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     step(&["log", "check", &nominal, a, b, c], talk)?;
     talk.say("\nHow far is the model from what was measured, and where?");
     step(&["compare", &nominal, a, b, c], talk)?;
-    talk.say("\nWhat is missing? c.csv is held out: only the motions it foretells prove an effect.");
+    talk.say(
+        "\nWhat is missing? c.csv is held out: only the motions it foretells prove an effect.",
+    );
     let page = at("report.html");
-    let found = missing(&["diagnose", &nominal, a, b, "--holdout", c, "--report", &page], talk)?;
+    let found = missing(
+        &[
+            "diagnose",
+            &nominal,
+            a,
+            b,
+            "--holdout",
+            c,
+            "--report",
+            &page,
+        ],
+        talk,
+    )?;
     let model = match &found {
         Some(effect) => {
             talk.say("\nThe model with it, and the two side by side on the motion held out:");
-            step(&["add", &nominal, effect, "--fit", a, b, "--holdout", c, "-o", &model], talk)?;
+            step(
+                &[
+                    "add",
+                    &nominal,
+                    effect,
+                    "--fit",
+                    a,
+                    b,
+                    "--holdout",
+                    c,
+                    "-o",
+                    &model,
+                ],
+                talk,
+            )?;
             step(&["compare", &nominal, c, "--model", &model], talk)?;
             model
         }
@@ -89,7 +121,10 @@ fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {
     let line = announce(words, talk);
     let all = std::iter::once(&"handstand").chain(words);
     let cli = Cli::try_parse_from(all).map_err(|error| {
-        Error::usage(error.to_string(), "name a folder that is no option: -o bench")
+        Error::usage(
+            error.to_string(),
+            "name a folder that is no option: -o bench",
+        )
     })?;
     Ok((cli.command, talk.transcript(line)))
 }

@@ -15,9 +15,7 @@ use super::page::{self, Page};
 use super::talk::Talk;
 use super::{Outcome, input, log, name};
 use handstand::compare::{Comparison, compare};
-use handstand::diagnose::{
-    DiagnoseOptions, Diagnosis, ErrorFall, FittedEffect, Verdict, diagnose,
-};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, FittedEffect, Verdict, diagnose};
 use handstand::effects;
 use handstand::identify::Horizon;
 use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
@@ -82,8 +80,12 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     let named = input::motions(&model, &args.logs, &args.holdout)?;
     let split = split(named.training, named.held_out);
     let mut diagnosis = try_all(&model, &split, args, talk);
-    let warned = findings.iter().filter(|finding| finding.severity == Severity::Warn);
-    diagnosis.warnings.extend(warned.map(|finding| format!("{}: {}", finding.place, finding.what)));
+    let warned = findings
+        .iter()
+        .filter(|finding| finding.severity == Severity::Warn);
+    diagnosis
+        .warnings
+        .extend(warned.map(|finding| format!("{}: {}", finding.place, finding.what)));
     print(&diagnosis, talk)?;
     if let Some(file) = &args.report {
         let page = Page {
@@ -171,7 +173,11 @@ pub fn address(effect: &FittedEffect) -> String {
 
 /// What is said of logs that were refused.
 fn unfit(findings: &[Finding]) -> Diagnosis {
-    let refused = || findings.iter().filter(|finding| finding.severity == Severity::Refuse);
+    let refused = || {
+        findings
+            .iter()
+            .filter(|finding| finding.severity == Severity::Refuse)
+    };
     let reasons = refused().map(|finding| format!("{}: {}", finding.place, finding.what));
     let said = "The logs cannot be learned from.".to_string();
     Diagnosis {

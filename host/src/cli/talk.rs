@@ -40,7 +40,6 @@ impl Talk {
         }
     }
 
-
     /// A line of talk.
     pub fn say(&self, line: &str) {
         if !self.quiet {
