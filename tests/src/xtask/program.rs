@@ -1,6 +1,7 @@
 //! Other programs: whether they are there, and running them aloud.
 
 use std::io::{BufRead as _, BufReader};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Whether one of these programs can be found.
@@ -53,7 +54,11 @@ pub fn overheard(command: &mut Command, mut hear: impl FnMut(&str)) -> bool {
 }
 
 fn announce(command: &Command) {
-    let words = std::iter::once(command.get_program()).chain(command.get_args());
-    let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
+    let program = Path::new(command.get_program());
+    let name = program.file_name().unwrap_or(program.as_os_str());
+    let words: Vec<_> = std::iter::once(name)
+        .chain(command.get_args())
+        .map(|word| word.to_string_lossy())
+        .collect();
     println!("\n$ {}", words.join(" "));
 }
