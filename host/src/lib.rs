@@ -3,6 +3,7 @@
 //! Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
 
+pub mod challenge;
 pub mod compare;
 pub mod diagnose;
 pub mod dynamics;
@@ -13,6 +14,7 @@ pub mod identify;
 pub mod log;
 pub mod model;
 pub mod output;
+pub mod report;
 pub mod sim;
 
 pub use error::{Error, Place, Result};

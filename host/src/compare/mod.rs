@@ -1,5 +1,18 @@
 //! A model against measured motions: how far apart they are, and under which conditions.
 
+mod conditions;
+mod failure;
+mod moment;
+mod order;
+mod predicted;
+mod residual_tests;
 mod result;
+mod run;
+mod text;
+
+#[cfg(test)]
+mod tests;
 
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
+pub use run::compare;
+pub use text::{text, waterfall};

@@ -21,6 +21,7 @@ mod encoder_scale;
 mod encoder_zero;
 mod load_friction;
 mod mass;
+mod probe;
 mod sensor_lag;
 mod sham;
 mod speed_limit;
@@ -38,6 +39,7 @@ pub mod signature;
 mod tests;
 
 pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
+pub use probe::{Along, Probe};
 pub use sham::SHAM;
 
 use crate::dynamics::Chain;
@@ -72,7 +74,15 @@ pub const EFFECTS: &[&dyn Effect] = &[
 ];
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
-pub const CONTROLS: &[&dyn Effect] = &[&sham::Sham];
+pub const CONTROLS: &[&dyn Effect] = &[
+    &sham::Sham,
+    &probe::TIMING_PROBE,
+    &probe::DRIVE_PROBE,
+    &probe::JOINT_PROBE,
+    &probe::BODY_PROBE,
+    &probe::ENCODER_PROBE,
+    &probe::SENSOR_PROBE,
+];
 
 /// The effect (or control) of this id.
 pub fn named(id: &str) -> Option<&'static dyn Effect> {
@@ -176,6 +186,8 @@ pub struct JointState {
     pub angle_rad: f64,
     /// Speed relative to the previous link, rad/s.
     pub speed_rad_s: f64,
+    /// Torque of the drive, N m.
+    pub drive_nm: f64,
     /// Measured speed of another moment, rad/s: what a sham acts on.
     pub shuffled_rad_s: f64,
 }

@@ -175,6 +175,7 @@ fn depends_on_angle(effect: &dyn Effect, values: &[f64]) -> bool {
             &JointState {
                 angle_rad,
                 speed_rad_s: 0.0,
+                drive_nm: 0.0,
                 shuffled_rad_s: 0.0,
             },
         )
@@ -265,6 +266,7 @@ fn joint_over_angle(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
             &JointState {
                 angle_rad,
                 speed_rad_s: 0.0,
+                drive_nm: 0.0,
                 shuffled_rad_s: 0.0,
             },
         )
@@ -278,6 +280,7 @@ fn joint_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
             &JointState {
                 angle_rad: 0.0,
                 speed_rad_s,
+                drive_nm: 0.0,
                 shuffled_rad_s: 0.0,
             },
         )

@@ -180,6 +180,7 @@ fn off_leaves_no_torque() {
             let joint = JointState {
                 angle_rad: 0.7,
                 speed_rad_s,
+                drive_nm: 0.0,
                 shuffled_rad_s: 0.0,
             };
             assert_eq!(effect.torque(&off, &joint), 0.0, "{id}");
@@ -264,6 +265,7 @@ fn passive_torques_take_energy() {
             let joint = JointState {
                 angle_rad: 0.7,
                 speed_rad_s,
+                drive_nm: 0.0,
                 shuffled_rad_s: 0.0,
             };
             assert!(
@@ -331,6 +333,7 @@ fn springs_and_ripples_depend_on_the_angle() {
     let joint = JointState {
         angle_rad: 0.5,
         speed_rad_s: 9.0,
+        drive_nm: 0.0,
         shuffled_rad_s: 0.0,
     };
     near(effect("cable_spring").torque(&[0.2, 0.1], &joint), -0.08);

@@ -71,7 +71,7 @@ pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)
 }
 
 /// Parameter columns with what the window's own start state could explain taken out.
-fn project(window: &super::normal::WindowJacobian) -> DMatrix<f64> {
+pub(super) fn project(window: &super::normal::WindowJacobian) -> DMatrix<f64> {
     let own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
     match own.cholesky() {
         Some(cholesky) => {

@@ -5,7 +5,7 @@
 //! per unknown of the windows' start states, all in parallel.
 
 use super::data::Data;
-use super::node::Node;
+use super::node::{Guess, Node};
 use super::normal::{Normal, WindowJacobian};
 use super::residual::{Residuals, motion_residuals, residuals};
 use crate::model::{Model, ParameterPath};
@@ -79,8 +79,11 @@ pub fn fit(
     nodes: Option<&[Node]>,
     options: FitOptions,
 ) -> Fit {
-    let guesses: Vec<Node> = data.windows.iter().map(|w| Node::guess(data, w)).collect();
-    let nodes = nodes.map_or_else(|| guesses.clone(), <[Node]>::to_vec);
+    let guesses: Vec<Guess> = data.windows.iter().map(|w| Guess::of(data, w)).collect();
+    let nodes = nodes.map_or_else(
+        || guesses.iter().map(|g| g.node.clone()).collect(),
+        <[Node]>::to_vec,
+    );
     Search::new(model, free, data, guesses, nodes).run(options)
 }
 
@@ -101,7 +104,7 @@ pub fn settle(model: &Model, data: &Data) -> Fit {
 struct Search<'a> {
     free: &'a [ParameterPath],
     data: &'a Data,
-    guesses: Vec<Node>,
+    guesses: Vec<Guess>,
     model: Model,
     nodes: Vec<Node>,
     residuals: Residuals,
@@ -113,7 +116,7 @@ impl<'a> Search<'a> {
         model: &Model,
         free: &'a [ParameterPath],
         data: &'a Data,
-        guesses: Vec<Node>,
+        guesses: Vec<Guess>,
         nodes: Vec<Node>,
     ) -> Self {
         let residuals = residuals(model, data, &nodes);
@@ -175,20 +178,12 @@ impl<'a> Search<'a> {
         sum
     }
 
-    /// Precision of each unknown of a node and its distance to the guess. The prior is weak: it only keeps an
-    /// unknown that the data do not see (the speed of a joint that is held) where the measurement puts it.
-    fn prior(&self, node: &Node, guess: &Node) -> (DVector<f64>, DVector<f64>) {
-        let joints = guess.reading_rad.len();
-        let mut precision = DVector::zeros(2 * joints);
-        let mut pull = DVector::zeros(2 * joints);
-        for joint in 0..joints {
-            let angle_sd = 30.0 * self.data.sigma_rad[joint];
-            let speed_sd = angle_sd / 0.06 + 0.2 * guess.speed_rad_s[joint].abs();
-            precision[joint] = angle_sd.powi(-2);
-            pull[joint] = guess.reading_rad[joint] - node.reading_rad[joint];
-            precision[joints + joint] = speed_sd.powi(-2);
-            pull[joints + joint] = guess.speed_rad_s[joint] - node.speed_rad_s[joint];
-        }
+    /// Precision of each unknown of a node and its distance to the guess.
+    fn prior(&self, node: &Node, guess: &Guess) -> (DVector<f64>, DVector<f64>) {
+        let (mut node, mut middle) = (node.clone(), guess.node.clone());
+        let unknowns = node.unknowns();
+        let precision = DVector::from_fn(unknowns, |i, _| guess.deviation[i].powi(-2));
+        let pull = DVector::from_fn(unknowns, |i, _| *middle.at(i) - *node.at(i));
         (precision, pull)
     }
 
@@ -204,6 +199,7 @@ impl<'a> Search<'a> {
                 for i in 0..node.unknowns() {
                     *node.at(i) += step[i];
                 }
+                self.guesses[window].clamp(node);
             }
             let residuals = residuals(&model, self.data, &nodes);
             self.simulations += 1;

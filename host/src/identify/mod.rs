@@ -7,6 +7,7 @@ mod horizon;
 mod node;
 mod noise;
 mod normal;
+mod projector;
 mod residual;
 
 pub use covariance::{Interval, intervals};
@@ -15,4 +16,5 @@ pub use fit::{Fit, FitOptions, fit, settle};
 pub use horizon::longest_stable;
 pub use node::Node;
 pub use noise::{found_resolution_rad, noise_rad};
+pub use projector::Projector;
 pub use residual::{Residuals, residuals};

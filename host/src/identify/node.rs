@@ -1,4 +1,4 @@
-//! The state a window starts from: unknown, guessed from the measurement, then fitted.
+//! The state a window starts from: unknown, guessed from the measurement, then fitted close to the guess.
 
 use super::data::{Data, Window};
 use crate::sim::{Plant, Start};
@@ -12,29 +12,66 @@ pub struct Node {
     pub speed_rad_s: Vec<f64>,
 }
 
-impl Node {
-    /// The node a local parabola through the first samples suggests.
-    pub fn guess(data: &Data, window: &Window) -> Node {
+/// What the samples around a window's start say of it, and how surely.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Guess {
+    pub node: Node,
+    /// Standard deviations of the node's unknowns: angles, then speeds.
+    pub deviation: Vec<f64>,
+}
+
+impl Guess {
+    /// From a parabola through the samples around the window's start.
+    pub fn of(data: &Data, window: &Window) -> Guess {
         let motion = &data.motions[window.motion];
         let joints = motion.position_rad.len();
-        let mut node = Node {
-            reading_rad: Vec::with_capacity(joints),
-            speed_rad_s: Vec::with_capacity(joints),
+        let mut guess = Guess {
+            node: Node {
+                reading_rad: vec![0.0; joints],
+                speed_rad_s: vec![0.0; joints],
+            },
+            deviation: vec![0.0; 2 * joints],
         };
         for joint in 0..joints {
-            let (angle, speed) = local_line(
+            let line = local_line(
                 &motion.time_s,
                 &motion.position_rad[joint],
                 window.samples.start,
             );
+            let sigma = data.sigma_rad[joint];
+            guess.node.reading_rad[joint] = line.value;
+            guess.node.speed_rad_s[joint] = line.slope;
+            guess.deviation[joint] = sigma * line.value_gain;
+            guess.deviation[joints + joint] = sigma * line.slope_gain + 0.02 * line.slope.abs();
             let logged = motion.velocity_rad_s[joint]
                 .as_ref()
                 .map(|v| v[window.samples.start]);
-            node.reading_rad.push(angle);
-            node.speed_rad_s
-                .push(logged.filter(|v| v.is_finite()).unwrap_or(speed));
+            if let Some(speed) = logged.filter(|v| v.is_finite()) {
+                // A logged speed helps where it agrees; how good it is nobody says.
+                if (speed - line.slope).abs() < 4.0 * guess.deviation[joints + joint] {
+                    guess.node.speed_rad_s[joint] = speed;
+                }
+            }
         }
-        node
+        guess
+    }
+
+    /// Keeps a node within six standard deviations: what a start state can't be, it may not absorb.
+    pub fn clamp(&self, node: &mut Node) {
+        let mut middle = self.node.clone();
+        for i in 0..node.unknowns() {
+            let reach = 6.0 * self.deviation[i];
+            let middle = *middle.at(i);
+            let value = node.at(i);
+            *value = value.clamp(middle - reach, middle + reach);
+        }
+    }
+}
+
+impl Node {
+    /// The node the samples around a window's start suggest.
+    pub fn guess(data: &Data, window: &Window) -> Node {
+        Guess::of(data, window).node
     }
 
     /// The simulator's start state.
@@ -67,8 +104,16 @@ impl Node {
     }
 }
 
-/// Value and slope at sample `at` of a parabola through its neighbours within about 60 ms (at least 5 samples).
-fn local_line(time_s: &[f64], values: &[f64], at: usize) -> (f64, f64) {
+/// Value and slope of a local parabola, and their standard deviations per unit of measurement noise.
+struct LocalLine {
+    value: f64,
+    slope: f64,
+    value_gain: f64,
+    slope_gain: f64,
+}
+
+/// Fits a parabola around sample `at` to its neighbours within about 60 ms (at least 5 samples).
+fn local_line(time_s: &[f64], values: &[f64], at: usize) -> LocalLine {
     let reach = 0.06;
     let mut first = at;
     while first > 0 && time_s[at] - time_s[first - 1] <= reach {
@@ -84,25 +129,29 @@ fn local_line(time_s: &[f64], values: &[f64], at: usize) -> (f64, f64) {
     while last - first < 4 && last + 1 < values.len() {
         last += 1;
     }
-    let mut normal = nalgebra::Matrix3::<f64>::zeros();
+    let mut normal = nalgebra::Matrix3::<f64>::identity() * 1e-9;
     let mut right = nalgebra::Vector3::<f64>::zeros();
-    for k in first..=last {
-        if !values[k].is_finite() {
-            continue;
-        }
+    for k in (first..=last).filter(|&k| values[k].is_finite()) {
         let x = (time_s[k] - time_s[at]) / reach;
         let row = nalgebra::Vector3::new(1.0, x, x * x);
         normal += row * row.transpose();
         right += row * values[k];
     }
-    for i in 0..3 {
-        normal[(i, i)] += 1e-9;
-    }
-    match normal.cholesky() {
-        Some(cholesky) => {
-            let c = cholesky.solve(&right);
-            (c[0], c[1] / reach)
+    match normal.try_inverse() {
+        Some(inverse) => {
+            let c = inverse * right;
+            LocalLine {
+                value: c[0],
+                slope: c[1] / reach,
+                value_gain: inverse[(0, 0)].sqrt(),
+                slope_gain: inverse[(1, 1)].sqrt() / reach,
+            }
         }
-        None => (values[at], 0.0),
+        None => LocalLine {
+            value: values[at],
+            slope: 0.0,
+            value_gain: 1.0,
+            slope_gain: 1.0 / reach,
+        },
     }
 }

@@ -4,22 +4,21 @@ use crate::log::Motion;
 
 /// Standard deviation of a joint's position measurement, rad.
 ///
-/// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in high differences. Each
-/// difference order bounds the noise from above, since motion leaks into it too; the smallest bound counts.
+/// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in high differences. Motion
+/// leaks into differences too, the less the higher their order; where they still fall at the highest order,
+/// sampling is too slow to tell noise from motion and the resolution alone counts.
 pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Option<f64>) -> f64 {
-    let resolution = declared_resolution_rad
-        .or_else(|| found_resolution_rad(motions, joint))
-        .unwrap_or(0.0);
-    let rounding = resolution / 12f64.sqrt();
-    let differences = (2..=6)
-        .map(|order| difference_noise_rad(motions, joint, order))
-        .fold(f64::INFINITY, f64::min);
-    let noise = rounding.max(if differences.is_finite() {
-        differences
+    let resolution = declared_resolution_rad.or_else(|| found_resolution_rad(motions, joint));
+    let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
+    let fifth = difference_noise_rad(motions, joint, 5);
+    let sixth = difference_noise_rad(motions, joint, 6);
+    let settled = sixth > 0.8 * fifth;
+    let seen = if sixth.is_finite() && (settled || rounding == 0.0) {
+        sixth
     } else {
         0.0
-    });
-    noise.max(1e-6)
+    };
+    rounding.max(seen).max(1e-6)
 }
 
 /// The step of a quantised position, rad, where all readings are multiples of one.

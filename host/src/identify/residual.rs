@@ -13,8 +13,8 @@ pub struct Residuals {
     pub windows: Vec<Vec<f64>>,
 }
 
-/// A prediction that runs away counts this many sigma, so that a fit can turn back.
-const RUNAWAY_SIGMA: f64 = 1e4;
+/// A prediction that runs away counts as this far off, rad, so that a fit can turn back.
+const RUNAWAY_RAD: f64 = 10.0;
 
 impl Residuals {
     /// Sum of squares.
@@ -72,9 +72,10 @@ pub(super) fn motion_residuals(
                     *value = if measured.is_nan() {
                         0.0
                     } else if value.is_nan() {
-                        RUNAWAY_SIGMA
+                        RUNAWAY_RAD * weight
                     } else {
-                        ((measured - *value) * weight).clamp(-RUNAWAY_SIGMA, RUNAWAY_SIGMA)
+                        ((measured - *value) * weight)
+                            .clamp(-RUNAWAY_RAD * weight, RUNAWAY_RAD * weight)
                     };
                 }
             }

@@ -15,6 +15,8 @@ mod write;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod real;
+#[cfg(test)]
 mod tests;
 
 pub use check::{Finding, Severity, check};

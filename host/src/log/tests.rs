@@ -1,11 +1,10 @@
 //! Dialects, refusals, the round trip, hostile bytes, and the real logs.
 
-use super::fixture::{column, columns, motion};
+use super::fixture::{column, columns, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
-use crate::model::{Column, JointColumns, LogColumns};
+use crate::model::{Column, LogColumns};
 use proptest::prelude::*;
-use std::path::PathBuf;
 
 fn file(bytes: &[u8], ending: &str) -> tempfile::NamedTempFile {
     let file = tempfile::Builder::new().suffix(ending).tempfile().unwrap();
@@ -98,7 +97,14 @@ fn each_refusal_names_its_place() {
             .replace("-1\n", "-1,50,0\n");
         text.replace("0.06,0.5,-1,50,0", change)
     };
-    let cases: &[(String, &LogColumns, Option<usize>, Option<usize>, &str)] = &[
+    type Case<'a> = (
+        String,
+        &'a LogColumns,
+        Option<usize>,
+        Option<usize>,
+        &'a str,
+    );
+    let cases: &[Case] = &[
         (String::new(), &columns(), None, None, "no header line"),
         (
             "# only\n\n".into(),
@@ -284,7 +290,7 @@ fn segments_gaps_and_ranges_cut_motions() {
     };
     let whole = LogRequest::whole(log.path());
     let expected = [("f#a", 20), ("f#b", 20), ("f#a.2", 20)].map(|(n, c)| (n.to_string(), c));
-    assert_eq!(names(&[whole.clone()], &columns), expected);
+    assert_eq!(names(std::slice::from_ref(&whole), &columns), expected);
     let part = LogRequest {
         rows: Some((25, 59)),
         ..whole.clone()
@@ -398,7 +404,7 @@ fn reads_bam_logs() {
     let motion = &bam("", "").unwrap()[0];
     assert_eq!(motion.len(), 12);
     assert_eq!(motion.supply_v.as_ref().unwrap()[3], 12.0);
-    assert_eq!(motion.torque_on.as_ref().unwrap()[3], true);
+    assert!(motion.torque_on.as_ref().unwrap()[3]);
     assert!(bam("\"speed\": 1,", "").unwrap()[0].velocity_rad_s[0].is_none());
     for (change, to, what) in [
         (
@@ -429,6 +435,13 @@ fn reads_bam_logs() {
     }
 }
 
+/// Reads and judges, whatever comes of it.
+fn survive(log: &tempfile::NamedTempFile) {
+    let request = [LogRequest::whole(log.path())];
+    let _ = read(&request, &columns());
+    let _ = check(&request, &model(position_drive(), columns()));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -436,7 +449,7 @@ proptest! {
     fn arbitrary_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         for ending in [".csv", ".json"] {
             let log = file(&bytes, ending);
-            let _ = read(&[LogRequest::whole(log.path())], &columns());
+            survive(&log);
         }
     }
 
@@ -452,162 +465,6 @@ proptest! {
             bytes.truncate(length - cut % length);
         }
         let log = file(&bytes, ".csv");
-        let _ = read(&[LogRequest::whole(log.path())], &columns());
+        survive(&log);
     }
-}
-
-/// The folder of real logs, if the environment names one.
-pub fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("HANDSTAND_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        println!("HANDSTAND_DATA is unset: real logs not read");
-    }
-    folder
-}
-
-/// Columns of a log without inputs.
-pub fn free(time: &str, joints: &[(&str, Option<&str>, Option<(&str, &str)>)]) -> LogColumns {
-    let joint =
-        |(position, speed, input): &(&str, Option<&str>, Option<(&str, &str)>)| JointColumns {
-            position: column(position, "rad"),
-            velocity: speed.map(|name| column(name, "rad/s")),
-            input: input.map(|(name, unit)| column(name, unit)),
-        };
-    LogColumns {
-        time: column(time, "s"),
-        joints: joints.iter().map(joint).collect(),
-        ..columns()
-    }
-}
-
-#[test]
-fn reads_the_real_logs() {
-    let Some(data) = data() else { return };
-    let count = |file: &str, columns: &LogColumns| -> (usize, usize) {
-        let motions = read(&[LogRequest::whole(data.join(file))], columns).unwrap();
-        (motions.len(), motions.iter().map(Motion::len).sum())
-    };
-    let drop = free("t_s", &[("pos_rad", None, None)]);
-    assert_eq!(count("mx106_drop/drop.csv", &drop), (1, 313));
-    let mut single = free("t", &[("theta1", Some("dtheta1"), None)]);
-    single.segment = Some("segment".into());
-    assert_eq!(count("multiarm/single_id.csv", &single), (4, 18336));
-    let mut triple = free("t", &["1", "2", "3"].map(|_| ("theta1", None, None)));
-    for (joint, name) in triple.joints.iter_mut().zip(["theta1", "theta2", "theta3"]) {
-        joint.position = column(name, "rad");
-    }
-    triple.segment = Some("segment".into());
-    assert_eq!(count("multiarm/triple_id.csv", &triple), (22, 16940));
-    let fft = free("time", &[("pos", Some("vel"), Some(("torque", "N m")))]);
-    assert_eq!(
-        count("dfki_pendulum/fft_excitation_measured.csv", &fft),
-        (1, 10000)
-    );
-}
-
-#[test]
-fn real_logs_are_judged() {
-    let Some(data) = data() else { return };
-    for (files, model) in real(&data) {
-        let requests: Vec<_> = files
-            .iter()
-            .map(|f| f.parse::<LogRequest>().unwrap())
-            .collect();
-        for finding in check(&requests, &model).unwrap() {
-            println!(
-                "{}",
-                finding.to_string().replace(&data.display().to_string(), "")
-            );
-            assert_ne!(finding.severity, Severity::Refuse, "{finding}");
-        }
-        println!();
-    }
-}
-
-/// The public logs with models that read them.
-fn real(data: &std::path::Path) -> Vec<(Vec<String>, crate::model::Model)> {
-    use super::fixture::{model, position_drive};
-    use crate::model::{AngleZero, Angles, Drive};
-    let files = |names: &[&str]| -> Vec<String> {
-        names
-            .iter()
-            .map(|name| data.join(name).display().to_string())
-            .collect()
-    };
-    let mut drop = model(Drive::Passive, free("t_s", &[("pos_rad", None, None)]));
-    drop.angle_zero = AngleZero::Horizontal;
-    drop.log.joints[0].position.resolution = Some(0.001534);
-    let mut servo = model(
-        position_drive(),
-        free("t_s", &[("position_rad", None, Some(("goal_rad", "rad")))]),
-    );
-    servo.log.torque_on = Some("torque_on".into());
-    servo.log.supply = Some(column("supply_v", "V"));
-    let mut single = model(
-        Drive::Passive,
-        free("t", &[("theta1", Some("dtheta1"), None)]),
-    );
-    single.angle_zero = AngleZero::Upright;
-    single.log.segment = Some("segment".into());
-    let mut triple = model(
-        Drive::Passive,
-        free(
-            "t",
-            &[
-                ("theta1", Some("dtheta1"), None),
-                ("theta2", Some("dtheta2"), None),
-                ("theta3", Some("dtheta3"), None),
-            ],
-        ),
-    );
-    triple.angle_zero = AngleZero::Upright;
-    triple.angles = Angles::Absolute;
-    triple.log.segment = Some("segment".into());
-    let torque = |position, speed, torque| (position, Some(speed), Some((torque, "N m")));
-    let pd = model(
-        Drive::Torque,
-        free("time", &[torque("position", "velocity", "torque")]),
-    );
-    let fft = model(
-        Drive::Torque,
-        free("time", &[torque("pos", "vel", "torque")]),
-    );
-    let double = model(
-        Drive::Torque,
-        free(
-            "time",
-            &[
-                torque("pos_meas1", "vel_meas1", "tau_meas1"),
-                torque("pos_meas2", "vel_meas2", "tau_meas2"),
-            ],
-        ),
-    );
-    vec![
-        (files(&["mx106_drop/drop.csv"]), drop.clone()),
-        (files(&["mx106_drop/drop.csv:26-139"]), drop),
-        (
-            files(&[
-                "htd45h/sin_sin.csv",
-                "htd45h/sin_time_square.csv",
-                "htd45h/up_and_down.csv",
-                "htd45h/lift_and_drop.csv",
-            ]),
-            servo,
-        ),
-        (files(&["multiarm/single_id.csv"]), single),
-        (files(&["multiarm/triple_id.csv"]), triple),
-        (files(&["dfki_pendulum/pd_sysid_measured.csv"]), pd),
-        (files(&["dfki_pendulum/fft_excitation_measured.csv"]), fft),
-        (
-            files(&[
-                "dfki_double/design_A.0_20220815_sys_id_trajectory_00.csv",
-                "dfki_double/design_A.0_20220815_sys_id_trajectory_05.csv",
-            ]),
-            double.clone(),
-        ),
-        (
-            files(&["dfki_double/design_C.0_20220914_172144_acrobot_lqr_video_trajectory.csv"]),
-            double,
-        ),
-    ]
 }

@@ -189,6 +189,7 @@ impl Stepper {
             let state = JointState {
                 angle_rad: self.stage_angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
                 speed_rad_s: speed,
+                drive_nm: drive,
                 shuffled_rad_s: told[joint].shuffled_rad_s,
             };
             self.drive_torque[joint] = drive;

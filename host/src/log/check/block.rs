@@ -3,7 +3,7 @@
 use crate::log::row::Row;
 
 /// Half a block's least duration, s.
-const HALF_S: f64 = 0.03;
+const HALF_S: f64 = 0.02;
 
 /// Means and differences over one stretch.
 #[derive(Debug, Clone, Default)]

@@ -170,14 +170,14 @@ impl Joint {
                 "add a rest of a second, then a slow start",
             );
         }
-        if let Some(input) = self.input_name.as_ref().filter(|_| self.driven) {
-            if self.input.1 - self.input.0 <= 0.0 {
-                add(
-                    Severity::Warn,
-                    format!("{input} never changes: the drive's constants can't be found"),
-                    "record motions under changing input",
-                );
-            }
+        if let Some(input) = self.input_name.as_ref().filter(|_| self.driven)
+            && self.input.1 - self.input.0 <= 0.0
+        {
+            add(
+                Severity::Warn,
+                format!("{input} never changes: the drive's constants can't be found"),
+                "record motions under changing input",
+            );
         }
     }
 }

@@ -11,6 +11,9 @@ mod joint;
 mod relation;
 mod timing;
 
+#[cfg(test)]
+mod tests;
+
 pub use finding::{Finding, Severity};
 
 use super::request::LogRequest;

@@ -12,7 +12,8 @@ use std::collections::VecDeque;
 const LAGS: [usize; 6] = [0, 1, 2, 4, 8, 16];
 /// A joint slower than this may be held by stiction, rad/s.
 const MOVING_RAD_S: f64 = 0.1;
-/// Standard errors for a sign to be believed; blocks are not quite independent.
+/// Standard errors for a sign to be believed. Under feedback the input follows the motion: an idle shoulder
+/// of a public double pendulum reaches -4.8 with the sign right, and a delayed PD loop shows no sign at all.
 const SURE: f64 = 8.0;
 
 /// Running sums of one file.

@@ -1,0 +1,176 @@
+//! Rigs with a hidden effect, to find out whether it is found.
+//!
+//! The truth has its own equations and its own integrator and calls nothing of the library: a mistake in the
+//! library's laws shows up as an effect that isn't found, instead of cancelling out.
+
+mod goal;
+mod motion;
+mod physics;
+mod rig;
+mod seal;
+mod text;
+mod truth;
+
+#[cfg(test)]
+mod tests;
+
+pub use rig::{KINDS, kind_named};
+pub use seal::{seal, unseal};
+
+use crate::error::{Error, Result};
+use motion::{Recording, record};
+use physics::{Mount, Physics};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rig::{Rig, STALL_NM, Secret, rounded};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::Path;
+
+/// What a challenge hides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hidden {
+    /// Any effect, or once in twelve nothing.
+    Random,
+    /// Nothing: the model is complete but for its friction values.
+    Nothing,
+    /// This effect, one of [`KINDS`]; see [`kind_named`]. Any other name hides nothing.
+    Effect(&'static str),
+}
+
+/// What was hidden.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Seed of the challenge.
+    pub seed: u64,
+    /// Id of the effect; none if nothing is hidden.
+    pub kind: Option<String>,
+    /// Joint it acts on, counted from 1.
+    pub joint: usize,
+    /// Its values, by the keys of its card.
+    pub parameters: Vec<(String, f64)>,
+    /// The model with true friction and the effect.
+    pub true_model_toml: String,
+}
+
+/// A model, logs it doesn't fully explain, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Challenge {
+    /// The model its owner believes in.
+    pub model_toml: String,
+    /// File name and content of each log.
+    pub logs: Vec<(String, String)>,
+    /// What is missing from the model.
+    pub answer: Answer,
+}
+
+/// Makes the challenge of this seed; equal arguments give equal bytes.
+pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
+    let (rig, secret, recordings) = stage(seed, hidden);
+    let logs = ["a", "b", "c"]
+        .iter()
+        .zip(&recordings)
+        .map(|(name, recording)| {
+            (
+                format!("{name}.csv"),
+                recording.csv(&format!("Bench arm, motion {name}.")),
+            )
+        })
+        .collect();
+    let parameters = secret.iter().flat_map(|secret| &secret.parameters);
+    Challenge {
+        model_toml: text::model_toml(&rig, rig.believed, None),
+        logs,
+        answer: Answer {
+            seed,
+            kind: secret.as_ref().map(|secret| secret.kind.to_owned()),
+            joint: 1,
+            parameters: parameters
+                .map(|(key, value)| ((*key).to_owned(), *value))
+                .collect(),
+            true_model_toml: text::model_toml(&rig, rig.friction, secret.as_ref()),
+        },
+    }
+}
+
+/// The rig, what it hides, and its three motions.
+fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
+    let mut secret = Secret::random(&mut stream(seed, 0), hidden);
+    let rig = Rig::random(&mut stream(seed, 1), secret.as_ref());
+    let mut payload = stream(seed, 2);
+    let mounts = [
+        (0.0, false),
+        (rounded(payload.random_range(0.08..0.12), 3), true),
+        (0.05, false),
+    ]
+    .map(|(payload_kg, turned)| Mount { payload_kg, turned });
+    loop {
+        let truth = rig.physics(secret.as_ref());
+        let recordings = motions(seed, &truth, &rig, mounts);
+        match &mut secret {
+            Some(Secret {
+                kind: "torque_saturation",
+                parameters,
+            }) if spared(&recordings, parameters[0].1) => {
+                parameters[0].1 = rounded(0.9 * parameters[0].1, 6);
+            }
+            _ => return (rig, secret, recordings),
+        }
+    }
+}
+
+fn motions(seed: u64, truth: &Physics, rig: &Rig, mounts: [Mount; 3]) -> [Recording; 3] {
+    let believed = rig.physics(None);
+    let mut number = 2;
+    mounts.map(|mount| {
+        number += 1;
+        record(truth, &believed, mount, &mut stream(seed, number))
+    })
+}
+
+/// Whether fewer than 3 % of the samples ask for more than the limit, N m.
+fn spared(recordings: &[Recording], limit_nm: f64) -> bool {
+    let duties = || {
+        recordings
+            .iter()
+            .flat_map(|recording| &recording.commands.duty)
+    };
+    let beyond = duties()
+        .filter(|duty| STALL_NM * duty.abs() > limit_nm)
+        .count();
+    (beyond as f64) < 0.03 * duties().count() as f64
+}
+
+/// Independent random numbers for each purpose, so that one seed is one rig whatever it hides.
+fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(purpose);
+    rng
+}
+
+/// Writes the files of a challenge into `dir`, which is made if need be and must be empty.
+pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
+    match fs::read_dir(dir) {
+        Ok(mut entries) => {
+            if entries.next().is_some() {
+                return Err(Error::usage(
+                    format!("{} is not empty", dir.display()),
+                    "name a new directory: nothing is overwritten",
+                ));
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+        Err(error) => return Err(Error::file(dir, "read", error)),
+    }
+    fs::create_dir_all(dir).map_err(|error| Error::file(dir, "create", error))?;
+    let put = |name: &str, content: &str| {
+        let path = dir.join(name);
+        fs::write(&path, content).map_err(|error| Error::file(&path, "write", error))
+    };
+    put("nominal.toml", &challenge.model_toml)?;
+    for (name, content) in &challenge.logs {
+        put(name, content)?;
+    }
+    put("answer.sealed", &seal(&challenge.answer))?;
+    put("README.txt", text::README)
+}

@@ -1,0 +1,237 @@
+//! A motion as a bench would log it: a host-side controller reads the rounded angle at 100 Hz and sends duty.
+
+use super::goal::{Goal, MOTION_S};
+use super::physics::{Mount, Physics};
+use super::rig::{NOMINAL_SUPPLY_V, rounded};
+use super::truth::{Arm, Commands};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+/// Step of the 10-bit encoder over 300 degrees, rad.
+pub const RESOLUTION_RAD: f64 = 300.0 / 1024.0 * PI / 180.0;
+/// Time between samples, s, but for the jitter.
+const PERIOD_S: f64 = 0.01;
+/// Standard deviation of a sample's time, s.
+const JITTER_S: f64 = 0.2e-3;
+/// Standard deviation, rad, and correlation time, s, of the encoder's noise.
+const NOISE: (f64, f64) = (0.5e-3, 0.03);
+/// Largest duty the controller sends.
+const MOST_DUTY: f64 = 0.6;
+/// Beyond this reading, rad, the motion is repeated more gently.
+const MOST_READING_RAD: f64 = 2.5;
+/// Beyond this speed, rad/s, over [`SPEED_SAMPLES`], likewise.
+const MOST_SPEED_RAD_S: f64 = 15.0;
+/// Samples over which speed is taken from readings.
+const SPEED_SAMPLES: usize = 4;
+/// Share of samples at the largest duty beyond which the controller counts as rattling.
+const MOST_CLIPPED: f64 = 0.04;
+
+/// What one log says.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// Times, duty, torque on, and the true supply.
+    pub commands: Commands,
+    /// Rounded readings, rad.
+    pub position: Vec<f64>,
+    /// Conditions.
+    pub mount: Mount,
+}
+
+/// Records a motion of `truth`; the controller only knows the `believed` arm.
+///
+/// Repeated with smaller angles and weaker gains until the arm stays clear of standing upright.
+pub fn record(
+    truth: &Physics,
+    believed: &Physics,
+    mount: Mount,
+    rng: &mut ChaCha8Rng,
+) -> Recording {
+    let goal = Goal::random(rng);
+    let supply = Supply::random(rng);
+    let mut gentleness = 1.0;
+    loop {
+        // Every attempt meets the same noise.
+        let mut noise = rng.clone();
+        let controller = Controller::new(believed, mount, gentleness);
+        let goal = goal.scaled(gentleness);
+        let recording = attempt(truth, mount, &goal, &supply, controller, &mut noise);
+        if recording.is_tame() || gentleness < 0.1 {
+            return recording;
+        }
+        gentleness *= 0.85;
+    }
+}
+
+fn attempt(
+    truth: &Physics,
+    mount: Mount,
+    goal: &Goal,
+    supply: &Supply,
+    mut controller: Controller,
+    rng: &mut ChaCha8Rng,
+) -> Recording {
+    let samples = (MOTION_S / PERIOD_S) as usize + 1;
+    let times: Vec<f64> = (0..samples)
+        .map(|k| rounded((k as f64 * PERIOD_S + JITTER_S * normal(rng)).max(0.0), 6))
+        .collect();
+    let mut arm = Arm::settled(truth, mount);
+    let mut commands = Commands::default();
+    let mut position = Vec::with_capacity(samples);
+    let mut noise = NOISE.0 * normal(rng);
+    for (k, &time_s) in times.iter().enumerate() {
+        let reading = quantised(arm.sensed() + noise);
+        let asked = goal.at(time_s);
+        let duty = controller.duty(&asked, reading, span_before(&times, k));
+        position.push(reading);
+        commands.time_s.push(time_s);
+        commands.duty.push(if asked.torque_on { duty } else { 0.0 });
+        commands.torque_on.push(asked.torque_on);
+        commands.supply_v.push(supply.at(time_s));
+        if let Some(next_s) = times.get(k + 1) {
+            let span_s = next_s - time_s;
+            commands.carry(&mut arm, k, span_s);
+            let kept = (-span_s / NOISE.1).exp();
+            noise = kept * noise + (1.0 - kept * kept).sqrt() * NOISE.0 * normal(rng);
+        }
+    }
+    Recording {
+        commands,
+        position,
+        mount,
+    }
+}
+
+/// Time since the sample before `k`, s.
+fn span_before(times: &[f64], k: usize) -> f64 {
+    if k == 0 {
+        PERIOD_S
+    } else {
+        times[k] - times[k - 1]
+    }
+}
+
+impl Recording {
+    /// Largest reading, rad.
+    pub fn widest(&self) -> f64 {
+        self.position.iter().fold(0.0, |most, q| most.max(q.abs()))
+    }
+
+    /// Largest speed of the readings, rad/s.
+    pub fn fastest(&self) -> f64 {
+        let span_s = SPEED_SAMPLES as f64 * PERIOD_S;
+        let ends = self.position.iter().zip(&self.position[SPEED_SAMPLES..]);
+        ends.map(|(from, to)| (to - from).abs() / span_s)
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether the arm kept clear of upright and the controller didn't rattle.
+    fn is_tame(&self) -> bool {
+        let clipped = self
+            .commands
+            .duty
+            .iter()
+            .filter(|duty| duty.abs() >= MOST_DUTY)
+            .count();
+        self.widest() <= MOST_READING_RAD
+            && self.fastest() <= MOST_SPEED_RAD_S
+            && (clipped as f64) <= MOST_CLIPPED * self.position.len() as f64
+    }
+
+    /// The log as a file.
+    pub fn csv(&self, title: &str) -> String {
+        let mut text = format!(
+            "# {title}\n\
+             # Time is when the sample was taken and its duty sent; duty is the share of full range.\n\
+             # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
+             time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned\n"
+        );
+        let commands = &self.commands;
+        for k in 0..self.position.len() {
+            let _ = writeln!(
+                text,
+                "{:.6},{:.7},{:.6},{:.1},{},{:.3},{}",
+                commands.time_s[k],
+                self.position[k],
+                commands.duty[k],
+                commands.supply_v[k],
+                u8::from(commands.torque_on[k]),
+                self.mount.payload_kg,
+                u8::from(self.mount.turned),
+            );
+        }
+        text
+    }
+}
+
+/// Proportional and derivative gain on the reading, and what the believed arm needs for the goal.
+struct Controller<'a> {
+    believed: &'a Physics,
+    mount: Mount,
+    gains: [f64; 2],
+    before: Option<f64>,
+    speed: f64,
+}
+
+impl<'a> Controller<'a> {
+    fn new(believed: &'a Physics, mount: Mount, gentleness: f64) -> Self {
+        let inertia = believed.inertia_at_joint(mount);
+        Controller {
+            believed,
+            mount,
+            gains: [130.0, 10.0].map(|gain| gentleness * gain * inertia),
+            before: None,
+            speed: 0.0,
+        }
+    }
+
+    /// Duty, with six digits, for the reading, rad, `span_s` after the one before.
+    fn duty(&mut self, asked: &super::goal::Asked, reading: f64, span_s: f64) -> f64 {
+        let moved = reading - self.before.replace(reading).unwrap_or(reading);
+        self.speed += 0.5 * (moved / span_s - self.speed);
+        let forward = self.believed.holding(self.mount, asked.angle)
+            + self.believed.inertia_at_joint(self.mount) * asked.acceleration;
+        let back =
+            self.gains[0] * (asked.angle - reading) + self.gains[1] * (asked.speed - self.speed);
+        let duty = (forward + back) / self.believed.stall_nm;
+        rounded(duty.clamp(-MOST_DUTY, MOST_DUTY), 6)
+    }
+}
+
+/// A battery or a bench supply that drifts.
+struct Supply {
+    ends: [f64; 2],
+    wobble: [f64; 2],
+}
+
+impl Supply {
+    /// From 8.3 to 11.3 V, at least 1 V apart from end to end.
+    fn random(rng: &mut ChaCha8Rng) -> Supply {
+        loop {
+            let ends = [rng.random_range(8.5..11.1), rng.random_range(8.5..11.1)];
+            if f64::abs(ends[0] - ends[1]) >= 1.0 {
+                let wobble = [rng.random_range(0.05..0.2), rng.random_range(0.0..TAU)];
+                return Supply { ends, wobble };
+            }
+        }
+    }
+
+    fn at(&self, time_s: f64) -> f64 {
+        let share = time_s / MOTION_S;
+        let line = self.ends[0] + share * (self.ends[1] - self.ends[0]);
+        (line + self.wobble[0] * (2.0 * TAU * share + self.wobble[1]).sin())
+            .max(0.5 * NOMINAL_SUPPLY_V)
+    }
+}
+
+/// What a 10-bit encoder with hanging in the middle makes of an angle, rad; never a negative zero.
+fn quantised(angle: f64) -> f64 {
+    (angle / RESOLUTION_RAD).round().clamp(-512.0, 511.0) * RESOLUTION_RAD + 0.0
+}
+
+/// A draw from the standard normal distribution (Box and Muller).
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
+    radius * (TAU * rng.random::<f64>()).cos()
+}

@@ -1,0 +1,230 @@
+//! The laws of the bench arm, written down a second time on purpose: the truth owes nothing to the code that is
+//! to find it out.
+
+/// Gravity, m/s^2.
+pub const GRAVITY_M_S2: f64 = 9.81;
+/// Where a payload is bolted on, m from the joint.
+pub const PAYLOAD_AT_M: f64 = 0.15;
+
+/// Everything that acts on the arm; [`Physics::ideal`] has no effect switched on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Physics {
+    /// Joint to centre of mass, m.
+    pub com_m: f64,
+    /// Mass of the link, kg.
+    pub mass_kg: f64,
+    /// Inertia of the link about its centre of mass, kg m^2.
+    pub inertia_kg_m2: f64,
+    /// Torque at full duty, N m.
+    pub stall_nm: f64,
+    /// Supply at which the stall torque holds, V.
+    pub nominal_supply_v: f64,
+    viscous: f64,
+    drag: f64,
+    coulomb: f64,
+    excess: f64,
+    stribeck_speed: f64,
+    load_factor: f64,
+    half_difference: f64,
+    dead_width: f64,
+    dead_punch: f64,
+    delay_s: f64,
+    sensitivity: f64,
+    sag: f64,
+    torque_factor: f64,
+    no_load_speed: f64,
+    torque_limit: f64,
+    com_angle: f64,
+    armature: f64,
+    stiffness: f64,
+    rest_angle: f64,
+    tilt: f64,
+    ripple: f64,
+    ripple_periods: f64,
+    ripple_phase: f64,
+    encoder_factor: f64,
+    encoder_offset: f64,
+    gap: f64,
+    lag_s: f64,
+}
+
+/// Conditions of one motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mount {
+    /// Mass bolted on, kg.
+    pub payload_kg: f64,
+    /// Whether the rig is turned by 180 degrees about the vertical.
+    pub turned: bool,
+}
+
+/// What drives the arm at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// Commanded duty, -1 to 1, already delayed.
+    pub duty: f64,
+    /// Supply, V.
+    pub supply_v: f64,
+    /// Whether the motor is energised.
+    pub torque_on: bool,
+}
+
+impl Physics {
+    /// A rigid arm without friction, with an ideal drive and encoder.
+    pub fn ideal(
+        com_m: f64,
+        mass_kg: f64,
+        inertia_kg_m2: f64,
+        stall_nm: f64,
+        nominal_supply_v: f64,
+    ) -> Self {
+        Physics {
+            com_m,
+            mass_kg,
+            inertia_kg_m2,
+            stall_nm,
+            nominal_supply_v,
+            viscous: 0.0,
+            drag: 0.0,
+            coulomb: 0.0,
+            excess: 0.0,
+            stribeck_speed: 1.0,
+            load_factor: 0.0,
+            half_difference: 0.0,
+            dead_width: 0.0,
+            dead_punch: 0.0,
+            delay_s: 0.0,
+            sensitivity: 0.0,
+            sag: 0.0,
+            torque_factor: 1.0,
+            no_load_speed: f64::INFINITY,
+            torque_limit: f64::INFINITY,
+            com_angle: 0.0,
+            armature: 0.0,
+            stiffness: 0.0,
+            rest_angle: 0.0,
+            tilt: 0.0,
+            ripple: 0.0,
+            ripple_periods: 1.0,
+            ripple_phase: 0.0,
+            encoder_factor: 1.0,
+            encoder_offset: 0.0,
+            gap: 0.0,
+            lag_s: 0.0,
+        }
+    }
+
+    /// Switches on the effect `kind` with `values` in the order of its card; false if there is no such effect
+    /// or it has another number of values.
+    pub fn switch_on(&mut self, kind: &str, values: &[f64]) -> bool {
+        match (kind, values) {
+            ("viscous", &[b]) => self.viscous += b,
+            ("air_drag", &[c]) => self.drag += c,
+            ("coulomb", &[f]) => self.coulomb += f,
+            ("stribeck", &[excess, speed]) => (self.excess, self.stribeck_speed) = (excess, speed),
+            ("load_friction", &[factor]) => self.load_factor = factor,
+            ("direction_asymmetry", &[half]) => self.half_difference = half,
+            ("dead_zone", &[width, punch]) => (self.dead_width, self.dead_punch) = (width, punch),
+            ("delay", &[delay]) => self.delay_s = delay,
+            ("supply_sensitivity", &[sensitivity]) => self.sensitivity = sensitivity,
+            ("supply_sag", &[share]) => self.sag = share,
+            ("torque_scale", &[factor]) => self.torque_factor = factor,
+            ("speed_limit", &[speed]) => self.no_load_speed = speed,
+            ("torque_saturation", &[limit]) => self.torque_limit = limit,
+            ("com_angle", &[angle]) => self.com_angle = angle,
+            ("mass", &[added]) => {
+                self.inertia_kg_m2 *= 1.0 + added / self.mass_kg;
+                self.mass_kg += added;
+            }
+            ("armature", &[inertia]) => self.armature = inertia,
+            ("cable_spring", &[stiffness, rest]) => {
+                (self.stiffness, self.rest_angle) = (stiffness, rest)
+            }
+            ("base_tilt", &[angle]) => self.tilt = angle,
+            ("cogging", &[amplitude, periods, phase]) => {
+                (self.ripple, self.ripple_periods, self.ripple_phase) = (amplitude, periods, phase);
+            }
+            ("encoder_scale", &[factor]) => self.encoder_factor = factor,
+            ("encoder_zero", &[offset]) => self.encoder_offset = offset,
+            ("backlash", &[gap]) => self.gap = gap,
+            ("sensor_lag", &[constant]) => self.lag_s = constant,
+            _ => return false,
+        }
+        true
+    }
+
+    /// Seconds by which a command arrives late.
+    pub fn delay_s(&self) -> f64 {
+        self.delay_s
+    }
+
+    /// Inertia about the joint, kg m^2.
+    pub fn inertia_at_joint(&self, mount: Mount) -> f64 {
+        self.inertia_kg_m2
+            + self.mass_kg * self.com_m.powi(2)
+            + mount.payload_kg * PAYLOAD_AT_M.powi(2)
+            + self.armature
+    }
+
+    /// Torque that holds the arm against gravity at `angle`, N m.
+    pub fn holding(&self, mount: Mount, angle: f64) -> f64 {
+        let from_down = angle - if mount.turned { -self.tilt } else { self.tilt };
+        let link = self.mass_kg * self.com_m * (from_down + self.com_angle).sin();
+        let payload = mount.payload_kg * PAYLOAD_AT_M * from_down.sin();
+        GRAVITY_M_S2 * (link + payload)
+    }
+
+    /// Torque of the motor at the joint, N m.
+    pub fn drive(&self, push: Push, speed: f64) -> f64 {
+        if !push.torque_on {
+            return 0.0;
+        }
+        let duty = if push.duty.abs() <= self.dead_width {
+            0.0
+        } else {
+            (push.duty.abs() + self.dead_punch)
+                .clamp(0.0, 1.0)
+                .copysign(push.duty)
+        };
+        let mut torque = self.stall_nm * duty;
+        torque *= 1.0 + self.sensitivity * (push.supply_v / self.nominal_supply_v - 1.0);
+        torque *= 1.0 - self.sag * duty.abs();
+        torque *= self.torque_factor;
+        torque -= self.stall_nm * speed / self.no_load_speed;
+        torque.clamp(-self.torque_limit, self.torque_limit)
+    }
+
+    /// Torques on the joint that are neither motor, gravity nor dry friction, N m.
+    pub fn smooth(&self, angle: f64, speed: f64) -> f64 {
+        let mut torque = -self.viscous * speed - self.drag * speed * speed.abs();
+        torque -= self.stiffness * (angle - self.rest_angle);
+        if self.ripple != 0.0 {
+            torque += self.ripple * (self.ripple_periods * angle + self.ripple_phase).sin();
+        }
+        torque
+    }
+
+    /// Magnitude of dry friction, N m, against `direction`, with `gear_load` N m through the gear.
+    pub fn friction(&self, speed: f64, direction: f64, gear_load: f64) -> f64 {
+        let mut magnitude =
+            self.coulomb + self.load_factor * gear_load + self.half_difference * direction;
+        if self.excess != 0.0 {
+            magnitude += self.excess * (-speed.abs() / self.stribeck_speed).exp();
+        }
+        magnitude.max(0.0)
+    }
+
+    /// What a perfect counter of the encoder's axis would read, rad.
+    pub fn encoded(&self, angle: f64) -> f64 {
+        self.encoder_factor * angle + self.encoder_offset
+    }
+
+    /// Free play before the encoder, flank to flank, rad.
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// Time constant of the encoder's filter, s.
+    pub fn lag_s(&self) -> f64 {
+        self.lag_s
+    }
+}

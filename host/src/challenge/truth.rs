@@ -1,0 +1,155 @@
+//! The arm that is measured: its state, carried forward at 20 kHz.
+//!
+//! Semi-implicit Euler; dry friction is an impulse that can stop the arm but never reverse it, so that an arm at
+//! rest stays there until it is pushed harder than the breakaway torque.
+
+use super::physics::{Mount, Physics, Push};
+
+/// Longest integration step, s.
+const STEP_S: f64 = 1.0 / 20_000.0;
+
+/// State of the arm and its encoder.
+#[derive(Debug, Clone)]
+pub struct Arm<'a> {
+    physics: &'a Physics,
+    mount: Mount,
+    inertia: f64,
+    /// Angle from hanging, counter-clockwise, rad.
+    pub angle: f64,
+    /// Speed, rad/s.
+    pub speed: f64,
+    follower: f64,
+    lagged: f64,
+}
+
+impl<'a> Arm<'a> {
+    /// At rest at `angle` rad, the encoder in the middle of its play.
+    pub fn at_rest(physics: &'a Physics, mount: Mount, angle: f64) -> Self {
+        let encoded = physics.encoded(angle);
+        Arm {
+            physics,
+            mount,
+            inertia: physics.inertia_at_joint(mount),
+            angle,
+            speed: 0.0,
+            follower: encoded,
+            lagged: encoded,
+        }
+    }
+
+    /// Where the arm comes to rest by itself within 2 s, let go at hanging; starts there.
+    pub fn settled(physics: &'a Physics, mount: Mount) -> Self {
+        let mut arm = Arm::at_rest(physics, mount, 0.0);
+        let released = Push {
+            duty: 0.0,
+            supply_v: physics.nominal_supply_v,
+            torque_on: false,
+        };
+        arm.advance(2.0, |_| released);
+        Arm::at_rest(physics, mount, arm.angle)
+    }
+
+    /// Goes on for `span_s`; `push` tells the drive's state, given the seconds since the beginning of the span.
+    pub fn advance(&mut self, span_s: f64, push: impl Fn(f64) -> Push) {
+        let steps = (span_s / STEP_S).ceil().max(1.0);
+        let h = span_s / steps;
+        for step in 0..steps as usize {
+            self.step(h, push((step as f64 + 0.5) * h));
+        }
+    }
+
+    fn step(&mut self, h: f64, push: Push) {
+        let holding = self.physics.holding(self.mount, self.angle);
+        let drive = self.physics.drive(push, self.speed);
+        let smooth = self.physics.smooth(self.angle, self.speed);
+        let pushed = self.speed + h / self.inertia * (drive + smooth - holding);
+        let direction = if pushed < 0.0 { -1.0 } else { 1.0 };
+        let gear_load = (drive + holding).abs();
+        let friction = self.physics.friction(self.speed, direction, gear_load);
+        self.speed = direction * (pushed.abs() - h / self.inertia * friction).max(0.0);
+        self.angle += h * self.speed;
+        self.sense(h);
+    }
+
+    fn sense(&mut self, h: f64) {
+        let encoded = self.physics.encoded(self.angle);
+        let half = self.physics.gap() / 2.0;
+        self.follower = self.follower.clamp(encoded - half, encoded + half);
+        let lag_s = self.physics.lag_s();
+        if lag_s > 0.0 {
+            self.lagged += (self.follower - self.lagged) * h / (lag_s + h / 2.0);
+        } else {
+            self.lagged = self.follower;
+        }
+    }
+
+    /// The encoder's value before noise and rounding, rad.
+    pub fn sensed(&self) -> f64 {
+        self.lagged
+    }
+
+    /// Kinetic and potential energy in gravity, J, of an arm without tilt; tests only look at its change.
+    #[cfg(test)]
+    pub fn energy_j(&self) -> f64 {
+        let height = |angle: f64| {
+            self.physics
+                .holding(self.mount, angle + std::f64::consts::FRAC_PI_2)
+        };
+        0.5 * self.inertia * self.speed.powi(2) - height(self.angle)
+    }
+}
+
+/// Commands as they were logged: each holds from its time to the next.
+#[derive(Debug, Clone, Default)]
+pub struct Commands {
+    /// When each is given, s.
+    pub time_s: Vec<f64>,
+    /// Duty, -1 to 1.
+    pub duty: Vec<f64>,
+    /// Whether the motor is energised.
+    pub torque_on: Vec<bool>,
+    /// Supply, V.
+    pub supply_v: Vec<f64>,
+}
+
+impl Commands {
+    /// Duty that arrives at `time_s` by a wire that delays by `delay_s`; 0 before the first command.
+    fn arriving(&self, time_s: f64, delay_s: f64, last: usize) -> f64 {
+        let sent_s = time_s - delay_s;
+        // Sought from the end: a delay spans few commands.
+        let index = self.time_s[..=last].iter().rposition(|&t| t <= sent_s);
+        index.map_or(0.0, |index| self.duty[index])
+    }
+
+    /// Carries `arm` on from the last command by `span_s`.
+    pub(super) fn carry(&self, arm: &mut Arm, last: usize, span_s: f64) {
+        let (from_s, delay_s) = (self.time_s[last], arm.physics.delay_s());
+        let (supply_v, torque_on) = (self.supply_v[last], self.torque_on[last]);
+        let sent = |since_s: f64| {
+            if delay_s == 0.0 {
+                self.duty[last]
+            } else {
+                self.arriving(from_s + since_s, delay_s, last)
+            }
+        };
+        arm.advance(span_s, |since_s| Push {
+            duty: sent(since_s),
+            supply_v,
+            torque_on,
+        });
+    }
+
+    /// Encoder values before noise and rounding, rad, at every command, when these commands drive the settled arm.
+    #[cfg(test)]
+    pub fn replay(&self, physics: &Physics, mount: Mount) -> Vec<f64> {
+        let mut arm = Arm::settled(physics, mount);
+        let mut sensed = Vec::with_capacity(self.time_s.len());
+        for k in 0..self.time_s.len() {
+            sensed.push(arm.sensed());
+            if let Some(next_s) = self.time_s.get(k + 1) {
+                self.carry(&mut arm, k, next_s - self.time_s[k]);
+            }
+        }
+        sensed
+    }
+}

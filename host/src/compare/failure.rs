@@ -1,0 +1,134 @@
+//! Where the error is: conditions that hold more of it than their share of the samples.
+
+use super::conditions::{Met, met};
+use super::moment::moments;
+use super::{Failure, SignalError};
+use crate::log::Motion;
+use crate::model::Model;
+
+/// Most failures told.
+const MOST: usize = 6;
+/// Least share of the samples, and least number of them, from which a condition is judged.
+const LEAST_SHARE: f64 = 0.01;
+const LEAST_SAMPLES: usize = 5;
+/// Error over samples from which a condition stands out.
+const LEAST_EXCESS: f64 = 1.3;
+/// Overlap (Jaccard) of two sets of samples from which they are one condition said twice.
+const SAME: f64 = 0.8;
+/// Share of the error above the floor from which a joint is asked about at all.
+const LEAST_ABOVE_FLOOR: f64 = 0.1;
+
+/// Conditions of all joints, those that hold most of the error beyond their share first.
+///
+/// It says where the error shows. In a long run an error shows after its cause, where angles move fast or late in
+/// the motion; the shorter the horizon, the nearer the two are. `residuals` is `[joint][motion][sample]`, rad.
+pub(super) fn failures(
+    model: &Model,
+    motions: &[Motion],
+    residuals: &[Vec<Vec<f64>>],
+    signals: &[SignalError],
+) -> Vec<Failure> {
+    let mut all = Vec::new();
+    for (joint, signal) in signals.iter().enumerate() {
+        if signal.share_above_floor > LEAST_ABOVE_FLOOR {
+            let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
+            let conditions = met(&moments(model, motions, joint));
+            let ranked = ranked(&error, signal.floor, conditions);
+            all.extend(ranked.into_iter().map(|r| r.told(joint, signals.len() > 1)));
+        }
+    }
+    all.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
+    all.truncate(MOST);
+    all
+}
+
+fn excess(failure: &Failure) -> f64 {
+    failure.error_share - failure.sample_share
+}
+
+/// A condition and what it holds.
+#[derive(Debug)]
+pub(super) struct Ranked {
+    pub words: String,
+    pub error_share: f64,
+    pub sample_share: f64,
+    holds: Vec<bool>,
+}
+
+impl Ranked {
+    fn told(self, joint: usize, several: bool) -> Failure {
+        let (error, samples) = (percent(self.error_share), percent(self.sample_share));
+        let of_joint = if several {
+            format!(" of joint {}", joint + 1)
+        } else {
+            String::new()
+        };
+        Failure {
+            joint: joint + 1,
+            sentence: format!(
+                "{error} of the error{of_joint} falls in {samples} of the samples: {}",
+                self.words
+            ),
+            condition: self.words,
+            error_share: self.error_share,
+            sample_share: self.sample_share,
+        }
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
+/// Conditions that stand out, best first, each said once.
+pub(super) fn ranked(error_rad: &[f64], floor_rad: f64, conditions: Vec<Met>) -> Vec<Ranked> {
+    let weight: Vec<f64> = error_rad
+        .iter()
+        .map(|e| (e * e - floor_rad * floor_rad).max(0.0))
+        .collect();
+    let measured = error_rad.iter().filter(|e| e.is_finite()).count();
+    let total: f64 = weight.iter().sum();
+    if total <= 0.0 {
+        return Vec::new();
+    }
+    let mut standing_out: Vec<Ranked> = conditions
+        .into_iter()
+        .filter_map(|condition| {
+            let (mut inside, mut samples) = (0.0, 0);
+            for ((holds, weight), error) in condition.holds.iter().zip(&weight).zip(error_rad) {
+                if *holds && error.is_finite() {
+                    inside += weight;
+                    samples += 1;
+                }
+            }
+            let (error_share, sample_share) = (inside / total, samples as f64 / measured as f64);
+            let judged = samples >= LEAST_SAMPLES && sample_share >= LEAST_SHARE;
+            (judged && error_share >= LEAST_EXCESS * sample_share).then_some(Ranked {
+                words: condition.words,
+                error_share,
+                sample_share,
+                holds: condition.holds,
+            })
+        })
+        .collect();
+    standing_out.sort_by(|a, b| {
+        (b.error_share - b.sample_share).total_cmp(&(a.error_share - a.sample_share))
+    });
+    let mut kept: Vec<Ranked> = Vec::new();
+    for candidate in standing_out {
+        if kept
+            .iter()
+            .all(|better| overlap(&better.holds, &candidate.holds) <= SAME)
+        {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// Samples in both sets over samples in either.
+fn overlap(a: &[bool], b: &[bool]) -> f64 {
+    let both = a.iter().zip(b).filter(|(a, b)| **a && **b).count();
+    let either = a.iter().zip(b).filter(|(a, b)| **a || **b).count();
+    both as f64 / either.max(1) as f64
+}

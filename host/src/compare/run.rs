@@ -1,0 +1,178 @@
+//! Comparing one model with motions: nothing is fitted but where each run starts.
+
+use super::failure::failures;
+use super::predicted::{predicted, residual};
+use super::residual_tests::residual_tests;
+use super::{Comparison, HorizonError, SignalError, Trace};
+use crate::identify::{Data, Horizon, longest_stable, settle};
+use crate::log::Motion;
+use crate::model::Model;
+
+/// Times without correction at which the error is told, s.
+const LADDER_S: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
+/// A window's start state is fitted to it; with fewer samples than this it would explain most of them.
+const LEAST_SAMPLES: f64 = 10.0;
+/// Most points of a drawn trace.
+const DRAWN: usize = 800;
+
+/// Compares a model as it is with measured motions; `name` stands for it in reports.
+///
+/// Without a horizon the model runs freely over whole motions where a small start error does not swamp it, else
+/// over the longest windows that can bear it.
+pub fn compare(
+    model: &Model,
+    name: &str,
+    motions: &[Motion],
+    horizon: Option<Horizon>,
+) -> Comparison {
+    let whole = Data::new(model, motions.to_vec(), Horizon::Whole);
+    let horizon = horizon.unwrap_or_else(|| longest_stable(model, &whole));
+    let data = whole.recut(horizon);
+    let settled = settle(model, &data);
+    let predicted = predicted(model, &data, &settled.nodes);
+    let joints = 0..model.link_count();
+    let residuals: Vec<Vec<Vec<f64>>> = joints.map(|j| residual(&data, &predicted, j)).collect();
+    let signals: Vec<SignalError> = residuals
+        .iter()
+        .enumerate()
+        .map(|(joint, residual)| signal(&data, joint, residual))
+        .collect();
+    Comparison {
+        model: name.to_string(),
+        horizon_s: seconds(horizon),
+        horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
+        failures: failures(model, &data.motions, &residuals, &signals),
+        traces: traces(&data, &predicted),
+        signals,
+    }
+}
+
+fn seconds(horizon: Horizon) -> Option<f64> {
+    match horizon {
+        Horizon::Whole => None,
+        Horizon::Seconds(seconds) => Some(seconds),
+    }
+}
+
+/// Root-mean-square of what was measured.
+fn rms<'a>(residuals: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for e in residuals.flatten().filter(|e| e.is_finite()) {
+        sum += e * e;
+        count += 1.0;
+    }
+    if count > 0.0 {
+        f64::sqrt(sum / count)
+    } else {
+        0.0
+    }
+}
+
+fn signal(data: &Data, joint: usize, residual: &[Vec<f64>]) -> SignalError {
+    let rms = rms(residual.iter());
+    let floor = data.sigma_rad[joint];
+    let measured: Vec<&[f64]> = data
+        .motions
+        .iter()
+        .map(|m| m.position_rad[joint].as_slice())
+        .collect();
+    SignalError {
+        joint: joint + 1,
+        unit: "rad",
+        rms,
+        largest: residual
+            .iter()
+            .flatten()
+            .map(|e| e.abs())
+            .fold(0.0, f64::max),
+        fit_percent: fit_percent(&measured, residual),
+        floor,
+        share_above_floor: share_above(rms, floor),
+        tests: residual_tests(&data.motions, joint, residual),
+    }
+}
+
+/// Share of the mean squared error that the floor does not explain; 0 for a residual that is all noise.
+fn share_above(rms: f64, floor: f64) -> f64 {
+    if rms > floor {
+        1.0 - (floor / rms).powi(2)
+    } else {
+        0.0
+    }
+}
+
+/// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; 0 where nothing moves and the model is wrong.
+pub(super) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
+    let values = || measured.iter().copied().flatten().filter(|y| y.is_finite());
+    let mean = values().sum::<f64>() / values().count().max(1) as f64;
+    let spread: f64 = values().map(|y| (y - mean).powi(2)).sum();
+    let error: f64 = residual
+        .iter()
+        .flatten()
+        .filter(|e| e.is_finite())
+        .map(|e| e * e)
+        .sum();
+    match (error > 0.0, spread > 0.0) {
+        (false, _) => 100.0,
+        (true, false) => 0.0,
+        (true, true) => 100.0 * (1.0 - (error / spread).sqrt()),
+    }
+}
+
+/// The error over ever longer runs, up to the horizon of the comparison, whose error is known.
+fn horizons(model: &Model, data: &Data, horizon: Horizon, known_rad: f64) -> Vec<HorizonError> {
+    let mut longest: f64 = 0.0;
+    let (mut time, mut intervals) = (0.0, 0.0);
+    for motion in &data.motions {
+        longest = longest.max(motion.duration_s());
+        time += motion.duration_s();
+        intervals += motion.len().saturating_sub(1) as f64;
+    }
+    let least_s = LEAST_SAMPLES * time / f64::max(intervals, 1.0);
+    let limit_s = seconds(horizon).unwrap_or(longest).min(longest);
+    let mut ladder: Vec<HorizonError> = LADDER_S
+        .into_iter()
+        .filter(|s| *s >= 0.99 * least_s && *s < 0.99 * limit_s)
+        .map(|s| {
+            let data = data.recut(Horizon::Seconds(s));
+            let predicted = predicted(model, &data, &settle(model, &data).nodes);
+            let residuals: Vec<Vec<f64>> = (0..model.link_count())
+                .flat_map(|joint| residual(&data, &predicted, joint))
+                .collect();
+            HorizonError {
+                horizon_s: Some(s),
+                rms_rad: rms(residuals.iter()),
+            }
+        })
+        .collect();
+    ladder.push(HorizonError {
+        horizon_s: seconds(horizon),
+        rms_rad: known_rad,
+    });
+    ladder
+}
+
+fn traces(data: &Data, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
+    let mut traces = Vec::new();
+    for (motion, predicted) in data.motions.iter().zip(predicted) {
+        let stride = motion.len().div_ceil(DRAWN).max(1);
+        for (joint, predicted) in predicted.iter().enumerate() {
+            let measured = &motion.position_rad[joint];
+            let error: Vec<f64> = measured.iter().zip(predicted).map(|(y, m)| y - m).collect();
+            let drawn: Vec<usize> = (0..motion.len())
+                .step_by(stride)
+                .filter(|k| measured[*k].is_finite())
+                .collect();
+            let pick = |values: &[f64]| drawn.iter().map(|k| values[*k]).collect();
+            traces.push(Trace {
+                motion: motion.name.clone(),
+                joint: joint + 1,
+                rms_rad: rms(std::iter::once(&error)),
+                time_s: pick(&motion.time_s),
+                measured_rad: pick(measured),
+                predicted_rad: pick(predicted),
+            });
+        }
+    }
+    traces
+}

@@ -1,0 +1,167 @@
+//! A comparison as text: models side by side, then where the last of them fails.
+
+use super::{Comparison, SignalError};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use std::fmt::Write as _;
+
+/// Width of the longest bar of a waterfall.
+const BAR: usize = 40;
+
+/// Models side by side, one column each; the last one's failures and failed tests in full.
+pub fn text(comparisons: &[Comparison]) -> String {
+    let Some((last, others)) = comparisons.split_last() else {
+        return String::new();
+    };
+    let mut text = format!("{}\n", table(comparisons));
+    for other in others {
+        let where_ = match other.failures.first() {
+            Some(failure) => failure.sentence.clone(),
+            None => NOWHERE.to_string(),
+        };
+        let _ = write!(text, "\n{}: {where_}\n", other.model);
+    }
+    let _ = write!(text, "\nWhere {} fails\n", last.model);
+    if last.failures.is_empty() {
+        let _ = writeln!(text, "  {NOWHERE}");
+    }
+    for failure in &last.failures {
+        let _ = writeln!(text, "  {}", failure.sentence);
+    }
+    for signal in &last.signals {
+        for test in signal.tests.iter().filter(|test| !test.passed) {
+            let joint = of_joint(last, signal);
+            let _ = writeln!(text, "  Not passed{joint}: {}; {}", test.name, test.meaning);
+        }
+    }
+    text
+}
+
+const NOWHERE: &str = "no condition holds more than its share of the error";
+
+/// One bar per model, the floor last: what each step gained, and what there is left to gain.
+pub fn waterfall(comparisons: &[Comparison]) -> String {
+    let mut steps: Vec<(&str, f64)> = comparisons
+        .iter()
+        .map(|c| (c.model.as_str(), together(c, |s| s.rms)))
+        .collect();
+    if let Some(last) = comparisons.last() {
+        steps.push(("floor", together(last, |s| s.floor)));
+    }
+    let most = steps.iter().map(|step| step.1).fold(0.0, f64::max);
+    let width = steps.iter().map(|s| s.0.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (name, rad) in steps {
+        let length = if most > 0.0 { rad / most } else { 0.0 };
+        let bar = "#".repeat((length * BAR as f64).round() as usize);
+        let line = format!("{name:width$}  {:>8} mrad  {bar}", mrad(rad));
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
+}
+
+/// Root-mean-square over the joints.
+fn together(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
+    let squares: f64 = comparison.signals.iter().map(|s| of(s).powi(2)).sum();
+    (squares / comparison.signals.len().max(1) as f64).sqrt()
+}
+
+fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
+    if comparison.signals.len() > 1 {
+        format!(", joint {}", signal.joint)
+    } else {
+        String::new()
+    }
+}
+
+fn table(comparisons: &[Comparison]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_preset(presets::ASCII_MARKDOWN)
+        .set_content_arrangement(ContentArrangement::Disabled);
+    let names = comparisons.iter().map(|c| c.model.clone());
+    table.set_header(std::iter::once(String::new()).chain(names));
+    row(&mut table, comparisons, "runs", |c| match c.horizon_s {
+        None => "freely".to_string(),
+        Some(seconds) => format!("{} s", short(seconds)),
+    });
+    let joints = comparisons.iter().map(|c| c.signals.len()).max();
+    for joint in 0..joints.unwrap_or(0) {
+        signal_rows(&mut table, comparisons, joint);
+    }
+    let mut rungs: Vec<f64> = comparisons
+        .iter()
+        .flat_map(|c| c.horizons.iter().filter_map(|h| h.horizon_s))
+        .collect();
+    rungs.sort_by(f64::total_cmp);
+    rungs.dedup();
+    for rung in rungs.into_iter().map(Some).chain([None]) {
+        let label = match rung {
+            Some(seconds) => format!("rms of runs of {} s, mrad", short(seconds)),
+            None => "rms of whole motions, mrad".to_string(),
+        };
+        row(&mut table, comparisons, &label, |c| {
+            let found = c.horizons.iter().find(|h| h.horizon_s == rung);
+            found.map_or("-".to_string(), |h| mrad(h.rms_rad))
+        });
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// What a table tells of a signal.
+type Cell = fn(&SignalError) -> String;
+
+fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
+    let prefix = if comparisons.iter().any(|c| c.signals.len() > 1) {
+        format!("joint {}: ", joint + 1)
+    } else {
+        String::new()
+    };
+    let lines: [(&str, Cell); 6] = [
+        ("rms, mrad", |s| mrad(s.rms)),
+        ("largest, mrad", |s| mrad(s.largest)),
+        ("fit, %", |s| format!("{:.1}", s.fit_percent)),
+        ("floor, mrad", |s| mrad(s.floor)),
+        ("squared error above floor, %", |s| {
+            format!("{:.0}", 100.0 * s.share_above_floor)
+        }),
+        ("tests passed", |s| {
+            let passed = s.tests.iter().filter(|t| t.passed).count();
+            format!("{passed} of {}", s.tests.len())
+        }),
+    ];
+    for (label, cell) in lines {
+        row(table, comparisons, &format!("{prefix}{label}"), |c| {
+            c.signals.get(joint).map_or("-".to_string(), cell)
+        });
+    }
+}
+
+fn row(
+    table: &mut Table,
+    comparisons: &[Comparison],
+    label: &str,
+    cell: impl Fn(&Comparison) -> String,
+) {
+    let cells = comparisons.iter().map(cell);
+    table.add_row(std::iter::once(label.to_string()).chain(cells));
+}
+
+/// Milliradians with three digits, as many as a comparison bears.
+pub(super) fn mrad(rad: f64) -> String {
+    let value = 1e3 * rad;
+    let digits = match value.abs() {
+        v if v >= 99.95 => 0,
+        v if v >= 9.995 => 1,
+        v if v >= 0.9995 => 2,
+        _ => 3,
+    };
+    format!("{value:.digits$}")
+}
+
+fn short(seconds: f64) -> String {
+    let text = format!("{seconds:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}

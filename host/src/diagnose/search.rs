@@ -1,0 +1,416 @@
+//! The search: every candidate alone, then pairs and swaps around the best, then larger sets while they pay.
+//!
+//! A forward-greedy search stops where no single effect helps although two together would; so sets grow from
+//! several leads, not one, and members of the best set are swapped.
+
+use super::candidate::{Candidate, candidates};
+use super::findings::Diagnosis;
+use super::remainder::remainder;
+use super::score::{Score, fall};
+use super::trial::{Opening, Trial, openings};
+use super::verdict::{Case, conclude};
+use crate::effects::{CONTROLS, SHAM};
+use crate::identify::{Data, Fit, FitOptions, Horizon, Projector, fit, longest_stable};
+use crate::log::Motion;
+use crate::model::Model;
+use rayon::prelude::*;
+
+/// How to diagnose.
+#[derive(Debug, Clone)]
+pub struct DiagnoseOptions {
+    /// Seed of the bootstrap.
+    pub seed: u64,
+    /// Effects left out of the library.
+    pub without: Vec<String>,
+    /// Window length; chosen from the data when absent.
+    pub horizon: Option<Horizon>,
+    /// Most effects named together.
+    pub most_effects: usize,
+}
+
+impl Default for DiagnoseOptions {
+    fn default() -> Self {
+        DiagnoseOptions {
+            seed: 0,
+            without: Vec::new(),
+            horizon: None,
+            most_effects: 3,
+        }
+    }
+}
+
+/// How far a diagnosis has come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    /// Steps done.
+    pub done: usize,
+    /// Steps in all, as far as known.
+    pub total: usize,
+    /// What is being done.
+    pub what: String,
+}
+
+/// Iterations of a first look at a candidate.
+const LOOK: usize = 5;
+/// Iterations of a finalist.
+const FINISH: usize = 25;
+/// Finalists of each size.
+const FINALISTS: usize = 6;
+/// Sets from which larger ones grow.
+const LEADS: usize = 5;
+/// Partners tried for each lead.
+const PARTNERS: usize = 5;
+
+/// Searches for the effects a model is missing.
+///
+/// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training motions
+/// decide, and the diagnosis says so.
+pub fn diagnose(
+    model: &Model,
+    training: Vec<Motion>,
+    held_out: Vec<Motion>,
+    options: &DiagnoseOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Diagnosis {
+    let bench = Bench::new(model, training, held_out, options);
+    let report = |done: usize, what: &str| {
+        progress(Progress {
+            done,
+            total: 5,
+            what: what.to_string(),
+        });
+    };
+    report(0, "every effect alone");
+    let mut sizes = vec![bench.singles()];
+    let mut best = bench.accepted(&bench.base, &sizes[0]).cloned();
+    report(1, "pairs and swaps");
+    for size in 2..=options.most_effects {
+        if best.as_ref().is_some_and(|b| bench.at_floor(b)) {
+            break;
+        }
+        let leads = &sizes[size - 2];
+        let larger = bench.grow(leads);
+        if larger.is_empty() {
+            break;
+        }
+        let reference = best.as_ref().unwrap_or(&bench.base);
+        let better = bench.accepted(reference, &larger).cloned();
+        sizes.push(larger);
+        report(size, "larger sets");
+        match better {
+            Some(better) => best = Some(better),
+            // Nothing gained by one more: two more may still, but only from a start without any.
+            None if best.is_some() || size > 2 => break,
+            None => {}
+        }
+    }
+    report(3, "what remains");
+    let chosen = best.as_ref().unwrap_or(&bench.base);
+    let left = remainder(
+        &chosen.fit,
+        &bench.training,
+        bench.held_out.as_ref(),
+        options.seed,
+    );
+    report(4, "the verdict");
+    conclude(&Case {
+        bench: &bench,
+        trials: sizes.into_iter().flatten().collect(),
+        best,
+        remainder: left,
+        seed: options.seed,
+    })
+}
+
+/// What every trial is measured with.
+#[derive(Debug)]
+pub(super) struct Bench {
+    pub training: Data,
+    pub held_out: Option<Data>,
+    pub base: Trial,
+    pub horizon: Horizon,
+    pub shams: Vec<Trial>,
+    candidates: Vec<Candidate>,
+    seed: u64,
+}
+
+impl Bench {
+    fn new(
+        model: &Model,
+        training: Vec<Motion>,
+        held_out: Vec<Motion>,
+        options: &DiagnoseOptions,
+    ) -> Bench {
+        let mut all = training.clone();
+        all.extend(held_out.iter().cloned());
+        let candidates = candidates(model, &all, &options.without);
+        let whole = Data::new(model, training, Horizon::Whole);
+        let (horizon, fit, data) = match options.horizon {
+            Some(horizon) => {
+                let data = whole.recut(horizon);
+                (horizon, base_fit(model, &data), data)
+            }
+            None => longest_useful(model, &whole),
+        };
+        let held_out = (!held_out.is_empty()).then(|| Data {
+            sigma_rad: data.sigma_rad.clone(),
+            ..Data::new(model, held_out, horizon)
+        });
+        let mut base = Trial::base(fit, &data);
+        base.judge(held_out.as_ref());
+        let mut bench = Bench {
+            training: data,
+            held_out,
+            base,
+            horizon,
+            shams: Vec::new(),
+            candidates,
+            seed: options.seed,
+        };
+        bench.shams = bench.try_shams(model.link_count());
+        bench
+    }
+
+    /// Whether a trial leaves nothing but noise.
+    pub fn at_floor(&self, trial: &Trial) -> bool {
+        trial.deciding().rms() < 1.15 && trial.training.rms() < 1.15
+    }
+
+    fn try_shams(&self, joints: usize) -> Vec<Trial> {
+        let shams: Vec<Candidate> = CONTROLS
+            .iter()
+            .filter(|effect| effect.card().id == SHAM)
+            .flat_map(|&effect| {
+                (0..joints).map(move |joint| Candidate {
+                    effect,
+                    joint: Some(joint),
+                })
+            })
+            .collect();
+        self.first_look(&self.base, &shams, 1)
+            .into_iter()
+            .map(|mut trial| {
+                trial.judge(self.held_out.as_ref());
+                trial
+            })
+            .collect()
+    }
+
+    fn singles(&self) -> Vec<Trial> {
+        let trials = self.first_look(&self.base, &self.candidates, 2);
+        self.finals(trials)
+    }
+
+    /// Short fits of candidates on top of a trial, each from its `openings` best starts; the better one counts.
+    fn first_look(&self, from: &Trial, candidates: &[Candidate], starts: usize) -> Vec<Trial> {
+        let off = Projector::new(&from.fit);
+        candidates
+            .par_iter()
+            .filter(|candidate| !from.set.contains(candidate))
+            .filter_map(|&candidate| {
+                let found = openings(&from.fit, &off, candidate, &self.training);
+                self.best_of(from, &found[..starts.min(found.len())])
+            })
+            .collect()
+    }
+
+    fn best_of(&self, from: &Trial, openings: &[Opening]) -> Option<Trial> {
+        openings
+            .iter()
+            .map(|o| from.with(o.candidate, &o.values, &self.training, LOOK))
+            .min_by(|a, b| a.training.mean().total_cmp(&b.training.mean()))
+    }
+
+    /// Sorts trials by training error, takes the best to the end and judges them.
+    fn finals(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
+        let by_error = |a: &Trial, b: &Trial| a.training.mean().total_cmp(&b.training.mean());
+        trials.sort_by(by_error);
+        let finalists = FINALISTS.min(trials.len());
+        trials[..finalists].par_iter_mut().for_each(|trial| {
+            trial.finish(&self.training, FINISH);
+            trial.judge(self.held_out.as_ref());
+        });
+        trials.sort_by(by_error);
+        trials
+    }
+
+    /// Larger sets: partners for each lead, chosen by what they would gain, then swaps in the best.
+    fn grow(&self, leads: &[Trial]) -> Vec<Trial> {
+        let mut tried: Vec<Trial> = Vec::new();
+        for lead in leads.iter().take(LEADS) {
+            let wanted = self.partners(lead, &tried);
+            let found: Vec<Trial> = wanted
+                .par_iter()
+                .map(|o| lead.with(o.candidate, &o.values, &self.training, LOOK))
+                .collect();
+            tried.extend(found);
+        }
+        let finals = self.finals(tried);
+        self.swapped(finals)
+    }
+
+    /// The most promising openings on top of a trial that make a set not yet tried.
+    fn partners(&self, lead: &Trial, tried: &[Trial]) -> Vec<Opening> {
+        let off = Projector::new(&lead.fit);
+        let mut openings: Vec<Opening> = self
+            .candidates
+            .par_iter()
+            .filter(|candidate| !lead.set.contains(candidate))
+            .filter(|candidate| {
+                let mut set = lead.set.clone();
+                set.push(**candidate);
+                !tried.iter().any(|trial| trial.adds(&set))
+            })
+            .filter_map(|&candidate| {
+                openings(&lead.fit, &off, candidate, &self.training)
+                    .into_iter()
+                    .next()
+            })
+            .collect();
+        openings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        openings.truncate(PARTNERS);
+        openings
+    }
+
+    /// Tries to replace each older member of the best set: what led may no longer be needed.
+    fn swapped(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
+        let Some(best) = trials.first().cloned() else {
+            return trials;
+        };
+        for leaving in 0..best.set.len().saturating_sub(1) {
+            let kept: Vec<Candidate> = (0..best.set.len())
+                .filter(|&i| i != leaving)
+                .map(|i| best.set[i])
+                .collect();
+            let mut rest = best.without(leaving, &self.base);
+            rest.refit(&self.training, LOOK);
+            let wanted: Vec<Opening> = self
+                .partners(&rest, &trials)
+                .into_iter()
+                .filter(|o| !kept.contains(&o.candidate))
+                .take(2)
+                .collect();
+            let found: Vec<Trial> = wanted
+                .par_iter()
+                .map(|o| rest.with(o.candidate, &o.values, &self.training, LOOK))
+                .collect();
+            trials.extend(found);
+        }
+        self.finals(trials)
+    }
+
+    /// The best trial that is surely and usefully better than `reference` where it counts.
+    ///
+    /// Among trials that nothing tells apart, the one with the fewest values.
+    fn accepted<'a>(&self, reference: &Trial, trials: &'a [Trial]) -> Option<&'a Trial> {
+        let worthy: Vec<&Trial> = trials.iter().filter(|t| self.pays(reference, t)).collect();
+        let best = worthy
+            .iter()
+            .min_by(|a, b| a.pooled().mean().total_cmp(&b.pooled().mean()))?;
+        let pooled = best.pooled();
+        worthy
+            .iter()
+            .filter(|t| {
+                !self.clearly_worse(t, best, reference) && t.pooled().mean() <= 1.1 * pooled.mean()
+            })
+            .min_by(|a, b| {
+                (a.added_values(), a.pooled().mean())
+                    .partial_cmp(&(b.added_values(), b.pooled().mean()))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            })
+            .copied()
+    }
+
+    /// Whether a larger set earns its place against a smaller one.
+    pub fn pays(&self, reference: &Trial, trial: &Trial) -> bool {
+        if trial.rests_on_bound() || (self.held_out.is_some() && trial.held_out.is_none()) {
+            return false;
+        }
+        let (low, _) = fall(reference.deciding(), trial.deciding(), self.seed);
+        let practical = if self.held_out.is_some() { 0.03 } else { 0.10 };
+        low > practical && self.bic_change(reference, trial) < -10.0
+    }
+
+    /// Whether the data tell that `trial` is worse than `best`; `reference` is what both improve on.
+    ///
+    /// At the noise floor a sure difference counts however small. Above it, something else is missing too and
+    /// bends every candidate, so a difference below a tenth of what was gained decides nothing.
+    pub fn clearly_worse(&self, trial: &Trial, best: &Trial, reference: &Trial) -> bool {
+        let (worse, better, start) = (trial.pooled(), best.pooled(), reference.pooled());
+        let sure = super::score::surely_worse(&worse, &better, self.seed);
+        if self.at_floor(best) {
+            return sure;
+        }
+        let gained = (start.mean() - better.mean()).max(0.0);
+        sure && worse.mean() - better.mean() > 0.1 * gained
+    }
+
+    /// Change of the Bayesian information criterion on the training motions; correlated residuals count once
+    /// per block.
+    pub fn bic_change(&self, reference: &Trial, trial: &Trial) -> f64 {
+        let n = effective_samples(&trial.training, &trial.fit);
+        let values = trial.fit.free.len() as f64 - reference.fit.free.len() as f64;
+        n * (trial.training.mean() / reference.training.mean()).ln() + values * n.max(2.0).ln()
+    }
+}
+
+/// Samples that count as independent: fewer, the more neighbouring residuals agree.
+fn effective_samples(score: &Score, fit: &Fit) -> f64 {
+    let (mut product, mut square) = (0.0, 1e-300);
+    for window in &fit.residuals.windows {
+        for pair in window.windows(2) {
+            product += pair[0] * pair[1];
+            square += pair[0] * pair[0];
+        }
+    }
+    let correlation = (product / square).clamp(0.0, 0.999);
+    let n = score.counts.iter().sum::<usize>() as f64;
+    (n * (1.0 - correlation) / (1.0 + correlation))
+        .max(2.0 * score.sums.len() as f64)
+        .min(n)
+}
+
+fn base_fit(model: &Model, data: &Data) -> Fit {
+    fit(model, &model.free, data, None, FitOptions::default())
+}
+
+/// The longest windows over which the fitted base model still follows the measurement: longer ones show more of
+/// a small effect, but where the simulation has lost the motion altogether they show nothing.
+fn longest_useful(model: &Model, whole: &Data) -> (Horizon, Fit, Data) {
+    let mut horizon = longest_stable(model, whole);
+    let mut seconds = whole
+        .motions
+        .iter()
+        .map(Motion::duration_s)
+        .fold(0.0, f64::max);
+    if let Horizon::Seconds(stable) = horizon {
+        seconds = stable;
+    }
+    loop {
+        let data = whole.recut(horizon);
+        let fit = base_fit(model, &data);
+        let lost = fit.residuals.cost() / fit.residuals.count().max(1) as f64
+            > (0.25 * spread(&data)).powi(2);
+        if !lost || seconds < 0.4 {
+            return (horizon, fit, data);
+        }
+        seconds = (seconds / 2.0).min(4.0);
+        horizon = Horizon::Seconds(seconds);
+    }
+}
+
+/// Root-mean-square deviation of the measured positions from their mean, in units of sigma.
+fn spread(data: &Data) -> f64 {
+    let (mut sum, mut count) = (0.0, 0usize);
+    for motion in &data.motions {
+        for (position, sigma) in motion.position_rad.iter().zip(&data.sigma_rad) {
+            let mean = position.iter().sum::<f64>() / position.len() as f64;
+            sum += position
+                .iter()
+                .map(|p| ((p - mean) / sigma).powi(2))
+                .sum::<f64>();
+            count += position.len();
+        }
+    }
+    (sum / count.max(1) as f64).sqrt()
+}

@@ -1,0 +1,237 @@
+//! Free-form terms: bumps of torque, reading or timing that belong to no physical law.
+//!
+//! What a sum of them gains on held-out motions is what a right term, still unknown, could gain: the measure of
+//! how much is left to explain.
+
+use super::{Card, DriveState, Effect, JointState, Needs, Parameter, Rig, Scope, Site};
+
+/// Which variable a probe bumps on; stored as its index in a probe's second value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// Torque, a bump in speed.
+    Speed,
+    /// Torque against the motion, a bump in angle.
+    SlideAtAngle,
+    /// Torque against the motion, growing with the drive's torque.
+    SlideUnderDrive,
+    /// Torque, a bump in angle.
+    Angle,
+    /// Torque, sin(N q); the centre is N.
+    SineOfAngle,
+    /// Torque, cos(N q); the centre is N.
+    CosineOfAngle,
+    /// Torque, a bump in the drive's torque.
+    DriveTorque,
+    /// Drive torque in proportion to supply.
+    Supply,
+    /// Drive torque falling with speed.
+    BackEmf,
+    /// The input late by the centre, s.
+    Late,
+    /// More inertia.
+    Inertia,
+    /// More mass.
+    Mass,
+    /// Gravity turned with the rig.
+    Tilt,
+    /// Reading, a bump in angle.
+    Reading,
+    /// Reading, in proportion to speed.
+    ReadingLag,
+    /// Reading, by the sign of the speed.
+    ReadingPlay,
+}
+
+impl Along {
+    /// Every one, in the order of its index.
+    pub const ALL: [Along; 16] = [
+        Along::Speed,
+        Along::SlideAtAngle,
+        Along::SlideUnderDrive,
+        Along::Angle,
+        Along::SineOfAngle,
+        Along::CosineOfAngle,
+        Along::DriveTorque,
+        Along::Supply,
+        Along::BackEmf,
+        Along::Late,
+        Along::Inertia,
+        Along::Mass,
+        Along::Tilt,
+        Along::Reading,
+        Along::ReadingLag,
+        Along::ReadingPlay,
+    ];
+
+    /// Index in [`Along::ALL`], as a probe's second value.
+    pub fn index(self) -> f64 {
+        Along::ALL.iter().position(|a| *a == self).unwrap_or(0) as f64
+    }
+
+    /// What the term depends on, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Along::Speed => "a torque that depends on speed",
+            Along::SlideAtAngle => "friction that depends on the angle",
+            Along::SlideUnderDrive => "friction that depends on the load",
+            Along::Angle => "a torque that depends on the angle",
+            Along::SineOfAngle | Along::CosineOfAngle => "a torque that ripples with the angle",
+            Along::DriveTorque => "a drive torque that is not what it was told",
+            Along::Supply => "a drive torque that depends on the supply",
+            Along::BackEmf => "a drive torque that depends on the speed",
+            Along::Late => "an input that acts at another time",
+            Along::Inertia => "an inertia that is off",
+            Along::Mass => "a mass that is off",
+            Along::Tilt => "gravity from another direction",
+            Along::Reading => "a reading that depends on the angle",
+            Along::ReadingLag => "a reading that depends on the speed",
+            Along::ReadingPlay => "a reading that depends on the direction of motion",
+        }
+    }
+
+    /// The probe whose hook serves this variable.
+    pub fn probe(self) -> &'static dyn Effect {
+        match self {
+            Along::Supply | Along::BackEmf => &DRIVE_PROBE,
+            Along::Late => &TIMING_PROBE,
+            Along::Inertia | Along::Mass | Along::Tilt => &BODY_PROBE,
+            Along::Reading => &ENCODER_PROBE,
+            Along::ReadingLag | Along::ReadingPlay => &SENSOR_PROBE,
+            _ => &JOINT_PROBE,
+        }
+    }
+}
+
+/// A free-form term at one site; values are amplitude, variable, centre, width.
+#[derive(Debug)]
+pub struct Probe {
+    card: &'static Card,
+}
+
+macro_rules! probe {
+    ($name:ident, $card:ident, $id:literal, $site:expr) => {
+        static $card: Card = card($id, $site);
+        pub(super) static $name: Probe = Probe { card: &$card };
+    };
+}
+
+probe!(TIMING_PROBE, TIMING_CARD, "timing_probe", Site::Timing);
+probe!(DRIVE_PROBE, DRIVE_CARD, "drive_probe", Site::Drive);
+probe!(JOINT_PROBE, JOINT_CARD, "joint_probe", Site::Joint);
+probe!(BODY_PROBE, BODY_CARD, "body_probe", Site::Body);
+probe!(ENCODER_PROBE, ENCODER_CARD, "encoder_probe", Site::Encoder);
+probe!(SENSOR_PROBE, SENSOR_CARD, "sensor_probe", Site::Sensor);
+
+const fn card(id: &'static str, site: Site) -> Card {
+    Card {
+        id,
+        title: "free-form term",
+        site,
+        scope: Scope::AnyJoint,
+        needs: Needs::Nothing,
+        law: "amplitude * bump((variable - centre) / width)",
+        parameters: PARAMETERS,
+        looks_like: "whatever is left",
+        confused_with: &[],
+        experiment: "none",
+        reference: "radial-basis regression of a residual",
+    }
+}
+
+const PARAMETERS: &[Parameter] = &[
+    value("amplitude", 1.0),
+    value("variable", 0.0),
+    value("centre", 0.0),
+    value("width", 1.0),
+];
+
+const fn value(key: &'static str, typical: f64) -> Parameter {
+    Parameter {
+        key,
+        unit: "",
+        meaning: "of the free-form term",
+        off: Some(0.0),
+        typical: (0.0, typical),
+        bounds: (f64::NEG_INFINITY, f64::INFINITY),
+        starts: &[0.0],
+    }
+}
+
+fn along(values: &[f64]) -> Along {
+    Along::ALL[values[1] as usize]
+}
+
+/// A triangle of unit height, one at the centre and zero a width away.
+fn bump(x: f64, values: &[f64]) -> f64 {
+    (1.0 - ((x - values[2]) / values[3]).abs()).max(0.0)
+}
+
+impl Effect for Probe {
+    fn card(&self) -> &'static Card {
+        self.card
+    }
+
+    fn delay_s(&self, values: &[f64]) -> f64 {
+        values[0].max(0.0)
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm
+            + values[0]
+                * match along(values) {
+                    Along::Supply => torque_nm * (at.supply_ratio - 1.0),
+                    _ => -at.full_torque_nm * at.speed_rad_s,
+                }
+    }
+
+    fn torque(&self, values: &[f64], at: &JointState) -> f64 {
+        values[0]
+            * match along(values) {
+                Along::SlideAtAngle => -at.speed_rad_s.signum() * bump(at.angle_rad, values),
+                Along::SlideUnderDrive => -at.speed_rad_s.signum() * at.drive_nm.abs(),
+                Along::Angle => bump(at.angle_rad, values),
+                Along::SineOfAngle => (values[2] * at.angle_rad).sin(),
+                Along::CosineOfAngle => (values[2] * at.angle_rad).cos(),
+                Along::DriveTorque => bump(at.drive_nm, values),
+                _ => bump(at.speed_rad_s, values),
+            }
+    }
+
+    fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
+        let link = &mut rig.chain.links[joint];
+        match along(values) {
+            Along::Inertia => link.armature_kg_m2 += values[0],
+            Along::Mass => link.mass_kg += values[0],
+            _ => rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] },
+        }
+    }
+
+    fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
+        match along(values) {
+            Along::Reading => angle_rad + values[0] * bump(angle_rad, values),
+            _ => angle_rad,
+        }
+    }
+
+    fn sense(
+        &self,
+        values: &[f64],
+        memory: &mut Option<[f64; 2]>,
+        angle_rad: f64,
+        step_s: f64,
+    ) -> f64 {
+        let before = memory.map_or(angle_rad, |m| m[0]);
+        *memory = Some([angle_rad, 0.0]);
+        let moved = angle_rad - before;
+        if moved == 0.0 || step_s == 0.0 {
+            return angle_rad;
+        }
+        angle_rad
+            + values[0]
+                * match along(values) {
+                    Along::ReadingLag => moved / step_s,
+                    Along::ReadingPlay => moved.signum(),
+                    _ => 0.0,
+                }
+    }
+}

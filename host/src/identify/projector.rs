@@ -1,0 +1,66 @@
+//! What of a change in the prediction the fitted parameters and start states can't imitate.
+
+use super::covariance::project;
+use super::fit::Fit;
+use super::normal::WindowJacobian;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Projection off the columns of a fit's Jacobian.
+#[derive(Debug)]
+pub struct Projector<'a> {
+    windows: &'a [WindowJacobian],
+    /// Parameter columns with the start states' part taken out.
+    reduced: Vec<DMatrix<f64>>,
+    normal: Option<Cholesky<f64, Dyn>>,
+}
+
+impl<'a> Projector<'a> {
+    /// Projection off everything this fit has freed.
+    pub fn new(fit: &'a Fit) -> Self {
+        let reduced: Vec<DMatrix<f64>> = fit.jacobian.iter().map(project).collect();
+        let count = fit.free.len();
+        let mut normal = DMatrix::zeros(count, count);
+        for window in &reduced {
+            normal += window.tr_mul(window);
+        }
+        for i in 0..count {
+            normal[(i, i)] = normal[(i, i)] * (1.0 + 1e-10) + 1e-20;
+        }
+        Projector {
+            windows: &fit.jacobian,
+            reduced,
+            normal: normal.cholesky().filter(|_| count > 0),
+        }
+    }
+
+    /// A change of the weighted residual, window by window, less what the fit could make of it.
+    pub fn off(&self, change: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut left: Vec<DVector<f64>> = change
+            .iter()
+            .zip(self.windows)
+            .map(|(change, window)| off_node(DVector::from_column_slice(change), window))
+            .collect();
+        if let Some(normal) = &self.normal {
+            let mut right = DVector::zeros(self.reduced[0].ncols());
+            for (left, reduced) in left.iter().zip(&self.reduced) {
+                right += reduced.tr_mul(left);
+            }
+            let step = normal.solve(&right);
+            for (left, reduced) in left.iter_mut().zip(&self.reduced) {
+                *left -= reduced * &step;
+            }
+        }
+        left.into_iter().map(|v| v.as_slice().to_vec()).collect()
+    }
+}
+
+fn off_node(change: DVector<f64>, window: &WindowJacobian) -> DVector<f64> {
+    let own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
+    match own.cholesky() {
+        Some(cholesky) => {
+            let step = cholesky.solve(&window.node.tr_mul(&change));
+            change - &window.node * step
+        }
+        None => change,
+    }
+}

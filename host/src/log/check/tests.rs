@@ -1,0 +1,286 @@
+//! Each fault is found, and a good log is left in peace.
+
+use super::*;
+use crate::log::fixture::{columns, model, motion, position_drive};
+use crate::log::{Motion, to_csv};
+use crate::model::{Drive, LogColumns};
+
+fn found(text: &str, model: &Model) -> Vec<Finding> {
+    let log = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    std::fs::write(log.path(), text).unwrap();
+    check(&[LogRequest::whole(log.path())], model).unwrap()
+}
+
+fn servo() -> Model {
+    model(position_drive(), columns())
+}
+
+fn good() -> Motion {
+    motion("good", 600)
+}
+
+fn text(motion: &Motion) -> String {
+    to_csv(motion, &columns(), &[])
+}
+
+#[track_caller]
+fn finds(findings: &[Finding], severity: Severity, what: &str) {
+    let all: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    let hit = findings
+        .iter()
+        .any(|f| f.severity == severity && f.what.contains(what));
+    assert!(hit, "{what} is not among {all:#?}");
+}
+
+#[test]
+fn a_good_log_has_no_warning() {
+    for finding in found(&text(&good()), &servo()) {
+        assert_eq!(finding.severity, Severity::Note, "{finding}");
+    }
+}
+
+#[test]
+fn broken_rows_are_all_told_with_their_places() {
+    let mut lines: Vec<String> = text(&good()).lines().map(str::to_string).collect();
+    lines[100] = "0.99,nan,0".into();
+    lines[200] = "1.99,0".into();
+    lines[300] = lines[299].clone();
+    lines[400] = "0.5,0,0".into();
+    let findings = found(&lines.join("\n"), &servo());
+    let at = |line: usize, column: usize, what: &str| {
+        let hit = findings.iter().any(|f| {
+            f.severity == Severity::Refuse
+                && (f.place.line, f.place.column) == (Some(line), Some(column))
+                && f.what.contains(what)
+        });
+        assert!(hit, "{line}:{column} {what}: {findings:#?}");
+    };
+    at(101, 2, "not finite");
+    at(201, 3, "2 fields");
+    at(301, 1, "stands still");
+    at(401, 1, "goes back");
+}
+
+#[test]
+fn many_alike_are_counted() {
+    let broken = text(&good()).replace(",0.", ",x");
+    let findings = found(&broken, &servo());
+    let refused: Vec<_> = findings
+        .iter()
+        .filter(|f| f.what.contains("not a number"))
+        .collect();
+    assert_eq!(refused.len(), 21);
+    assert!(refused[20].what.contains("more like it"));
+}
+
+#[test]
+fn a_missing_column_or_range_is_a_finding() {
+    finds(
+        &found("t_s,q\n0,1\n", &servo()),
+        Severity::Refuse,
+        "no column 'u'",
+    );
+    finds(
+        &found("t_s,q,u\n0,1,1\n", &servo()),
+        Severity::Refuse,
+        "a motion of 1 rows",
+    );
+    finds(&found("t_s,q,u\n", &servo()), Severity::Refuse, "no sample");
+    assert!(check(&[LogRequest::whole("no/such.csv")], &servo()).is_err());
+}
+
+#[test]
+fn time_faults_are_found() {
+    let mut gap = good();
+    gap.time_s.iter_mut().skip(300).for_each(|t| *t += 1.0);
+    let findings = found(&text(&gap), &servo());
+    finds(&findings, Severity::Warn, "a gap of 1010.000 ms");
+    assert_eq!(
+        findings
+            .iter()
+            .find(|f| f.what.contains("gap"))
+            .unwrap()
+            .place
+            .line,
+        Some(302)
+    );
+    let mut splitting = servo();
+    splitting.log.split_at_gap_s = Some(0.5);
+    assert!(
+        !found(&text(&gap), &splitting)
+            .iter()
+            .any(|f| f.what.contains("gap"))
+    );
+
+    let scaled = |factor: f64| {
+        let mut motion = good();
+        motion.time_s.iter_mut().for_each(|t| *t *= factor);
+        found(&text(&motion), &servo())
+    };
+    finds(
+        &scaled(1000.0),
+        Severity::Warn,
+        "milliseconds declared as seconds?",
+    );
+    finds(
+        &scaled(1e-3),
+        Severity::Warn,
+        "seconds declared as milliseconds?",
+    );
+    let mut jittery = good();
+    let late = |(i, t): (usize, &mut f64)| *t += if i % 2 == 0 { 0.004 } else { 0.0 };
+    jittery.time_s.iter_mut().enumerate().for_each(late);
+    finds(&found(&text(&jittery), &servo()), Severity::Note, "jitters");
+}
+
+#[test]
+fn sign_scale_and_zero_of_a_followed_goal_are_found() {
+    let changed = |change: fn(f64) -> f64| {
+        let mut motion = good();
+        motion.position_rad[0]
+            .iter_mut()
+            .for_each(|q| *q = change(*q));
+        found(&text(&motion), &servo())
+    };
+    finds(&changed(|q| -q), Severity::Warn, "q runs against u");
+    finds(
+        &changed(f64::to_degrees),
+        Severity::Warn,
+        "degrees on one side",
+    );
+    finds(
+        &changed(f64::to_degrees),
+        Severity::Warn,
+        "degrees declared as rad?",
+    );
+    finds(
+        &changed(f64::to_radians),
+        Severity::Warn,
+        "degrees on one side",
+    );
+    finds(&changed(|q| 2.0 * q), Severity::Warn, "2.0");
+    finds(&changed(|q| q + 0.2), Severity::Warn, "a wrong zero?");
+}
+
+#[test]
+fn standing_still_and_small_motions_are_found() {
+    let mut stuck = good();
+    let (begin, end) = (100, 350);
+    stuck.position_rad[0][begin..end].fill(0.1);
+    finds(
+        &found(&text(&stuck), &servo()),
+        Severity::Warn,
+        "q does not change for 2.5 s",
+    );
+    let mut small = good();
+    small.position_rad[0].iter_mut().for_each(|q| *q *= 0.1);
+    small.input[0].as_mut().unwrap().fill(0.0);
+    let findings = found(&text(&small), &servo());
+    finds(&findings, Severity::Warn, "travels only 0.140 rad");
+    finds(&findings, Severity::Warn, "u never changes");
+    let findings = found(&text(&motion("short", 100)), &servo());
+    finds(
+        &findings,
+        Severity::Warn,
+        "only 1 reversals: friction and backlash can't be told apart",
+    );
+}
+
+#[test]
+fn wraps_stops_and_steps_are_found() {
+    let mut wrapped = good();
+    wrapped.position_rad[0]
+        .iter_mut()
+        .skip(300)
+        .for_each(|q| *q += std::f64::consts::TAU);
+    finds(
+        &found(&text(&wrapped), &servo()),
+        Severity::Refuse,
+        "a whole turn",
+    );
+    let mut stopped = good();
+    stopped.position_rad[0]
+        .iter_mut()
+        .for_each(|q| *q = q.min(0.5));
+    finds(
+        &found(&text(&stopped), &servo()),
+        Severity::Warn,
+        "q sits at its extreme, 0.5000 rad",
+    );
+    let mut coarse = good();
+    coarse.position_rad[0]
+        .iter_mut()
+        .for_each(|q| *q = (*q / 0.01).round() * 0.01);
+    finds(
+        &found(&text(&coarse), &servo()),
+        Severity::Note,
+        "steps of 1.000e-2 rad",
+    );
+    let mut declared = servo();
+    declared.log.joints[0].position.resolution = Some(0.0015);
+    finds(
+        &found(&text(&coarse), &declared),
+        Severity::Warn,
+        "1.500e-3 is declared",
+    );
+}
+
+#[test]
+fn what_is_kept_does_not_grow_with_the_log() {
+    // 200,000 rows, every hundredth late, every thousandth broken: all a check holds is of fixed size.
+    let mut text = String::from("t_s,q,u\n");
+    for i in 0..200_000 {
+        let t = f64::from(i) * 0.001 + f64::from(i / 100) * 0.02;
+        let q = if i % 1000 == 999 {
+            f64::NAN
+        } else {
+            (t * 3.0).sin()
+        };
+        text += &format!("{t:.4},{q:.5},{:.5}\n", (t * 3.0).sin());
+    }
+    let findings = found(&text, &servo());
+    assert!(findings.len() < 60, "{}", findings.len());
+    finds(&findings, Severity::Warn, "shorter ones elsewhere");
+    finds(&findings, Severity::Refuse, "more like it");
+}
+
+/// An arm of 1/s^2 gravity and damping under a slow and a fast torque, from hanging.
+fn pushed() -> Motion {
+    let mut motion = motion("pushed", 4000);
+    let (mut q, mut v) = (0.3_f64, 0.0);
+    let step_s = 0.001;
+    let torque = |t: f64| 20.0 * (1.3 * t).sin() + 15.0 * (4.1 * t).sin();
+    for i in 0..4000 {
+        motion.position_rad[0][i] = (q / 0.0015).round() * 0.0015;
+        let u = torque(motion.time_s[i]);
+        motion.input[0].as_mut().unwrap()[i] = u;
+        for _ in 0..10 {
+            v += step_s * (u - 50.0 * q.sin() - 0.8 * v);
+            q += step_s * v;
+        }
+    }
+    motion
+}
+
+fn bench() -> Model {
+    let log = LogColumns { ..columns() };
+    model(Drive::Torque, log)
+}
+
+#[test]
+fn torque_and_gravity_show_their_direction() {
+    let text = text(&pushed());
+    for finding in found(&text, &bench()) {
+        assert_eq!(finding.severity, Severity::Note, "{finding}");
+    }
+    let mut reversed = bench();
+    reversed.log.joints[0].input.as_mut().unwrap().reversed = true;
+    finds(
+        &found(&text, &reversed),
+        Severity::Warn,
+        "pushes the joint the wrong way",
+    );
+    let mut zero = bench();
+    zero.angle_zero = crate::model::AngleZero::Horizontal;
+    finds(&found(&text, &zero), Severity::Warn, "gravity pulls");
+}

@@ -1,0 +1,64 @@
+//! Where the model fails: conditions that hold more than their share of the error.
+
+use super::Report;
+use super::bars::Bar;
+use super::number::percent;
+use super::page::Section;
+use super::svg::Tone;
+use crate::compare::{Comparison, Failure};
+use maud::{Markup, html};
+
+pub(super) fn section(report: &Report) -> Option<Section> {
+    let ends = [
+        (report.before(), Tone::Before),
+        (report.after(), Tone::After),
+    ];
+    if ends
+        .iter()
+        .all(|(end, _)| end.is_none_or(|end| end.failures.is_empty()))
+    {
+        return None;
+    }
+    let body = html! {
+        @for (comparison, tone) in ends {
+            @if let Some(comparison) = comparison { (conditions(comparison, tone)) }
+        }
+    };
+    Some(Section {
+        id: "failures",
+        title: "Where it fails",
+        lead: "If errors were spread evenly, a condition that covers a tenth of the samples would hold a tenth of the \
+               error. Where the error's bar is much longer than the samples' bar, the physics of that condition is \
+               what the model gets wrong.",
+        body,
+    })
+}
+
+fn conditions(comparison: &Comparison, tone: Tone) -> Markup {
+    html! {
+        h3 { (comparison.model) }
+        @if comparison.failures.is_empty() {
+            p { "No condition holds more than its share of the error." }
+        }
+        div.failures {
+            @for failure in &comparison.failures { (bars(failure, tone)) }
+        }
+    }
+}
+
+fn bars(failure: &Failure, tone: Tone) -> Markup {
+    html! {
+        div.failure {
+            p { b { "Joint " (failure.joint) ", " (failure.condition) } }
+            div.pair {
+                span { "error" }
+                (Bar::new(failure.error_share, 1.0, tone).draw())
+                span.number { (percent(failure.error_share)) }
+                span { "samples" }
+                (Bar::new(failure.sample_share, 1.0, Tone::Quiet).draw())
+                span.number { (percent(failure.sample_share)) }
+            }
+            p.note { (failure.sentence) }
+        }
+    }
+}

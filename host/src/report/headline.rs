@@ -1,0 +1,105 @@
+//! The verdict in words and the error in one line.
+
+use super::number::{mrad, short};
+use super::words::{fall, in_mrad, measured_on, verdict_sentence, verdict_word, window};
+use super::{Report, pooled};
+use crate::compare::Comparison;
+use crate::diagnose::{Diagnosis, ErrorFall};
+use maud::{Markup, html};
+
+/// Top of the page.
+pub(super) fn header(report: &Report) -> Markup {
+    let verdict = report.diagnosis.as_ref().map(|d| verdict_word(d.verdict));
+    html! {
+        header class={ "verdict-" (verdict.unwrap_or("none")) } {
+            p.title { (report.title) }
+            @match &report.diagnosis {
+                Some(diagnosis) => (diagnosed(diagnosis)),
+                None => (compared(report)),
+            }
+        }
+    }
+}
+
+fn diagnosed(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        p { span.badge { (verdict_word(diagnosis.verdict)) } }
+        h1 { (verdict_sentence(diagnosis)) "." }
+        (error_line(&diagnosis.error, diagnosis.horizon_s))
+        @for sentence in &diagnosis.summary { p { (sentence) } }
+        (list("Next", "next", &diagnosis.next))
+        (list("Be wary", "warnings", &diagnosis.warnings))
+    }
+}
+
+fn error_line(error: &ErrorFall, horizon_s: Option<f64>) -> Markup {
+    if !error.before.is_finite() {
+        return html! {};
+    }
+    html! {
+        (figures(&[
+            ("before", "tone-before", error.before),
+            ("after", "tone-after", error.after),
+            ("floor", "tone-floor", error.floor),
+        ]))
+        p.note {
+            "Typical (RMS) angle error in milliradians, " (window(horizon_s)) ", on " (measured_on(error))
+            @if let Some(fall) = fall(error) { "; " (fall) }
+            ". The floor is what sensor resolution and noise alone leave; no model can do better."
+        }
+    }
+}
+
+/// Without a diagnosis the figures are the models' own.
+fn compared(report: &Report) -> Markup {
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
+        return html! { h1 { "Nothing was compared." } };
+    };
+    let floor = pooled(&before.signals, |signal| signal.floor);
+    let first = ("tone-before", error(before));
+    match report.after() {
+        Some(after) => html! {
+            h1 {
+                "From " (before.model) " to " (after.model) " the typical error goes from "
+                (in_mrad(first.1)) " to " (in_mrad(error(after))) "."
+            }
+            (figures(&[
+                (&before.model, first.0, first.1),
+                (&after.model, "tone-after", error(after)),
+                ("floor", "tone-floor", floor),
+            ]))
+        },
+        None => html! {
+            h1 { (before.model) " misses the measurement by typically " (in_mrad(first.1)) "." }
+            (figures(&[(&before.model, first.0, first.1), ("floor", "tone-floor", floor)]))
+        },
+    }
+}
+
+/// Figures in a row with arrows between.
+fn figures(figures: &[(&str, &str, f64)]) -> Markup {
+    html! {
+        div.figures {
+            @for (index, (name, tone, error_rad)) in figures.iter().enumerate() {
+                @if index > 0 { span.arrow aria-hidden="true" { "→" } }
+                div class={ "figure " (tone) } {
+                    span.name { (name) }
+                    span.value { (mrad(*error_rad)) span.unit { " mrad" } }
+                    span.aside { (short(error_rad.to_degrees())) "°" }
+                }
+            }
+        }
+    }
+}
+
+fn list(title: &str, class: &str, items: &[String]) -> Markup {
+    html! {
+        @if !items.is_empty() {
+            div class={ "box " (class) } {
+                h3 { (title) }
+                ul { @for item in items { li { (item) } } }
+            }
+        }
+    }
+}

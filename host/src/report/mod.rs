@@ -1,0 +1,98 @@
+//! What was found, for people and programs: a page, a text and a JSON of the same values.
+
+mod bars;
+mod candidates;
+mod failures;
+mod headline;
+mod json;
+mod number;
+mod page;
+mod parameters;
+mod provenance;
+mod remains;
+#[cfg(test)]
+mod sample;
+mod scale;
+mod signatures;
+mod svg;
+#[cfg(test)]
+mod tests;
+mod text;
+mod thin;
+mod traces;
+mod waterfall;
+mod words;
+
+pub use json::{diagnosis_json, json};
+pub use page::html;
+pub use text::diagnosis_text;
+
+use crate::compare::{Comparison, SignalError};
+use crate::diagnose::Diagnosis;
+use serde::Serialize;
+
+/// Everything a page shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Heading of the page.
+    pub title: String,
+    /// A chain of models against the same motions: the first is before, the last after.
+    pub comparisons: Vec<Comparison>,
+    /// What is missing in the first of them, where that was asked.
+    pub diagnosis: Option<Diagnosis>,
+    /// What the report was made from.
+    pub provenance: Provenance,
+}
+
+/// What a report was made from and by.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Provenance {
+    /// Version of this program.
+    pub program_version: String,
+    /// Models, in the order of the chain.
+    pub model_files: Vec<ModelFile>,
+    /// Logs.
+    pub logs: Vec<LogFile>,
+    /// The command line that makes it again.
+    pub command: String,
+}
+
+/// A model that was read.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelFile {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+/// A log that was read.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LogFile {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+    /// Rows in it.
+    pub samples: usize,
+    /// Whether it took no part in any fit.
+    pub held_out: bool,
+}
+
+impl Report {
+    /// The model at the start of the chain.
+    fn before(&self) -> Option<&Comparison> {
+        self.comparisons.first()
+    }
+
+    /// The model at the end of the chain, if it has more than one.
+    fn after(&self) -> Option<&Comparison> {
+        self.comparisons.get(1..)?.last()
+    }
+}
+
+/// Root-mean-square over the joints, which share their samples.
+fn pooled(signals: &[SignalError], of: fn(&SignalError) -> f64) -> f64 {
+    let squares: f64 = signals.iter().map(|signal| of(signal).powi(2)).sum();
+    (squares / signals.len() as f64).sqrt()
+}

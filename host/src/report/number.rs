@@ -1,0 +1,121 @@
+//! Numbers as people read them.
+
+/// Stands for a value there is none of.
+pub(super) const NONE: &str = "–";
+
+/// Three significant digits; `–` for what is no number.
+pub(super) fn short(value: f64) -> String {
+    if let Some(text) = special(value) {
+        return text;
+    }
+    let power = power(value);
+    if !(-4..=5).contains(&power) {
+        return format!("{value:.2e}");
+    }
+    plain(value, decimals(2 - power))
+}
+
+/// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
+pub(super) fn given(value: f64) -> String {
+    let text = short(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
+    }
+}
+
+/// An angle in milliradians, without the unit.
+pub(super) fn mrad(value_rad: f64) -> String {
+    short(1e3 * value_rad)
+}
+
+/// A share of 1 as a percentage, with its sign.
+pub(super) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match special(percent) {
+        Some(text) => format!("{text} %"),
+        None if percent.abs() < 10.0 => format!("{} %", plain(percent, 1)),
+        None => format!("{} %", plain(percent, 0)),
+    }
+}
+
+/// A value and the ends of its interval, all to the decimals that the interval's width deserves.
+pub(super) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
+    let width = high - low;
+    if !(width > 0.0 && width.is_finite() && value.is_finite()) {
+        return [value, low, high].map(short);
+    }
+    let power = power(width);
+    let largest = [value, low, high]
+        .into_iter()
+        .fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    if power < -7 || largest >= 1e6 {
+        return [value, low, high].map(short);
+    }
+    [value, low, high].map(|value| format!("{:.*}", decimals(1 - power), value + 0.0))
+}
+
+fn special(value: f64) -> Option<String> {
+    match value {
+        value if value.is_nan() => Some(NONE.into()),
+        f64::INFINITY => Some("∞".into()),
+        f64::NEG_INFINITY => Some("-∞".into()),
+        0.0 => Some("0".into()),
+        _ => None,
+    }
+}
+
+/// Power of ten of the leading digit.
+fn power(value: f64) -> i32 {
+    value.abs().log10().floor() as i32
+}
+
+fn decimals(wanted: i32) -> usize {
+    wanted.clamp(0, 9) as usize
+}
+
+/// Never "-0".
+fn plain(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let nothing = text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| "0.".contains(c));
+    if nothing { text.replace('-', "") } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits() {
+        assert_eq!(short(0.012345), "0.0123");
+        assert_eq!(short(-123.456), "-123");
+        assert_eq!(short(41.234), "41.2");
+        assert_eq!(short(1.5e-9), "1.50e-9");
+        assert_eq!(given(0.1), "0.1");
+        assert_eq!(given(100.0), "100");
+        assert_eq!(short(f64::NAN), "–");
+        assert_eq!(short(f64::INFINITY), "∞");
+    }
+
+    #[test]
+    fn percentages() {
+        assert_eq!(percent(0.853), "85 %");
+        assert_eq!(percent(0.0), "0 %");
+        assert_eq!(percent(0.0123), "1.2 %");
+        assert_eq!(percent(-0.0001), "0.0 %");
+    }
+
+    #[test]
+    fn an_interval_sets_the_decimals() {
+        assert_eq!(
+            interval(0.08213, 0.0794, 0.0851),
+            ["0.0821", "0.0794", "0.0851"]
+        );
+        assert_eq!(interval(12.3456, 8.0, 16.0), ["12.3", "8.0", "16.0"]);
+        assert_eq!(interval(1.0, 1.0, 1.0), ["1.00", "1.00", "1.00"]);
+    }
+}

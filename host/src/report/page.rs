@@ -1,0 +1,72 @@
+//! The page: one document that needs nothing but itself.
+
+use super::{
+    Report, candidates, failures, headline, parameters, provenance, remains, signatures, traces,
+    waterfall,
+};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// Colours and layout; light and dark, screen, phone and paper.
+const STYLE: &str = include_str!("page.css");
+
+/// A part of the page that is there only if its data are.
+pub(super) struct Section {
+    /// Anchor.
+    pub(super) id: &'static str,
+    /// Heading.
+    pub(super) title: &'static str,
+    /// What to look for, to someone who sees such a thing for the first time.
+    pub(super) lead: &'static str,
+    /// The rest.
+    pub(super) body: Markup,
+}
+
+/// A self-contained page: no scripts, no fonts, no pictures from elsewhere.
+pub fn html(report: &Report) -> String {
+    let parts: [fn(&Report) -> Option<Section>; 9] = [
+        traces::section,
+        failures::section,
+        waterfall::section,
+        candidates::section,
+        signatures::section,
+        parameters::section,
+        remains::section,
+        provenance::section,
+        provenance::glossary,
+    ];
+    let sections: Vec<Section> = parts.iter().filter_map(|part| part(report)).collect();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (report.title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    (headline::header(report))
+                    nav aria-label="Sections" {
+                        @for section in &sections {
+                            a href={ "#" (section.id) } { (section.title) }
+                        }
+                    }
+                    @for section in &sections { (drawn(section)) }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn drawn(section: &Section) -> Markup {
+    html! {
+        section id=(section.id) {
+            h2 { (section.title) }
+            p.lead { (section.lead) }
+            (section.body)
+        }
+    }
+}

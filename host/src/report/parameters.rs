@@ -1,0 +1,93 @@
+//! Fitted values with their intervals.
+
+use super::Report;
+use super::bars::whisker;
+use super::number::{interval, short};
+use super::page::Section;
+use super::words::{effect_name, unit};
+use crate::diagnose::{Diagnosis, FittedValue};
+use crate::effects::named;
+use maud::{Markup, html};
+
+pub(super) fn section(report: &Report) -> Option<Section> {
+    let diagnosis = report.diagnosis.as_ref()?;
+    let has_effects = diagnosis
+        .effects
+        .iter()
+        .any(|effect| !effect.parameters.is_empty());
+    if !has_effects && diagnosis.base.is_empty() && diagnosis.collinear.is_empty() {
+        return None;
+    }
+    let body = html! {
+        @if has_effects || !diagnosis.base.is_empty() { (table(diagnosis)) }
+        @if !diagnosis.collinear.is_empty() { (collinear(diagnosis)) }
+    };
+    Some(Section {
+        id: "parameters",
+        title: "Values and how sure they are",
+        lead: "The interval is where the true value lies with 95 % confidence, given this model and these motions. In \
+               the picture the dot is the value and the bar its interval; the dashed line is the value at which the \
+               effect would vanish. An interval that reaches it proves nothing.",
+        body,
+    })
+}
+
+fn table(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "Of" } th { "Parameter" } th.number { "Value" } th.number { "95 % interval" } th { "Unit" }
+                th { "" }
+            } }
+            tbody {
+                @for effect in &diagnosis.effects {
+                    @for fitted in &effect.parameters {
+                        (row(&effect_name(effect), fitted, off(&effect.kind, &fitted.key)))
+                    }
+                }
+                @for fitted in &diagnosis.base { (row("model, refitted", fitted, None)) }
+            }
+        } }
+    }
+}
+
+/// Value at which an effect vanishes.
+fn off(kind: &str, key: &str) -> Option<f64> {
+    let parameters = named(kind)?.card().parameters;
+    parameters
+        .iter()
+        .find(|parameter| parameter.key == key)?
+        .off
+}
+
+fn row(owner: &str, fitted: &FittedValue, off: Option<f64>) -> Markup {
+    let [value, low, high] = interval(fitted.value, fitted.low, fitted.high);
+    html! {
+        tr {
+            td { (owner) }
+            td { code { (fitted.path) } }
+            td.number { b { (value) } }
+            td.number { (low) " to " (high) }
+            td { (unit(&fitted.unit)) }
+            td {
+                (whisker(fitted.value, fitted.low, fitted.high, off))
+                @if fitted.on_bound { p.bad { "⚠ on its bound: a warning, not a result" } }
+            }
+        }
+    }
+}
+
+fn collinear(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        div.box.warnings {
+            h3 { "Hard to tell apart" }
+            p {
+                "These data hardly separate the following pairs: only a combination of the two is known well. Another \
+                 kind of motion would part them."
+            }
+            ul { @for (one, other, correlation) in &diagnosis.collinear {
+                li { code { (one) } " and " code { (other) } ": correlation " (short(*correlation)) }
+            } }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! What is left: how much a free form could still gain, how the error grows with time, tests of the residual.
+
+use super::Report;
+use super::number::{NONE, given, mrad, percent, short};
+use super::page::Section;
+use crate::compare::{Comparison, HorizonError, ResidualTest};
+use crate::diagnose::Remainder;
+use maud::{Markup, html};
+
+pub(super) fn section(report: &Report) -> Option<Section> {
+    let remainder = report.diagnosis.as_ref().and_then(|d| d.remainder.as_ref());
+    let horizons = horizons(&report.comparisons);
+    let last = report.comparisons.last();
+    let tested = last.is_some_and(|last| last.signals.iter().any(|s| !s.tests.is_empty()));
+    if remainder.is_none() && horizons.is_empty() && !tested {
+        return None;
+    }
+    let body = html! {
+        @if let Some(remainder) = remainder { (left(remainder)) }
+        @if !horizons.is_empty() { (growth(&report.comparisons, &horizons)) }
+        @if let Some(last) = last.filter(|_| tested) { (tests(last)) }
+    };
+    Some(Section {
+        id: "remains",
+        title: "What is left",
+        lead: "Whether the last model leaves something that physics could still explain.",
+        body,
+    })
+}
+
+fn left(remainder: &Remainder) -> Markup {
+    html! {
+        p {
+            "A free-form term could still gain " b { (percent(remainder.explainable_share)) }
+            " of the remaining squared error above the floor (at least " (percent(remainder.explainable_low))
+            " with 95 % confidence). It leans on: " (remainder.shape) "."
+        }
+    }
+}
+
+/// Every window length that any model was run with.
+fn horizons(comparisons: &[Comparison]) -> Vec<Option<f64>> {
+    let mut all: Vec<Option<f64>> = Vec::new();
+    for horizon in comparisons
+        .iter()
+        .flat_map(|comparison| &comparison.horizons)
+    {
+        if !all.contains(&horizon.horizon_s) {
+            all.push(horizon.horizon_s);
+        }
+    }
+    let length = |horizon: &Option<f64>| horizon.unwrap_or(f64::INFINITY);
+    all.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    all
+}
+
+fn growth(comparisons: &[Comparison], horizons: &[Option<f64>]) -> Markup {
+    let error = |comparison: &Comparison, horizon: Option<f64>| {
+        let same = |error: &&HorizonError| error.horizon_s == horizon;
+        let found = comparison.horizons.iter().find(same);
+        found.map_or(NONE.into(), |error| mrad(error.rms_rad))
+    };
+    html! {
+        h3 { "Error against time without correction" }
+        p.note {
+            "RMS error in mrad when the model starts afresh from the measurement every so often. Wrong physics grows \
+             with time; noise does not."
+        }
+        div.scroll { table {
+            thead { tr {
+                th { "Model" }
+                @for horizon in horizons {
+                    th.number { @match horizon { Some(s) => { (given(*s)) " s" }, None => "whole motion" } }
+                }
+            } }
+            tbody { @for comparison in comparisons.iter().filter(|c| !c.horizons.is_empty()) {
+                tr {
+                    td { (comparison.model) }
+                    @for horizon in horizons { td.number { (error(comparison, *horizon)) } }
+                }
+            } }
+        } }
+    }
+}
+
+fn tests(comparison: &Comparison) -> Markup {
+    let row = |joint: usize, test: &ResidualTest| {
+        html! {
+            tr {
+                td.number { (joint) }
+                td { (test.name) }
+                td {
+                    @if test.passed { span.good { "✓ passes" } } @else { span.bad { "✗ fails" } }
+                }
+                td.number { (short(test.statistic)) }
+                td.number { (short(test.threshold)) }
+                td { (test.meaning) }
+            }
+        }
+    };
+    html! {
+        h3 { "Tests of the residual of " (comparison.model) }
+        div.scroll { table {
+            thead { tr {
+                th.number { "Joint" } th { "Test" } th { "Result" } th.number { "Statistic" } th.number { "Limit" }
+                th { "What it means" }
+            } }
+            tbody { @for signal in &comparison.signals {
+                @for test in &signal.tests { (row(signal.joint, test)) }
+            } }
+        } }
+    }
+}

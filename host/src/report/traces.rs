@@ -1,0 +1,163 @@
+//! Measured against model: per motion and joint the angles, and below them what is left.
+
+use super::Report;
+use super::number::{mrad, short};
+use super::page::Section;
+use super::scale::{Scale, span};
+use super::svg::{Plot, Tone};
+use crate::compare::{Comparison, SignalError, Trace};
+use maud::{Markup, html};
+
+/// Charts that are open from the start; the others wait behind their titles.
+const OPEN: usize = 6;
+
+/// One motion of one joint by the models at both ends of the chain.
+struct Pair<'a> {
+    before: &'a Trace,
+    after: Option<&'a Trace>,
+    floor_rad: Option<f64>,
+}
+
+pub(super) fn section(report: &Report) -> Option<Section> {
+    let before = report.before()?;
+    let pairs = pairs(before, report.after());
+    if pairs.is_empty() && before.signals.is_empty() {
+        return None;
+    }
+    let body = html! {
+        @if !pairs.is_empty() {
+            div.legend {
+                (toggle("measured", "measured", Tone::Measured))
+                (toggle("before", &before.model, Tone::Before))
+                @if let Some(after) = report.after() { (toggle("after", &after.model, Tone::After)) }
+                span.key.tone-floor { span.swatch {} "± floor" }
+            }
+        }
+        @for (index, pair) in pairs.iter().enumerate() { (drawn(pair, index < OPEN)) }
+        @if !before.signals.is_empty() { (fits(report)) }
+    };
+    Some(Section {
+        id: "traces",
+        title: "Measured against model",
+        lead: "Above, the angle that was measured and what each model predicts for the same input. Below, the \
+               residual: measured minus predicted. A good model's residual stays inside the shaded floor and shows \
+               no pattern. Untick a name to hide its line.",
+        body,
+    })
+}
+
+fn pairs<'a>(before: &'a Comparison, after: Option<&'a Comparison>) -> Vec<Pair<'a>> {
+    let same = |a: &Trace, b: &Trace| a.motion == b.motion && a.joint == b.joint;
+    let floor = |joint| {
+        let signal = before.signals.iter().find(|signal| signal.joint == joint);
+        signal.map(|signal| signal.floor)
+    };
+    let pair = |trace: &'a Trace| Pair {
+        before: trace,
+        after: after.and_then(|after| after.traces.iter().find(|other| same(trace, other))),
+        floor_rad: floor(trace.joint),
+    };
+    before.traces.iter().map(pair).collect()
+}
+
+fn toggle(what: &str, name: &str, tone: Tone) -> Markup {
+    html! {
+        label class={ "key " (tone.class()) } {
+            input type="checkbox" id={ "show-" (what) } checked;
+            span.swatch {} (name)
+        }
+    }
+}
+
+fn drawn(pair: &Pair, open: bool) -> Markup {
+    let trace = pair.before;
+    html! {
+        details.chart open[open] {
+            summary {
+                b { (trace.motion) } ", joint " (trace.joint) " · error " (mrad(trace.rms_rad))
+                @if let Some(after) = pair.after { " → " (mrad(after.rms_rad)) }
+                " mrad"
+            }
+            div.scroll { (chart(pair)) }
+        }
+    }
+}
+
+fn angles<'a>(trace: &'a Trace, of: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    trace.time_s.iter().copied().zip(of.iter().copied())
+}
+
+fn residual(trace: &Trace) -> impl Iterator<Item = (f64, f64)> + '_ {
+    let left = trace.measured_rad.iter().zip(&trace.predicted_rad);
+    let left = left.map(|(measured, predicted)| 1e3 * (measured - predicted));
+    trace.time_s.iter().copied().zip(left)
+}
+
+fn chart(pair: &Pair) -> Markup {
+    let both = || std::iter::once(pair.before).chain(pair.after);
+    let time = Scale::new(
+        span(both().flat_map(|trace| trace.time_s.clone()), 0.0),
+        (56.0, 750.0),
+    );
+    let angle = span(
+        both().flat_map(|t| t.measured_rad.iter().chain(&t.predicted_rad).copied()),
+        0.05,
+    );
+    let floor_mrad = 1e3 * pair.floor_rad.unwrap_or(0.0).abs();
+    let left = both().flat_map(|t| residual(t).map(|point| point.1));
+    let left = span(left.chain([floor_mrad, -floor_mrad]), 0.08);
+    let above = Plot {
+        x: time,
+        y: Scale::new(angle, (200.0, 20.0)),
+    };
+    let below = Plot {
+        x: time,
+        y: Scale::new(left, (345.0, 232.0)),
+    };
+    let trace = pair.before;
+    html! {
+        svg viewBox="0 0 760 380" role="img" aria-label={ "motion " (trace.motion) ", joint " (trace.joint) } {
+            (above.columns(8)) (above.rows(5, "angle, rad"))
+            (above.curve(angles(trace, &trace.measured_rad), Tone::Measured))
+            (above.curve(angles(trace, &trace.predicted_rad), Tone::Before))
+            @if let Some(after) = pair.after {
+                (above.curve(angles(after, &after.predicted_rad), Tone::After))
+            }
+            (below.columns(8)) (below.rows(4, "residual, mrad"))
+            @if floor_mrad > 0.0 { (below.band(-floor_mrad, floor_mrad, Tone::Floor)) }
+            (below.curve(residual(trace), Tone::Before))
+            @if let Some(after) = pair.after { (below.curve(residual(after), Tone::After)) }
+            (below.x_labels(8, "time, s"))
+        }
+    }
+}
+
+/// Per joint, each model of the chain.
+fn fits(report: &Report) -> Markup {
+    let row = |comparison: &Comparison, signal: &SignalError| {
+        html! {
+            tr {
+                td { (comparison.model) }
+                td.number { (signal.joint) }
+                td.number { (mrad(signal.rms)) }
+                td.number { (mrad(signal.largest)) }
+                td.number { (short(signal.fit_percent)) " %" }
+                td.number { (mrad(signal.floor)) }
+            }
+        }
+    };
+    html! {
+        h3 { "All motions together" }
+        div.scroll { table {
+            thead { tr {
+                th { "Model" } th.number { "Joint" } th.number { "RMS, mrad" } th.number { "Largest, mrad" }
+                th.number { "Fit" } th.number { "Floor, mrad" }
+            } }
+            tbody {
+                @for comparison in &report.comparisons {
+                    @for signal in &comparison.signals { (row(comparison, signal)) }
+                }
+            }
+        } }
+    }
+}

@@ -1,0 +1,108 @@
+//! How the error falls from model to model, down to the floor; and motion by motion.
+
+use super::bars::{Bar, largest};
+use super::number::{mrad, percent};
+use super::page::Section;
+use super::svg::Tone;
+use super::words::in_mrad;
+use super::{Report, pooled};
+use crate::compare::Comparison;
+use crate::diagnose::MotionError;
+use maud::{Markup, html};
+
+pub(super) fn section(report: &Report) -> Option<Section> {
+    let chain: Vec<&Comparison> = report
+        .comparisons
+        .iter()
+        .filter(|comparison| !comparison.signals.is_empty())
+        .collect();
+    let motions = report.diagnosis.as_ref().map_or(&[][..], |d| &d.motions);
+    if chain.is_empty() && motions.is_empty() {
+        return None;
+    }
+    let body = html! {
+        @if !chain.is_empty() { (steps(&chain)) }
+        @if !motions.is_empty() { (by_motion(motions)) }
+    };
+    Some(Section {
+        id: "fall",
+        title: "How the error falls",
+        lead: "Each bar is the typical (RMS) error of one model, all joints and motions together. The pale part is what \
+               this model gained over the one above it; the thin line is the floor.",
+        body,
+    })
+}
+
+fn steps(chain: &[&Comparison]) -> Markup {
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
+    let floor = pooled(&chain[0].signals, |signal| signal.floor);
+    let full = largest(errors.iter().copied().chain([floor]));
+    let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
+    let bar = |index: usize| Bar {
+        ghost: previous(index),
+        mark: Some(floor),
+        ..Bar::new(
+            errors[index],
+            full,
+            if index == 0 {
+                Tone::Before
+            } else {
+                Tone::After
+            },
+        )
+    };
+    html! {
+        div.steps {
+            @for (index, comparison) in chain.iter().enumerate() {
+                span { (comparison.model) }
+                (bar(index).draw())
+                span.number {
+                    (in_mrad(errors[index]))
+                    @if let Some(previous) = previous(index) {
+                        span.aside { " (" (change(previous, errors[index])) ")" }
+                    }
+                }
+            }
+            span { "floor" }
+            (Bar::new(floor, full, Tone::Floor).draw())
+            span.number { (in_mrad(floor)) }
+        }
+    }
+}
+
+/// "-45 %", with a proper minus.
+fn change(from: f64, to: f64) -> String {
+    let share = to / from - 1.0;
+    let sign = if share < 0.0 { "−" } else { "+" };
+    format!("{sign}{}", percent(share.abs()))
+}
+
+fn by_motion(motions: &[MotionError]) -> Markup {
+    let full = largest(
+        motions
+            .iter()
+            .flat_map(|motion| [motion.before, motion.after]),
+    );
+    let after = |motion: &MotionError| Bar {
+        ghost: Some(motion.before),
+        ..Bar::new(motion.after, full, Tone::After)
+    };
+    html! {
+        h3 { "Motion by motion" }
+        div.scroll { table {
+            thead { tr {
+                th { "Motion" } th { "Role" } th.number { "Before, mrad" } th.number { "After, mrad" } th.wide {}
+            } }
+            tbody { @for motion in motions {
+                tr {
+                    td { (motion.motion) }
+                    td { @if motion.held_out { "held out" } @else { "fitted" } }
+                    td.number { (mrad(motion.before)) }
+                    td.number { (mrad(motion.after)) }
+                    td.wide { (after(motion).draw()) }
+                }
+            } }
+        } }
+    }
+}
