@@ -80,7 +80,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk.data(&data)?;
         return Ok(Outcome::Done);
     }
-    fit::report(&extension, &args.output, talk)
+    fit::report(&extension, "refitted without it", &args.output, talk)
 }
 
 fn instance(extension: &Extension, candidate: Candidate) -> EffectInstance {

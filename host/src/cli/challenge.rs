@@ -120,16 +120,16 @@ pub fn text(score: &Score) -> String {
         let found = value.found.map_or("-".to_string(), show::number);
         table.add_row([value.key.clone(), show::number(value.hidden), found]);
     }
-    let truth = show::number(score.true_error_rad);
+    let truth = show::number(1e3 * score.true_error_rad);
     table.add_row([
-        "error on c.csv, rad".into(),
+        "error on c.csv, mrad".into(),
         truth,
-        show::number(score.error_rad),
+        show::number(1e3 * score.error_rad),
     ]);
     let said = match score.solved {
         true => "Solved: the model names what was hidden.",
         false => "Not solved: the model does not name what was hidden.",
     };
-    let nominal = show::number(score.nominal_error_rad);
-    format!("{table}\n\nnominal.toml leaves {nominal} rad on c.csv.\n{said}")
+    let nominal = show::number(1e3 * score.nominal_error_rad);
+    format!("{table}\n\nnominal.toml leaves {nominal} mrad on c.csv.\n{said}")
 }

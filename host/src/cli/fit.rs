@@ -59,7 +59,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     let text = edit::set_values(&text, &args.model, &values(&extension))?;
     output::write_new(&args.output, &text, args.force)?;
-    report(&extension, &args.output, talk)
+    report(&extension, "as it was", &args.output, talk)
 }
 
 /// The values to fit: those named, or the model's own.
@@ -112,14 +112,14 @@ pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Refused)
 }
 
-/// Says what the new model holds.
-pub fn report(extension: &Extension, file: &Path, talk: &Talk) -> Result<Outcome> {
+/// Says what the new model holds; `before` says which model left the error before.
+pub fn report(extension: &Extension, before: &str, file: &Path, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         let mut data = show::extension_json(extension);
         data["model"] = json!(file.to_string_lossy());
         talk.data(&data)?;
     } else {
-        talk.print(&show::extension(extension))?;
+        talk.print(&show::extension(extension, before))?;
         talk.say(&format!("wrote {}", file.display()));
     }
     Ok(Outcome::Done)

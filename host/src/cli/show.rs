@@ -34,8 +34,8 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// An extension for people: its values, then its errors.
-pub fn extension(extension: &Extension) -> String {
+/// An extension for people: its values, then its errors; `before` says which model left the error before.
+pub fn extension(extension: &Extension, before: &str) -> String {
     let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
     for value in &extension.values {
         table.add_row([
@@ -46,7 +46,11 @@ pub fn extension(extension: &Extension) -> String {
             if value.on_bound { "on its bound" } else { "" }.to_string(),
         ]);
     }
-    let mut lines = vec![table.to_string(), String::new(), fall(&extension.error)];
+    let mut lines = vec![
+        table.to_string(),
+        String::new(),
+        fall(&extension.error, before),
+    ];
     if let Horizon::Seconds(seconds) = extension.horizon {
         lines.push(format!("The model ran {} s at a time.", number(seconds)));
     }
@@ -58,17 +62,17 @@ pub fn extension(extension: &Extension) -> String {
     lines.join("\n")
 }
 
-fn fall(error: &Fall) -> String {
+fn fall(error: &Fall, before: &str) -> String {
     let whose = if error.held_out {
         "on the motions held out"
     } else {
         "on the motions fitted"
     };
     format!(
-        "Error {whose}: {} rad before -> {} rad after; noise alone leaves {} rad.",
-        number(error.before_rad),
-        number(error.after_rad),
-        number(error.floor_rad)
+        "Error {whose}: {} mrad {before} -> {} mrad; noise alone leaves {} mrad.",
+        number(1e3 * error.before_rad),
+        number(1e3 * error.after_rad),
+        number(1e3 * error.floor_rad)
     )
 }
 
