@@ -9,6 +9,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod extend;
 pub mod identify;
 pub mod log;
 pub mod model;

@@ -1,2 +1,25 @@
-//! The command line.
-fn main() {}
+//! The command line: `handstand help` lists the commands, each one's file under `cli/` is its manual.
+
+mod cli;
+
+use clap::Parser as _;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = cli::Cli::parse();
+    let talk = cli.talk();
+    match std::panic::catch_unwind(|| cli.command.run(&talk)) {
+        Ok(Ok(outcome)) => ExitCode::from(outcome.exit_code()),
+        Ok(Err(error)) => {
+            let code = error.exit_code();
+            talk.error(error);
+            ExitCode::from(code)
+        }
+        Err(_) => {
+            eprintln!(
+                "handstand: this is a bug in the program, not in your files; please report it"
+            );
+            ExitCode::from(cli::BUG)
+        }
+    }
+}

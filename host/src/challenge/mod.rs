@@ -7,6 +7,7 @@ mod goal;
 mod motion;
 mod physics;
 mod rig;
+mod score;
 mod seal;
 mod text;
 mod truth;
@@ -15,6 +16,7 @@ mod truth;
 mod tests;
 
 pub use rig::{KINDS, kind_named};
+pub use score::{Score, ScoredValue, score};
 pub use seal::{seal, unseal};
 
 use crate::error::{Error, Result};

@@ -1,0 +1,135 @@
+//! `handstand challenge`: a virtual bench arm with a hidden effect, to try oneself or the program on.
+//!
+//! `new` writes a folder with `nominal.toml` (what the arm's owner believes), logs `a.csv`, `b.csv`, `c.csv`,
+//! and the sealed answer. `score` opens the answer and sets a model beside it.
+//!
+//! ```console
+//! $ handstand challenge new --seed 7 -o riddle
+//! $ handstand challenge score riddle riddle/model.toml
+//! ```
+//!
+//! `score` exits with 1 when the model does not name what was hidden. `--json` prints `hidden`, `added`,
+//! `solved`, `values` (`key`, `hidden`, `found`), `nominal_error_rad`, `error_rad`, `true_error_rad`.
+
+use super::talk::Talk;
+use super::{Outcome, name, show};
+use handstand::challenge::{self, Hidden, Score, kind_named};
+use handstand::{Error, Model, Result};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// What can be done with challenges.
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Make a virtual bench with a hidden effect
+    New(New),
+    /// Open the answer and set a model beside it
+    Score(ScoreArgs),
+}
+
+/// Make a virtual bench with a hidden effect.
+#[derive(Debug, clap::Args)]
+pub struct New {
+    /// Seed: the same one makes the same bench
+    #[arg(long, value_name = "N")]
+    seed: u64,
+    /// The effect to hide, or `none`; by lot without it
+    #[arg(long, value_name = "NAME")]
+    effect: Option<String>,
+    /// Folder to make
+    #[arg(long, short, value_name = "DIR")]
+    output: PathBuf,
+}
+
+/// Open the answer and set a model beside it.
+#[derive(Debug, clap::Args)]
+pub struct ScoreArgs {
+    /// Folder of the challenge
+    folder: PathBuf,
+    /// Model file
+    model: PathBuf,
+}
+
+/// Makes or scores.
+pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+    match command {
+        Command::New(args) => new(args, talk),
+        Command::Score(args) => {
+            let score = challenge::score(&args.folder, &Model::load(&args.model)?)?;
+            if talk.json {
+                talk.data(&score)?;
+            } else {
+                talk.print(&text(&score))?;
+            }
+            Ok(match score.solved {
+                true => Outcome::Done,
+                false => Outcome::Refused,
+            })
+        }
+    }
+}
+
+fn new(args: &New, talk: &Talk) -> Result<Outcome> {
+    let made = challenge::generate(args.seed, hidden(args.effect.as_deref())?);
+    challenge::write(&made, &args.output)?;
+    if talk.json {
+        talk.data(&json!({
+            "folder": args.output.to_string_lossy(),
+            "model": "nominal.toml",
+            "logs": made.logs.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        }))?;
+    } else {
+        talk.say(&format!(
+            "wrote {}: its README.txt says what to do",
+            args.output.display()
+        ));
+    }
+    Ok(Outcome::Done)
+}
+
+fn hidden(named: Option<&str>) -> Result<Hidden> {
+    let Some(named) = named else {
+        return Ok(Hidden::Random);
+    };
+    if named == "none" {
+        return Ok(Hidden::Nothing);
+    }
+    let id = name::effect(named)?.card().id;
+    kind_named(id).map(Hidden::Effect).ok_or_else(|| {
+        Error::usage(
+            format!("`{id}` cannot be hidden in the bench arm"),
+            format!("one of these can: {}", challenge::KINDS.join(", ")),
+        )
+    })
+}
+
+/// A score for people.
+pub fn text(score: &Score) -> String {
+    let mut table = show::table(["", "Hidden", "Found"]);
+    let nothing = || "nothing".to_string();
+    let found = match score.added.as_slice() {
+        [] => nothing(),
+        added => added.join(", "),
+    };
+    table.add_row([
+        "effect".into(),
+        score.hidden.clone().unwrap_or_else(nothing),
+        found,
+    ]);
+    for value in &score.values {
+        let found = value.found.map_or("-".to_string(), show::number);
+        table.add_row([value.key.clone(), show::number(value.hidden), found]);
+    }
+    let truth = show::number(1e3 * score.true_error_rad);
+    table.add_row([
+        "error on c.csv, mrad".into(),
+        truth,
+        show::number(1e3 * score.error_rad),
+    ]);
+    let said = match score.solved {
+        true => "Solved: the model names what was hidden.",
+        false => "Not solved: the model does not name what was hidden.",
+    };
+    let nominal = show::number(1e3 * score.nominal_error_rad);
+    format!("{table}\n\nnominal.toml leaves {nominal} mrad on c.csv.\n{said}")
+}

@@ -1,0 +1,88 @@
+//! `handstand compare MODEL LOG... [--model OTHER]...`: how far models are from what was measured, and where.
+//!
+//! The models run along the logs' inputs; nothing is fitted but where each run starts. Several stand side by
+//! side, over the same horizon: the first one's, unless one is given.
+//!
+//! ```console
+//! $ handstand compare arm.toml drop.csv --model better.toml --report report.html
+//! ```
+//!
+//! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`, `failures`,
+//! `traces`) and `provenance`.
+
+use super::page::{self, Page};
+use super::talk::Talk;
+use super::{Outcome, input};
+use handstand::identify::Horizon;
+use handstand::log::{LogRequest, Split, read};
+use handstand::{Model, Result, compare};
+use std::path::PathBuf;
+
+/// Compare models with logs.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Model file
+    model: PathBuf,
+    /// Logs
+    #[arg(required = true, value_name = "LOG", value_parser = input::log)]
+    logs: Vec<LogRequest>,
+    /// Another model file to set beside it
+    #[arg(long = "model", value_name = "OTHER.toml")]
+    others: Vec<PathBuf>,
+    /// Seconds the models run without correction, or `whole`; chosen by the first one's stability without it
+    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
+    horizon: Option<Horizon>,
+    /// Write a page with pictures
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    /// Replace the page if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// Compares, prints, writes the page.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    if let Some(page) = &args.report {
+        input::vacant(page, args.force)?;
+    }
+    let mut horizon = args.horizon;
+    let mut comparisons = Vec::new();
+    let mut split = Split::default();
+    let files: Vec<&PathBuf> = std::iter::once(&args.model).chain(&args.others).collect();
+    for file in &files {
+        let model = Model::load(file)?;
+        // Each model names columns and zeros its own way.
+        split.training = read(&args.logs, &model.log)?;
+        let name = file
+            .file_name()
+            .unwrap_or(file.as_os_str())
+            .to_string_lossy();
+        let comparison = compare::compare(&model, &name, &split.training, horizon);
+        horizon = horizon.or(Some(
+            comparison
+                .horizon_s
+                .map_or(Horizon::Whole, Horizon::Seconds),
+        ));
+        comparisons.push(comparison);
+    }
+    let text = compare::text(&comparisons);
+    let report = page::report(
+        Page {
+            title: format!("{} against measured motions", comparisons[0].model),
+            comparisons,
+            diagnosis: None,
+            models: &files,
+            split: &split,
+        },
+        talk,
+    )?;
+    if talk.json {
+        talk.data(&handstand::report::json(&report))?;
+    } else {
+        talk.print(&text)?;
+    }
+    if let Some(file) = &args.report {
+        page::write(&report, file, args.force, talk)?;
+    }
+    Ok(Outcome::Done)
+}

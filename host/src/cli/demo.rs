@@ -1,0 +1,136 @@
+//! `handstand demo [-o DIR]`: the whole loop on a virtual bench, in under a minute.
+//!
+//! Hides an effect in a bench arm, judges its logs, compares, diagnoses, adds what was named, and opens the
+//! answer. Every step is a command line that could be typed; they go to stderr with what they say, the last
+//! table to stdout.
+//!
+//! ```console
+//! $ handstand demo -o bench
+//! ```
+//!
+//! `--json` prints what `handstand challenge score --json` prints.
+
+use super::talk::Talk;
+use super::{Cli, Command, Outcome, challenge, diagnose};
+use clap::Parser as _;
+use handstand::{Error, Model, Result};
+use std::path::PathBuf;
+
+/// Watch the whole loop on a virtual bench with a hidden effect.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folder to make
+    #[arg(long, short, value_name = "DIR", default_value = "handstand-demo")]
+    output: PathBuf,
+    /// Seed of the bench
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// The effect to hide, or `none`; by lot without it
+    #[arg(long, value_name = "NAME")]
+    effect: Option<String>,
+}
+
+/// Runs the loop.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let at = |name: &str| args.output.join(name).to_string_lossy().into_owned();
+    let (folder, nominal, model) = (
+        args.output.to_string_lossy(),
+        at("nominal.toml"),
+        at("model.toml"),
+    );
+    let (a, b, c) = (&at("a.csv"), &at("b.csv"), &at("c.csv"));
+    let seed = args.seed.to_string();
+
+    talk.say("A bench arm, its model, three logs; something may be missing from the model.");
+    let mut new = vec!["challenge", "new", "--seed", &seed, "-o", &folder];
+    new.extend(args.effect.iter().flat_map(|effect| ["--effect", effect]));
+    step(&new, talk)?;
+    talk.say("\nAre the logs fit to be learned from?");
+    step(&["log", "check", &nominal, a, b, c], talk)?;
+    talk.say("\nHow far is the model from what was measured, and where?");
+    step(&["compare", &nominal, a, b, c], talk)?;
+    talk.say(
+        "\nWhat is missing? c.csv is held out: only the motions it foretells prove an effect.",
+    );
+    let page = at("report.html");
+    let found = missing(
+        &[
+            "diagnose",
+            &nominal,
+            a,
+            b,
+            "--holdout",
+            c,
+            "--report",
+            &page,
+        ],
+        talk,
+    )?;
+    let model = match &found {
+        Some(effect) => {
+            talk.say("\nThe model with it, and the two side by side on the motion held out:");
+            step(
+                &[
+                    "add",
+                    &nominal,
+                    effect,
+                    "--fit",
+                    a,
+                    b,
+                    "--holdout",
+                    c,
+                    "-o",
+                    &model,
+                ],
+                talk,
+            )?;
+            step(&["compare", &nominal, c, "--model", &model], talk)?;
+            model
+        }
+        None => nominal,
+    };
+    talk.say("\nThe answer:");
+    announce(&["challenge", "score", &folder, &model], talk);
+    let score = handstand::challenge::score(&args.output, &Model::load(model.as_ref())?)?;
+    if talk.json {
+        talk.data(&score)?;
+    } else {
+        talk.print(&challenge::text(&score))?;
+    }
+    talk.say(&format!("The page with the pictures: {page}"));
+    Ok(Outcome::Done)
+}
+
+/// Says a command line and runs it.
+fn step(words: &[&str], talk: &Talk) -> Result<Outcome> {
+    let (command, talk) = parsed(words, talk)?;
+    command.run(&talk)
+}
+
+/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it.
+fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
+    let (command, talk) = parsed(words, talk)?;
+    let Command::Diagnose(args) = &command else {
+        return Ok(None);
+    };
+    let found = diagnose::find(args, &talk)?;
+    Ok(found.effects.first().map(diagnose::address))
+}
+
+fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {
+    let line = announce(words, talk);
+    let all = std::iter::once(&"handstand").chain(words);
+    let cli = Cli::try_parse_from(all).map_err(|error| {
+        Error::usage(
+            error.to_string(),
+            "name a folder that is no option: -o bench",
+        )
+    })?;
+    Ok((cli.command, talk.transcript(line)))
+}
+
+fn announce(words: &[&str], talk: &Talk) -> String {
+    let line = format!("handstand {}", words.join(" "));
+    talk.say(&format!("\n$ {line}"));
+    line
+}

@@ -1,0 +1,80 @@
+//! Arguments that several commands take.
+
+use handstand::identify::Horizon;
+use handstand::log::{LogRequest, Motion, Split, read};
+use handstand::{Error, Model, Result};
+use std::path::Path;
+
+/// A log argument, its error with the remedy: `drop.csv`, `drop.csv:26-139`.
+pub fn log(text: &str) -> Result<LogRequest, String> {
+    text.parse().map_err(said)
+}
+
+/// A horizon argument: seconds, or `whole`.
+pub fn horizon(text: &str) -> Result<Horizon, String> {
+    match text.parse::<f64>() {
+        _ if text == "whole" => Ok(Horizon::Whole),
+        Ok(seconds) if seconds.is_finite() && seconds > 0.0 => Ok(Horizon::Seconds(seconds)),
+        _ => Err("give seconds above 0, or `whole` to run whole motions freely".to_string()),
+    }
+}
+
+/// An error and its remedy in one line, as argument errors are told.
+pub fn said(error: Error) -> String {
+    match error.remedy() {
+        Some(remedy) => format!("{error}; {remedy}"),
+        None => error.to_string(),
+    }
+}
+
+/// Motions to learn from and motions to be judged by; none in `held_out` means that all are learned from.
+///
+/// # Errors
+/// Logs that cannot be read, or a motion in both.
+pub fn motions(model: &Model, logs: &[LogRequest], held_out: &[LogRequest]) -> Result<Split> {
+    if let Some(both) = held_out.iter().find(|log| logs.contains(log)) {
+        return Err(Error::usage(
+            format!("{both} is fitted and held out"),
+            "name it once: a log that was learned from proves nothing",
+        ));
+    }
+    Ok(Split {
+        training: read(logs, &model.log)?,
+        held_out: read(held_out, &model.log)?,
+    })
+}
+
+/// Name and SHA-256 of every file the motions came from, each once.
+pub fn files(motions: &[Motion]) -> Vec<(String, String)> {
+    let mut files: Vec<(String, String)> = Vec::new();
+    for source in motions.iter().map(|motion| &motion.source) {
+        let name = source.path.file_name().unwrap_or(source.path.as_os_str());
+        let file = (name.to_string_lossy().into_owned(), source.sha256.clone());
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    files
+}
+
+/// Refuses a name that is taken before the work begins, not after it.
+///
+/// # Errors
+/// [`Error::Usage`] if the file exists and may not be replaced.
+pub fn vacant(path: &Path, force: bool) -> Result<()> {
+    if !force && path.symlink_metadata().is_ok() {
+        return Err(Error::usage(
+            format!("{} exists", path.display()),
+            "choose another name or pass --force",
+        ));
+    }
+    Ok(())
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// [`Error::File`] if the system refuses.
+pub fn text(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))
+}

@@ -1,0 +1,110 @@
+//! Commands, one per file; each file's head is the command's manual.
+//!
+//! stdout carries data, stderr talk. Exit codes: 0 done, 1 the answer is no (a log refused, values that cannot
+//! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a bug.
+
+mod add;
+mod challenge;
+mod compare;
+mod demo;
+mod diagnose;
+mod effects;
+mod fit;
+mod input;
+mod log;
+mod name;
+mod page;
+mod show;
+mod talk;
+
+use clap::{Parser, Subcommand};
+use handstand::Result;
+use talk::Talk;
+
+/// Exit code of a bug.
+pub const BUG: u8 = 5;
+
+/// Compare a model of a servo arm or chain of links with measured logs, and find the missing physical effect.
+#[derive(Debug, Parser)]
+#[command(name = "handstand", version, max_term_width = 100, after_help = FIRST)]
+pub struct Cli {
+    /// Print data as JSON on stdout
+    #[arg(long, global = true)]
+    json: bool,
+    /// Say nothing on stderr but errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
+
+impl Cli {
+    /// Where this run's words go.
+    pub fn talk(&self) -> Talk {
+        Talk::new(self.json, self.quiet)
+    }
+}
+
+/// What there is to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compare models with logs
+    Compare(compare::Args),
+    /// Find the physical effect that is missing from a model
+    Diagnose(diagnose::Args),
+    /// Explain the physical effects the library knows
+    Effects(effects::Args),
+    /// Judge logs before they are learned from
+    #[command(subcommand)]
+    Log(log::Command),
+    /// Fit a model's free values to logs
+    Fit(fit::Args),
+    /// Add an effect to a model, its values fitted to logs
+    Add(add::Args),
+    /// Try yourself, or the program, on a virtual bench with a hidden effect
+    #[command(subcommand)]
+    Challenge(challenge::Command),
+    /// Watch the whole loop on such a bench
+    Demo(demo::Args),
+}
+
+impl Command {
+    /// Does it.
+    ///
+    /// # Errors
+    /// Requests that make no sense, files that cannot be read or are refused.
+    pub fn run(&self, talk: &Talk) -> Result<Outcome> {
+        match self {
+            Command::Compare(args) => compare::run(args, talk),
+            Command::Diagnose(args) => diagnose::run(args, talk),
+            Command::Effects(args) => effects::run(args, talk),
+            Command::Log(log::Command::Check(args)) => log::check(args, talk),
+            Command::Fit(args) => fit::run(args, talk),
+            Command::Add(args) => add::run(args, talk),
+            Command::Challenge(command) => challenge::run(command, talk),
+            Command::Demo(args) => demo::run(args, talk),
+        }
+    }
+}
+
+/// How a command that ran to its end came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It has done what was asked.
+    Done,
+    /// It ran, and the answer is no: the data cannot be used, the values cannot be determined.
+    Refused,
+}
+
+impl Outcome {
+    /// The process's exit code.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Outcome::Done => 0,
+            Outcome::Refused => 1,
+        }
+    }
+}

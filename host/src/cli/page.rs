@@ -1,0 +1,90 @@
+//! Reports: what they were made from, and writing them.
+
+use super::talk::Talk;
+use handstand::compare::Comparison;
+use handstand::diagnose::Diagnosis;
+use handstand::log::{Motion, Split};
+use handstand::report::{LogFile, ModelFile, Provenance, Report, html};
+use handstand::{Error, Result, output};
+use sha2::{Digest as _, Sha256};
+use std::path::{Path, PathBuf};
+
+/// What a report is made of.
+pub struct Page<'a> {
+    /// Heading.
+    pub title: String,
+    /// Models against the motions.
+    pub comparisons: Vec<Comparison>,
+    /// What is missing, where that was asked.
+    pub diagnosis: Option<Diagnosis>,
+    /// Model files.
+    pub models: &'a [&'a PathBuf],
+    /// The motions.
+    pub split: &'a Split,
+}
+
+/// The report with its provenance.
+///
+/// # Errors
+/// A model file that cannot be read again.
+pub fn report(page: Page, talk: &Talk) -> Result<Report> {
+    let mut logs = Vec::new();
+    add_logs(&mut logs, &page.split.training, false);
+    add_logs(&mut logs, &page.split.held_out, true);
+    let model_files: Result<Vec<ModelFile>> = page.models.iter().map(|file| model(file)).collect();
+    Ok(Report {
+        title: page.title,
+        comparisons: page.comparisons,
+        diagnosis: page.diagnosis,
+        provenance: Provenance {
+            program_version: env!("CARGO_PKG_VERSION").to_string(),
+            model_files: model_files?,
+            logs,
+            command: talk.command.clone(),
+        },
+    })
+}
+
+/// Writes the page.
+///
+/// # Errors
+/// As [`output::write_new`].
+pub fn write(report: &Report, file: &Path, force: bool, talk: &Talk) -> Result<()> {
+    output::write_new(file, &html(report), force)?;
+    talk.say(&format!("wrote {}", file.display()));
+    Ok(())
+}
+
+fn model(file: &Path) -> Result<ModelFile> {
+    let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
+    let hash = Sha256::digest(&bytes);
+    Ok(ModelFile {
+        name: name(file),
+        sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+    })
+}
+
+fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
+    for motion in motions {
+        let name = name(&motion.source.path);
+        match logs
+            .iter_mut()
+            .find(|log| log.name == name && log.held_out == held_out)
+        {
+            Some(log) => log.samples += motion.len(),
+            None => logs.push(LogFile {
+                name,
+                sha256: motion.source.sha256.clone(),
+                samples: motion.len(),
+                held_out,
+            }),
+        }
+    }
+}
+
+fn name(file: &Path) -> String {
+    file.file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}

@@ -1,0 +1,120 @@
+//! Tables and figures as every command shows them.
+
+use comfy_table::{ContentArrangement, Table, TableComponent, presets};
+use handstand::diagnose::FittedValue;
+use handstand::extend::{Extension, Fall, Undetermined};
+use handstand::identify::Horizon;
+use serde_json::{Value, json};
+
+/// A plain table without frame.
+pub fn table<const N: usize>(header: [&str; N]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_header(header)
+        .remove_style(TableComponent::HorizontalLines)
+        .remove_style(TableComponent::MiddleIntersections);
+    if table.width().is_none() {
+        table.set_width(100);
+    }
+    table
+}
+
+/// A number to four significant digits.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let size = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&size) {
+        format!("{value:.*}", usize::try_from(3 - size).unwrap_or(0))
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// An extension for people: its values, then its errors; `before` says which model left the error before.
+pub fn extension(extension: &Extension, before: &str) -> String {
+    let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
+    for value in &extension.values {
+        table.add_row([
+            value.path.clone(),
+            number(value.value),
+            format!("{} to {}", number(value.low), number(value.high)),
+            value.unit.clone(),
+            if value.on_bound { "on its bound" } else { "" }.to_string(),
+        ]);
+    }
+    let mut lines = vec![
+        table.to_string(),
+        String::new(),
+        fall(&extension.error, before),
+    ];
+    if let Horizon::Seconds(seconds) = extension.horizon {
+        lines.push(format!("The model ran {} s at a time.", number(seconds)));
+    }
+    lines.extend(
+        warnings(extension)
+            .iter()
+            .map(|line| format!("warning: {line}")),
+    );
+    lines.join("\n")
+}
+
+fn fall(error: &Fall, before: &str) -> String {
+    let whose = if error.held_out {
+        "on the motions held out"
+    } else {
+        "on the motions fitted"
+    };
+    format!(
+        "Error {whose}: {} mrad {before} -> {} mrad; noise alone leaves {} mrad.",
+        number(1e3 * error.before_rad),
+        number(1e3 * error.after_rad),
+        number(1e3 * error.floor_rad)
+    )
+}
+
+/// What to be wary of in an extension.
+fn warnings(extension: &Extension) -> Vec<String> {
+    let stuck = |value: &&FittedValue| value.on_bound;
+    let mut warnings: Vec<String> = extension
+        .values
+        .iter()
+        .filter(stuck)
+        .map(|value| format!("`{}` lies on its bound: no measurement of it", value.path))
+        .collect();
+    if !extension.converged {
+        warnings.push("the fit had not come to rest when its iterations ran out".to_string());
+    }
+    warnings
+}
+
+/// An extension for programs.
+pub fn extension_json(extension: &Extension) -> Value {
+    let error = &extension.error;
+    json!({
+        "values": extension.values,
+        "error": {
+            "unit": "rad",
+            "before": error.before_rad,
+            "after": error.after_rad,
+            "floor": error.floor_rad,
+            "held_out": error.held_out,
+        },
+        "horizon_s": match extension.horizon {
+            Horizon::Whole => None,
+            Horizon::Seconds(seconds) => Some(seconds),
+        },
+        "converged": extension.converged,
+        "warnings": warnings(extension),
+    })
+}
+
+/// Values that cannot be had, for people.
+pub fn undetermined(refused: &Undetermined) -> String {
+    format!(
+        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show them."
+    )
+}

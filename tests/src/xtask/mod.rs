@@ -1,0 +1,34 @@
+//! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
+
+mod program;
+mod test;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// The project's own chores.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+pub struct Chores {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Install what the tests need, then run all of them
+    Test(test::Args),
+}
+
+impl Chores {
+    /// Does the chore; fails if any of it failed.
+    pub fn run(&self) -> ExitCode {
+        let well = match &self.chore {
+            Chore::Test(args) => test::run(args),
+        };
+        match well {
+            true => ExitCode::SUCCESS,
+            false => ExitCode::FAILURE,
+        }
+    }
+}
