@@ -137,8 +137,8 @@ impl Chain {
                 parent.inertia +=
                     inertia + 2.0 * (b[0] * l[0] + b[1] * l[1]) + l[0] * ml[0] + l[1] * ml[1];
                 parent.b = [parent.b[0] + b[0] + ml[0], parent.b[1] + b[1] + ml[1]];
-                for k in 0..3 {
-                    parent.mass[k] += mass[k];
+                for (sum, own) in parent.mass.iter_mut().zip(mass) {
+                    *sum += own;
                 }
                 parent.bias_moment +=
                     bias_moment + b[0] * c[0] + b[1] * c[1] + l[0] * force[0] + l[1] * force[1];

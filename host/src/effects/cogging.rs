@@ -41,7 +41,7 @@ static CARD: Card = Card {
             meaning: "phase of the ripple at angle zero",
             off: None,
             typical: (-PI, PI),
-            bounds: (-3.5, 3.5),
+            bounds: (-20.0, 20.0),
             starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
         },
     ],

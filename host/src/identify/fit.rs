@@ -290,7 +290,7 @@ impl<'a> Search<'a> {
                 let (node_precision, node_pull) = self.prior(&self.nodes[w], &self.guesses[w]);
                 WindowJacobian {
                     residual: DVector::from_column_slice(base),
-                    parameters: DMatrix::from_fn(base.len(), parameters, |r, c| derivative(r, c)),
+                    parameters: DMatrix::from_fn(base.len(), parameters, derivative),
                     node: DMatrix::from_fn(base.len(), unknowns, |r, c| {
                         derivative(r, parameters + c)
                     }),
