@@ -20,7 +20,7 @@ const BLOCK_S: f64 = 0.8;
 /// A motion gives at least this many blocks.
 const LEAST_BLOCKS: f64 = 8.0;
 /// A root-mean-square weighted residual up to this counts as nothing but noise.
-pub(super) const AT_FLOOR: f64 = 1.15;
+pub(super) const AT_FLOOR: f64 = 1.2;
 const RESAMPLES: usize = 600;
 
 impl Score {

@@ -343,7 +343,8 @@ impl Bench {
     /// Whether the data tell that `trial` is worse than `best`; `reference` is what both improve on.
     ///
     /// At the noise floor a sure difference counts however small. Above it, something else is missing too and
-    /// bends every candidate, so a difference below a tenth of what was gained decides nothing.
+    /// bends every candidate, so a difference decides nothing that is smaller than what remains unexplained and
+    /// than a tenth of what was gained.
     pub fn clearly_worse(&self, trial: &Trial, best: &Trial, reference: &Trial) -> bool {
         let (worse, better, start) = (trial.pooled(), best.pooled(), reference.pooled());
         let sure = super::score::surely_worse(&worse, &better, self.seed);
@@ -351,7 +352,8 @@ impl Bench {
             return sure;
         }
         let gained = (start.mean() - better.mean()).max(0.0);
-        sure && worse.mean() - better.mean() > 0.1 * gained
+        let unexplained = better.mean() - 1.0;
+        sure && worse.mean() - better.mean() > unexplained.min(0.1 * gained)
     }
 
     /// Change of the Bayesian information criterion on the training motions; correlated residuals count once

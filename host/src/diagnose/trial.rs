@@ -162,6 +162,19 @@ pub(super) struct Opening {
     pub gain: f64,
 }
 
+/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have smaller effects.
+fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
+    let parameters = candidate.effect.card().parameters;
+    parameters
+        .iter()
+        .zip(start)
+        .map(|(parameter, value)| match parameter.off {
+            Some(off) if off.is_finite() => off + 0.05 * (value - off),
+            _ => *value,
+        })
+        .collect()
+}
+
 /// The best starts of a candidate on top of a fitted model, best first.
 ///
 /// Each start costs one simulation. What it changes in the prediction is projected off what the fitted values
@@ -176,6 +189,7 @@ pub(super) fn openings(
     let mut found: Vec<Opening> = candidate
         .starts()
         .into_iter()
+        .flat_map(|start| [start.clone(), small(candidate, &start)])
         .map(|start| opening(from, off, &residual, candidate, start, data))
         .collect();
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -213,7 +227,7 @@ fn opening(
         .zip(&start)
         .map(|(parameter, value)| match parameter.off {
             Some(off) if off.is_finite() => {
-                let moved = off + (value - off) * scale.clamp(0.1, 5.0);
+                let moved = off + (value - off) * scale.clamp(0.02, 20.0);
                 moved.clamp(parameter.bounds.0, parameter.bounds.1)
             }
             _ => *value,

@@ -288,7 +288,7 @@ impl<'a> Search<'a> {
                     (base[row] - shifted[at][row]) / delta
                 };
                 let (node_precision, node_pull) = self.prior(&self.nodes[w], &self.guesses[w]);
-                WindowJacobian {
+                let mut window = WindowJacobian {
                     residual: DVector::from_column_slice(base),
                     parameters: DMatrix::from_fn(base.len(), parameters, derivative),
                     node: DMatrix::from_fn(base.len(), unknowns, |r, c| {
@@ -296,7 +296,10 @@ impl<'a> Search<'a> {
                     }),
                     node_precision,
                     node_pull,
-                }
+                    node_edge: self.guesses[w].edges(&self.nodes[w]),
+                };
+                window.hold_edges();
+                window
             })
             .collect()
     }

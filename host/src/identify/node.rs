@@ -20,6 +20,13 @@ pub(super) struct Guess {
     pub deviation: Vec<f64>,
 }
 
+/// How many standard deviations a start state may lie from the guess.
+const REACH_DEVIATIONS: f64 = 6.0;
+/// No start angle is known better than this, however smooth the log: smoothing and rounding leave slow errors that
+/// neighbouring samples share.
+const LEAST_RAD: f64 = 2e-4;
+/// The same for a start speed.
+const LEAST_RAD_S: f64 = 4e-3;
 /// Half the span of the samples that tell a window's start.
 const REACH_S: f64 = 0.06;
 
@@ -43,9 +50,10 @@ impl Guess {
             guess.node.reading_rad[joint] = line.value;
             guess.node.speed_rad_s[joint] = line.slope;
             // Where a shorter parabola says otherwise, the motion is no parabola.
-            guess.deviation[joint] = sigma * line.value_gain + (line.value - near.value).abs();
+            guess.deviation[joint] =
+                LEAST_RAD + sigma * line.value_gain + (line.value - near.value).abs();
             guess.deviation[joints + joint] =
-                sigma * line.slope_gain + (line.slope - near.slope).abs();
+                LEAST_RAD_S + sigma * line.slope_gain + (line.slope - near.slope).abs();
             let logged = motion.velocity_rad_s[joint]
                 .as_ref()
                 .map(|v| v[window.samples.start]);
@@ -59,11 +67,27 @@ impl Guess {
         guess
     }
 
+    /// Which unknowns lie on the edge of what the samples allow, and on which side: -1, +1, or 0 inside.
+    pub fn edges(&self, node: &Node) -> Vec<f64> {
+        let (mut node, mut middle) = (node.clone(), self.node.clone());
+        (0..node.unknowns())
+            .map(|i| {
+                let reach = REACH_DEVIATIONS * self.deviation[i];
+                let off = *node.at(i) - *middle.at(i);
+                if off.abs() >= reach * (1.0 - 1e-9) {
+                    off.signum()
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+
     /// Keeps a node within six standard deviations: what a start state can't be, it may not absorb.
     pub fn clamp(&self, node: &mut Node) {
         let mut middle = self.node.clone();
         for i in 0..node.unknowns() {
-            let reach = 6.0 * self.deviation[i];
+            let reach = REACH_DEVIATIONS * self.deviation[i];
             let middle = *middle.at(i);
             let value = node.at(i);
             *value = value.clamp(middle - reach, middle + reach);

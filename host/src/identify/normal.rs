@@ -40,9 +40,26 @@ pub(super) struct WindowJacobian {
     /// Prior on the node: precision of each unknown and its pull towards the guess.
     pub node_precision: DVector<f64>,
     pub node_pull: DVector<f64>,
+    /// Side on which an unknown lies at the edge of what it may be; 0 inside.
+    pub node_edge: Vec<f64>,
+}
+
+impl WindowJacobian {
+    /// Takes unknowns out of the step that lie on their edge and would leave by it.
+    pub fn hold_edges(&mut self) {
+        let gradient =
+            self.node.tr_mul(&self.residual) + self.node_precision.component_mul(&self.node_pull);
+        for i in 0..self.node_edge.len() {
+            if self.node_edge[i] * gradient[i] > 0.0 {
+                self.node.column_mut(i).fill(0.0);
+                self.node_pull[i] = 0.0;
+            }
+        }
+    }
 }
 
 impl Normal {
+    /// Normal equations of these windows with damping of the nodes' own part.
     pub fn assemble(parameters: usize, windows: &[WindowJacobian], damping: f64) -> Normal {
         let mut normal = Normal {
             matrix: DMatrix::zeros(parameters, parameters),
