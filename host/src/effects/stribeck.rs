@@ -64,6 +64,10 @@ impl Effect for Stribeck {
         &CARD
     }
 
+    fn difference(&self) -> f64 {
+        5e-3
+    }
+
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {
         let [excess_nm, stribeck_rad_s] = values else {
             return 0.0;
