@@ -29,7 +29,7 @@ use timing::Timing;
 
 /// Judges the requested logs against the model that is to explain them.
 ///
-/// Findings come in the order of the files; those about all files together come last.
+/// Findings come in the order of the files; those about several files together come last, and without a place.
 ///
 /// # Errors
 /// Only what the system refuses; everything wrong with the content is a finding.
@@ -60,10 +60,12 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<Finding>> {
         }
         findings.close();
     }
-    if let Some(request) = requests.first() {
-        excitation.judge(&Place::file(&request.path), &mut findings);
-        findings.close();
-    }
+    let place = match requests {
+        [request] => Some(Place::file(&request.path)),
+        _ => None,
+    };
+    excitation.judge(place.as_ref(), &mut findings);
+    findings.close();
     Ok(findings.list)
 }
 
