@@ -149,6 +149,11 @@ const HARMS: &[Harm] = &[
         "bad.csv:5:1: time",
     ),
     (
+        "time jumps",
+        |log| log.replacen("\n0.03,", "\n0.03,0\n1e9,", 1).into(),
+        "bad.csv:6:1: time jumps",
+    ),
+    (
         "ragged",
         |log| log.replacen("\n0.03,", "\n0.03,1,", 1).into(),
         "bad.csv:5",

@@ -16,6 +16,7 @@ mod tests;
 
 pub use finding::{Finding, Severity};
 
+use super::read::{GAP_REMEDY, LONGEST_GAP_S};
 use super::request::LogRequest;
 use super::row::Row;
 use super::{LEAST_ROWS, bam, csv};
@@ -160,6 +161,15 @@ impl<'a> FileCheck<'a> {
         let gap = self.model.log.split_at_gap_s;
         if gap.is_some_and(|gap| row.time_s - previous.time_s > gap) {
             return true;
+        }
+        if row.time_s - previous.time_s > LONGEST_GAP_S {
+            let what = format!(
+                "time jumps from {} s to {} s within a motion",
+                previous.time_s, row.time_s
+            );
+            let place = row.place(row.fields.time);
+            self.findings
+                .add("jump", Severity::Refuse, place, what, GAP_REMEDY);
         }
         if row.payload_kg != previous.payload_kg {
             let what = format!(

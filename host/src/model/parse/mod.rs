@@ -16,8 +16,8 @@ const NOT_NEGATIVE: Limits = Limits::within(0.0, POSITIVE.1);
 const EITHER_SIGN: Limits = Limits::within(-POSITIVE.1, POSITIVE.1);
 /// Heavier gravity than Jupiter's is a slip of the unit.
 const GRAVITY: Limits = Limits::within(0.0, 100.0);
-/// A step beyond 0.1 s resolves no servo.
-const STEP: Limits = Limits::above(0.0, 0.1);
+/// A step beyond 0.1 s resolves no servo; one below 10 us only takes time.
+const STEP: Limits = Limits::within(1e-5, 0.1);
 
 /// Reads a whole model; `file` only names it in errors.
 ///
