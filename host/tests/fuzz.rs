@@ -1,5 +1,6 @@
 //! Good logs and models, mutated: the program refuses or runs, and never panics.
 
+#[allow(dead_code)] // each test file needs a part of it
 mod common;
 
 use common::{Bench, MODEL};

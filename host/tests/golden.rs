@@ -2,6 +2,7 @@
 //!
 //! `GOLDEN=write cargo test --test golden` writes the transcripts anew; read their difference before keeping it.
 
+#[allow(dead_code)] // each test file needs a part of it
 mod common;
 
 use common::Bench;
@@ -90,7 +91,7 @@ fn refusals() {
     let (model, log) = (include_str!("data/arm.toml"), include_str!("data/arm.csv"));
     bench.put("unknown_key.toml", model.replacen("mass_kg", "mas_kg", 1));
     bench.put("missing_column.csv", log.replacen("angle_rad", "angle", 1));
-    bench.put("nan.csv", log.replacen("\n0.04,", "\n0.04,nan", 1));
+    bench.put("nan.csv", log.replacen("\n0.04,", "\n0.04,nan\n0.05,", 1));
     bench.put("backwards.csv", log.replacen("\n0.04,", "\n0.01,", 1));
     golden(
         &bench,

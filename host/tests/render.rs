@@ -2,6 +2,7 @@
 //!
 //! Needs a Chromium on the path; without one the picture is left out, and the test says so.
 
+#[allow(dead_code)] // each test file needs a part of it
 mod common;
 
 use common::Bench;

@@ -61,8 +61,7 @@ fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
 }
 
 /// What to do about a gap too long.
-pub(super) const GAP_REMEDY: &str =
-    "check the time column's unit, or set split_at_gap_s in the model's [log] to begin a new motion there";
+pub(super) const GAP_REMEDY: &str = "check the time column's unit, or set split_at_gap_s in the model's [log] to begin a new motion there";
 
 struct Piece {
     segment: Option<String>,
@@ -118,7 +117,10 @@ impl Cutter<'_> {
         if row.time_s - previous > LONGEST_GAP_S {
             return Err(Error::data(
                 row.place(row.fields.time),
-                format!("time jumps from {previous} s to {} s within a motion", row.time_s),
+                format!(
+                    "time jumps from {previous} s to {} s within a motion",
+                    row.time_s
+                ),
                 GAP_REMEDY,
             ));
         }
