@@ -72,14 +72,14 @@ pub enum Error {
         remedy: String,
     },
     /// The operating system refused a file.
-    #[error("{path}: cannot {action}: {source}", path = path.display())]
+    #[error("{path}: cannot {action}: {reason}", path = path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// What was tried: "read", "write", ...
         action: &'static str,
-        /// The system's own reason.
-        source: std::io::Error,
+        /// The system's own reason. Part of the message, hence no `source`, which a chain would say again.
+        reason: std::io::Error,
     },
     /// A device (serial port, servo) failed or fell silent.
     #[error("{what}")]
@@ -110,15 +110,17 @@ impl Error {
     }
 
     /// The system refused `action` on `path`.
-    pub fn file(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
+    pub fn file(path: impl AsRef<Path>, action: &'static str, reason: std::io::Error) -> Self {
         Error::File {
             path: path.as_ref().to_path_buf(),
             action,
-            source,
+            reason,
         }
     }
 
     /// The process exit code of this error: 2 usage, 3 bad data or file, 4 device.
+    ///
+    /// 5 is kept for a drive stopped for safety, 1 is an answer (no), and 101 a bug; none of them is an error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Usage { .. } => 2,

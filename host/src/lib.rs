@@ -1,6 +1,6 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
-//! Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
+//! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
 
 pub mod challenge;
@@ -13,6 +13,7 @@ pub mod extend;
 pub mod identify;
 pub mod log;
 pub mod model;
+mod number;
 pub mod output;
 pub mod report;
 pub mod sim;

@@ -1,5 +1,6 @@
 //! The built program, seen from outside.
 
+#[allow(dead_code)] // each test file needs a part of it
 mod common;
 
 use common::{Bench, MODEL};
@@ -147,6 +148,11 @@ const HARMS: &[Harm] = &[
         "time goes backwards",
         |log| log.replacen("\n0.03,", "\n0.01,", 1).into(),
         "bad.csv:5:1: time",
+    ),
+    (
+        "time jumps",
+        |log| log.replacen("\n0.03,", "\n0.03,0\n1e9,", 1).into(),
+        "bad.csv:6:1: time jumps",
     ),
     (
         "ragged",

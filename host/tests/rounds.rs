@@ -1,5 +1,6 @@
 //! Comparing, diagnosing and scoring, seen from outside.
 
+#[allow(dead_code)] // each test file needs a part of it
 mod common;
 
 use common::Bench;

@@ -75,10 +75,15 @@ b.csv          with a payload, the rig turned by 180 degrees about the vertical
 c.csv          with another payload; keep it for the last check
 answer.sealed  the answer; sealed so that nobody reads it by accident, not against anybody who wants to
 
-Name the effect and its values:
+Name the effect and its values. In this folder:
 
+  handstand log check nominal.toml a.csv b.csv c.csv
   handstand compare nominal.toml a.csv b.csv
   handstand diagnose nominal.toml a.csv b.csv --holdout c.csv
-  handstand add ...          (as diagnose proposes; or none, if nothing is missing)
-  handstand score ...        (your model against answer.sealed)
+  handstand effects EFFECT   (what the effect it names is)
+  handstand add nominal.toml EFFECT --fit a.csv b.csv --holdout c.csv -o model.toml
+  handstand compare nominal.toml c.csv --model model.toml
+  handstand challenge score . model.toml
+
+If nothing is missing, score nominal.toml itself.
 ";

@@ -2,7 +2,9 @@
 //!
 //! The effect's values are fitted along with the model's free ones, from every start on its card; the best is
 //! kept. The new file is the old one with the refitted values and, at its end, the effect with its intervals,
-//! the logs it was fitted to, and the error without and with it.
+//! the logs it was fitted to, and the error without and with it. The error without it is that of the model
+//! refitted without it, so that the fall is the effect's alone; `handstand compare` sets models side by side as
+//! they are, where the fall is also the refit's.
 //!
 //! ```console
 //! $ handstand add arm.toml delay --fit a.csv b.csv --holdout c.csv -o better.toml
@@ -80,7 +82,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk.data(&data)?;
         return Ok(Outcome::Done);
     }
-    fit::report(&extension, "refitted without it", &args.output, talk)
+    fit::report(
+        &extension,
+        "for the model refitted without it",
+        &args.output,
+        talk,
+    )
 }
 
 fn instance(extension: &Extension, candidate: Candidate) -> EffectInstance {

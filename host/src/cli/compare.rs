@@ -1,7 +1,8 @@
 //! `handstand compare MODEL LOG... [--model OTHER]...`: how far models are from what was measured, and where.
 //!
-//! The models run along the logs' inputs; nothing is fitted but where each run starts. Several stand side by
-//! side, over the same horizon: the first one's, unless one is given.
+//! The models run along the logs' inputs, each as its file says; nothing is fitted but where each run starts.
+//! (`handstand add` tells another fall of the error: there the model before is refitted without the effect.)
+//! Several stand side by side, over the same horizon: the first one's, unless one is given.
 //!
 //! ```console
 //! $ handstand compare arm.toml drop.csv --model better.toml --report report.html

@@ -68,7 +68,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     )?;
     let model = match &found {
         Some(effect) => {
-            talk.say("\nThe model with it, and the two side by side on the motion held out:");
+            talk.say("\nThe model with it (`add` sets it beside the old model refitted without it), and the two files side by side as \
+                 they are, on the motion held out:");
             step(
                 &[
                     "add",
@@ -114,7 +115,10 @@ fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found.effects.first().map(diagnose::address))
+    Ok(found
+        .effects
+        .first()
+        .map(handstand::diagnose::words::address))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

@@ -15,7 +15,8 @@ use super::page::{self, Page};
 use super::talk::Talk;
 use super::{Outcome, input, log, name};
 use handstand::compare::{Comparison, compare};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, FittedEffect, Verdict, diagnose};
+use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL, address};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, Verdict, diagnose};
 use handstand::effects;
 use handstand::identify::Horizon;
 use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
@@ -83,9 +84,10 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     let warned = findings
         .iter()
         .filter(|finding| finding.severity == Severity::Warn);
-    diagnosis
-        .warnings
-        .extend(warned.map(|finding| format!("{}: {}", finding.place, finding.what)));
+    diagnosis.warnings.extend(warned.map(Finding::statement));
+    for line in &mut diagnosis.next {
+        *line = with_names(line, args);
+    }
     print(&diagnosis, talk)?;
     if let Some(file) = &args.report {
         let page = Page {
@@ -98,6 +100,32 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
         page::write(&page::report(page, talk)?, file, args.force, talk)?;
     }
     Ok(diagnosis)
+}
+
+/// A command line to be copied: the files' names in place of what stands for them.
+fn with_names(line: &str, args: &Args) -> String {
+    let words = |logs: &[LogRequest]| {
+        let words: Vec<String> = logs.iter().map(|log| quoted(&log.to_string())).collect();
+        words.join(" ")
+    };
+    // Without logs of its own to judge by, the whole is all there is.
+    let line = match args.holdout.as_slice() {
+        [] => line
+            .replace(&format!(" --holdout {HELD_OUT}"), "")
+            .replace(HELD_OUT, LOGS),
+        held_out => line.replace(HELD_OUT, &words(held_out)),
+    };
+    line.replace(LOGS, &words(&args.logs))
+        .replace(MODEL, &quoted(&args.model.to_string_lossy()))
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./:@+=,\\".contains(c);
+    match word.chars().all(plain) {
+        true => word.to_string(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
 }
 
 fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis {
@@ -132,7 +160,7 @@ fn comparisons(model: &Model, diagnosis: &Diagnosis, args: &Args) -> Result<Vec<
     let all: Vec<LogRequest> = args.logs.iter().chain(&args.holdout).cloned().collect();
     let motions = read(&all, &model.log)?;
     let horizon = args.horizon.or(diagnosis.horizon_s.map(Horizon::Seconds));
-    let before = compare(model, "as it is", &motions, horizon);
+    let before = compare(model, "the model as it is", &motions, horizon);
     if diagnosis.effects.is_empty() {
         return Ok(vec![before]);
     }
@@ -163,14 +191,6 @@ fn mended(model: &Model, diagnosis: &Diagnosis) -> Model {
     model
 }
 
-/// An effect as `handstand add` takes it: `coulomb@1`.
-pub fn address(effect: &FittedEffect) -> String {
-    match effect.joint {
-        Some(joint) => format!("{}@{joint}", effect.kind),
-        None => effect.kind.clone(),
-    }
-}
-
 /// What is said of logs that were refused.
 fn unfit(findings: &[Finding]) -> Diagnosis {
     let refused = || {
@@ -178,7 +198,7 @@ fn unfit(findings: &[Finding]) -> Diagnosis {
             .iter()
             .filter(|finding| finding.severity == Severity::Refuse)
     };
-    let reasons = refused().map(|finding| format!("{}: {}", finding.place, finding.what));
+    let reasons = refused().map(Finding::statement);
     let said = "The logs cannot be learned from.".to_string();
     Diagnosis {
         verdict: Verdict::Unfit,

@@ -59,7 +59,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     let text = edit::set_values(&text, &args.model, &values(&extension))?;
     output::write_new(&args.output, &text, args.force)?;
-    report(&extension, "as it was", &args.output, talk)
+    report(&extension, "for the model as it was", &args.output, talk)
 }
 
 /// The values to fit: those named, or the model's own.

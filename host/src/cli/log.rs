@@ -81,9 +81,9 @@ fn finding(finding: &Finding) -> Value {
             Severity::Warn => "warning",
             Severity::Refuse => "refused",
         },
-        "file": finding.place.file.to_string_lossy(),
-        "line": finding.place.line,
-        "column": finding.place.column,
+        "file": finding.place.as_ref().map(|place| place.file.to_string_lossy()),
+        "line": finding.place.as_ref().and_then(|place| place.line),
+        "column": finding.place.as_ref().and_then(|place| place.column),
         "what": finding.what,
         "remedy": finding.remedy,
     })

@@ -1,7 +1,8 @@
 //! Commands, one per file; each file's head is the command's manual.
 //!
 //! stdout carries data, stderr talk. Exit codes: 0 done, 1 the answer is no (a log refused, values that cannot
-//! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a bug.
+//! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a
+//! drive was stopped for safety, 101 a bug.
 
 mod add;
 mod challenge;
@@ -22,7 +23,7 @@ use handstand::Result;
 use talk::Talk;
 
 /// Exit code of a bug.
-pub const BUG: u8 = 5;
+pub const BUG: u8 = 101;
 
 /// Compare a model of a servo arm or chain of links with measured logs, and find the missing physical effect.
 #[derive(Debug, Parser)]

@@ -69,7 +69,7 @@ fn fall(error: &Fall, before: &str) -> String {
         "on the motions fitted"
     };
     format!(
-        "Error {whose}: {} mrad {before} -> {} mrad; noise alone leaves {} mrad.",
+        "Error {whose}: {} mrad {before} -> {} mrad for the new one; noise alone leaves {} mrad.",
         number(1e3 * error.before_rad),
         number(1e3 * error.after_rad),
         number(1e3 * error.floor_rad)

@@ -266,7 +266,8 @@ fn text_sets_models_side_by_side_and_tells_the_last_in_full() {
         " base ",
         "rms, mrad",
         "Where other fails",
-        "\nbase: ",
+        "From model to model",
+        "\nWhere base fails most\n",
         "whiteness",
     ] {
         assert!(text.contains(part), "{part}\n{text}");
@@ -274,7 +275,7 @@ fn text_sets_models_side_by_side_and_tells_the_last_in_full() {
     let waterfall = waterfall(&all);
     assert_eq!(waterfall.lines().count(), 3);
     assert!(
-        waterfall.lines().last().unwrap().starts_with("floor"),
+        waterfall.lines().last().unwrap().starts_with("  floor"),
         "{waterfall}"
     );
     assert!(waterfall.contains(&"#".repeat(40)));

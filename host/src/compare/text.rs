@@ -12,13 +12,20 @@ pub fn text(comparisons: &[Comparison]) -> String {
     let Some((last, others)) = comparisons.split_last() else {
         return String::new();
     };
-    let mut text = format!("{}\n", table(comparisons));
+    let mut text = format!("{}\n{LEGEND}\n", table(comparisons));
+    if !others.is_empty() {
+        let _ = write!(
+            text,
+            "\nFrom model to model, each as it is\n{}",
+            waterfall(comparisons)
+        );
+    }
     for other in others {
         let where_ = match other.failures.first() {
             Some(failure) => failure.sentence.clone(),
             None => NOWHERE.to_string(),
         };
-        let _ = write!(text, "\n{}: {where_}\n", other.model);
+        let _ = write!(text, "\nWhere {} fails most\n  {where_}\n", other.model);
     }
     let _ = write!(text, "\nWhere {} fails\n", last.model);
     if last.failures.is_empty() {
@@ -36,6 +43,7 @@ pub fn text(comparisons: &[Comparison]) -> String {
     text
 }
 
+const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; fit: 100 % is a perfect model";
 const NOWHERE: &str = "no condition holds more than its share of the error";
 
 /// One bar per model, the floor last: what each step gained, and what there is left to gain.
@@ -53,7 +61,7 @@ pub fn waterfall(comparisons: &[Comparison]) -> String {
     for (name, rad) in steps {
         let length = if most > 0.0 { rad / most } else { 0.0 };
         let bar = "#".repeat((length * BAR as f64).round() as usize);
-        let line = format!("{name:width$}  {:>8} mrad  {bar}", mrad(rad));
+        let line = format!("  {name:width$}  {:>8} mrad  {bar}", mrad(rad));
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
@@ -80,10 +88,15 @@ fn table(comparisons: &[Comparison]) -> Table {
         .set_content_arrangement(ContentArrangement::Disabled);
     let names = comparisons.iter().map(|c| c.model.clone());
     table.set_header(std::iter::once(String::new()).chain(names));
-    row(&mut table, comparisons, "runs", |c| match c.horizon_s {
-        None => "freely".to_string(),
-        Some(seconds) => format!("{} s", short(seconds)),
-    });
+    row(
+        &mut table,
+        comparisons,
+        "runs uncorrected for",
+        |c| match c.horizon_s {
+            None => "whole motions".to_string(),
+            Some(seconds) => format!("{} s", short(seconds)),
+        },
+    );
     let joints = comparisons.iter().map(|c| c.signals.len()).max();
     for joint in 0..joints.unwrap_or(0) {
         signal_rows(&mut table, comparisons, joint);
@@ -94,7 +107,11 @@ fn table(comparisons: &[Comparison]) -> Table {
         .collect();
     rungs.sort_by(f64::total_cmp);
     rungs.dedup();
-    for rung in rungs.into_iter().map(Some).chain([None]) {
+    let whole = comparisons
+        .iter()
+        .flat_map(|c| &c.horizons)
+        .any(|h| h.horizon_s.is_none());
+    for rung in rungs.into_iter().map(Some).chain(whole.then_some(None)) {
         let label = match rung {
             Some(seconds) => format!("rms of runs of {} s, mrad", short(seconds)),
             None => "rms of whole motions, mrad".to_string(),

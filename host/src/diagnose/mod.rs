@@ -7,7 +7,7 @@ mod score;
 mod search;
 mod trial;
 mod verdict;
-mod words;
+pub mod words;
 
 pub use candidate::{Candidate, candidates};
 pub use findings::{

@@ -1,140 +1,134 @@
 //! A diagnosis in sentences that a student understands.
+//!
+//! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict};
 use super::verdict::effect_of;
+
+use crate::number::{measured, percent, short, with_unit};
+
+/// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
+pub const MODEL: &str = "MODEL";
+/// Stands for the logs that were learned from.
+pub const LOGS: &str = "LOG...";
+/// Stands for the logs that were held out.
+pub const HELD_OUT: &str = "HELD_OUT...";
+
+/// Explanations named in a sentence; the rest are counted.
+pub(crate) const SHOWN: usize = 4;
+/// Pairs of values warned of; the rest are counted.
+const PAIRS: usize = 3;
+/// Errors below so many floors are no proof that something is missing.
+const NEAR: f64 = 2.0;
 
 /// Adds summary, next steps and warnings.
 pub(super) fn complete(diagnosis: &mut Diagnosis) {
     diagnosis.summary = summary(diagnosis);
     diagnosis.next = next(diagnosis);
-    let on_bound: Vec<String> = diagnosis
-        .base
-        .iter()
-        .chain(diagnosis.effects.iter().flat_map(|e| &e.parameters))
-        .filter(|v| v.on_bound)
-        .map(|v| {
-            format!(
-                "{} = {:.4} {} lies on its bound: the data push it further than is physical, or it is not needed",
-                v.path, v.value, v.unit
-            )
-        })
-        .collect();
-    diagnosis.warnings.extend(on_bound);
+    let warnings: Vec<String> = on_bound(diagnosis).chain(pairs(diagnosis)).collect();
     if !diagnosis.error.held_out {
         diagnosis.warnings.push(
             "no motion was held out: the figures are of the motions that were fitted".to_string(),
         );
     }
-    for (a, b, r) in &diagnosis.collinear {
-        diagnosis.warnings.push(format!(
-            "{a} and {b} are hardly told apart by these motions (correlation {r:.3})"
-        ));
+    diagnosis.warnings.extend(warnings);
+}
+
+/// The verdict as a sentence.
+pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
+    let names = joined(&diagnosis.effects);
+    let error = &diagnosis.error;
+    match diagnosis.verdict {
+        Verdict::Nominal if error.before > NEAR * error.floor => {
+            "No known effect brings the model closer to the measurement.".into()
+        }
+        Verdict::Nominal => "The model already explains the measurement.".into(),
+        Verdict::Named => format!("The model lacks {names}."),
+        Verdict::Ambiguous => format!("Equally good explanations: {}.", rivals(diagnosis)),
+        Verdict::Unexplained if diagnosis.effects.is_empty() => {
+            "Something is missing, and no known effect explains it.".into()
+        }
+        Verdict::Unexplained => format!("The model lacks more than {names}."),
+        Verdict::Unfit => "These data can't answer the question.".into(),
+    }
+}
+
+/// "A at joint 1, or B and C, or 3 more".
+fn rivals(diagnosis: &Diagnosis) -> String {
+    let others = diagnosis.alternatives.iter().map(|rival| &rival.effects);
+    let mut sets: Vec<String> = std::iter::once(&diagnosis.effects)
+        .chain(others)
+        .map(|set| joined(set))
+        .collect();
+    let more = sets.len().saturating_sub(SHOWN);
+    sets.truncate(SHOWN);
+    match more {
+        0 => sets.join(", or "),
+        more => format!("{}, and {more} more", sets.join(", or ")),
     }
 }
 
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
-    let mut lines = Vec::new();
-    let names = list(&diagnosis.effects);
-    match diagnosis.verdict {
-        Verdict::Nominal => lines.push(
-            "Nothing is missing that these motions could show: no effect of the library lowers the error by more \
-             than chance."
-                .to_string(),
-        ),
-        Verdict::Named => lines.push(format!("Missing: {names}.")),
-        Verdict::Ambiguous => {
-            let others: Vec<String> = diagnosis.alternatives.iter().map(|a| list(&a.effects)).collect();
-            lines.push(format!(
-                "Something is missing, and these motions can't tell which: {names}, or {}.",
-                others.join(", or ")
-            ));
-        }
-        Verdict::Unexplained => {
-            lines.push("Something is missing that no effect of the library explains.".to_string());
-            if !diagnosis.effects.is_empty() {
-                lines.push(format!(
-                    "{names} comes closest and is not the whole of it: do not take it for the cause."
-                ));
-            }
-        }
-        Verdict::Unfit => lines.push("These logs can't answer the question.".to_string()),
+    let mut lines = vec![headline(diagnosis)];
+    if diagnosis.verdict == Verdict::Nominal
+        && diagnosis.error.before > NEAR * diagnosis.error.floor
+    {
+        lines.push("What is left is far above the noise: the model fails in a way the library does not know, or the \
+                    motions to judge by differ from those learned from.".into());
     }
-    for effect in &diagnosis.effects {
-        for value in &effect.parameters {
-            lines.push(format!(
-                "{}: {} = {} {} (95 % interval {} to {}).",
-                place(effect),
+    if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
+        lines.push(
+            "It comes closest and is not the whole of it: do not take it for the cause.".into(),
+        );
+    }
+    // The values of one of several explanations would be taken for an answer.
+    let told = match diagnosis.verdict {
+        Verdict::Ambiguous => &[],
+        _ => diagnosis.effects.as_slice(),
+    };
+    for effect in told {
+        let values = effect.parameters.iter().map(|value| {
+            format!(
+                "{} = {}",
                 value.key,
-                number(value.value),
-                value.unit,
-                number(value.low),
-                number(value.high)
-            ));
-        }
-    }
-    lines.push(error_line(diagnosis));
-    if let Some(left) = &diagnosis.remainder {
+                measured(value.value, value.low, value.high, &value.unit)
+            )
+        });
         lines.push(format!(
-            "Of what is left above the noise, a free-form term would still gain {:.0} % (at least {:.0} %): mostly {}.",
-            100.0 * left.explainable_share.clamp(0.0, 1.0),
-            100.0 * left.explainable_low.clamp(0.0, 1.0),
-            left.shape
+            "{}: {}.",
+            effect_name(effect),
+            values.collect::<Vec<_>>().join(", ")
         ));
     }
+    lines.push(error_line(diagnosis));
     lines
 }
 
 fn error_line(diagnosis: &Diagnosis) -> String {
     let error = &diagnosis.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
+    let [before, after, floor] =
+        [error.before, error.after, error.floor].map(|rad| short(1e3 * rad));
     if diagnosis.effects.is_empty() {
         return format!(
-            "The error on {motions} motions is {:.2} mrad; noise and resolution alone leave {:.2} mrad.",
-            1e3 * error.before,
-            1e3 * error.floor
+            "The error on {motions} motions is {before} mrad; the floor is {floor} mrad."
         );
     }
+    let with = match diagnosis.verdict {
+        Verdict::Ambiguous => "With the first of them the",
+        _ => "The",
+    };
     format!(
-        "The error on {motions} motions falls from {:.2} to {:.2} mrad (by {:.0} %, 95 % interval {:.0} to {:.0} %); \
-         noise and resolution alone leave {:.2} mrad.",
-        1e3 * error.before,
-        1e3 * error.after,
-        100.0 * (1.0 - error.after / error.before),
-        100.0 * error.fall_low,
-        100.0 * error.fall_high,
-        1e3 * error.floor
+        "{with} error on {motions} motions falls from {before} to {after} mrad; the floor is {floor} mrad."
     )
 }
 
 fn next(diagnosis: &Diagnosis) -> Vec<String> {
-    let experiment = |kind: &str| effect_of(kind).map(|e| e.card().experiment);
     match diagnosis.verdict {
-        Verdict::Named => {
-            let mut lines: Vec<String> = diagnosis
-                .effects
-                .iter()
-                .map(|e| format!("Add it: handstand add MODEL {} --fit LOG... -o NEW.toml", address(e)))
-                .collect();
-            lines.push("Then compare the new model on motions that took no part.".to_string());
-            lines
-        }
-        Verdict::Ambiguous => {
-            let mut kinds: Vec<&str> = Vec::new();
-            let all = diagnosis.alternatives.iter().flat_map(|a| &a.effects).chain(&diagnosis.effects);
-            for effect in all {
-                let common = diagnosis.effects.iter().any(|e| e == effect)
-                    && diagnosis.alternatives.iter().all(|a| a.effects.iter().any(|e| e.kind == effect.kind));
-                if !common && !kinds.contains(&effect.kind.as_str()) {
-                    kinds.push(&effect.kind);
-                }
-            }
-            kinds
-                .iter()
-                .filter_map(|kind| Some(format!("To tell {kind} apart: {}.", experiment(kind)?)))
-                .collect()
-        }
+        Verdict::Named => commands(diagnosis),
+        Verdict::Ambiguous => experiments(diagnosis),
         Verdict::Unexplained => vec![
-            "See where it fails: handstand compare MODEL LOG...".to_string(),
+            format!("See where it fails: handstand compare {MODEL} {LOGS}"),
             "Record a motion that isolates those conditions, or write the missing effect as a file of its own."
                 .to_string(),
         ],
@@ -145,29 +139,126 @@ fn next(diagnosis: &Diagnosis) -> Vec<String> {
     }
 }
 
-fn place(effect: &FittedEffect) -> String {
-    match effect.joint {
-        Some(joint) => format!("{} at joint {joint}", effect.title),
-        None => effect.title.clone(),
+/// Each effect added to the model before, then the first and the last side by side.
+fn commands(diagnosis: &Diagnosis) -> Vec<String> {
+    let (holdout, judged) = match diagnosis.error.held_out {
+        true => (format!(" --holdout {HELD_OUT}"), HELD_OUT),
+        false => (String::new(), LOGS),
+    };
+    let mut from = MODEL.to_string();
+    let mut lines = Vec::new();
+    for (index, effect) in diagnosis.effects.iter().enumerate() {
+        let to = match index {
+            0 => "better.toml".to_string(),
+            index => format!("better{}.toml", index + 1),
+        };
+        let address = address(effect);
+        lines.push(format!(
+            "Add it: handstand add {from} {address} --fit {LOGS}{holdout} -o {to}"
+        ));
+        from = to;
+    }
+    lines.push(format!(
+        "See what it gains: handstand compare {MODEL} {judged} --model {from}"
+    ));
+    lines
+}
+
+/// One experiment for each effect that some of the first explanations have and others do not.
+fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
+    let others = diagnosis.alternatives.iter().map(|rival| &rival.effects);
+    let sets: Vec<_> = std::iter::once(&diagnosis.effects)
+        .chain(others)
+        .take(SHOWN)
+        .collect();
+    let mut kinds: Vec<&FittedEffect> = Vec::new();
+    for effect in sets.iter().copied().flatten() {
+        let common = sets.iter().all(|set| {
+            set.iter()
+                .any(|e| e.kind == effect.kind && e.joint == effect.joint)
+        });
+        if !common && !kinds.iter().any(|e| e.kind == effect.kind) {
+            kinds.push(effect);
+        }
+    }
+    kinds
+        .into_iter()
+        .filter_map(|effect| {
+            let experiment = effect_of(&effect.kind)?.card().experiment;
+            Some(format!("To tell {} apart: {experiment}.", effect.title))
+        })
+        .collect()
+}
+
+fn on_bound(diagnosis: &Diagnosis) -> impl Iterator<Item = String> {
+    let added = diagnosis
+        .effects
+        .iter()
+        .flat_map(|effect| &effect.parameters);
+    let values = diagnosis
+        .base
+        .iter()
+        .chain(added)
+        .filter(|value| value.on_bound);
+    values.map(|value| {
+        format!(
+            "{} = {} lies on its bound: the data push it further than is physical, or it is not needed",
+            value.path,
+            with_unit(&short(value.value), &value.unit)
+        )
+    })
+}
+
+/// The pairs told apart worst, worst first.
+fn pairs(diagnosis: &Diagnosis) -> Vec<String> {
+    let mut pairs: Vec<_> = diagnosis.collinear.iter().collect();
+    pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    let more = pairs.len().saturating_sub(PAIRS);
+    let mut lines: Vec<String> = pairs
+        .into_iter()
+        .take(PAIRS)
+        .map(|(a, b, r)| {
+            let correlation = percent(r.abs());
+            format!(
+                "{a} and {b} are hardly told apart by these motions (correlation {correlation})"
+            )
+        })
+        .collect();
+    if more > 0 {
+        lines.push(format!("and {more} more such pairs"));
+    }
+    lines
+}
+
+/// "Coulomb friction at joint 1".
+pub(crate) fn effect_name(effect: &FittedEffect) -> String {
+    at_joint(&effect.title, effect.joint)
+}
+
+pub(crate) fn at_joint(title: &str, joint: Option<usize>) -> String {
+    match joint {
+        Some(joint) => format!("{title} at joint {joint}"),
+        None => title.to_string(),
     }
 }
 
-fn address(effect: &FittedEffect) -> String {
+/// Effects in a row: "A at joint 1, B and C".
+pub(crate) fn joined(effects: &[FittedEffect]) -> String {
+    listed(effects.iter().map(effect_name).collect())
+}
+
+pub(crate) fn listed(mut names: Vec<String>) -> String {
+    match (names.pop(), names.as_slice()) {
+        (None, _) => "nothing".into(),
+        (Some(last), []) => last,
+        (Some(last), rest) => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// An effect as `handstand add` takes it: `coulomb@1`.
+pub fn address(effect: &FittedEffect) -> String {
     match effect.joint {
         Some(joint) => format!("{}@{joint}", effect.kind),
         None => effect.kind.clone(),
     }
-}
-
-fn list(effects: &[FittedEffect]) -> String {
-    effects.iter().map(place).collect::<Vec<_>>().join(" with ")
-}
-
-/// Four significant digits.
-fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    format!("{value:.digits$}")
 }

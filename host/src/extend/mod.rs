@@ -96,6 +96,8 @@ pub fn extend(
         progress(done, starts.len());
         let mut with = base.model.clone();
         with.effects.push(candidate.instance(start));
+        // Whoever goes on with this model refits the new values too.
+        with.free.clone_from(&free);
         let tried = fit(&with, &free, &data, Some(&base.nodes), SCREENING);
         let cost = tried.residuals.cost();
         if best

@@ -88,6 +88,8 @@ fn an_added_effect_gets_its_true_value_and_new_motions_are_foretold() {
     let extension = extend(&pendulum(), candidate("coulomb"), &split, None, &|_, _| {}).unwrap();
     let value = &extension.values[0];
     assert_eq!(value.path, "coulomb@1.torque_nm");
+    assert_eq!(extension.model.free, extension.free);
+    assert_eq!(extension.free.len(), 1);
     assert!((value.value - 0.004).abs() < 4e-5, "{value:?}");
     assert!(value.low <= value.value && value.value <= value.high);
     let error = extension.error;

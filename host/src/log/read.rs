@@ -10,6 +10,8 @@ use std::collections::HashMap;
 
 /// Fewest samples a motion may have.
 pub const LEAST_ROWS: usize = 10;
+/// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take ages.
+pub(super) const LONGEST_GAP_S: f64 = 100.0;
 
 /// Reads the requested logs into motions, in order; a file ending in `.json` is a BAM log.
 ///
@@ -57,6 +59,9 @@ fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
     }
     cutter.finish(&facts.sha256)
 }
+
+/// What to do about a gap too long.
+pub(super) const GAP_REMEDY: &str = "check the time column's unit, or set split_at_gap_s in the model's [log] to begin a new motion there";
 
 struct Piece {
     segment: Option<String>,
@@ -108,6 +113,16 @@ impl Cutter<'_> {
             .is_some_and(|gap| row.time_s - previous > gap)
         {
             return Ok(true);
+        }
+        if row.time_s - previous > LONGEST_GAP_S {
+            return Err(Error::data(
+                row.place(row.fields.time),
+                format!(
+                    "time jumps from {previous} s to {} s within a motion",
+                    row.time_s
+                ),
+                GAP_REMEDY,
+            ));
         }
         if row.payload_kg != motion.payload_kg {
             return Err(Error::data(

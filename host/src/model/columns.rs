@@ -55,6 +55,6 @@ pub struct LogColumns {
     pub turned: Option<String>,
     /// One entry per joint.
     pub joints: Vec<JointColumns>,
-    /// A new motion begins where time jumps by more than this, s; without it a gap is an error.
+    /// A new motion begins where time jumps by more than this, s; without it a motion goes on across every gap.
     pub split_at_gap_s: Option<f64>,
 }

@@ -23,6 +23,9 @@ pub struct Fitted {
 
 /// The text with one more `[[effect]]` at the end of those it has; `path` only names it in errors.
 ///
+/// Where `[fit]` names what is free, the effect's values join that list, so that later fits and diagnoses refit
+/// them; without such a list the values of all effects are free anyway.
+///
 /// # Errors
 /// The text is no model, it holds the effect at that joint already, or the effect does not suit it.
 pub fn add_effect(
@@ -54,6 +57,7 @@ pub fn add_effect(
         Item::Value(Value::Array(array)) => array.push(table.into_inline_table()),
         _ => return Err(misfit(path, "`effect` is no list of tables")),
     }
+    set_free(&mut document, effect);
     checked(document, path)
 }
 
@@ -139,6 +143,61 @@ fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     }
 }
 
+/// Adds the effect's values to the list of free ones, if there is one, in the list's own layout.
+fn set_free(document: &mut DocumentMut, effect: &EffectInstance) {
+    let list = document
+        .get_mut("fit")
+        .and_then(Item::as_table_like_mut)
+        .and_then(|fit| fit.get_mut("free"))
+        .and_then(Item::as_array_mut);
+    let Some(list) = list else {
+        return;
+    };
+    let values = ParameterPath::of_effect(effect).zip(&effect.values);
+    for (path, _) in values.filter(|(_, value)| value.is_finite()) {
+        append(list, &path.to_string());
+    }
+}
+
+/// One more entry, begun as the last one; comments stay with the entries they follow.
+fn append(list: &mut Array, text: &str) {
+    let mut begin = match list.len() {
+        0 => "",
+        _ => " ",
+    };
+    let mut between = String::new();
+    let trailing = list.trailing().as_str().unwrap_or_default().to_string();
+    let last = list
+        .len()
+        .checked_sub(1)
+        .and_then(|last| list.get_mut(last));
+    let prefix = last
+        .as_ref()
+        .and_then(|last| last.decor().prefix()?.as_str());
+    let prefix = prefix.unwrap_or_default().to_string();
+    if let Some(line) = prefix.rfind('\n') {
+        begin = &prefix[line..];
+    }
+    if let Some(last) = last {
+        let after = last.decor().suffix().and_then(|after| after.as_str());
+        between.push_str(after.unwrap_or_default().trim_end());
+        last.decor_mut().set_suffix("");
+    }
+    if trailing.contains('#') {
+        let end = trailing.rfind('\n').unwrap_or(0);
+        between.push_str(&trailing[..end]);
+        list.set_trailing(&trailing[end..]);
+    } else if begin.starts_with('\n') && !trailing.contains('\n') {
+        list.set_trailing("\n");
+    }
+    let mut value = Value::from(text);
+    if between.contains('#') && !begin.starts_with('\n') {
+        begin = "\n";
+    }
+    value.decor_mut().set_prefix(format!("{between}{begin}"));
+    list.push_formatted(value);
+}
+
 fn provenance(fitted: &Fitted) -> Table {
     let mut table = Table::new();
     let mut intervals = InlineTable::new();
@@ -209,7 +268,7 @@ mod tests {
         assert_eq!(last.effect.card().id, "coulomb");
         assert_eq!((last.joint, last.values[0]), (Some(1), 0.019_876_5));
         let mut lines = text.lines();
-        for old in MODEL.lines() {
+        for old in MODEL.lines().filter(|line| !line.starts_with("free")) {
             assert!(lines.any(|line| line == old), "kept in order: {old}");
         }
         assert!(text.contains(
@@ -220,6 +279,35 @@ mod tests {
             text.contains("intervals = { torque_nm = [0.018, 0.022] }\n"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn an_added_effect_is_free_where_the_model_lists_what_is() {
+        let old = r#"["link1.inertia_kg_m2", "joint2.gain_per_rad", "coulomb@1.torque_nm"]"#;
+        let one = "[\n  \"link1.com_m\", # of the bob\n]";
+        for (list, said) in [
+            (old, r#"torque_nm", "coulomb@2.torque_nm"]"#),
+            ("[]", r#"free = ["coulomb@2.torque_nm"]"#),
+            (
+                one,
+                "\"link1.com_m\", # of the bob\n  \"coulomb@2.torque_nm\",\n]\n",
+            ),
+            (
+                "[\n  \"link1.com_m\" # of the bob\n]",
+                "\"link1.com_m\", # of the bob\n  \"coulomb@2.torque_nm\"\n]\n",
+            ),
+            (
+                "[\n  # none yet\n]",
+                "# none yet\n\"coulomb@2.torque_nm\"\n]\n",
+            ),
+        ] {
+            let bare = MODEL.replace(old, list);
+            let text = add_effect(&bare, path(), &effect("coulomb", 1, 0.02), None).unwrap();
+            assert!(text.contains(said), "{text}");
+            let model = Model::parse(&text, path()).unwrap();
+            let last = model.free.last().map(ToString::to_string);
+            assert_eq!(last.as_deref(), Some("coulomb@2.torque_nm"), "{text}");
+        }
     }
 
     #[test]

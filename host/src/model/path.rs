@@ -1,6 +1,6 @@
 //! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`, `coulomb@1.torque_nm`.
 
-use super::{Drive, Link, Model, Motor};
+use super::{Drive, EffectInstance, Link, Model, Motor};
 use crate::effects::{self, Card};
 use crate::error::Error;
 use std::fmt;
@@ -178,6 +178,15 @@ pub enum ParameterPath {
 }
 
 impl ParameterPath {
+    /// Addresses of an effect's values, in the card's order.
+    pub fn of_effect(effect: &EffectInstance) -> impl Iterator<Item = ParameterPath> + '_ {
+        (0..effect.values.len()).map(|parameter| ParameterPath::Effect {
+            id: effect.effect.card().id,
+            joint: effect.joint,
+            parameter,
+        })
+    }
+
     /// The number there; `None` if the model has no such link, joint, drive figure or effect.
     pub fn get(&self, model: &Model) -> Option<f64> {
         match *self {

@@ -2,11 +2,12 @@
 
 use super::Report;
 use super::bars::{Bar, largest};
-use super::number::{NONE, mrad, short};
 use super::page::Section;
 use super::svg::Tone;
-use super::words::{in_mrad, joined, set_name, sorted, with_interval};
+use super::words::{in_mrad, set_name, sorted, with_interval};
+use crate::diagnose::words::{SHOWN, joined};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
+use crate::number::{NONE, mrad, short};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -31,14 +32,15 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 fn alternatives(alternatives: &[Alternative]) -> Markup {
     html! {
         h3 { "These do as well: the data do not rule them out" }
-        ul { @for alternative in alternatives {
+        ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
                 b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }
             }
-        } }
+        }
+        @if alternatives.len() > SHOWN { li { "and " (alternatives.len() - SHOWN) " more" } } }
     }
 }
 

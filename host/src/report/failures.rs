@@ -2,10 +2,10 @@
 
 use super::Report;
 use super::bars::Bar;
-use super::number::percent;
 use super::page::Section;
 use super::svg::Tone;
 use crate::compare::{Comparison, Failure};
+use crate::number::percent;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

@@ -1,10 +1,11 @@
 //! The verdict in words and the error in one line.
 
-use super::number::{mrad, short};
-use super::words::{fall, in_mrad, measured_on, verdict_sentence, verdict_word, window};
+use super::words::{fall, in_mrad, measured_on, sentences, verdict_word, window};
 use super::{Report, pooled};
 use crate::compare::Comparison;
-use crate::diagnose::{Diagnosis, ErrorFall};
+use crate::diagnose::Diagnosis;
+use crate::diagnose::words::headline;
+use crate::number::{mrad, short};
 use maud::{Markup, html};
 
 /// Top of the page.
@@ -24,27 +25,36 @@ pub(super) fn header(report: &Report) -> Markup {
 fn diagnosed(diagnosis: &Diagnosis) -> Markup {
     html! {
         p { span.badge { (verdict_word(diagnosis.verdict)) } }
-        h1 { (verdict_sentence(diagnosis)) "." }
-        (error_line(&diagnosis.error, diagnosis.horizon_s))
-        @for sentence in &diagnosis.summary { p { (sentence) } }
+        h1 { (headline(diagnosis)) }
+        (error_line(diagnosis))
+        @for sentence in sentences(diagnosis) { p { (sentence) } }
         (list("Next", "next", &diagnosis.next))
         (list("Be wary", "warnings", &diagnosis.warnings))
     }
 }
 
-fn error_line(error: &ErrorFall, horizon_s: Option<f64>) -> Markup {
+fn error_line(diagnosis: &Diagnosis) -> Markup {
+    let (error, horizon_s) = (&diagnosis.error, diagnosis.horizon_s);
+    let found = !diagnosis.effects.is_empty();
     if !error.before.is_finite() {
         return html! {};
     }
     html! {
-        (figures(&[
-            ("before", "tone-before", error.before),
-            ("after", "tone-after", error.after),
-            ("floor", "tone-floor", error.floor),
-        ]))
+        @if found {
+            (figures(&[
+                ("refitted as it is", "tone-before", error.before),
+                ("with what was found", "tone-after", error.after),
+                ("floor", "tone-floor", error.floor),
+            ]))
+        } @else {
+            (figures(&[
+                ("refitted as it is", "tone-before", error.before),
+                ("floor", "tone-floor", error.floor),
+            ]))
+        }
         p.note {
             "Typical (RMS) angle error in milliradians, " (window(horizon_s)) ", on " (measured_on(error))
-            @if let Some(fall) = fall(error) { "; " (fall) }
+            @if let Some(fall) = fall(error).filter(|_| found) { "; " (fall) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."
         }
     }

@@ -5,7 +5,6 @@ mod candidates;
 mod failures;
 mod headline;
 mod json;
-mod number;
 mod page;
 mod parameters;
 mod provenance;

@@ -2,11 +2,11 @@
 
 use super::Report;
 use super::bars::whisker;
-use super::number::{interval, short};
 use super::page::Section;
-use super::words::{effect_name, unit};
+use crate::diagnose::words::effect_name;
 use crate::diagnose::{Diagnosis, FittedValue};
 use crate::effects::named;
+use crate::number::{interval, short, unit};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

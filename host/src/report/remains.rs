@@ -1,10 +1,10 @@
 //! What is left: how much a free form could still gain, how the error grows with time, tests of the residual.
 
 use super::Report;
-use super::number::{NONE, given, mrad, percent, short};
 use super::page::Section;
 use crate::compare::{Comparison, HorizonError, ResidualTest};
 use crate::diagnose::Remainder;
+use crate::number::{NONE, given, mrad, percent, short};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -31,8 +31,8 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 fn left(remainder: &Remainder) -> Markup {
     html! {
         p {
-            "A free-form term could still gain " b { (percent(remainder.explainable_share)) }
-            " of the remaining squared error above the floor (at least " (percent(remainder.explainable_low))
+            "A free-form term could still gain " b { (percent(remainder.explainable_share.clamp(0.0, 1.0))) }
+            " of the remaining squared error above the floor (at least " (percent(remainder.explainable_low.clamp(0.0, 1.0)))
             " with 95 % confidence). It leans on: " (remainder.shape) "."
         }
     }

@@ -1,13 +1,13 @@
 //! What a named effect is: its law, and the curve it leaves, drawn from that law.
 
 use super::Report;
-use super::number::given;
 use super::page::Section;
 use super::scale::{Scale, span};
 use super::svg::{Plot, Tone};
 use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
 use crate::effects::{Effect, named};
+use crate::number::given;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

@@ -122,7 +122,7 @@ fn text_of_a_named_effect() {
      Backlash               1   gap_rad     0.0120   0.0090 to 0.0152   rad    on its bound
     ────────────────────────────────────────────────────────────────────────────────────────
 
-    Error: 41.2 -> 6.31 mrad, floor 5.10 mrad.
+    Error: 41.2 mrad, refitted as it is -> 6.31 mrad; floor 5.10 mrad.
     RMS over whole motions, on motions that took no part in the fit.
     So the error falls by 85 % (95 % interval of the fall: 81 % to 88 %).
 

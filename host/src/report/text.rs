@@ -1,11 +1,12 @@
 //! A diagnosis as text for the terminal.
 
-use super::number::{NONE, interval, mrad, short};
 use super::words::{
-    fall, in_mrad, joined, measured_on, sorted, unit, verdict_sentence, verdict_word, window,
-    with_interval,
+    fall, in_mrad, measured_on, sentences, sorted, verdict_word, window, with_interval,
 };
+use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, FittedValue};
+use crate::number::unit;
+use crate::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
 
 /// Columns of a table.
@@ -31,11 +32,8 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
 
 fn headline(diagnosis: &Diagnosis) -> String {
     let verdict = verdict_word(diagnosis.verdict);
-    let mut lines = vec![format!(
-        "Verdict: {verdict}. {}.",
-        verdict_sentence(diagnosis)
-    )];
-    lines.extend(diagnosis.summary.iter().cloned());
+    let mut lines = vec![format!("Verdict: {verdict}. {}", sentence(diagnosis))];
+    lines.extend(sentences(diagnosis).cloned());
     lines.join("\n")
 }
 
@@ -74,18 +72,24 @@ fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
-    let figures = format!(
-        "Error: {} -> {} mrad, floor {} mrad.",
-        mrad(error.before),
-        mrad(error.after),
-        mrad(error.floor)
-    );
+    let nothing_added = diagnosis.effects.is_empty();
+    let floor = format!("floor {} mrad", mrad(error.floor));
+    let figures = match nothing_added {
+        true => format!("Error: {} mrad, {floor}.", mrad(error.before)),
+        false => format!(
+            "Error: {} mrad, refitted as it is -> {} mrad; {floor}.",
+            mrad(error.before),
+            mrad(error.after)
+        ),
+    };
     let on = format!(
         "RMS {}, on {}.",
         window(diagnosis.horizon_s),
         measured_on(error)
     );
-    let fall = fall(error).map(|fall| format!("So {fall}."));
+    let fall = fall(error)
+        .filter(|_| !nothing_added)
+        .map(|fall| format!("So {fall}."));
     let lines: Vec<String> = [figures, on].into_iter().chain(fall).collect();
     error.before.is_finite().then(|| lines.join("\n"))
 }
@@ -105,10 +109,12 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
             values.join(", ")
         )
     };
-    list(
-        "As good",
-        &alternatives.iter().map(line).collect::<Vec<_>>(),
-    )
+    let mut lines: Vec<String> = alternatives.iter().take(RIVALS).map(line).collect();
+    let more = alternatives.len().saturating_sub(RIVALS);
+    if more > 0 {
+        lines.push(format!("and {more} more"));
+    }
+    list("As good", &lines)
 }
 
 fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
@@ -136,8 +142,8 @@ fn remainder(diagnosis: &Diagnosis) -> Option<String> {
     let remainder = diagnosis.remainder.as_ref()?;
     Some(format!(
         "Remainder: a free form could still gain {} (at least {}) of the squared error above the floor; it leans on {}.",
-        super::number::percent(remainder.explainable_share),
-        super::number::percent(remainder.explainable_low),
+        percent(remainder.explainable_share.clamp(0.0, 1.0)),
+        percent(remainder.explainable_low.clamp(0.0, 1.0)),
         remainder.shape
     ))
 }

@@ -1,11 +1,11 @@
 //! Measured against model: per motion and joint the angles, and below them what is left.
 
 use super::Report;
-use super::number::{mrad, short};
 use super::page::Section;
 use super::scale::{Scale, span};
 use super::svg::{Plot, Tone};
 use crate::compare::{Comparison, SignalError, Trace};
+use crate::number::{mrad, short};
 use maud::{Markup, html};
 
 /// Charts that are open from the start; the others wait behind their titles.

@@ -1,13 +1,13 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
 use super::bars::{Bar, largest};
-use super::number::{mrad, percent};
 use super::page::Section;
 use super::svg::Tone;
 use super::words::in_mrad;
 use super::{Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::MotionError;
+use crate::number::{mrad, percent};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

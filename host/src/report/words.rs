@@ -1,8 +1,9 @@
 //! Words that the page and the text share.
 
-use super::number::{given, interval, mrad, percent};
-use crate::diagnose::{Diagnosis, ErrorFall, FittedEffect, FittedValue, RuledOut, Verdict};
+use crate::diagnose::words::{at_joint, headline, listed};
+use crate::diagnose::{Diagnosis, ErrorFall, FittedValue, RuledOut, Verdict};
 use crate::effects::named;
+use crate::number::{given, measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
@@ -12,56 +13,6 @@ pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
         Verdict::Ambiguous => "ambiguous",
         Verdict::Unexplained => "unexplained",
         Verdict::Unfit => "unfit",
-    }
-}
-
-/// A verdict as a sentence without a full stop.
-pub(super) fn verdict_sentence(diagnosis: &Diagnosis) -> String {
-    let effects = joined(&diagnosis.effects);
-    match diagnosis.verdict {
-        Verdict::Nominal => "The model already explains the measurement".into(),
-        Verdict::Named => format!("The model lacks {effects}"),
-        Verdict::Ambiguous => format!("Equally good explanations: {}", rivals(diagnosis)),
-        Verdict::Unexplained if diagnosis.effects.is_empty() => {
-            "Something is missing, and no known effect explains it".into()
-        }
-        Verdict::Unexplained => format!("The model lacks more than {effects}"),
-        Verdict::Unfit => "These data can't answer the question".into(),
-    }
-}
-
-/// "A at joint 1, or B and C".
-fn rivals(diagnosis: &Diagnosis) -> String {
-    let others = diagnosis.alternatives.iter().map(|rival| &rival.effects);
-    let sets: Vec<String> = std::iter::once(&diagnosis.effects)
-        .chain(others)
-        .map(|set| joined(set))
-        .collect();
-    sets.join(", or ")
-}
-
-/// "Coulomb friction at joint 1".
-pub(super) fn effect_name(effect: &FittedEffect) -> String {
-    at_joint(&effect.title, effect.joint)
-}
-
-fn at_joint(title: &str, joint: Option<usize>) -> String {
-    match joint {
-        Some(joint) => format!("{title} at joint {joint}"),
-        None => title.to_string(),
-    }
-}
-
-/// Effects in a row: "A at joint 1, B and C".
-pub(super) fn joined(effects: &[FittedEffect]) -> String {
-    listed(effects.iter().map(effect_name).collect())
-}
-
-fn listed(mut names: Vec<String>) -> String {
-    match (names.pop(), names.as_slice()) {
-        (None, _) => "nothing".into(),
-        (Some(last), []) => last,
-        (Some(last), rest) => format!("{} and {last}", rest.join(", ")),
     }
 }
 
@@ -123,15 +74,16 @@ pub(super) fn in_mrad(value_rad: f64) -> String {
 
 /// "0.0821 N m (0.0794 to 0.0851)".
 pub(super) fn with_interval(fitted: &FittedValue) -> String {
-    let [value, low, high] = interval(fitted.value, fitted.low, fitted.high);
-    let unit = unit(&fitted.unit);
-    let space = if unit.is_empty() { "" } else { " " };
-    format!("{value}{space}{unit} ({low} to {high})")
+    measured(fitted.value, fitted.low, fitted.high, &fitted.unit)
 }
 
-/// A unit as written behind a number: nothing for a pure number.
-pub(super) fn unit(unit: &str) -> &str {
-    if unit == "1" { "" } else { unit }
+/// What the summary says beside the headline, which the writers set apart.
+pub(super) fn sentences(diagnosis: &Diagnosis) -> impl Iterator<Item = &String> {
+    let headline = headline(diagnosis);
+    diagnosis
+        .summary
+        .iter()
+        .filter(move |line| **line != headline)
 }
 
 /// What limits the judgement in time, as a clause.

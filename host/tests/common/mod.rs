@@ -65,6 +65,7 @@ impl Bench {
             .args(line.split_whitespace())
             .current_dir(self.folder.path())
             .env("NO_COLOR", "1")
+            .timeout(std::time::Duration::from_secs(120))
             .output()
             .unwrap();
         Ran {

@@ -77,7 +77,7 @@ impl Excitation {
         }
     }
 
-    pub fn judge(&self, place: &Place, findings: &mut Findings) {
+    pub fn judge(&self, place: Option<&Place>, findings: &mut Findings) {
         for joint in self
             .joints
             .iter()
@@ -120,17 +120,20 @@ impl Joint {
         }
     }
 
-    fn judge(&self, place: &Place, motions: usize, findings: &mut Findings) {
+    fn judge(&self, place: Option<&Place>, motions: usize, findings: &mut Findings) {
         let name = &self.position_name;
         let range = self.range_rad.1 - self.range_rad.0;
         let mut add = |severity, what: String, remedy: &str| {
-            findings.add("excitation", severity, place.clone(), what, remedy);
+            findings.add("excitation", severity, place.cloned(), what, remedy);
         };
         add(
             Severity::Note,
             format!(
-                "{name} in {motions} motion(s): {} reversals, {range:.2} rad of travel, up to {:.1} rad/s, {} holds",
-                self.reversals, self.top_speed_rad_s, self.holds
+                "{name} in {}: {}, {range:.2} rad of travel, up to {:.1} rad/s, {}",
+                counted(motions, "motion"),
+                counted(self.reversals, "reversal"),
+                self.top_speed_rad_s,
+                counted(self.holds, "hold")
             ),
             "what the logs can tell apart depends on these",
         );
@@ -138,8 +141,8 @@ impl Joint {
             add(
                 Severity::Warn,
                 format!(
-                    "{name} has only {} reversals: friction and backlash can't be told apart",
-                    self.reversals
+                    "{name} shows {}: friction and backlash can't be told apart",
+                    counted(self.reversals, "reversal")
                 ),
                 "record motions that go to and fro",
             );
@@ -179,5 +182,14 @@ impl Joint {
                 "record motions under changing input",
             );
         }
+    }
+}
+
+/// "1 hold", "no reversals".
+fn counted(count: usize, what: &str) -> String {
+    match count {
+        0 => format!("no {what}s"),
+        1 => format!("1 {what}"),
+        count => format!("{count} {what}s"),
     }
 }

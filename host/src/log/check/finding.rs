@@ -23,12 +23,22 @@ pub enum Severity {
 pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
-    /// Where.
-    pub place: Place,
+    /// Where; nowhere in particular if it is about all logs together.
+    pub place: Option<Place>,
     /// What was found.
     pub what: String,
     /// What to do about it.
     pub remedy: String,
+}
+
+impl Finding {
+    /// Where it is and what it is, without the remedy.
+    pub fn statement(&self) -> String {
+        match &self.place {
+            Some(place) => format!("{place}: {}", self.what),
+            None => format!("all logs together: {}", self.what),
+        }
+    }
 }
 
 impl fmt::Display for Finding {
@@ -38,7 +48,7 @@ impl fmt::Display for Finding {
             Severity::Warn => "warning",
             Severity::Refuse => "refused",
         };
-        write!(f, "{word}: {}: {} ({})", self.place, self.what, self.remedy)
+        write!(f, "{word}: {} ({})", self.statement(), self.remedy)
     }
 }
 
@@ -56,13 +66,13 @@ impl Findings {
         &mut self,
         kind: &'static str,
         severity: Severity,
-        place: Place,
+        place: impl Into<Option<Place>>,
         what: impl Into<String>,
         remedy: impl Into<String>,
     ) {
         let finding = Finding {
             severity,
-            place,
+            place: place.into(),
             what: what.into(),
             remedy: remedy.into(),
         };

@@ -16,6 +16,7 @@ mod tests;
 
 pub use finding::{Finding, Severity};
 
+use super::read::{GAP_REMEDY, LONGEST_GAP_S};
 use super::request::LogRequest;
 use super::row::Row;
 use super::{LEAST_ROWS, bam, csv};
@@ -29,7 +30,7 @@ use timing::Timing;
 
 /// Judges the requested logs against the model that is to explain them.
 ///
-/// Findings come in the order of the files; those about all files together come last.
+/// Findings come in the order of the files; those about several files together come last, and without a place.
 ///
 /// # Errors
 /// Only what the system refuses; everything wrong with the content is a finding.
@@ -60,10 +61,12 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<Finding>> {
         }
         findings.close();
     }
-    if let Some(request) = requests.first() {
-        excitation.judge(&Place::file(&request.path), &mut findings);
-        findings.close();
-    }
+    let place = match requests {
+        [request] => Some(Place::file(&request.path)),
+        _ => None,
+    };
+    excitation.judge(place.as_ref(), &mut findings);
+    findings.close();
     Ok(findings.list)
 }
 
@@ -158,6 +161,15 @@ impl<'a> FileCheck<'a> {
         let gap = self.model.log.split_at_gap_s;
         if gap.is_some_and(|gap| row.time_s - previous.time_s > gap) {
             return true;
+        }
+        if row.time_s - previous.time_s > LONGEST_GAP_S {
+            let what = format!(
+                "time jumps from {} s to {} s within a motion",
+                previous.time_s, row.time_s
+            );
+            let place = row.place(row.fields.time);
+            self.findings
+                .add("jump", Severity::Refuse, place, what, GAP_REMEDY);
         }
         if row.payload_kg != previous.payload_kg {
             let what = format!(

@@ -7,7 +7,7 @@ mod tests;
 
 use super::path::{JointField, LinkField, POSITIVE, ParameterPath};
 use super::reader::{Limits, Source, Table};
-use super::{AngleZero, Angles, Drive, EffectInstance, Joint, Link, Model, Motor};
+use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor};
 use crate::error::Result;
 use std::path::Path;
 
@@ -16,8 +16,8 @@ const NOT_NEGATIVE: Limits = Limits::within(0.0, POSITIVE.1);
 const EITHER_SIGN: Limits = Limits::within(-POSITIVE.1, POSITIVE.1);
 /// Heavier gravity than Jupiter's is a slip of the unit.
 const GRAVITY: Limits = Limits::within(0.0, 100.0);
-/// A step beyond 0.1 s resolves no servo.
-const STEP: Limits = Limits::above(0.0, 0.1);
+/// A step beyond 0.1 s resolves no servo; one below 10 us only takes time.
+const STEP: Limits = Limits::within(1e-5, 0.1);
 
 /// Reads a whole model; `file` only names it in errors.
 ///
@@ -170,7 +170,11 @@ fn free(root: &Table, source: &Source, model: &Model) -> Result<Vec<ParameterPat
         }
     };
     let Some(named) = named else {
-        return Ok(model.effects.iter().flat_map(parameters).collect());
+        return Ok(model
+            .effects
+            .iter()
+            .flat_map(ParameterPath::of_effect)
+            .collect());
     };
     let mut free = Vec::new();
     for (text, span) in named {
@@ -196,12 +200,4 @@ fn free(root: &Table, source: &Source, model: &Model) -> Result<Vec<ParameterPat
         }
     }
     Ok(free)
-}
-
-fn parameters(effect: &EffectInstance) -> impl Iterator<Item = ParameterPath> + '_ {
-    (0..effect.values.len()).map(|parameter| ParameterPath::Effect {
-        id: effect.effect.card().id,
-        joint: effect.joint,
-        parameter,
-    })
 }

@@ -1,10 +1,10 @@
 //! Numbers as people read them.
 
 /// Stands for a value there is none of.
-pub(super) const NONE: &str = "–";
+pub(crate) const NONE: &str = "–";
 
 /// Three significant digits; `–` for what is no number.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     if let Some(text) = special(value) {
         return text;
     }
@@ -16,7 +16,7 @@ pub(super) fn short(value: f64) -> String {
 }
 
 /// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
-pub(super) fn given(value: f64) -> String {
+pub(crate) fn given(value: f64) -> String {
     let text = short(value);
     if text.contains('.') && !text.contains('e') {
         text.trim_end_matches('0').trim_end_matches('.').to_string()
@@ -26,12 +26,12 @@ pub(super) fn given(value: f64) -> String {
 }
 
 /// An angle in milliradians, without the unit.
-pub(super) fn mrad(value_rad: f64) -> String {
+pub(crate) fn mrad(value_rad: f64) -> String {
     short(1e3 * value_rad)
 }
 
 /// A share of 1 as a percentage, with its sign.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match special(percent) {
         Some(text) => format!("{text} %"),
@@ -41,7 +41,7 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// A value and the ends of its interval, all to the decimals that the interval's width deserves.
-pub(super) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
+pub(crate) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
     let width = high - low;
     if !(width > 0.0 && width.is_finite() && value.is_finite()) {
         return [value, low, high].map(short);
@@ -54,6 +54,25 @@ pub(super) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
         return [value, low, high].map(short);
     }
     [value, low, high].map(|value| format!("{:.*}", decimals(1 - power), value + 0.0))
+}
+
+/// "0.0821 N m (0.0794 to 0.0851)".
+pub(crate) fn measured(value: f64, low: f64, high: f64, unit: &str) -> String {
+    let [value, low, high] = interval(value, low, high);
+    format!("{} ({low} to {high})", with_unit(&value, unit))
+}
+
+/// A number and its unit: "0.5 rad"; a pure number stands alone.
+pub(crate) fn with_unit(number: &str, unit: &str) -> String {
+    match crate::number::unit(unit) {
+        "" => number.to_string(),
+        unit => format!("{number} {unit}"),
+    }
+}
+
+/// A unit as written behind a number: nothing for a pure number.
+pub(crate) fn unit(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
 }
 
 fn special(value: f64) -> Option<String> {
@@ -99,6 +118,12 @@ mod tests {
         assert_eq!(given(100.0), "100");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
+    }
+
+    #[test]
+    fn a_pure_number_has_no_unit() {
+        assert_eq!(measured(1.02, 1.0, 1.04, "1"), "1.020 (1.000 to 1.040)");
+        assert_eq!(with_unit("5", "rad"), "5 rad");
     }
 
     #[test]
