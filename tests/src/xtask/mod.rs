@@ -1,5 +1,6 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod hidden;
 mod program;
 mod test;
 
@@ -16,6 +17,8 @@ pub struct Chores {
 
 #[derive(Debug, Subcommand)]
 enum Chore {
+    /// Measure how often hidden effects are named, missed and invented
+    Hidden(hidden::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -24,6 +27,7 @@ impl Chores {
     /// Does the chore; fails if any of it failed.
     pub fn run(&self) -> ExitCode {
         let well = match &self.chore {
+            Chore::Hidden(args) => hidden::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

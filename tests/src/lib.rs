@@ -1,0 +1,3 @@
+//! What the benchmarks measure with; `cargo xtask` prints it and the tests sample it.
+
+pub mod hidden;
