@@ -63,3 +63,96 @@ pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &Data) -> Fit {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{LogRequest, read};
+    use std::fmt::Write as _;
+    use std::path::Path;
+
+    const ARM: &str = r#"
+[rig]
+name = "arm"
+angle_zero = "hanging"
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 0.002
+
+[[joint]]
+drive = "torque"
+
+[[effect]]
+kind = "viscous"
+joint = 1
+coefficient_nm_s_rad = 0.01
+
+[log]
+time = { column = "t", unit = "s" }
+
+[[log.joint]]
+position = { column = "q", unit = "rad" }
+input = { column = "u", unit = "N m" }
+"#;
+
+    /// An arm that is swung over the top; RK4 in steps of 0.1 ms, read in steps of 5 mrad.
+    fn log() -> String {
+        let slope = |q: f64, w: f64, u: f64| (u - 0.1962 * q.sin() - 0.01 * w) / 0.004;
+        let (mut q, mut w, mut text) = (0.0_f64, 0.0_f64, "t,q,u\n".to_owned());
+        for k in 0..800 {
+            let t = f64::from(k) / 100.0;
+            let u = 0.16 * (2.2 * t).sin() + 0.1 * (5.1 * t + 1.0).sin();
+            let read = (q / 0.005).round() * 0.005;
+            writeln!(text, "{t},{read},{u}").unwrap();
+            let h = 1e-4;
+            for _ in 0..100 {
+                let (w1, a1) = (w, slope(q, w, u));
+                let (w2, a2) = (
+                    w + h / 2.0 * a1,
+                    slope(q + h / 2.0 * w1, w + h / 2.0 * a1, u),
+                );
+                let (w3, a3) = (
+                    w + h / 2.0 * a2,
+                    slope(q + h / 2.0 * w2, w + h / 2.0 * a2, u),
+                );
+                let (w4, a4) = (w + h * a3, slope(q + h * w3, w + h * a3, u));
+                q += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
+                w += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn a_swing_over_the_top_is_fitted_from_far_off() {
+        let model = Model::parse(ARM, Path::new("arm.toml")).unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("over.csv");
+        std::fs::write(&file, log()).unwrap();
+        let motions = read(&[LogRequest::whole(file)], &model.log).unwrap();
+        let farthest = motions[0].position_rad[0]
+            .iter()
+            .fold(0.0_f64, |most, q| most.max(q.abs()));
+        assert!(farthest > 3.5, "{farthest}");
+        let data = Data::new(&model, motions, Horizon::Seconds(4.0));
+        let free: Vec<ParameterPath> = ["link1.inertia_kg_m2", "viscous@1.coefficient_nm_s_rad"]
+            .map(|text| text.parse().unwrap())
+            .to_vec();
+        for factors in [[4.0, 4.0], [0.25, 0.25], [0.25, 4.0], [4.0, 0.25]] {
+            let mut start = model.clone();
+            for (path, factor) in free.iter().zip(factors) {
+                assert!(path.set(&mut start, factor * path.get(&model).unwrap()));
+            }
+            let found = fit_staged(&start, &free, &data);
+            for (path, value) in free.iter().zip(found.values()) {
+                let truth = path.get(&model).unwrap();
+                assert!(
+                    (value / truth - 1.0).abs() < 0.03,
+                    "{factors:?}: {path} {value}"
+                );
+            }
+        }
+    }
+}
