@@ -1,5 +1,8 @@
 //! Time of one forward-dynamics evaluation.
 
+// `criterion_group!` makes a public function.
+#![allow(missing_docs)]
+
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use handstand::dynamics::{Chain, ChainLink, Workspace};
 use std::hint::black_box;

@@ -1,5 +1,8 @@
 //! Times of a prediction, a four-parameter fit and a diagnosis of virtual benches' 20-s logs.
 
+// `criterion_group!` makes a public function.
+#![allow(missing_docs)]
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};

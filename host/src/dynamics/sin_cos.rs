@@ -16,7 +16,7 @@ const HALF_PI: [f64; 3] = [
 
 const SIN: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
-    8.333_333_333_322_489e-3,
+    8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
     2.755_731_370_707_007e-6,
     -2.505_076_025_340_686_3e-8,
@@ -34,7 +34,7 @@ const COS: [f64; 6] = [
 #[inline]
 pub(super) fn sin_cos(angle: f64) -> (f64, f64) {
     // Not a number comes here too.
-    if !(angle.abs() < FAR) {
+    if angle.abs() >= FAR || angle.is_nan() {
         return angle.sin_cos();
     }
     let rounded = angle * std::f64::consts::FRAC_2_PI + ROUNDER;
