@@ -5,6 +5,7 @@
 //! inertia on whole and reports the torque that holds it: that is how friction keeps a joint at rest exactly.
 
 use super::chain::Chain;
+use super::sin_cos::sin_cos;
 
 /// Scratch memory of [`Chain::forward`], reused from call to call.
 #[derive(Debug, Clone)]
@@ -21,17 +22,23 @@ struct Scratch {
     /// Rigid first moment, turned left.
     moment: [f64; 2],
     speed_squared: f64,
-    // Articulated inertia at the joint: [[inertia, b], [b, mass]].
+    /// Share of the link before's angular acceleration that the link takes on, the rest left to the joint; of a
+    /// held joint, its torque per unit of that acceleration.
+    carried: f64,
+    /// Angular acceleration per unit of the joint's acceleration (x, y); of a held joint, torque instead.
+    pull: [f64; 2],
+    /// Angular acceleration with all else at rest; of a held joint, torque instead.
+    own: f64,
+}
+
+/// What a subtree asks of the joint it hangs on: inertia [[inertia, b], [b, mass]], bias moment and force.
+#[derive(Debug, Clone, Copy, Default)]
+struct Subtree {
     inertia: f64,
     b: [f64; 2],
     mass: [f64; 3],
-    /// Inverse of the inertia the joint itself sees; 0 when held.
-    inverse: f64,
-    /// Bias moment and force.
-    bias_moment: f64,
-    bias_force: [f64; 2],
-    /// Joint torque not yet spent.
-    torque: f64,
+    moment: f64,
+    force: [f64; 2],
 }
 
 impl Workspace {
@@ -68,104 +75,98 @@ impl Chain {
         let (held, out) = (&held[..n], &mut out[..n]);
 
         let (mut angle, mut speed) = (0.0, 0.0);
-        for i in 0..n {
-            let link = &self.links[i];
+        for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
             angle += angle_rad[i];
             speed += speed_rad_s[i];
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = sin_cos(angle);
             let (com_sin, com_cos) = if link.com_angle_rad == 0.0 {
                 (sin, cos)
             } else {
-                (angle + link.com_angle_rad).sin_cos()
+                sin_cos(angle + link.com_angle_rad)
             };
             let first_moment = link.mass_kg * link.com_m;
-            let s = &mut scratch[i];
             s.speed_squared = speed * speed;
             s.lever = [link.length_m * cos, link.length_m * sin];
             // The link's end lies at length * (sin, -cos); centripetal points back to the joint.
-            s.centripetal = [
-                -s.speed_squared * link.length_m * sin,
-                s.speed_squared * link.length_m * cos,
-            ];
+            s.centripetal = [-s.speed_squared * s.lever[1], s.speed_squared * s.lever[0]];
             s.moment = [first_moment * com_cos, first_moment * com_sin];
-            s.inertia = link.inertia_kg_m2 + first_moment * link.com_m;
-            s.b = s.moment;
-            s.mass = [link.mass_kg, 0.0, link.mass_kg];
-            s.bias_moment = 0.0;
-            s.bias_force = [
-                -s.speed_squared * first_moment * com_sin,
-                s.speed_squared * first_moment * com_cos,
-            ];
         }
 
-        for i in (0..n).rev() {
-            let s = &mut scratch[i];
-            s.torque = torque_nm[i] - s.bias_moment;
-            let (mut inertia, mut b, mut mass) = (s.inertia, s.b, s.mass);
-            let (mut bias_moment, mut bias_force) = (s.bias_moment, s.bias_force);
+        let mut tree = Subtree::default();
+        for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
+            tree.shift(s.lever, s.centripetal);
+            tree.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
+            tree.b[0] += s.moment[0];
+            tree.b[1] += s.moment[1];
+            tree.mass[0] += link.mass_kg;
+            tree.mass[2] += link.mass_kg;
+            tree.force[0] -= s.speed_squared * s.moment[1];
+            tree.force[1] += s.speed_squared * s.moment[0];
+            let torque = torque_nm[i] - tree.moment;
             if held[i] {
-                s.inverse = 0.0;
                 // A held joint carries whatever moment comes.
+                s.carried = tree.inertia;
+                s.pull = tree.b;
+                s.own = -torque;
             } else {
-                s.inverse = 1.0 / (s.inertia + self.links[i].armature_kg_m2);
-                let (ui, ux, uy) = (
-                    s.inertia * s.inverse,
-                    s.b[0] * s.inverse,
-                    s.b[1] * s.inverse,
-                );
-                inertia -= s.inertia * ui;
-                b = [b[0] - s.inertia * ux, b[1] - s.inertia * uy];
-                mass = [
-                    mass[0] - s.b[0] * ux,
-                    mass[1] - s.b[0] * uy,
-                    mass[2] - s.b[1] * uy,
-                ];
-                bias_moment += ui * s.torque;
-                bias_force = [bias_force[0] + ux * s.torque, bias_force[1] + uy * s.torque];
-            }
-            if i > 0 {
-                let parent = &mut scratch[i - 1];
-                let (l, c) = (parent.lever, parent.centripetal);
-                let ml = [
-                    mass[0] * l[0] + mass[1] * l[1],
-                    mass[1] * l[0] + mass[2] * l[1],
-                ];
-                let force = [
-                    bias_force[0] + mass[0] * c[0] + mass[1] * c[1],
-                    bias_force[1] + mass[1] * c[0] + mass[2] * c[1],
-                ];
-                parent.inertia +=
-                    inertia + 2.0 * (b[0] * l[0] + b[1] * l[1]) + l[0] * ml[0] + l[1] * ml[1];
-                parent.b = [parent.b[0] + b[0] + ml[0], parent.b[1] + b[1] + ml[1]];
-                for (sum, own) in parent.mass.iter_mut().zip(mass) {
-                    *sum += own;
-                }
-                parent.bias_moment +=
-                    bias_moment + b[0] * c[0] + b[1] * c[1] + l[0] * force[0] + l[1] * force[1];
-                parent.bias_force = [
-                    parent.bias_force[0] + force[0],
-                    parent.bias_force[1] + force[1],
-                ];
+                let inverse = 1.0 / (tree.inertia + link.armature_kg_m2);
+                s.carried = link.armature_kg_m2 * inverse;
+                s.pull = [-tree.b[0] * inverse, -tree.b[1] * inverse];
+                s.own = torque * inverse;
+                tree.yield_to(inverse, s.carried, torque);
             }
         }
 
         let mut linear = base_m_s2;
         let mut angular = 0.0;
-        for i in 0..n {
-            let s = &scratch[i];
-            let needed = s.inertia * angular + s.b[0] * linear[0] + s.b[1] * linear[1];
+        for (i, s) in scratch.iter().enumerate() {
+            let value =
+                (s.own + s.carried * angular) + (s.pull[0] * linear[0] + s.pull[1] * linear[1]);
             if held[i] {
-                out[i] = needed - s.torque;
+                out[i] = value;
             } else {
-                let acceleration = (s.torque - needed) * s.inverse;
-                out[i] = acceleration;
-                angular += acceleration;
+                out[i] = value - angular;
+                angular = value;
             }
             linear = [
-                linear[0] + angular * s.lever[0] + s.centripetal[0],
-                linear[1] + angular * s.lever[1] + s.centripetal[1],
+                linear[0] + s.centripetal[0] + angular * s.lever[0],
+                linear[1] + s.centripetal[1] + angular * s.lever[1],
             ];
         }
+    }
+}
+
+impl Subtree {
+    /// From the link's end to its own joint.
+    #[inline]
+    fn shift(&mut self, l: [f64; 2], c: [f64; 2]) {
+        let (b, mass) = (self.b, self.mass);
+        let ml = [
+            mass[0] * l[0] + mass[1] * l[1],
+            mass[1] * l[0] + mass[2] * l[1],
+        ];
+        let force = [
+            self.force[0] + mass[0] * c[0] + mass[1] * c[1],
+            self.force[1] + mass[1] * c[0] + mass[2] * c[1],
+        ];
+        self.inertia += 2.0 * (b[0] * l[0] + b[1] * l[1]) + (l[0] * ml[0] + l[1] * ml[1]);
+        self.b = [b[0] + ml[0], b[1] + ml[1]];
+        self.moment += (b[0] * c[0] + b[1] * c[1]) + (l[0] * force[0] + l[1] * force[1]);
+        self.force = force;
+    }
+
+    /// What is left for the link before when the joint gives way: `carried` of the inertia, the armature's share.
+    #[inline]
+    fn yield_to(&mut self, inverse: f64, carried: f64, torque: f64) {
+        let (b, given) = (self.b, inverse * torque);
+        self.moment += self.inertia * given;
+        self.force[0] += b[0] * given;
+        self.force[1] += b[1] * given;
+        self.mass[0] -= (b[0] * b[0]) * inverse;
+        self.mass[1] -= (b[0] * b[1]) * inverse;
+        self.mass[2] -= (b[1] * b[1]) * inverse;
+        self.inertia *= carried;
+        self.b = b.map(|b| b * carried);
     }
 }
 

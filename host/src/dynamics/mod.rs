@@ -3,6 +3,7 @@
 mod articulated;
 mod chain;
 mod inverse;
+mod sin_cos;
 
 pub use articulated::Workspace;
 pub use chain::{Chain, ChainLink};

@@ -9,7 +9,7 @@ pub use fall::{Fall, rms_rad};
 
 use crate::diagnose::{Candidate, FittedValue};
 use crate::identify::{Data, Fit, FitOptions, Horizon, fit, intervals, longest_stable, settle};
-use crate::identify::{Node, residuals};
+use crate::identify::{Node, approach, fit_staged, residuals};
 use crate::log::Split;
 use crate::model::{Model, ParameterPath};
 use std::fmt;
@@ -68,8 +68,15 @@ pub fn refit(
     split: &Split,
     horizon: Option<Horizon>,
 ) -> Result<Extension, Undetermined> {
-    let (data, horizon) = training(model, split, horizon);
-    let found = fit(model, free, &data, None, FitOptions::default());
+    let (data, horizon) = match horizon {
+        Some(_) => training(model, split, horizon),
+        // How long a run is stable depends on the values, which may be far off.
+        None => {
+            let whole = Data::new(model, split.training.clone(), Horizon::Whole);
+            training(&approach(model, free, &whole), split, None)
+        }
+    };
+    let found = fit_staged(model, free, &data);
     finish(model, found, &data, split, horizon)
 }
 

@@ -9,6 +9,7 @@ mod noise;
 mod normal;
 mod projector;
 mod residual;
+mod staged;
 
 pub use covariance::{Interval, intervals};
 pub use data::{Data, Horizon, Window};
@@ -18,3 +19,4 @@ pub use node::Node;
 pub use noise::{found_resolution_rad, noise_rad};
 pub use projector::Projector;
 pub use residual::{Residuals, residuals};
+pub use staged::{approach, fit_staged};

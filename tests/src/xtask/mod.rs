@@ -1,5 +1,7 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod hidden;
+mod peers;
 mod program;
 mod test;
 
@@ -16,6 +18,10 @@ pub struct Chores {
 
 #[derive(Debug, Subcommand)]
 enum Chore {
+    /// Measure other programs and the library on the same tasks
+    Peers(peers::Args),
+    /// Measure how often hidden effects are named, missed and invented
+    Hidden(hidden::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -24,6 +30,8 @@ impl Chores {
     /// Does the chore; fails if any of it failed.
     pub fn run(&self) -> ExitCode {
         let well = match &self.chore {
+            Chore::Peers(args) => peers::run(args),
+            Chore::Hidden(args) => hidden::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

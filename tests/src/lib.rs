@@ -1,0 +1,4 @@
+//! What the benchmarks measure with; `cargo xtask` prints it and the tests sample it.
+
+pub mod hidden;
+pub mod peers;

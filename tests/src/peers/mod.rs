@@ -1,0 +1,22 @@
+//! The questions of `tests/peers`, answered by the library and timed in this process.
+
+mod arm;
+mod dynamics;
+
+pub use arm::{Arm, Starts};
+pub use dynamics::{farthest_off, forward_seconds};
+
+use std::time::Instant;
+
+/// Median seconds of `repeats` runs.
+pub fn median_seconds(repeats: usize, mut run: impl FnMut()) -> f64 {
+    let mut times: Vec<f64> = (0..repeats.max(1))
+        .map(|_| {
+            let begun = Instant::now();
+            run();
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

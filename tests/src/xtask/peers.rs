@@ -1,0 +1,229 @@
+//! `cargo xtask peers`: the same tasks by other programs and by the library, in one run and in turns.
+//!
+//! First says and installs what the peers need, into `target/peers`; `--no-install` leaves that out. A figure is
+//! a ratio of two times taken one after the other on this machine. Fails when a target is missed.
+
+use super::program::run as succeeds;
+use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use handstand_tests::peers::{Arm, farthest_off, forward_seconds};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Measure other programs and the library on the same tasks.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Install nothing
+    #[arg(long)]
+    no_install: bool,
+    /// Times the two take turns at short tasks
+    #[arg(long, default_value_t = 3)]
+    rounds: usize,
+}
+
+/// Whether every target is met.
+pub fn run(args: &Args) -> bool {
+    let bench = Bench::new();
+    if !args.no_install && !bench.install() {
+        return false;
+    }
+    let mut table = Rows::default();
+    let well = bench.measure(args.rounds.max(1), &mut table);
+    println!("\n{}", table.table);
+    if let Err(why) = &well {
+        println!("{why}");
+    }
+    println!("Times are seconds of wall clock, medians; the library uses every core, SciPy one.");
+    println!(
+        "A start converges when it leaves at most 1.1 times the floor: with SciPy over one free run; with the"
+    );
+    println!(
+        "library over the longest stable windows, and then every value must be within 10 % of the truth too."
+    );
+    well.is_ok() && !table.missed
+}
+
+struct Bench {
+    scripts: PathBuf,
+    folder: PathBuf,
+}
+
+impl Bench {
+    fn new() -> Bench {
+        let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+        Bench {
+            scripts: tests.join("peers"),
+            folder: tests.join("../target/peers"),
+        }
+    }
+
+    fn install(&self) -> bool {
+        println!(
+            "Needed: Python 3 and the packages of tests/peers/requirements.txt (MuJoCo, Pinocchio, SciPy,"
+        );
+        println!(
+            "numba, pycma: some 600 MB). Installing them into target/peers/venv where they are not there yet."
+        );
+        let venv = self.folder.join("venv");
+        let mut pip = Command::new(venv.join("bin/pip"));
+        pip.args(["install", "--quiet", "-r"])
+            .arg(self.scripts.join("requirements.txt"));
+        (venv.join("bin/python").is_file()
+            || succeeds(Command::new("python3").args(["-m", "venv"]).arg(&venv)))
+            && succeeds(&mut pip)
+    }
+
+    /// Runs a script on files of the folder; its JSON.
+    fn script(&self, name: &str, words: &[&str]) -> Result<Value, String> {
+        println!("{name} {}", words.join(" "));
+        let output = Command::new(self.folder.join("venv/bin/python"))
+            .arg(self.scripts.join(name))
+            .args(words)
+            .current_dir(&self.folder)
+            .stderr(Stdio::null())
+            .output()
+            .map_err(|error| format!("cannot run {name}: {error}"))?;
+        serde_json::from_slice(&output.stdout).map_err(|_| format!("{name} failed"))
+    }
+
+    fn log(&self, name: &str, words: &[&str]) -> Result<PathBuf, String> {
+        self.script("arm_log.py", &[&[name], words].concat())?;
+        Ok(self.folder.join(name))
+    }
+
+    fn measure(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        self.dynamics(rounds, table)?;
+        let load = |logs: &[PathBuf]| Arm::load(logs).map_err(|error| error.to_string());
+        let arm = load(&[self.log("arm.csv", &[])?])?;
+        let mut pairs = Vec::new();
+        for _ in 0..rounds {
+            let (ours, _) = arm.fit_seconds(3);
+            let theirs = number(&self.script("fit_scipy.py", &["arm.csv"])?, &["seconds"]);
+            pairs.push((ours, theirs));
+        }
+        table.faster("fit of 4 parameters: SciPy + numba", &pairs, 1.0);
+
+        let over = load(&[self.log("over.csv", &["--seed", "4", "--over-the-top"])?])?;
+        let ours = over.starts(30, 1);
+        let theirs = self.script("fit_scipy.py", &["over.csv", "--starts", "30"])?;
+        let theirs = number(&theirs, &["converged"]);
+        table.add(
+            "over the top, starts of 30 that converge: SciPy",
+            [
+                &ours.converged.to_string(),
+                &theirs.to_string(),
+                "",
+                ">= 27",
+            ],
+            ours.converged >= 27,
+        );
+
+        let names = ["arm1.csv", "arm2.csv", "arm3.csv"];
+        let mut logs = Vec::new();
+        for (name, seed) in names.iter().zip(["1", "2", "3"]) {
+            logs.push(self.log(name, &["--seed", seed])?);
+        }
+        let three = load(&logs)?;
+        for optimizer in ["scipy", "mujoco"] {
+            let (ours, said) = three.diagnose_seconds();
+            let words = [&["--optimizer", optimizer][..], &names].concat();
+            let theirs = number(&self.script("sysid_mujoco.py", &words)?, &["seconds"]);
+            let name = format!("diagnosis ({said}): fit by mujoco.sysid, {optimizer}");
+            table.faster(&name, &[(ours, theirs)], 0.5);
+        }
+        Ok(())
+    }
+
+    fn dynamics(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        let file = self.folder.join("accelerations.json");
+        let sizes = [
+            ("mujoco", 3_usize, 10.0),
+            ("pinocchio", 3, 5.0),
+            ("pinocchio", 100, 5.0),
+        ];
+        let mut pairs = vec![Vec::new(); sizes.len()];
+        for _ in 0..rounds {
+            let ours = sizes.map(|(_, n, _)| forward_seconds(n));
+            let words = [
+                "--links",
+                "3",
+                "100",
+                "--accelerations",
+                "accelerations.json",
+            ];
+            let theirs = self.script("dynamics.py", &words)?;
+            for ((pairs, (peer, n, _)), ours) in pairs.iter_mut().zip(sizes).zip(ours) {
+                pairs.push((ours, 1e-6 * number(&theirs, &[peer, &n.to_string()])));
+            }
+        }
+        for (pairs, (peer, n, target)) in pairs.iter().zip(sizes) {
+            table.faster(&format!("forward dynamics, n = {n}: {peer}"), pairs, target);
+        }
+        let text = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
+        let states: Value = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+        for n in [3, 30] {
+            let peers = ["mujoco", "pinocchio"];
+            let off = peers.map(|peer| farthest_off(&states, n, peer).unwrap_or(f64::NAN));
+            let off = off[0].max(off[1]);
+            let name = format!("accelerations, n = {n}: farthest off both, relative");
+            table.add(
+                &name,
+                ["", "", &format!("{off:.1e}"), "<= 1e-9"],
+                off <= 1e-9,
+            );
+        }
+        Ok(())
+    }
+}
+
+/// The number at a place of a script's JSON.
+fn number(value: &Value, place: &[&str]) -> f64 {
+    let found = place.iter().fold(value, |value, key| &value[*key]);
+    found.as_f64().unwrap_or(f64::NAN)
+}
+
+struct Rows {
+    table: Table,
+    missed: bool,
+}
+
+impl Default for Rows {
+    fn default() -> Self {
+        let mut table = Table::new();
+        table.load_preset(UTF8_HORIZONTAL_ONLY);
+        table.set_header(["task: peer", "ours", "theirs", "ratio", "target", ""]);
+        Rows {
+            table,
+            missed: false,
+        }
+    }
+}
+
+impl Rows {
+    fn add(&mut self, name: &str, [ours, theirs, ratio, target]: [&str; 4], met: bool) {
+        self.missed |= !met;
+        let verdict = if met { "met" } else { "MISSED" };
+        self.table
+            .add_row([name, ours, theirs, ratio, target, verdict]);
+    }
+
+    /// Pairs of seconds, ours and theirs, taken in turns; theirs must take at least `target` times as long.
+    fn faster(&mut self, name: &str, pairs: &[(f64, f64)], target: f64) {
+        let ours = median(pairs.iter().map(|pair| pair.0));
+        let theirs = median(pairs.iter().map(|pair| pair.1));
+        let ratio = median(pairs.iter().map(|pair| pair.1 / pair.0));
+        let cells = [
+            format!("{ours:.3e}"),
+            format!("{theirs:.3e}"),
+            format!("{ratio:.1}"),
+            format!(">= {target}"),
+        ];
+        self.add(name, cells.each_ref().map(String::as_str), ratio >= target);
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
