@@ -33,8 +33,8 @@ pub struct Args {
     /// Logs to learn from
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
-    /// Log to judge by, which is not learned from
-    #[arg(long, value_name = "LOG", value_parser = input::log)]
+    /// Logs to judge by, which are not learned from
+    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     holdout: Vec<LogRequest>,
     /// Effect to leave out of the candidates
     #[arg(long, value_name = "EFFECT")]

@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
     /// Log to judge by, which is not fitted
-    #[arg(long, value_name = "LOG", value_parser = input::log)]
+    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     holdout: Vec<LogRequest>,
     /// Value to fit instead of those the model frees: `link1.com_m`, `coulomb@1.torque_nm`
     #[arg(long, value_name = "PATH")]

@@ -9,13 +9,13 @@ use super::findings::Remainder;
 use super::score::{AT_FLOOR, Score, resampled};
 use super::trial::change;
 use crate::effects::Along;
-use crate::identify::{Data, Fit, Projector, settle};
+use crate::identify::{self, Data, Fit, FitOptions, Projector, settle};
 use crate::model::{Drive, Model};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Ridge on columns of unit length, against a residual of unit weight: a term must stand out of the noise.
-const RIDGE: f64 = 2.0;
+/// Least ridge on columns of unit length: the linearisation itself is no better.
+const RIDGE: f64 = 1e-2;
 
 /// A probe with the amplitude at which its effect is measured.
 #[derive(Debug, Clone, Copy)]
@@ -38,49 +38,68 @@ pub(super) fn remainder(
     if before.rms() < AT_FLOOR {
         return None;
     }
-    let terms = terms(&fit.model, training);
-    let (columns, lengths) = columns(fit, training, &terms, None);
-    let weights = ridge(
-        &columns,
-        &flat(&Projector::new(fit).off(&fit.residuals.windows)),
-    );
-    let (unseen, _) = columns_like(&settled, held_out, &terms, &lengths);
-    let mut left = flat(&Projector::new(&settled).off(&settled.residuals.windows));
-    for (column, weight) in unseen.iter().zip(weights.iter()) {
+    let unseen = linearised(fit, held_out, &settled);
+    let mut terms = terms(&fit.model, training);
+    let seen_columns = columns(fit, training, &terms);
+    let unseen_columns = columns(&unseen, held_out, &terms);
+    let kept = comparable(&terms, &seen_columns, &unseen_columns);
+    let pick = |columns: Vec<DVector<f64>>| -> Vec<DVector<f64>> {
+        columns
+            .into_iter()
+            .zip(&kept)
+            .filter_map(|(c, keep)| keep.then_some(c))
+            .collect()
+    };
+    let (seen_columns, unseen_columns) = (pick(seen_columns), pick(unseen_columns));
+    let mut at = kept.iter();
+    terms.retain(|_| *at.next().unwrap_or(&false));
+
+    let target = target(fit);
+    let weights = regress(&seen_columns, &parameter_columns(fit), &target);
+    let mut left = self::target(&unseen);
+    let all = unseen_columns
+        .iter()
+        .chain(&parameter_columns(&unseen))
+        .cloned()
+        .collect::<Vec<_>>();
+    for (column, weight) in all.iter().zip(weights.iter()) {
         left.axpy(-weight, column, 1.0);
     }
-    let after = Score::of_windows(&split_like(&left, &settled.residuals.windows), held_out);
+    let after = Score::of_windows(&split_like(&left, &unseen.residuals.windows), held_out);
     let samples = before.counts.iter().sum::<usize>() as f64;
     let share = |before: f64, after: f64| (before - after) / (before - samples).max(0.05 * samples);
     let (low, _) = resampled(&before, &after, seed, share);
     Some(Remainder {
         explainable_share: share(before.sums.iter().sum(), after.sums.iter().sum()),
         explainable_low: low,
-        shape: shape(&terms, &columns, &weights),
+        shape: shape(&terms, &seen_columns, &weights),
     })
 }
 
-fn columns_like(
-    fit: &Fit,
-    data: &Data,
-    terms: &[Term],
-    lengths: &[f64],
-) -> (Vec<DVector<f64>>, Vec<f64>) {
-    columns(fit, data, terms, Some(lengths))
+/// The fitted values on other motions, with the derivatives there.
+fn linearised(fit: &Fit, data: &Data, settled: &Fit) -> Fit {
+    let options = FitOptions {
+        iterations: 0,
+        ..FitOptions::default()
+    };
+    identify::fit(&fit.model, &fit.free, data, Some(&settled.nodes), options)
 }
 
-/// The change each probe makes, less what the fit could imitate, scaled to unit length (or by given lengths).
-fn columns(
-    fit: &Fit,
-    data: &Data,
-    terms: &[Term],
-    lengths: Option<&[f64]>,
-) -> (Vec<DVector<f64>>, Vec<f64>) {
-    let off = Projector::new(fit);
-    let made: Vec<(DVector<f64>, f64)> = terms
+/// The residual, less what start states could make of it.
+fn target(fit: &Fit) -> DVector<f64> {
+    flat(&Projector::off_start_states(fit).off(&fit.residuals.windows))
+}
+
+fn parameter_columns(fit: &Fit) -> Vec<DVector<f64>> {
+    Projector::off_start_states(fit).parameter_columns()
+}
+
+/// The change each probe makes, less what start states could make of it.
+fn columns(fit: &Fit, data: &Data, terms: &[Term]) -> Vec<DVector<f64>> {
+    let off = Projector::off_start_states(fit);
+    terms
         .par_iter()
-        .enumerate()
-        .map(|(i, term)| {
+        .map(|term| {
             let before = &fit.residuals.windows;
             let moved = change(
                 &fit.model,
@@ -90,28 +109,58 @@ fn columns(
                 &fit.nodes,
                 before,
             );
-            let column = flat(&off.off(&moved));
-            let length = lengths.map_or_else(|| column.norm(), |l| l[i]);
-            if length > 1e-9 {
-                (column / length, length)
-            } else {
-                (column * 0.0, 1.0)
-            }
+            flat(&off.off(&moved))
         })
-        .collect();
-    made.into_iter().unzip()
+        .collect()
 }
 
-fn ridge(columns: &[DVector<f64>], target: &DVector<f64>) -> DVector<f64> {
+/// Which terms act on the training motions about as much as on the others of their kind and on the held-out
+/// motions: what training hardly shows can't be carried over.
+fn comparable(terms: &[Term], seen: &[DVector<f64>], unseen: &[DVector<f64>]) -> Vec<bool> {
+    let strength = |column: &DVector<f64>| column.norm() / (column.len().max(1) as f64).sqrt();
+    terms
+        .iter()
+        .enumerate()
+        .map(|(i, term)| {
+            let most = terms
+                .iter()
+                .zip(seen)
+                .filter(|(other, _)| other.along == term.along)
+                .map(|(_, column)| strength(column))
+                .fold(0.0, f64::max);
+            let own = strength(&seen[i]);
+            own > 0.1 * most && own > 1e-9 && strength(&unseen[i]) < 3.0 * own
+        })
+        .collect()
+}
+
+/// Weights of the probes, then of the parameters' shifts, by ridge regression.
+///
+/// A priori the probes share what is left above the noise; the parameters may shift freely.
+fn regress(
+    probes: &[DVector<f64>],
+    parameters: &[DVector<f64>],
+    target: &DVector<f64>,
+) -> DVector<f64> {
+    let columns: Vec<&DVector<f64>> = probes.iter().chain(parameters).collect();
     let count = columns.len();
-    let mut normal = DMatrix::from_fn(count, count, |r, c| columns[r].dot(&columns[c]));
+    let lengths: Vec<f64> = columns.iter().map(|c| c.norm().max(1e-12)).collect();
+    let excess = (target.norm_squared() - target.len() as f64).max(1.0);
+    let mut normal = DMatrix::from_fn(count, count, |r, c| {
+        columns[r].dot(columns[c]) / (lengths[r] * lengths[c])
+    });
     for i in 0..count {
-        normal[(i, i)] += RIDGE;
+        normal[(i, i)] += if i < probes.len() {
+            (probes.len() as f64 / excess).max(RIDGE)
+        } else {
+            1e-9
+        };
     }
-    let right = DVector::from_fn(count, |r, _| columns[r].dot(target));
-    normal
+    let right = DVector::from_fn(count, |r, _| columns[r].dot(target) / lengths[r]);
+    let scaled = normal
         .cholesky()
-        .map_or_else(|| DVector::zeros(count), |c| c.solve(&right))
+        .map_or_else(|| DVector::zeros(count), |c| c.solve(&right));
+    DVector::from_fn(count, |i, _| scaled[i] / lengths[i])
 }
 
 /// The two kinds of terms that carry most of the free form, in words.

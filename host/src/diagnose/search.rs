@@ -10,7 +10,7 @@ use super::score::{AT_FLOOR, Score, fall};
 use super::trial::{Opening, Trial, openings};
 use super::verdict::{Case, conclude};
 use crate::effects::{CONTROLS, SHAM};
-use crate::identify::{Data, Fit, FitOptions, Horizon, Projector, fit, longest_stable};
+use crate::identify::{Data, Fit, FitOptions, Horizon, Projector, fit, longest_stable, settle};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -54,6 +54,10 @@ pub struct Progress {
 const LOOK: usize = 3;
 /// Iterations of a finalist.
 const FINISH: usize = 25;
+/// Iterations over the judging horizon, from what the windows found.
+const JUDGE: usize = 12;
+/// Windows to search on, s.
+const SEARCH_S: f64 = 1.0;
 /// Finalists of each size.
 const FINALISTS: usize = 6;
 /// Sets from which larger ones grow.
@@ -106,12 +110,11 @@ pub fn diagnose(
     }
     report(3, "what remains");
     let chosen = best.as_ref().unwrap_or(&bench.base);
-    let left = remainder(
-        &chosen.fit,
-        &bench.training,
-        bench.held_out.as_ref(),
-        options.seed,
-    );
+    let unseen = bench
+        .held_out
+        .as_ref()
+        .map(|data| data.recut(bench.search_horizon));
+    let left = remainder(&chosen.search, &bench.search, unseen.as_ref(), options.seed);
     report(4, "the verdict");
     conclude(&Case {
         bench: &bench,
@@ -125,10 +128,15 @@ pub fn diagnose(
 /// What every trial is measured with.
 #[derive(Debug)]
 pub(super) struct Bench {
+    /// Training motions in short windows, to search on.
+    pub search: Data,
+    /// Training motions over the judging horizon.
     pub training: Data,
+    /// Held-out motions over the judging horizon.
     pub held_out: Option<Data>,
     pub base: Trial,
     pub horizon: Horizon,
+    search_horizon: Horizon,
     pub shams: Vec<Trial>,
     candidates: Vec<Candidate>,
     seed: u64,
@@ -145,24 +153,28 @@ impl Bench {
         all.extend(held_out.iter().cloned());
         let candidates = candidates(model, &all, &options.without);
         let whole = Data::new(model, training, Horizon::Whole);
-        let (horizon, fit, data) = match options.horizon {
-            Some(horizon) => {
-                let data = whole.recut(horizon);
-                (horizon, base_fit(model, &data), data)
-            }
-            None => longest_useful(model, &whole),
+        let longest = options
+            .horizon
+            .unwrap_or_else(|| longest_stable(model, &whole));
+        let search_horizon = search_horizon(&whole, longest);
+        let search = whole.recut(search_horizon);
+        let mut base = Trial::new(Vec::new(), base_fit(model, &search));
+        let (horizon, training) = match options.horizon {
+            Some(horizon) => (horizon, whole.recut(horizon)),
+            None => longest_useful(&base.search.model, &whole, longest),
         };
         let held_out = (!held_out.is_empty()).then(|| Data {
-            sigma_rad: data.sigma_rad.clone(),
+            sigma_rad: training.sigma_rad.clone(),
             ..Data::new(model, held_out, horizon)
         });
-        let mut base = Trial::base(fit, &data);
-        base.judge(held_out.as_ref());
+        base.judge(&training, held_out.as_ref(), FINISH);
         let mut bench = Bench {
-            training: data,
+            search,
+            training,
             held_out,
             base,
             horizon,
+            search_horizon,
             shams: Vec::new(),
             candidates,
             seed: options.seed,
@@ -173,7 +185,17 @@ impl Bench {
 
     /// Whether a trial leaves nothing but noise.
     pub fn at_floor(&self, trial: &Trial) -> bool {
-        trial.deciding().rms() < AT_FLOOR && trial.training.rms() < AT_FLOOR
+        trial.judged.as_ref().is_some_and(|judged| {
+            judged.training.rms() < AT_FLOOR
+                && judged
+                    .held_out
+                    .as_ref()
+                    .is_none_or(|score| score.rms() < AT_FLOOR)
+        })
+    }
+
+    fn judge(&self, trial: &mut Trial) {
+        trial.judge(&self.training, self.held_out.as_ref(), JUDGE);
     }
 
     fn try_shams(&self, joints: usize) -> Vec<Trial> {
@@ -190,7 +212,7 @@ impl Bench {
         self.first_look(&self.base, &shams, 1)
             .into_iter()
             .map(|mut trial| {
-                trial.judge(self.held_out.as_ref());
+                self.judge(&mut trial);
                 trial
             })
             .collect()
@@ -198,19 +220,19 @@ impl Bench {
 
     fn singles(&self) -> Vec<Trial> {
         // Few samples: simulations are cheap, and a single motion has more false valleys.
-        let starts = if self.training.samples() < 3000 { 6 } else { 1 };
+        let starts = if self.search.samples() < 3000 { 6 } else { 2 };
         let trials = self.first_look(&self.base, &self.candidates, starts);
         self.finals(trials)
     }
 
     /// Short fits of candidates on top of a trial, each from its `openings` best starts; the better one counts.
     fn first_look(&self, from: &Trial, candidates: &[Candidate], starts: usize) -> Vec<Trial> {
-        let off = Projector::new(&from.fit);
+        let off = Projector::new(&from.search);
         candidates
             .par_iter()
             .filter(|candidate| !from.set.contains(candidate))
             .filter_map(|&candidate| {
-                let found = openings(&from.fit, &off, candidate, &self.training);
+                let found = openings(&from.search, &off, candidate, &self.search);
                 self.best_of(from, &found[..starts.min(found.len())])
             })
             .collect()
@@ -219,13 +241,13 @@ impl Bench {
     fn best_of(&self, from: &Trial, openings: &[Opening]) -> Option<Trial> {
         openings
             .iter()
-            .map(|o| from.with(o.candidate, &o.values, &self.training, LOOK))
-            .min_by(|a, b| a.training.mean().total_cmp(&b.training.mean()))
+            .map(|o| from.with(o.candidate, &o.values, &self.search, LOOK))
+            .min_by(|a, b| a.search_mean.total_cmp(&b.search_mean))
     }
 
     /// Sorts trials by training error, takes the best to the end and judges them.
     fn finals(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
-        let by_error = |a: &Trial, b: &Trial| a.training.mean().total_cmp(&b.training.mean());
+        let by_error = |a: &Trial, b: &Trial| a.search_mean.total_cmp(&b.search_mean);
         trials.sort_by(by_error);
         // Halving: many get a second look, few go to the end.
         let heats = [(3 * FINALISTS, LOOK), (FINALISTS, FINISH)];
@@ -233,13 +255,13 @@ impl Bench {
             let places = places.min(trials.len());
             trials[..places]
                 .par_iter_mut()
-                .for_each(|trial| trial.finish(&self.training, iterations));
+                .for_each(|trial| trial.finish(&self.search, iterations));
             trials.sort_by(by_error);
         }
         let finalists = FINALISTS.min(trials.len());
         trials[..finalists]
             .par_iter_mut()
-            .for_each(|trial| trial.judge(self.held_out.as_ref()));
+            .for_each(|trial| self.judge(trial));
         trials
     }
 
@@ -250,7 +272,7 @@ impl Bench {
             let wanted = self.partners(lead, &tried);
             let found: Vec<Trial> = wanted
                 .par_iter()
-                .map(|o| lead.with(o.candidate, &o.values, &self.training, LOOK))
+                .map(|o| lead.with(o.candidate, &o.values, &self.search, LOOK))
                 .collect();
             tried.extend(found);
         }
@@ -260,7 +282,7 @@ impl Bench {
 
     /// The most promising openings on top of a trial that make a set not yet tried.
     fn partners(&self, lead: &Trial, tried: &[Trial]) -> Vec<Opening> {
-        let off = Projector::new(&lead.fit);
+        let off = Projector::new(&lead.search);
         let mut openings: Vec<Opening> = self
             .candidates
             .par_iter()
@@ -271,7 +293,7 @@ impl Bench {
                 !tried.iter().any(|trial| trial.adds(&set))
             })
             .filter_map(|&candidate| {
-                openings(&lead.fit, &off, candidate, &self.training)
+                openings(&lead.search, &off, candidate, &self.search)
                     .into_iter()
                     .next()
             })
@@ -292,7 +314,7 @@ impl Bench {
                 .map(|i| best.set[i])
                 .collect();
             let mut rest = best.without(leaving, &self.base);
-            rest.refit(&self.training, LOOK);
+            rest.refit(&self.search, LOOK);
             let wanted: Vec<Opening> = self
                 .partners(&rest, &trials)
                 .into_iter()
@@ -301,7 +323,7 @@ impl Bench {
                 .collect();
             let found: Vec<Trial> = wanted
                 .par_iter()
-                .map(|o| rest.with(o.candidate, &o.values, &self.training, LOOK))
+                .map(|o| rest.with(o.candidate, &o.values, &self.search, LOOK))
                 .collect();
             trials.extend(found);
         }
@@ -312,32 +334,33 @@ impl Bench {
     ///
     /// Among trials that nothing tells apart, the one with the fewest values.
     fn accepted<'a>(&self, reference: &Trial, trials: &'a [Trial]) -> Option<&'a Trial> {
-        let worthy: Vec<&Trial> = trials.iter().filter(|t| self.pays(reference, t)).collect();
-        let best = worthy
+        let worthy: Vec<(&Trial, f64)> = trials
             .iter()
-            .min_by(|a, b| a.pooled().mean().total_cmp(&b.pooled().mean()))?;
-        let pooled = best.pooled();
+            .filter(|trial| self.pays(reference, trial))
+            .filter_map(|trial| Some((trial, trial.pooled()?.mean())))
+            .collect();
+        let (best, least) = *worthy.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         worthy
             .iter()
-            .filter(|t| {
-                !self.clearly_worse(t, best, reference) && t.pooled().mean() <= 1.1 * pooled.mean()
+            .filter(|(trial, mean)| {
+                !self.clearly_worse(trial, best, reference) && *mean <= 1.1 * least
             })
             .min_by(|a, b| {
-                (a.added_values(), a.pooled().mean())
-                    .partial_cmp(&(b.added_values(), b.pooled().mean()))
-                    .unwrap_or(std::cmp::Ordering::Equal)
+                a.0.added_values()
+                    .cmp(&b.0.added_values())
+                    .then(a.1.total_cmp(&b.1))
             })
-            .copied()
+            .map(|(trial, _)| *trial)
     }
 
     /// Whether a larger set earns its place against a smaller one.
     pub fn pays(&self, reference: &Trial, trial: &Trial) -> bool {
-        if trial.rests_on_bound() || (self.held_out.is_some() && trial.held_out.is_none()) {
+        let (Some(before), Some(after)) = (reference.deciding(), trial.deciding()) else {
             return false;
-        }
-        let (low, _) = fall(reference.deciding(), trial.deciding(), self.seed);
+        };
+        let (low, _) = fall(before, after, self.seed);
         let practical = if self.held_out.is_some() { 0.03 } else { 0.10 };
-        low > practical && self.bic_change(reference, trial) < -10.0
+        !trial.rests_on_bound() && low > practical && self.bic_change(reference, trial) < -10.0
     }
 
     /// Whether the data tell that `trial` is worse than `best`; `reference` is what both improve on.
@@ -346,7 +369,11 @@ impl Bench {
     /// bends every candidate, so a difference decides nothing that is smaller than what remains unexplained and
     /// than a tenth of what was gained.
     pub fn clearly_worse(&self, trial: &Trial, best: &Trial, reference: &Trial) -> bool {
-        let (worse, better, start) = (trial.pooled(), best.pooled(), reference.pooled());
+        let (Some(worse), Some(better), Some(start)) =
+            (trial.pooled(), best.pooled(), reference.pooled())
+        else {
+            return true;
+        };
         let sure = super::score::surely_worse(&worse, &better, self.seed);
         if self.at_floor(best) {
             return sure;
@@ -356,12 +383,34 @@ impl Bench {
         sure && worse.mean() - better.mean() > unexplained.min(0.1 * gained)
     }
 
-    /// Change of the Bayesian information criterion on the training motions; correlated residuals count once
-    /// per block.
+    /// Change of the Bayesian information criterion on the training motions; correlated residuals count fewer.
     pub fn bic_change(&self, reference: &Trial, trial: &Trial) -> f64 {
-        let n = effective_samples(&trial.training, &trial.fit);
-        let values = trial.fit.free.len() as f64 - reference.fit.free.len() as f64;
-        n * (trial.training.mean() / reference.training.mean()).ln() + values * n.max(2.0).ln()
+        let values = trial.search.free.len() as f64 - reference.search.free.len() as f64;
+        let (n, ratio) = match (&reference.judged, &trial.judged) {
+            (Some(before), Some(after)) => (
+                effective_samples(&after.training, &after.fit),
+                after.training.mean() / before.training.mean(),
+            ),
+            _ => {
+                let score = Score::of(&trial.search, &self.search);
+                (
+                    effective_samples(&score, &trial.search),
+                    trial.search_mean / reference.search_mean,
+                )
+            }
+        };
+        n * ratio.ln() + values * n.max(2.0).ln()
+    }
+}
+
+/// Short windows to search on: a second, or what holds forty samples; never longer than the plant is stable.
+fn search_horizon(whole: &Data, longest: Horizon) -> Horizon {
+    let samples: usize = whole.motions.iter().map(Motion::len).sum();
+    let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
+    let wanted = SEARCH_S.max(40.0 * seconds / samples.max(1) as f64);
+    match longest {
+        Horizon::Seconds(stable) => Horizon::Seconds(stable.min(wanted)),
+        Horizon::Whole => Horizon::Seconds(wanted),
     }
 }
 
@@ -385,25 +434,24 @@ fn base_fit(model: &Model, data: &Data) -> Fit {
     fit(model, &model.free, data, None, FitOptions::default())
 }
 
-/// The longest windows over which the fitted base model still follows the measurement: longer ones show more of
-/// a small effect, but where the simulation has lost the motion altogether they show nothing.
-fn longest_useful(model: &Model, whole: &Data) -> (Horizon, Fit, Data) {
-    let mut horizon = longest_stable(model, whole);
-    let mut seconds = whole
-        .motions
-        .iter()
-        .map(Motion::duration_s)
-        .fold(0.0, f64::max);
-    if let Horizon::Seconds(stable) = horizon {
-        seconds = stable;
-    }
+/// The longest windows over which the base model, as fitted on short ones, still follows the measurement: longer
+/// ones show more of a small effect, but where the simulation has lost the motion altogether they show nothing.
+fn longest_useful(model: &Model, whole: &Data, longest: Horizon) -> (Horizon, Data) {
+    let mut horizon = longest;
+    let mut seconds = match longest {
+        Horizon::Seconds(stable) => stable,
+        Horizon::Whole => whole
+            .motions
+            .iter()
+            .map(Motion::duration_s)
+            .fold(0.0, f64::max),
+    };
     loop {
         let data = whole.recut(horizon);
-        let fit = base_fit(model, &data);
-        let lost = fit.residuals.cost() / fit.residuals.count().max(1) as f64
-            > (0.25 * spread(&data)).powi(2);
-        if !lost || seconds <= 1.0 {
-            return (horizon, fit, data);
+        let settled = settle(model, &data);
+        let mean = settled.residuals.cost() / settled.residuals.count().max(1) as f64;
+        if mean <= (0.25 * spread(&data)).powi(2) || seconds <= 1.0 {
+            return (horizon, data);
         }
         seconds = (seconds / 2.0).clamp(1.0, 4.0);
         horizon = Horizon::Seconds(seconds);

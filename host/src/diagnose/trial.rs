@@ -6,24 +6,37 @@ use crate::identify::{Data, Fit, FitOptions, Node, Projector, fit, residuals, se
 use crate::model::Model;
 
 /// A fitted set of effects.
+///
+/// It is searched on short windows, where the squared error has few false valleys, and judged over the longest
+/// useful horizon, where small effects show most.
 #[derive(Debug, Clone)]
 pub(super) struct Trial {
     /// The effects added to the base, in the order they were added.
     pub set: Vec<Candidate>,
+    /// The fit on short windows.
+    pub search: Fit,
+    /// Its mean squared weighted residual.
+    pub search_mean: f64,
+    /// The fit over the judging horizon, once it has come that far.
+    pub judged: Option<Judged>,
+}
+
+/// A trial over the judging horizon.
+#[derive(Debug, Clone)]
+pub(super) struct Judged {
     pub fit: Fit,
     pub training: Score,
-    /// On held-out motions, once it has come that far.
     pub held_out: Option<Score>,
 }
 
 impl Trial {
-    /// The base model, fitted.
-    pub fn base(fit: Fit, data: &Data) -> Trial {
+    /// Effects added, fitted on short windows.
+    pub fn new(set: Vec<Candidate>, search: Fit) -> Trial {
         Trial {
-            set: Vec::new(),
-            training: Score::of(&fit, data),
-            fit,
-            held_out: None,
+            set,
+            search_mean: search.residuals.cost() / search.residuals.count().max(1) as f64,
+            search,
+            judged: None,
         }
     }
 
@@ -49,7 +62,7 @@ impl Trial {
         self.set.len() == set.len() && set.iter().all(|c| self.set.contains(c))
     }
 
-    /// Adds an effect at these values and refits everything, for at most `iterations`.
+    /// Adds an effect at these values and refits everything on short windows, for at most `iterations`.
     pub fn with(
         &self,
         candidate: Candidate,
@@ -57,9 +70,9 @@ impl Trial {
         data: &Data,
         iterations: usize,
     ) -> Trial {
-        let mut model = self.fit.model.clone();
+        let mut model = self.search.model.clone();
         model.effects.push(candidate.instance(values));
-        let mut free = self.fit.free.clone();
+        let mut free = self.search.free.clone();
         free.extend(candidate.paths());
         let mut set = self.set.clone();
         set.push(candidate);
@@ -67,30 +80,27 @@ impl Trial {
             iterations,
             ..FitOptions::default()
         };
-        let fit = fit(&model, &free, data, Some(&self.fit.nodes), options);
-        Trial {
+        Trial::new(
             set,
-            training: Score::of(&fit, data),
-            fit,
-            held_out: None,
-        }
+            fit(&model, &free, data, Some(&self.search.nodes), options),
+        )
     }
 
     /// Goes on fitting where an earlier, short fit stopped.
     pub fn finish(&mut self, data: &Data, iterations: usize) {
-        if !self.fit.converged {
+        if !self.search.converged {
             let options = FitOptions {
                 iterations,
                 ..FitOptions::default()
             };
-            self.fit = fit(
-                &self.fit.model,
-                &self.fit.free,
+            let search = fit(
+                &self.search.model,
+                &self.search.free,
                 data,
-                Some(&self.fit.nodes),
+                Some(&self.search.nodes),
                 options,
             );
-            self.training = Score::of(&self.fit, data);
+            *self = Trial::new(std::mem::take(&mut self.set), search);
         }
     }
 
@@ -99,13 +109,13 @@ impl Trial {
         let out = self.set[leaving];
         let mut rest = self.clone();
         rest.set.remove(leaving);
-        rest.held_out = None;
-        rest.fit
+        rest.judged = None;
+        rest.search
             .model
             .effects
             .retain(|e| !(e.effect == out.effect && e.joint == out.joint));
-        rest.fit.free = base.fit.free.clone();
-        rest.fit
+        rest.search.free = base.search.free.clone();
+        rest.search
             .free
             .extend(rest.set.iter().flat_map(|c| c.paths().collect::<Vec<_>>()));
         rest
@@ -113,34 +123,76 @@ impl Trial {
 
     /// Fits again from the present values.
     pub fn refit(&mut self, data: &Data, iterations: usize) {
-        self.fit.converged = false;
+        self.search.converged = false;
         self.finish(data, iterations);
     }
 
-    /// Judges the fitted values on motions that took no part in the fit.
-    pub fn judge(&mut self, held_out: Option<&Data>) {
-        if self.held_out.is_none() {
-            self.held_out = held_out.map(|data| Score::of(&settle(&self.fit.model, data), data));
+    /// Refits over the judging horizon from the values found, and judges them on held-out motions.
+    pub fn judge(&mut self, training: &Data, held_out: Option<&Data>, iterations: usize) {
+        if self.judged.is_none() {
+            let options = FitOptions {
+                iterations,
+                ..FitOptions::default()
+            };
+            let fit = fit(
+                &self.search.model,
+                &self.search.free,
+                training,
+                None,
+                options,
+            );
+            self.judged = Some(Judged {
+                training: Score::of(&fit, training),
+                held_out: held_out.map(|data| Score::of(&settle(&fit.model, data), data)),
+                fit,
+            });
         }
     }
 
-    /// The blocks that decide: held-out ones where there are any.
-    pub fn deciding(&self) -> &Score {
-        self.held_out.as_ref().unwrap_or(&self.training)
+    /// The blocks that decide: held-out ones where there are any. `None` before it was judged.
+    pub fn deciding(&self) -> Option<&Score> {
+        let judged = self.judged.as_ref()?;
+        Some(judged.held_out.as_ref().unwrap_or(&judged.training))
+    }
+
+    /// Mean squared weighted error where it counts; infinite before it was judged.
+    pub fn deciding_mean(&self) -> f64 {
+        self.deciding().map_or(f64::INFINITY, Score::mean)
+    }
+
+    /// Root-mean-square error where it counts, rad; on the windows searched before it was judged.
+    pub fn deciding_rms_rad(&self) -> f64 {
+        self.deciding().map_or(f64::INFINITY, Score::rms_rad)
+    }
+
+    /// Root-mean-square error on the training motions, rad: over the judging horizon where it came that far.
+    pub fn training_rms_rad(&self, search: &Data) -> f64 {
+        match &self.judged {
+            Some(judged) => judged.training.rms_rad(),
+            None => Score::of(&self.search, search).rms_rad(),
+        }
     }
 
     /// All blocks.
-    pub fn pooled(&self) -> Score {
-        match &self.held_out {
-            Some(held_out) => Score::joined(&[&self.training, held_out]),
-            None => self.training.clone(),
-        }
+    pub fn pooled(&self) -> Option<Score> {
+        let judged = self.judged.as_ref()?;
+        Some(match &judged.held_out {
+            Some(held_out) => Score::joined(&[&judged.training, held_out]),
+            None => judged.training.clone(),
+        })
+    }
+
+    /// The fit that counts: over the judging horizon where there is one.
+    pub fn fit(&self) -> &Fit {
+        self.judged
+            .as_ref()
+            .map_or(&self.search, |judged| &judged.fit)
     }
 
     /// Whether an added effect has an amplitude where it vanishes, or any value at the edge of the possible.
     pub fn rests_on_bound(&self) -> bool {
-        let on_bound = self.fit.on_bound();
-        let added = self.fit.free.len() - self.added_values();
+        let on_bound = self.fit().on_bound();
+        let added = self.fit().free.len() - self.added_values();
         let mut at = added;
         for candidate in &self.set {
             for parameter in candidate.effect.card().parameters {
@@ -193,7 +245,37 @@ pub(super) fn openings(
         .map(|start| opening(from, off, &residual, candidate, start, data))
         .collect();
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let mut shapes: Vec<Vec<f64>> = Vec::new();
+    found.retain(|opening| {
+        let shape = shape(candidate, &opening.values);
+        let fresh = !shapes.contains(&shape);
+        if fresh {
+            shapes.push(shape);
+        }
+        fresh
+    });
     found
+}
+
+/// The values that shape an effect without switching it on or off: openings are kept one for each.
+fn shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
+    let parameters = candidate.effect.card().parameters;
+    let mut shape: Vec<f64> = parameters
+        .iter()
+        .zip(values)
+        .filter(|(parameter, _)| !parameter.off.is_some_and(f64::is_finite))
+        .map(|(_, value)| *value)
+        .collect();
+    // The side of off counts as a shape too: a mass may be missing or be too much.
+    shape.extend(
+        parameters
+            .iter()
+            .zip(values)
+            .filter_map(|(parameter, value)| {
+                Some((value - parameter.off.filter(|o| o.is_finite())?).signum())
+            }),
+    );
+    shape
 }
 
 fn opening(

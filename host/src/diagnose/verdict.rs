@@ -4,12 +4,12 @@ use super::findings::{
     Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, Remainder, RuledOut,
     Verdict,
 };
-use super::score::fall;
+use super::score::{Score, fall};
 use super::search::Bench;
 use super::trial::Trial;
 use super::words;
 use crate::effects::Effect;
-use crate::identify::{Horizon, Interval, intervals};
+use crate::identify::{Data, Horizon, Interval, intervals};
 
 /// Everything the verdict rests on.
 pub(super) struct Case<'a> {
@@ -26,6 +26,10 @@ pub(super) struct Case<'a> {
 const UNEXPLAINED_LOW: f64 = 0.2;
 /// The same for the estimate itself.
 const UNEXPLAINED_SHARE: f64 = 0.35;
+/// An explanation that leaves more than this share of the squared error above the noise is not one.
+const LEAST_EXPLAINED: f64 = 0.58;
+/// Mean squared weighted error from which the noise no longer excuses it.
+const FAR_OFF: f64 = 2.0;
 
 impl Case<'_> {
     fn chosen(&self) -> &Trial {
@@ -45,18 +49,34 @@ impl Case<'_> {
             .collect()
     }
 
-    /// Whether what remains is structure that some other term would explain.
+    /// Whether what remains is more than may be passed over.
     fn incomplete(&self) -> bool {
-        !self.bench.at_floor(self.chosen())
-            && self.remainder.as_ref().is_some_and(|r| {
-                r.explainable_low > UNEXPLAINED_LOW && r.explainable_share > UNEXPLAINED_SHARE
-            })
+        let chosen = self.chosen();
+        if self.bench.at_floor(chosen) || self.bench.held_out.is_none() {
+            return false;
+        }
+        let structured = self.remainder.as_ref().is_some_and(|r| {
+            r.explainable_low > UNEXPLAINED_LOW && r.explainable_share > UNEXPLAINED_SHARE
+        });
+        structured || self.leaves_most()
+    }
+
+    /// Whether the best explanation leaves most of the squared error above the noise, or the base model, with no
+    /// explanation found, is far off.
+    fn leaves_most(&self) -> bool {
+        let left = self.chosen().deciding_mean();
+        let before = self.bench.base.deciding_mean();
+        if self.best.is_some() {
+            left > FAR_OFF && left - 1.0 > LEAST_EXPLAINED * (before - 1.0)
+        } else {
+            left.sqrt() > FAR_OFF * FAR_OFF
+        }
     }
 
     /// Whether chance alone gains a fair part of what the best set gains.
     fn sham_ranks(&self) -> bool {
         let base = &self.bench.base;
-        let gain = |t: &Trial| 1.0 - t.deciding().mean() / base.deciding().mean();
+        let gain = |t: &Trial| 1.0 - t.deciding_mean() / base.deciding_mean();
         self.bench
             .shams
             .iter()
@@ -82,15 +102,18 @@ pub(super) fn conclude(case: &Case) -> Diagnosis {
     let verdict = case.verdict(&rivals);
     let (values, collinear, determined) = fitted_values(chosen, case.bench);
     let (base_values, added) = values.split_at(values.len() - chosen.added_values());
-    let (low, high) = fall(base.deciding(), chosen.deciding(), case.seed);
+    let (low, high) = match (base.deciding(), chosen.deciding()) {
+        (Some(before), Some(after)) => fall(before, after, case.seed),
+        _ => (0.0, 0.0),
+    };
     let held_out = case.bench.held_out.is_some();
     let mut diagnosis = Diagnosis {
         verdict,
         effects: effects(chosen, added),
         error: ErrorFall {
             unit: "rad".to_string(),
-            before: base.deciding().rms_rad(),
-            after: chosen.deciding().rms_rad(),
+            before: base.deciding_rms_rad(),
+            after: chosen.deciding_rms_rad(),
             floor: floor_rad(case.bench),
             held_out,
             fall_low: low,
@@ -136,7 +159,7 @@ fn fitted_values(
     trial: &Trial,
     bench: &Bench,
 ) -> (Vec<FittedValue>, Vec<(String, String, f64)>, bool) {
-    let fit = &trial.fit;
+    let fit = trial.fit();
     let known = intervals(fit, &bench.training);
     let on_bound = fit.on_bound();
     let mut values = Vec::new();
@@ -194,7 +217,7 @@ fn alternative(trial: &Trial, bench: &Bench) -> Alternative {
     let (values, _, _) = fitted_values(trial, bench);
     Alternative {
         effects: effects(trial, &values[values.len() - trial.added_values()..]),
-        error: trial.deciding().rms_rad(),
+        error: trial.deciding_rms_rad(),
     }
 }
 
@@ -206,8 +229,11 @@ fn ruled_out(case: &Case, rivals: &[&Trial]) -> Vec<RuledOut> {
         .filter(|t| !rivals.iter().any(|r| r.adds(&t.set)))
         .map(|t| RuledOut {
             set: t.set.iter().map(ToString::to_string).collect(),
-            training_error: t.training.rms_rad(),
-            held_out_error: t.held_out.as_ref().map(super::score::Score::rms_rad),
+            training_error: t.training_rms_rad(&case.bench.search),
+            held_out_error: t
+                .judged
+                .as_ref()
+                .and_then(|j| Some(j.held_out.as_ref()?.rms_rad())),
             bic_change: case.bench.bic_change(base, t),
             why: why_not(case, t),
         })
@@ -220,13 +246,13 @@ fn why_not(case: &Case, trial: &Trial) -> String {
         return "its best value is on a bound, where it vanishes or stops being physical"
             .to_string();
     }
-    if trial.training.mean() > 0.99 * base.training.mean() {
+    if trial.search_mean > 0.99 * base.search_mean {
         return "it does not lower the error".to_string();
     }
     if case.bench.held_out.is_some() {
-        match &trial.held_out {
+        match trial.judged.as_ref().and_then(|j| j.held_out.as_ref()) {
             None => return "others leave far less on the training motions".to_string(),
-            Some(held_out) if held_out.mean() > base.deciding().mean() => {
+            Some(held_out) if held_out.mean() > base.deciding_mean() => {
                 return "it fits the training motions and makes the held-out ones worse"
                     .to_string();
             }
@@ -246,32 +272,31 @@ fn why_not(case: &Case, trial: &Trial) -> String {
 }
 
 fn motions(case: &Case) -> Vec<MotionError> {
-    let (base, chosen) = (&case.bench.base, case.chosen());
+    let (Some(before), Some(after)) = (&case.bench.base.judged, &case.chosen().judged) else {
+        return Vec::new();
+    };
     let rms = |m: (f64, usize)| (m.0 / m.1.max(1) as f64).sqrt();
     let mut list = Vec::new();
-    let mut add = |data: &crate::identify::Data,
-                   before: &[(f64, usize)],
-                   after: &[(f64, usize)],
-                   held_out| {
-        for ((motion, before), after) in data.motions.iter().zip(before).zip(after) {
+    let mut add = |data: &Data, before: &Score, after: &Score, held_out: bool| {
+        for (k, motion) in data.motions.iter().enumerate() {
             list.push(MotionError {
                 motion: motion.name.clone(),
                 held_out,
-                before: rms(*before),
-                after: rms(*after),
+                before: rms(before.motions[k]),
+                after: rms(after.motions[k]),
             });
         }
     };
     add(
         &case.bench.training,
-        &base.training.motions,
-        &chosen.training.motions,
+        &before.training,
+        &after.training,
         false,
     );
     if let (Some(data), Some(before), Some(after)) =
-        (&case.bench.held_out, &base.held_out, &chosen.held_out)
+        (&case.bench.held_out, &before.held_out, &after.held_out)
     {
-        add(data, &before.motions, &after.motions, true);
+        add(data, before, after, true);
     }
     list
 }

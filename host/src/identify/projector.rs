@@ -33,6 +33,30 @@ impl<'a> Projector<'a> {
         }
     }
 
+    /// Projection off the start states alone.
+    pub fn off_start_states(fit: &'a Fit) -> Self {
+        Projector {
+            normal: None,
+            ..Projector::new(fit)
+        }
+    }
+
+    /// How the prediction changes with each free parameter, less what start states could make of it: one column
+    /// per parameter, windows joined.
+    pub fn parameter_columns(&self) -> Vec<DVector<f64>> {
+        let parameters = self.reduced.first().map_or(0, DMatrix::ncols);
+        (0..parameters)
+            .map(|p| {
+                let rows = self.reduced.iter().map(DMatrix::nrows).sum();
+                let values = self
+                    .reduced
+                    .iter()
+                    .flat_map(|w| w.column(p).iter().copied().collect::<Vec<_>>());
+                DVector::from_iterator(rows, values)
+            })
+            .collect()
+    }
+
     /// A change of the weighted residual, window by window, less what the fit could make of it.
     pub fn off(&self, change: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut left: Vec<DVector<f64>> = change
