@@ -12,7 +12,9 @@ use super::verdict::{Case, conclude};
 use crate::effects::{CONTROLS, SHAM};
 use crate::identify::{Data, Fit, FitOptions, Horizon, Projector, fit, longest_stable, settle};
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{EffectInstance, Model, ParameterPath};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 /// How to diagnose.
@@ -56,6 +58,11 @@ const LOOK: usize = 3;
 const FINISH: usize = 25;
 /// Iterations over the judging horizon, from what the windows found.
 const JUDGE: usize = 12;
+/// Fewer training samples than this are few.
+const SMALL: usize = 1500;
+/// Random starts of each candidate on few samples, and their iterations.
+const RESTARTS: usize = 100;
+const RESTART_ITERATIONS: usize = 30;
 /// Windows to search on, s.
 const SEARCH_S: f64 = 1.0;
 /// Finalists of each size.
@@ -88,7 +95,13 @@ pub fn diagnose(
     let mut sizes = vec![bench.singles()];
     let mut best = bench.accepted(&bench.base, &sizes[0]).cloned();
     report(1, "pairs and swaps");
-    for size in 2..=options.most_effects {
+    // Without motions to judge by, two effects together can't be told from luck.
+    let most_effects = if bench.held_out.is_some() {
+        options.most_effects
+    } else {
+        1
+    };
+    for size in 2..=most_effects {
         if best.as_ref().is_some_and(|b| bench.at_floor(b)) {
             break;
         }
@@ -139,6 +152,8 @@ pub(super) struct Bench {
     search_horizon: Horizon,
     pub shams: Vec<Trial>,
     candidates: Vec<Candidate>,
+    /// The model as it came.
+    start: Model,
     seed: u64,
 }
 
@@ -158,7 +173,7 @@ impl Bench {
             .unwrap_or_else(|| longest_stable(model, &whole));
         let search_horizon = search_horizon(&whole, longest);
         let search = whole.recut(search_horizon);
-        let mut base = Trial::new(Vec::new(), base_fit(model, &search));
+        let mut base = Trial::new(Vec::new(), base_fit(model, &search, options.seed));
         let (horizon, training) = match options.horizon {
             Some(horizon) => (horizon, whole.recut(horizon)),
             None => longest_useful(&base.search.model, &whole, longest),
@@ -177,6 +192,7 @@ impl Bench {
             search_horizon,
             shams: Vec::new(),
             candidates,
+            start: model.clone(),
             seed: options.seed,
         };
         bench.shams = bench.try_shams(model.link_count());
@@ -219,8 +235,7 @@ impl Bench {
     }
 
     fn singles(&self) -> Vec<Trial> {
-        // Few samples: simulations are cheap, and a single motion has more false valleys.
-        let starts = if self.search.samples() < 3000 { 6 } else { 2 };
+        let starts = if self.small() { 6 } else { 2 };
         let trials = self.first_look(&self.base, &self.candidates, starts);
         self.finals(trials)
     }
@@ -239,10 +254,53 @@ impl Bench {
     }
 
     fn best_of(&self, from: &Trial, openings: &[Opening]) -> Option<Trial> {
-        openings
+        let looks = openings
             .iter()
-            .map(|o| from.with(o.candidate, &o.values, &self.search, LOOK))
+            .map(|o| from.with(o.candidate, &o.values, &self.search, LOOK));
+        let restarts = openings
+            .first()
+            .filter(|_| self.small())
+            .map(|o| self.restarted(from, o))
+            .into_iter()
+            .flatten();
+        looks
+            .chain(restarts)
             .min_by(|a, b| a.search_mean.total_cmp(&b.search_mean))
+    }
+
+    /// Few samples: simulations are cheap, and a single motion has more false valleys.
+    fn small(&self) -> bool {
+        self.search.samples() < SMALL
+    }
+
+    /// Fits from random values around the model's own and the opening's.
+    fn restarted(&self, from: &Trial, opening: &Opening) -> Vec<Trial> {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        (0..RESTARTS)
+            .map(|_| {
+                let mut model = self.start.clone();
+                for candidate in &from.set {
+                    let known = from.search.model.effects.iter();
+                    let same = |e: &&EffectInstance| {
+                        e.effect == candidate.effect && e.joint == candidate.joint
+                    };
+                    model.effects.extend(known.filter(same).cloned());
+                }
+                model
+                    .effects
+                    .push(opening.candidate.instance(&opening.values));
+                let mut free = from.search.free.clone();
+                free.extend(opening.candidate.paths());
+                scatter(&mut model, &free, &mut random);
+                let options = FitOptions {
+                    iterations: RESTART_ITERATIONS,
+                    ..FitOptions::default()
+                };
+                let mut set = from.set.clone();
+                set.push(opening.candidate);
+                Trial::new(set, fit(&model, &free, &self.search, None, options))
+            })
+            .collect()
     }
 
     /// Sorts trials by training error, takes the best to the end and judges them.
@@ -360,7 +418,14 @@ impl Bench {
         };
         let (low, _) = fall(before, after, self.seed);
         let practical = if self.held_out.is_some() { 0.03 } else { 0.10 };
-        !trial.rests_on_bound() && low > practical && self.bic_change(reference, trial) < -10.0
+        let significant = trial
+            .judged
+            .as_ref()
+            .is_some_and(|judged| judged.significant);
+        significant
+            && !trial.rests_on_bound()
+            && low > practical
+            && self.bic_change(reference, trial) < -10.0
     }
 
     /// Whether the data tell that `trial` is worse than `best`; `reference` is what both improve on.
@@ -403,10 +468,26 @@ impl Bench {
     }
 }
 
+/// Multiplies every free value that can't be negative by a random factor up to about three either way.
+fn scatter(model: &mut Model, free: &[ParameterPath], random: &mut ChaCha8Rng) {
+    for path in free {
+        let (low, high) = path.bounds(model);
+        let factor = random.random_range(-1.2f64..1.2).exp();
+        if let Some(value) = path.get(model).filter(|_| low >= 0.0) {
+            let known = path.set(model, (value * factor).clamp(low, high));
+            debug_assert!(known, "a free parameter is one of the model's");
+        }
+    }
+}
+
 /// Short windows to search on: a second, or what holds forty samples; never longer than the plant is stable.
+/// Few samples are searched from many starts instead, over the horizon that counts.
 fn search_horizon(whole: &Data, longest: Horizon) -> Horizon {
     let samples: usize = whole.motions.iter().map(Motion::len).sum();
     let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
+    if samples < SMALL {
+        return longest;
+    }
     let wanted = SEARCH_S.max(40.0 * seconds / samples.max(1) as f64);
     match longest {
         Horizon::Seconds(stable) => Horizon::Seconds(stable.min(wanted)),
@@ -430,8 +511,27 @@ fn effective_samples(score: &Score, fit: &Fit) -> f64 {
         .min(n)
 }
 
-fn base_fit(model: &Model, data: &Data) -> Fit {
-    fit(model, &model.free, data, None, FitOptions::default())
+/// The base model fitted; from many starts on few samples.
+fn base_fit(model: &Model, data: &Data, seed: u64) -> Fit {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let starts = if data.samples() < SMALL { RESTARTS } else { 0 };
+    let scattered = (0..starts).map(|_| {
+        let mut start = model.clone();
+        scatter(&mut start, &model.free, &mut random);
+        start
+    });
+    let models: Vec<Model> = std::iter::once(model.clone()).chain(scattered).collect();
+    let fits: Vec<Fit> = models
+        .par_iter()
+        .map(|start| fit(start, &model.free, data, None, FitOptions::default()))
+        .collect();
+    let mut best = 0;
+    for (k, candidate) in fits.iter().enumerate() {
+        if candidate.residuals.cost() < fits[best].residuals.cost() {
+            best = k;
+        }
+    }
+    fits[best].clone()
 }
 
 /// The longest windows over which the base model, as fitted on short ones, still follows the measurement: longer

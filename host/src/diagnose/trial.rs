@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::score::Score;
-use crate::identify::{Data, Fit, FitOptions, Node, Projector, fit, residuals, settle};
+use crate::identify::{Data, Fit, FitOptions, Node, Projector, fit, intervals, residuals, settle};
 use crate::model::Model;
 
 /// A fitted set of effects.
@@ -27,6 +27,8 @@ pub(super) struct Judged {
     pub fit: Fit,
     pub training: Score,
     pub held_out: Option<Score>,
+    /// Whether every added effect differs from nothing by more than its interval.
+    pub significant: bool,
 }
 
 impl Trial {
@@ -134,14 +136,19 @@ impl Trial {
                 iterations,
                 ..FitOptions::default()
             };
+            // Start states carry over where the windows are the same.
+            let nodes = (self.search.nodes.len() == training.windows.len())
+                .then_some(&self.search.nodes[..]);
             let fit = fit(
                 &self.search.model,
                 &self.search.free,
                 training,
-                None,
+                nodes,
                 options,
             );
             self.judged = Some(Judged {
+                // One effect alone is judged by the error; only among several may one be idle.
+                significant: self.set.len() < 2 || significant(&self.set, &fit, training),
                 training: Score::of(&fit, training),
                 held_out: held_out.map(|data| Score::of(&settle(&fit.model, data), data)),
                 fit,
@@ -204,6 +211,29 @@ impl Trial {
         }
         false
     }
+}
+
+/// Whether every effect of the set, the last ones freed, has a value whose interval leaves out where it vanishes.
+fn significant(set: &[Candidate], fit: &Fit, data: &Data) -> bool {
+    let Some((intervals, _)) = intervals(fit, data) else {
+        return set.is_empty();
+    };
+    let added: usize = set.iter().map(|c| c.effect.card().parameters.len()).sum();
+    let mut own = intervals[intervals.len() - added..].iter();
+    let mut all = true;
+    for candidate in set {
+        let parameters = candidate.effect.card().parameters;
+        let present = parameters
+            .iter()
+            .zip(&mut own)
+            .filter(|(parameter, interval)| {
+                parameter.off.is_some_and(|off| {
+                    interval.low > off || interval.high < off.min(parameter.bounds.1)
+                })
+            });
+        all &= present.count() > 0;
+    }
+    all
 }
 
 /// A promising start for a candidate: values, and how much of the squared residual they could remove.

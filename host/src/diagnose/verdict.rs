@@ -73,10 +73,10 @@ impl Case<'_> {
         }
     }
 
-    /// Whether chance alone gains a fair part of what the best set gains.
+    /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the error.
     fn sham_ranks(&self) -> bool {
         let base = &self.bench.base;
-        let gain = |t: &Trial| 1.0 - t.deciding_mean() / base.deciding_mean();
+        let gain = |t: &Trial| (base.deciding_mean() / t.deciding_mean()).ln();
         self.bench
             .shams
             .iter()

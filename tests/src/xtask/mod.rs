@@ -3,6 +3,7 @@
 mod hidden;
 mod peers;
 mod program;
+mod real;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -22,6 +23,8 @@ enum Chore {
     Peers(peers::Args),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(hidden::Args),
+    /// Diagnose public logs of real rigs
+    Real(real::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -32,6 +35,7 @@ impl Chores {
         let well = match &self.chore {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
+            Chore::Real(args) => real::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {
