@@ -171,9 +171,10 @@ impl Bench {
         let longest = options
             .horizon
             .unwrap_or_else(|| longest_stable(model, &whole));
-        let search_horizon = search_horizon(&whole, longest);
+        let few = held_out.is_empty() && whole.samples() < SMALL;
+        let search_horizon = search_horizon(&whole, longest, few);
         let search = whole.recut(search_horizon);
-        let mut base = Trial::new(Vec::new(), base_fit(model, &search, options.seed));
+        let mut base = Trial::new(Vec::new(), base_fit(model, &search, few, options.seed));
         let (horizon, training) = match options.horizon {
             Some(horizon) => (horizon, whole.recut(horizon)),
             None => longest_useful(&base.search.model, &whole, longest),
@@ -268,9 +269,9 @@ impl Bench {
             .min_by(|a, b| a.search_mean.total_cmp(&b.search_mean))
     }
 
-    /// Few samples: simulations are cheap, and a single motion has more false valleys.
+    /// Few samples and nothing held out: simulations are cheap, and a single motion has more false valleys.
     fn small(&self) -> bool {
-        self.search.samples() < SMALL
+        self.held_out.is_none() && self.search.samples() < SMALL
     }
 
     /// Fits from random values around the model's own and the opening's.
@@ -482,10 +483,10 @@ fn scatter(model: &mut Model, free: &[ParameterPath], random: &mut ChaCha8Rng) {
 
 /// Short windows to search on: a second, or what holds forty samples; never longer than the plant is stable.
 /// Few samples are searched from many starts instead, over the horizon that counts.
-fn search_horizon(whole: &Data, longest: Horizon) -> Horizon {
+fn search_horizon(whole: &Data, longest: Horizon, few: bool) -> Horizon {
     let samples: usize = whole.motions.iter().map(Motion::len).sum();
     let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
-    if samples < SMALL {
+    if few {
         return longest;
     }
     let wanted = SEARCH_S.max(40.0 * seconds / samples.max(1) as f64);
@@ -512,9 +513,9 @@ fn effective_samples(score: &Score, fit: &Fit) -> f64 {
 }
 
 /// The base model fitted; from many starts on few samples.
-fn base_fit(model: &Model, data: &Data, seed: u64) -> Fit {
+fn base_fit(model: &Model, data: &Data, few: bool, seed: u64) -> Fit {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let starts = if data.samples() < SMALL { RESTARTS } else { 0 };
+    let starts = if few { RESTARTS } else { 0 };
     let scattered = (0..starts).map(|_| {
         let mut start = model.clone();
         scatter(&mut start, &model.free, &mut random);
