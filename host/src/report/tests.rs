@@ -99,7 +99,7 @@ fn a_model_alone_has_a_page() {
     assert!(!page.contains("show-after\""));
 }
 
-/// Writes the sample to look at: `REPORT_SAMPLE=/tmp/report.html cargo test -p handstand --lib report`.
+/// Writes the sample to look at: `REPORT_SAMPLE=report.html cargo test -p handstand --lib report`.
 #[test]
 fn sample_for_the_eye() {
     if let Some(path) = std::env::var_os("REPORT_SAMPLE") {
