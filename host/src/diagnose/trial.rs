@@ -167,7 +167,7 @@ impl Trial {
         self.deciding().map_or(f64::INFINITY, Score::mean)
     }
 
-    /// Root-mean-square error where it counts, rad; on the windows searched before it was judged.
+    /// Root-mean-square error where it counts, rad; infinite before it was judged.
     pub fn deciding_rms_rad(&self) -> f64 {
         self.deciding().map_or(f64::INFINITY, Score::rms_rad)
     }

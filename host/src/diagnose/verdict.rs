@@ -8,7 +8,6 @@ use super::score::{Score, fall};
 use super::search::Bench;
 use super::trial::Trial;
 use super::words;
-use crate::effects::Effect;
 use crate::identify::{Data, Horizon, Interval, intervals};
 
 /// Everything the verdict rests on.
@@ -299,9 +298,4 @@ fn motions(case: &Case) -> Vec<MotionError> {
         add(data, before, after, true);
     }
     list
-}
-
-/// The effect behind an id; ids in findings come from the library.
-pub(super) fn effect_of(kind: &str) -> Option<&'static dyn Effect> {
-    crate::effects::named(kind)
 }

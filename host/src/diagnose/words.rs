@@ -3,7 +3,6 @@
 //! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict};
-use super::verdict::effect_of;
 
 use crate::number::{measured, percent, short, with_unit};
 
@@ -184,7 +183,7 @@ fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
     kinds
         .into_iter()
         .filter_map(|effect| {
-            let experiment = effect_of(&effect.kind)?.card().experiment;
+            let experiment = crate::effects::named(&effect.kind)?.card().experiment;
             Some(format!("To tell {} apart: {experiment}.", effect.title))
         })
         .collect()
