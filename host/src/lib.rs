@@ -1,9 +1,10 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
+//! `diagnose` -> `report`; `model` + `dynamics` -> `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
 pub mod challenge;
+pub mod closed_loop;
 pub mod compare;
 pub mod diagnose;
 pub mod dynamics;
