@@ -3,7 +3,7 @@
 use crate::dynamics::{self, Chain, Dense};
 use crate::effects::{Rig, Site};
 use crate::error::{Error, Result};
-use crate::model::Model;
+use crate::model::{Angles, Model};
 
 /// A chain near a pose: few links by dense equations, many by the O(n) ones, classical Runge-Kutta of fourth order.
 #[derive(Debug, Clone)]
@@ -38,35 +38,25 @@ impl Plant {
     /// # Errors
     /// A pose of another length, nothing driven, or effects this simulation does not have.
     pub fn new(model: &Model, pose_rad: &[f64]) -> Result<Plant> {
-        let mut rig = Rig {
-            chain: Chain::of(model),
-            gravity_turn_rad: 0.0,
-            turned: false,
-        };
-        for instance in &model.effects {
-            let card = instance.effect.card();
-            if card.site != Site::Body {
-                return Err(Error::usage(
-                    format!("{}: the closed loop knows no {}", model.name, card.title),
-                    "take it out of the model; dead zone, delay, saturation and resolution are conditions of the study",
-                ));
-            }
-            let joint = instance.joint.unwrap_or(0);
-            instance.effect.body(&instance.values, joint, &mut rig);
+        if let Some(other) = model.effects.iter().find(|e| e.effect.card().site != Site::Body) {
+            let title = other.effect.card().title;
+            return Err(Error::design(
+                format!("the closed loop of `{}` cannot have this effect: {title}", model.name),
+                "take it out of the model: dead zone, delay, saturation, resolution are conditions of the loop",
+            ));
         }
+        let rig = Rig::of(model, false);
         let driven: Vec<usize> = (0..model.joints.len())
             .filter(|&joint| model.joints[joint].drive.is_driven())
             .collect();
         let mut pose = pose_rad.to_vec();
+        if model.angles == Angles::Absolute {
+            for joint in (1..pose.len()).rev() {
+                pose[joint] -= pose[joint - 1];
+            }
+        }
         if let Some(first) = pose.first_mut() {
             *first += model.angle_zero.from_hanging_rad();
-        }
-        if model.angles == crate::model::Angles::Absolute {
-            let zero = model.angle_zero.from_hanging_rad();
-            for joint in (1..pose.len()).rev() {
-                pose[joint] = pose_rad[joint] - pose_rad[joint - 1];
-            }
-            debug_assert!(pose.is_empty() || pose[0] == pose_rad[0] + zero);
         }
         Plant::of(rig.chain, rig.gravity_turn_rad, driven, pose, model.step_s)
     }
@@ -83,13 +73,13 @@ impl Plant {
         step_s: f64,
     ) -> Result<Plant> {
         if pose_rad.len() != chain.len() {
-            return Err(Error::usage(
+            return Err(Error::design(
                 format!("{} angles for {} joints", pose_rad.len(), chain.len()),
                 "give the pose one angle per joint",
             ));
         }
         if driven.is_empty() || driven.iter().any(|&joint| joint >= chain.len()) {
-            return Err(Error::usage(
+            return Err(Error::design(
                 "no joint is driven, so nothing can hold the robot up",
                 "give at least one joint a drive, such as `drive = \"torque\"`",
             ));
