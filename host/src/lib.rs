@@ -7,6 +7,7 @@
 pub mod challenge;
 pub mod closed_loop;
 pub mod compare;
+pub mod controllers;
 pub mod diagnose;
 pub mod dynamics;
 pub mod effects;

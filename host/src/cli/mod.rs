@@ -7,6 +7,7 @@
 mod add;
 mod challenge;
 mod compare;
+mod controllers;
 mod demo;
 mod diagnose;
 mod effects;
@@ -68,6 +69,8 @@ pub enum Command {
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
+    /// Try controllers under everything the robot does to them
+    Controllers(controllers::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
 }
@@ -86,6 +89,7 @@ impl Command {
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
+            Command::Controllers(args) => controllers::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
     }

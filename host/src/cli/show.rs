@@ -21,6 +21,13 @@ pub fn table<const N: usize>(header: [&str; N]) -> Table {
     table
 }
 
+/// A table of many narrow columns, as wide as it needs.
+pub fn wide_table() -> Table {
+    let mut table = table([""]);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    table
+}
+
 /// A number to four significant digits.
 pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
