@@ -19,8 +19,8 @@
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::controllers::{
-    CONDITIONS, Condition, DESIGNS, Design, Known, REGION_RUNS, Region, Robots, Speeds, Tried, condition, design,
-    region, try_out,
+    CONDITIONS, Condition, DESIGNS, Design, Known, REGION_RUNS, Region, Robots, Speeds, Tried,
+    condition, design, picture, region, try_out,
 };
 use handstand::synth::upright;
 use handstand::{Error, Model, Result, output};
@@ -59,7 +59,10 @@ pub struct Args {
     /// Write the figures as a table
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Replace the file if it exists
+    /// Draw the shares that were held
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Replace the files if they exist
     #[arg(long)]
     force: bool,
 }
@@ -77,20 +80,29 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let Some(file) = &args.model else {
         return list(talk);
     };
-    let (designs, conditions) = (chosen_designs(&args.controllers)?, chosen_conditions(&args.conditions)?);
+    let (designs, conditions) = (
+        chosen_designs(&args.controllers)?,
+        chosen_conditions(&args.conditions)?,
+    );
     if args.seconds <= 2.0 {
         return Err(Error::usage(
-            format!("--seconds {}: held is who stands still for the last 2 s", args.seconds),
+            format!(
+                "--seconds {}: held is who stands still for the last 2 s",
+                args.seconds
+            ),
             "give more than 2",
         ));
     }
-    if let Some(csv) = &args.csv {
-        input::vacant(csv, args.force)?;
+    for file in args.csv.iter().chain(&args.plot) {
+        input::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
     let rows = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
         output::write_new(file, &csv(&rows), args.force)?;
+    }
+    if let Some(file) = &args.plot {
+        output::write_new(file, &plot(&rows, &designs, &conditions), args.force)?;
     }
     if talk.json {
         talk.data(&rows.iter().map(data).collect::<Vec<_>>())?;
@@ -155,7 +167,11 @@ fn trials(
 }
 
 /// Three tables: who is held, from how far, and how well under the last condition.
-fn text(rows: &[Row], designs: &[&'static dyn Design], conditions: &[&'static Condition]) -> String {
+fn text(
+    rows: &[Row],
+    designs: &[&'static dyn Design],
+    conditions: &[&'static Condition],
+) -> String {
     let mut parts = vec![format!(
         "Robots held, % of {}:\n{}",
         rows.first().map_or(0, |row| row.tried.robots),
@@ -164,11 +180,23 @@ fn text(rows: &[Row], designs: &[&'static dyn Design], conditions: &[&'static Co
     if rows.iter().any(|row| row.region.is_some()) {
         parts.push(format!(
             "Region: largest spread of starts of which 95 % are held, deg:\n{}",
-            matrix(rows, designs, conditions, |row| row.region.map_or(String::new(), degrees))
+            matrix(rows, designs, conditions, |row| row
+                .region
+                .map_or(String::new(), degrees))
         ));
     }
-    for condition in conditions.iter().filter(|c| conditions.len() <= 2 || c.id.starts_with("all")) {
-        let mut table = show::table(["Controller", "held %", "fell %", "rms deg", "swing deg", "rms N m"]);
+    for condition in conditions
+        .iter()
+        .filter(|c| conditions.len() <= 2 || c.id.starts_with("all"))
+    {
+        let mut table = show::table([
+            "Controller",
+            "held %",
+            "fell %",
+            "rms deg",
+            "swing deg",
+            "rms N m",
+        ]);
         for row in rows.iter().filter(|row| row.condition.id == condition.id) {
             table.add_row([
                 row.design.card().id.to_string(),
@@ -194,10 +222,34 @@ fn matrix(
     let header = std::iter::once("").chain(conditions.iter().map(|condition| condition.id));
     table.set_header(header);
     for design in designs {
-        let own = rows.iter().filter(|row| row.design.card().id == design.card().id);
+        let own = rows
+            .iter()
+            .filter(|row| row.design.card().id == design.card().id);
         table.add_row(std::iter::once(design.card().id.to_string()).chain(own.map(&cell)));
     }
     table.to_string()
+}
+
+fn plot(
+    rows: &[Row],
+    designs: &[&'static dyn Design],
+    conditions: &[&'static Condition],
+) -> String {
+    let ids: Vec<&str> = designs.iter().map(|design| design.card().id).collect();
+    let titles: Vec<&str> = conditions.iter().map(|condition| condition.title).collect();
+    let fields: Vec<Vec<f64>> = ids
+        .iter()
+        .map(|id| {
+            let own = rows.iter().filter(|row| row.design.card().id == *id);
+            own.map(|row| row.tried.held).collect()
+        })
+        .collect();
+    picture(
+        "Robots held by each controller under each condition",
+        &ids,
+        &titles,
+        &fields,
+    )
 }
 
 fn percent(share: f64) -> String {
@@ -229,7 +281,8 @@ fn csv(rows: &[Row]) -> String {
             number(row.tried.swing_rad),
             number(row.tried.rms_torque_nm),
             number(row.region.map(|region| region.spread_rad)),
-            row.region.map_or(String::new(), |region| region.open.to_string()),
+            row.region
+                .map_or(String::new(), |region| region.open.to_string()),
         ];
         text += &fields.join(",");
         text.push('\n');
@@ -298,18 +351,30 @@ pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
         return Ok(DESIGNS.to_vec());
     }
     let one = |name: &String| {
-        design(name).ok_or_else(|| unknown("controller", name, DESIGNS.iter().map(|design| design.card().id)))
+        design(name).ok_or_else(|| {
+            unknown(
+                "controller",
+                name,
+                DESIGNS.iter().map(|design| design.card().id),
+            )
+        })
     };
     names.iter().map(one).collect()
 }
 
 /// The conditions of these names, all without any.
-fn chosen_conditions(names: &[String]) -> Result<Vec<&'static Condition>> {
+pub fn chosen_conditions(names: &[String]) -> Result<Vec<&'static Condition>> {
     if names.is_empty() {
         return Ok(CONDITIONS.iter().collect());
     }
     let one = |name: &String| {
-        condition(name).ok_or_else(|| unknown("condition", name, CONDITIONS.iter().map(|condition| condition.id)))
+        condition(name).ok_or_else(|| {
+            unknown(
+                "condition",
+                name,
+                CONDITIONS.iter().map(|condition| condition.id),
+            )
+        })
     };
     names.iter().map(one).collect()
 }

@@ -8,6 +8,7 @@ mod add;
 mod challenge;
 mod compare;
 mod controllers;
+mod delays;
 mod demo;
 mod diagnose;
 mod effects;
@@ -16,6 +17,7 @@ mod input;
 mod log;
 mod name;
 mod page;
+mod robust;
 mod show;
 mod talk;
 
@@ -71,6 +73,10 @@ pub enum Command {
     Challenge(challenge::Command),
     /// Try controllers under everything the robot does to them
     Controllers(controllers::Args),
+    /// Find the longest delay each controller survives
+    Delays(delays::Args),
+    /// See what gains make of robots whose masses are not the model's
+    Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
 }
@@ -90,6 +96,8 @@ impl Command {
             Command::Add(args) => add::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Controllers(args) => controllers::run(args, talk),
+            Command::Delays(args) => delays::run(args, talk),
+            Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
     }

@@ -75,16 +75,61 @@ const ALL: Condition = Condition {
 /// In the order of the table.
 pub const CONDITIONS: &[Condition] = &[
     NONE,
-    Condition { id: "positions", title: "10-bit angles", positions: true, ..NONE },
-    Condition { id: "gyro", title: "gyro 10 deg/s", gyro: true, ..NONE },
-    Condition { id: "dead-zone", title: "dead zone 10 %", dead_zone: true, ..NONE },
-    Condition { id: "saturation", title: "2 N m", saturation: true, ..NONE },
-    Condition { id: "delay", title: "1 sample late", delay: true, ..NONE },
-    Condition { id: "eccentric", title: "eccentric", eccentric: true, ..NONE },
-    Condition { id: "servo", title: "servo lag", servo: true, ..NONE },
-    Condition { id: "masses", title: "masses 10 %", masses: true, ..NONE },
+    Condition {
+        id: "positions",
+        title: "10-bit angles",
+        positions: true,
+        ..NONE
+    },
+    Condition {
+        id: "gyro",
+        title: "gyro 10 deg/s",
+        gyro: true,
+        ..NONE
+    },
+    Condition {
+        id: "dead-zone",
+        title: "dead zone 10 %",
+        dead_zone: true,
+        ..NONE
+    },
+    Condition {
+        id: "saturation",
+        title: "2 N m",
+        saturation: true,
+        ..NONE
+    },
+    Condition {
+        id: "delay",
+        title: "1 sample late",
+        delay: true,
+        ..NONE
+    },
+    Condition {
+        id: "eccentric",
+        title: "eccentric",
+        eccentric: true,
+        ..NONE
+    },
+    Condition {
+        id: "servo",
+        title: "servo lag",
+        servo: true,
+        ..NONE
+    },
+    Condition {
+        id: "masses",
+        title: "masses 10 %",
+        masses: true,
+        ..NONE
+    },
     ALL,
-    Condition { id: "all-masses", title: "all, masses 10 %", masses: true, ..ALL },
+    Condition {
+        id: "all-masses",
+        title: "all, masses 10 %",
+        masses: true,
+        ..ALL
+    },
 ];
 
 /// The condition of this name.
@@ -99,7 +144,11 @@ impl Condition {
         Known {
             delay_s: when(self.delay, ideal.period_s),
             dead_zone_nm: when(self.dead_zone, DEAD_ZONE * LIMIT_NM),
-            limit_nm: if self.saturation { LIMIT_NM } else { f64::INFINITY },
+            limit_nm: if self.saturation {
+                LIMIT_NM
+            } else {
+                f64::INFINITY
+            },
             position_step_rad: when(self.positions, POSITION_STEP_RAD),
             gyro_step_rad_s: when(self.gyro, GYRO_STEP_RAD_S),
             servo: self.servo.then_some(ServoLag::PAPER),

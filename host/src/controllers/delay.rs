@@ -16,31 +16,61 @@ const UNTIL_STILL: usize = 1200;
 /// Size of a push: rad, rad/s, or of a number it remembers.
 const PUSH: f64 = 1e-6;
 
-/// A longest delay.
+/// The delays around one at which a controller survives.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Longest {
-    /// s; none if not even no delay is survived.
+    /// The shortest one up to which nothing fails on the way down, s; none if it falls where the search begins.
+    pub shortest_s: Option<f64>,
+    /// The longest one up to which nothing fails on the way up, s.
     pub delay_s: Option<f64>,
     /// Whether longer ones may be survived: the search ended there.
     pub open: bool,
 }
 
 impl Longest {
-    /// The last of rising delays up to which all are survived.
-    fn search(delays: impl Iterator<Item = f64>, mut survives: impl FnMut(f64) -> Result<bool>) -> Result<Longest> {
-        let mut longest = None;
-        for delay_s in delays {
+    /// Steps out from `from_s`, down to 0 and up to `until_s`.
+    fn search(
+        from_s: f64,
+        step_s: f64,
+        until_s: f64,
+        mut survives: impl FnMut(f64) -> Result<bool>,
+    ) -> Result<Longest> {
+        let steps = |span_s: f64| (span_s / step_s + 1e-9).floor() as usize;
+        let mut longest = Longest {
+            shortest_s: None,
+            delay_s: None,
+            open: true,
+        };
+        for step in 0..=steps(until_s - from_s) {
+            let delay_s = from_s + step as f64 * step_s;
             if !survives(delay_s)? {
-                return Ok(Longest { delay_s: longest, open: false });
+                longest.open = false;
+                break;
             }
-            longest = Some(delay_s);
+            longest.delay_s = Some(delay_s);
         }
-        Ok(Longest { delay_s: longest, open: true })
+        if longest.delay_s.is_none() {
+            return Ok(longest);
+        }
+        longest.shortest_s = Some(from_s);
+        for step in 1..=steps(from_s) {
+            let delay_s = from_s - step as f64 * step_s;
+            if !survives(delay_s.max(0.0))? {
+                break;
+            }
+            longest.shortest_s = Some(delay_s.max(0.0));
+        }
+        Ok(longest)
+    }
+
+    /// Whether a delay lies within.
+    pub fn survives(&self, delay_s: f64) -> bool {
+        matches!((self.shortest_s, self.delay_s), (Some(least), Some(most)) if least <= delay_s && delay_s <= most)
     }
 }
 
-/// The longest delay, up to `until_s` in steps of `step_s`, under which the linear loop with the nominal plant is
-/// stable: of a controller told `told_s`, or told each delay.
+/// The delays, up to `until_s` in steps of `step_s`, under which the linear loop with the nominal plant is stable: of
+/// a controller told `told_s` (the search begins there), or told each delay.
 ///
 /// # Errors
 /// A controller that cannot be made.
@@ -52,12 +82,14 @@ pub fn longest_linear(
     until_s: f64,
 ) -> Result<Longest> {
     let build = |delay_s: f64| -> Result<Law> {
-        let known = Known { delay_s, ..known.clone() };
+        let known = Known {
+            delay_s,
+            ..known.clone()
+        };
         Ok(Law::of(design.build(&known)?.as_ref(), &known))
     };
     let fixed = told_s.map(build).transpose()?;
-    let count = (until_s / step_s).round() as usize;
-    Longest::search((0..=count).map(|i| i as f64 * step_s), |delay_s| {
+    Longest::search(told_s.unwrap_or(0.0), step_s, until_s, |delay_s| {
         let radius = match &fixed {
             Some(law) => law.radius(known, delay_s)?,
             // Told a delay for which nothing holds the plant, a design may fail: then it doesn't survive.
@@ -81,15 +113,16 @@ pub fn longest_held(
     known: &Known,
     step_s: f64,
     until_s: f64,
-    done: &(dyn Fn() + Sync),
 ) -> Result<Longest> {
-    let count = (until_s / step_s).round() as usize;
-    Longest::search((0..=count).map(|i| i as f64 * step_s), |delay_s| {
-        let known = Known { delay_s, ..condition.tell(known) };
+    Longest::search(0.0, step_s, until_s, |delay_s| {
+        let known = Known {
+            delay_s,
+            ..condition.tell(known)
+        };
         if design.build(&known).is_err() {
             return Ok(false);
         }
-        Ok(try_out(robots, design, condition, &known, done)?.held >= 0.95)
+        Ok(try_out(robots, design, condition, &known, &|| ())?.held >= 0.95)
     })
 }
 
@@ -109,7 +142,14 @@ impl Law {
         let step = |memory: &mut [f64], seen: &[f64]| {
             let (angle_rad, speed_rad_s) = seen.split_at(joints);
             let mut torque = vec![0.0; drives];
-            controller.control(memory, Seen { angle_rad, speed_rad_s }, &mut torque);
+            controller.control(
+                memory,
+                Seen {
+                    angle_rad,
+                    speed_rad_s,
+                },
+                &mut torque,
+            );
             torque
         };
         let still = vec![0.0; 2 * joints];
@@ -122,8 +162,14 @@ impl Law {
                 memory[place] += PUSH;
             }
             let torque = step(&mut memory, seen);
-            let memory = memory.iter().zip(&rest).map(|(new, old)| (new - old) / PUSH);
-            (memory.collect::<Vec<f64>>(), torque.iter().map(|t| t / PUSH).collect::<Vec<f64>>())
+            let memory = memory
+                .iter()
+                .zip(&rest)
+                .map(|(new, old)| (new - old) / PUSH);
+            (
+                memory.collect::<Vec<f64>>(),
+                torque.iter().map(|t| t / PUSH).collect::<Vec<f64>>(),
+            )
         };
         let from_memory: Vec<_> = (0..rest.len()).map(|i| pushed(Some(i), &still)).collect();
         let from_seen: Vec<_> = (0..2 * joints)
@@ -135,7 +181,9 @@ impl Law {
             .collect();
         let columns = |all: &[(Vec<f64>, Vec<f64>)], torque: bool| {
             let height = if torque { drives } else { rest.len() };
-            let column = |one: &(Vec<f64>, Vec<f64>)| DVector::from_vec(if torque { one.1.clone() } else { one.0.clone() });
+            let column = |one: &(Vec<f64>, Vec<f64>)| {
+                DVector::from_vec(if torque { one.1.clone() } else { one.0.clone() })
+            };
             let mut matrix = DMatrix::zeros(height, all.len());
             for (j, one) in all.iter().enumerate() {
                 matrix.set_column(j, &column(one));
@@ -166,9 +214,7 @@ impl Law {
         closed
             .view_mut((n, 0), (memory, n))
             .copy_from(&(&self.b * &c));
-        closed
-            .view_mut((n, n), (memory, memory))
-            .copy_from(&self.a);
+        closed.view_mut((n, n), (memory, memory)).copy_from(&self.a);
         Ok(spectral_radius(&closed))
     }
 }

@@ -76,9 +76,17 @@ impl Controller for Summing {
     }
 
     fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
-        let state = seen.angle_rad.iter().chain(seen.speed_rad_s).chain(&*memory);
+        let state = seen
+            .angle_rad
+            .iter()
+            .chain(seen.speed_rad_s)
+            .chain(&*memory);
         for (torque, row) in torque_nm.iter_mut().zip(&self.gains) {
-            *torque = -row.iter().zip(state.clone()).map(|(k, x)| k * x).sum::<f64>();
+            *torque = -row
+                .iter()
+                .zip(state.clone())
+                .map(|(k, x)| k * x)
+                .sum::<f64>();
         }
         if torque_nm.iter().all(|torque| torque.abs() < self.limit_nm) {
             for (sum, &joint) in memory.iter_mut().zip(&self.driven) {

@@ -6,6 +6,7 @@
 
 mod best;
 mod card;
+mod chain;
 mod conditions;
 mod dead_zone;
 mod delay;
@@ -15,6 +16,7 @@ mod lqg;
 mod observed;
 mod offset;
 mod paper;
+mod picture;
 mod plant;
 mod robust;
 mod servo;
@@ -26,9 +28,11 @@ mod uncertain;
 mod tests;
 
 pub use card::{Card, Design, Speeds};
+pub use chain::{CHAINS, Chain, SERVO_DEAD_TIME_S};
 pub use conditions::{CONDITIONS, Condition, condition};
 pub use delay::{Longest, longest_held, longest_linear};
 pub use known::Known;
+pub use picture::picture;
 pub use robust::{SHARE, WEIGHTS, gain as robust_gain};
 pub use servo::ServoLag;
 pub use trial::{REGION_RUNS, Region, Robots, Tried, region, try_out};

@@ -37,10 +37,13 @@ pub(super) struct Options {
     pub servo: bool,
     /// Whether commands pass the dead zone's inverse.
     pub inverse: bool,
-    /// Weight of every angle and of every speed; torques weigh 1.
-    pub weights: [f64; 2],
+    /// Weights of the angles and of the speeds from the first joint on; joints beyond have the last one's. Torques
+    /// weigh 1.
+    pub weights: [&'static [f64]; 2],
     /// Standard deviation of unknown torques, N m, from sample to sample.
     pub torque_noise_nm: f64,
+    /// Standard deviation of unknown changes of every speed, rad/s, from sample to sample: the model is not exact.
+    pub speed_noise_rad_s: f64,
     /// Wander of the angles of balance in a sample, rad.
     pub offset_walk_rad: f64,
     /// The law.
@@ -65,8 +68,9 @@ impl Options {
             delay: false,
             servo: false,
             inverse: false,
-            weights: [100.0, 100.0],
+            weights: [&[100.0], &[100.0]],
             torque_noise_nm: 0.1,
+            speed_noise_rad_s: 1e-3,
             offset_walk_rad: 2e-4,
             law: Law::Regulator,
         }
@@ -103,7 +107,11 @@ impl Observed {
         };
         let believed = plant(known, parts)?;
         let joints = known.joints();
-        let readings = if options.true_speeds { 2 * joints } else { joints + 1 };
+        let readings = if options.true_speeds {
+            2 * joints
+        } else {
+            joints + 1
+        };
         let reads: Vec<usize> = (0..readings).collect();
         let mut drive = Drive::of(known);
         if !options.inverse {
@@ -125,12 +133,20 @@ impl Observed {
 
 /// The law on the state without offsets, spread over the whole state: the offsets act as the angles' negatives.
 fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
-    let without = plant(known, Parts { offsets: false, ..parts })?;
+    let without = plant(
+        known,
+        Parts {
+            offsets: false,
+            ..parts
+        },
+    )?;
     let (size, m, joints) = (without.a.nrows(), known.drives(), known.joints());
     let mut q = DMatrix::zeros(size, size);
     for i in 0..joints {
-        q[(i, i)] = options.weights[0];
-        q[(joints + i, joints + i)] = options.weights[1];
+        for (part, weights) in options.weights.iter().enumerate() {
+            let weight = weights.get(i).or(weights.last());
+            q[(part * joints + i, part * joints + i)] = weight.copied().unwrap_or(0.0);
+        }
     }
     let gains = dlqr(&without, &q, &DMatrix::identity(m, m))?;
     let surface = match options.law {
@@ -145,7 +161,12 @@ fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
 }
 
 /// The Kalman filter's gains from the first sample on.
-fn filter(known: &Known, options: &Options, believed: &Discrete, reads: &[usize]) -> Result<Vec<Vec<f64>>> {
+fn filter(
+    known: &Known,
+    options: &Options,
+    believed: &Discrete,
+    reads: &[usize],
+) -> Result<Vec<Vec<f64>>> {
     let (size, joints) = (believed.a.nrows(), known.joints());
     let held = plant(
         known,
@@ -165,7 +186,7 @@ fn filter(known: &Known, options: &Options, believed: &Discrete, reads: &[usize]
         p[(joints + i, joints + i)] = START_RAD_S.powi(2);
         // A whiff on each angle and speed keeps the filter from believing its model blindly.
         process[(i, i)] += 1e-10;
-        process[(joints + i, joints + i)] += 1e-6;
+        process[(joints + i, joints + i)] += options.speed_noise_rad_s.powi(2);
         if options.offsets {
             p[(2 * joints + i, 2 * joints + i)] = START_OFFSET_RAD.powi(2);
             process[(2 * joints + i, 2 * joints + i)] = options.offset_walk_rad.powi(2);
@@ -189,7 +210,9 @@ fn filter(known: &Known, options: &Options, believed: &Discrete, reads: &[usize]
         p = (&p + p.transpose()) / 2.0;
         let gain = rows(&gain);
         let still = gains.last().is_some_and(|last| {
-            last.iter().zip(&gain).all(|(old, new)| (old - new).abs() <= 1e-7 * (1.0 + new.abs()))
+            last.iter()
+                .zip(&gain)
+                .all(|(old, new)| (old - new).abs() <= 1e-7 * (1.0 + new.abs()))
         });
         gains.push(gain);
         if still {
@@ -243,7 +266,10 @@ impl Controller for Observed {
         for (torque, carry) in torque_nm.iter_mut().zip(carry) {
             *torque = self.drive.command(*torque, carry);
         }
-        let models = self.a.chunks_exact(self.states).zip(self.b.chunks_exact(self.drives));
+        let models = self
+            .a
+            .chunks_exact(self.states)
+            .zip(self.b.chunks_exact(self.drives));
         for (next, (a, b)) in state.iter_mut().zip(models) {
             *next = dot(a, room) + dot(b, torque_nm);
         }

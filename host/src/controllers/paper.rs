@@ -68,7 +68,10 @@ pub(super) fn gain(known: &Known) -> Result<DMatrix<f64>> {
 
 /// A matrix as its rows.
 pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
 }
 
 /// The driven joints' speeds as differences of angles; the arms' is the gyro's.
@@ -92,11 +95,18 @@ impl Controller for Differencing {
         speed_rad_s.copy_from_slice(seen.speed_rad_s);
         for &joint in &self.driven {
             let moved = seen.angle_rad[joint] - before[joint];
-            speed_rad_s[joint] = if started[0] == 0.0 { 0.0 } else { moved / self.period_s };
+            speed_rad_s[joint] = if started[0] == 0.0 {
+                0.0
+            } else {
+                moved / self.period_s
+            };
         }
         before.copy_from_slice(seen.angle_rad);
         started[0] = 1.0;
-        let seen = Seen { angle_rad: seen.angle_rad, speed_rad_s };
+        let seen = Seen {
+            angle_rad: seen.angle_rad,
+            speed_rad_s,
+        };
         self.inner.control(&mut [], seen, torque_nm);
     }
 }

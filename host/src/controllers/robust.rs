@@ -30,16 +30,24 @@ static CARD: Card = Card {
     reference: "Makila, Toivonen, IEEE Trans. Automatic Control 32 (1987) 658",
 };
 
-/// The gain of least mean cost over the model and the corners of its mass errors (`uncertain.mass` of each mass).
+/// The gain of least mean cost over the model and the corners of its mass errors (`uncertain.mass` of each mass);
+/// `q` weighs angles and speeds, torques weigh 1. Past inputs are states behind them.
 ///
 /// # Errors
 /// A pose that is no equilibrium; errors so large that no gain was found for all.
-pub fn gain(model: &Model, pose_rad: &[f64], uncertain: &Uncertain) -> Result<DMatrix<f64>> {
+pub fn gain(
+    model: &Model,
+    pose_rad: &[f64],
+    uncertain: &Uncertain,
+    q: &DMatrix<f64>,
+) -> Result<DMatrix<f64>> {
     let spread = |part: f64| uncertain.corners(model, pose_rad, part);
-    let joints = model.link_count();
-    let drives = model.joints.iter().filter(|joint| joint.drive.is_driven()).count();
-    let q = DMatrix::identity(2 * joints, 2 * joints) * WEIGHTS;
-    grown(spread, STAGES, &q, &DMatrix::identity(drives, drives))
+    let drives = model
+        .joints
+        .iter()
+        .filter(|joint| joint.drive.is_driven())
+        .count();
+    grown(spread, STAGES, q, &DMatrix::identity(drives, drives))
 }
 
 impl Design for Robust {
@@ -48,6 +56,19 @@ impl Design for Robust {
     }
 
     fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
-        Ok(Box::new(StateFeedback::new(paper::rows(&known.robust))))
+        let n = known.plant.a.nrows();
+        let uncertain = Uncertain {
+            mass: SHARE,
+            with_inertia: false,
+            period_s: known.period_s,
+            delay_s: 0.0,
+        };
+        let k = gain(
+            &known.model,
+            &known.pose_rad,
+            &uncertain,
+            &(DMatrix::identity(n, n) * WEIGHTS),
+        )?;
+        Ok(Box::new(StateFeedback::new(paper::rows(&k))))
     }
 }

@@ -47,7 +47,10 @@ impl Surface {
     pub fn sliding(plant: &Discrete, riccati: &DMatrix<f64>) -> Result<Self> {
         let bp = plant.b.transpose() * riccati;
         let reach = (&bp * &plant.b).try_inverse().ok_or_else(|| {
-            Error::design("the inputs do not reach the sliding surface", "drive other joints")
+            Error::design(
+                "the inputs do not reach the sliding surface",
+                "drive other joints",
+            )
         })?;
         let s = reach * bp;
         let k = &s * &plant.a - (1.0 - REACHING) * &s;
@@ -78,10 +81,16 @@ impl Surface {
     /// Torques for a state.
     #[inline]
     pub fn torque(&self, state: &[f64], torque_nm: &mut [f64]) {
-        for (torque, row) in torque_nm.iter_mut().zip(self.k_rows.chunks_exact(state.len())) {
+        for (torque, row) in torque_nm
+            .iter_mut()
+            .zip(self.k_rows.chunks_exact(state.len()))
+        {
             *torque = -dot(row, state);
         }
-        for (torque, row) in torque_nm.iter_mut().zip(self.s_rows.chunks_exact(state.len())) {
+        for (torque, row) in torque_nm
+            .iter_mut()
+            .zip(self.s_rows.chunks_exact(state.len()))
+        {
             *torque -= SWITCHED_NM * (dot(row, state) / WIDTH_NM).clamp(-1.0, 1.0);
         }
     }

@@ -6,7 +6,7 @@
 use super::conditions::{DEAD_ZONE, DEAD_ZONE_ERROR, ECCENTRIC_M};
 use super::servo::Through;
 use super::{Condition, Design, Known, Uncertain};
-use crate::closed_loop::{ClosedLoop, Controller, Limits, Outcome, Plant, Seen, Start, Workspace, stream};
+use crate::closed_loop::{ClosedLoop, Controller, Limits, Outcome, Plant, Seen, Start, stream};
 use crate::effects;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
@@ -112,12 +112,18 @@ pub fn region(
     done: &(dyn Fn() + Sync),
 ) -> Result<Region> {
     let holds = |spread_rad: f64| -> Result<bool> {
-        let robots = Robots { spread_rad, ..robots.clone() };
+        let robots = Robots {
+            spread_rad,
+            ..robots.clone()
+        };
         Ok(try_out(&robots, design, condition, known, done)?.held >= HELD_SHARE)
     };
     let (mut held, mut lost) = (0.0, LARGEST_REGION_RAD);
     if holds(lost)? {
-        return Ok(Region { spread_rad: lost, open: true });
+        return Ok(Region {
+            spread_rad: lost,
+            open: true,
+        });
     }
     for _ in 0..HALVINGS {
         let middle = (held + lost) / 2.0;
@@ -127,7 +133,10 @@ pub fn region(
             lost = middle;
         }
     }
-    Ok(Region { spread_rad: held, open: false })
+    Ok(Region {
+        spread_rad: held,
+        open: false,
+    })
 }
 
 /// How many runs [`region`] takes at most for each robot.
@@ -146,9 +155,11 @@ impl Robots<'_> {
         let card = design.card();
         let joints = self.model.link_count();
         // Drawn in this order whatever the condition, so that the robot stays the same.
-        let rng = &mut stream(self.seed, index as u64);
-        let start = Start::random(joints, self.spread_rad, rng);
-        let aside: Vec<f64> = (0..joints).map(|_| ECCENTRIC_M * rng.random_range(-1.0..=1.0)).collect();
+        let mut rng = stream(self.seed, index as u64);
+        let start = Start::random(joints, self.spread_rad, &mut rng);
+        let aside: Vec<f64> = (0..joints)
+            .map(|_| ECCENTRIC_M * rng.random_range(-1.0..=1.0))
+            .collect();
         let dead_zone = DEAD_ZONE * (1.0 + DEAD_ZONE_ERROR * rng.random_range(-1.0..=1.0));
         let mut model = self.model.clone();
         if condition.masses {
@@ -176,7 +187,10 @@ impl Robots<'_> {
         let compensated;
         let mut controller = controller;
         if card.told_balance {
-            compensated = Compensated { inner: controller, balance };
+            compensated = Compensated {
+                inner: controller,
+                balance,
+            };
             controller = &compensated;
         }
         let through;
@@ -189,27 +203,39 @@ impl Robots<'_> {
             };
             controller = &through;
         }
-        let mut work = Workspace::new(&closed, controller);
-        Ok(closed.run(controller, &start, self.seconds, rng, &mut work))
+        Ok(closed.run(controller, &start, self.seconds, rng))
     }
 
     fn held(&self, outcome: &Outcome) -> bool {
-        outcome.settle_s.is_some_and(|settled| settled <= self.seconds - NEAR_S)
+        outcome
+            .settle_s
+            .is_some_and(|settled| settled <= self.seconds - NEAR_S)
     }
 
     fn sum(&self, outcomes: &[Outcome]) -> Tried {
-        let held: Vec<&Outcome> = outcomes.iter().filter(|outcome| self.held(outcome)).collect();
+        let held: Vec<&Outcome> = outcomes
+            .iter()
+            .filter(|outcome| self.held(outcome))
+            .collect();
         let share = |count: usize| count as f64 / outcomes.len().max(1) as f64;
         let root = |of: fn(&Outcome) -> f64| {
             let squares: f64 = held.iter().map(|outcome| of(outcome).powi(2)).sum();
             (!held.is_empty()).then(|| (squares / held.len() as f64).sqrt())
         };
-        let mut swings: Vec<f64> = held.iter().filter_map(|outcome| outcome.limit_cycle_rad).collect();
+        let mut swings: Vec<f64> = held
+            .iter()
+            .filter_map(|outcome| outcome.limit_cycle_rad)
+            .collect();
         swings.sort_by(f64::total_cmp);
         Tried {
             robots: outcomes.len(),
             held: share(held.len()),
-            fell: share(outcomes.iter().filter(|outcome| !outcome.survived()).count()),
+            fell: share(
+                outcomes
+                    .iter()
+                    .filter(|outcome| !outcome.survived())
+                    .count(),
+            ),
             rms_angle_rad: root(|outcome| outcome.rms_angle_rad),
             swing_rad: swings.get(swings.len() / 2).copied(),
             rms_torque_nm: root(|outcome| outcome.rms_torque_nm),

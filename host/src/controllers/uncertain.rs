@@ -66,7 +66,13 @@ impl Uncertain {
     ///
     /// # Errors
     /// As [`Uncertain::plant`].
-    pub fn draw(&self, model: &Model, pose_rad: &[f64], count: usize, seed: u64) -> Result<Vec<Discrete>> {
+    pub fn draw(
+        &self,
+        model: &Model,
+        pose_rad: &[f64],
+        count: usize,
+        seed: u64,
+    ) -> Result<Vec<Discrete>> {
         (0..count)
             .map(|index| self.plant(model, pose_rad, &self.share(model, seed, index)))
             .collect()

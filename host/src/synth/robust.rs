@@ -72,14 +72,17 @@ pub fn multi_model(
     })?;
     let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
     let mut slope = flat(&gradient);
-    let mut curvature = DMatrix::<f64>::identity(m * n, m * n) / slope.norm().max(f64::MIN_POSITIVE);
+    let mut curvature =
+        DMatrix::<f64>::identity(m * n, m * n) / slope.norm().max(f64::MIN_POSITIVE);
     for _ in 0..MOST_STEPS {
         let mut way = -(&curvature * &slope);
         if way.dot(&slope) >= 0.0 {
             way = -&slope;
             curvature.fill_with_identity();
         }
-        let Some((reach, next_cost, next_gradient)) = search(plants, q, r, &k, &way, cost, slope.dot(&way)) else {
+        let Some((reach, next_cost, next_gradient)) =
+            search(plants, q, r, &k, &way, cost, slope.dot(&way))
+        else {
             break;
         };
         let moved = &way * reach;
@@ -108,7 +111,9 @@ pub fn grown(
 ) -> Result<DMatrix<f64>> {
     let nominal = spread(0.0)?;
     let mut k = dlqr(&nominal[0], q, r)?.k;
-    let q = &q.clone().resize(nominal[0].a.nrows(), nominal[0].a.nrows(), 0.0);
+    let q = &q
+        .clone()
+        .resize(nominal[0].a.nrows(), nominal[0].a.nrows(), 0.0);
     for stage in 1..=stages {
         let share = stage as f64 / stages as f64;
         k = multi_model(&spread(share)?, q, r, &k).map_err(|_| {
@@ -140,8 +145,7 @@ fn mean_cost(
         cost += p.trace();
         gradient += 2.0 * ((r + &bp * b) * k - bp * a) * s;
     }
-    (cost > 0.0 && cost.is_finite())
-        .then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
+    (cost > 0.0 && cost.is_finite()).then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
 }
 
 /// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if it has no end.
@@ -243,7 +247,9 @@ mod tests {
             let one = |a: f64| (1.0 + k * k) / (1.0 - (a - k).powi(2));
             one(0.9) + one(1.7)
         };
-        let best = (701..1899).map(|i| 1e-3 * f64::from(i)).min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        let best = (701..1899)
+            .map(|i| 1e-3 * f64::from(i))
+            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
         assert!((k - best.unwrap()).abs() < 1e-3, "{k} {best:?}");
         let fallen = multi_model(&plants, &q, &r, &DMatrix::from_element(1, 1, 0.1)).unwrap_err();
         assert_eq!(fallen.exit_code(), 3);
