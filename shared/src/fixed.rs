@@ -51,13 +51,25 @@ mod tests {
     #[test]
     fn rounds_to_the_nearest_and_halves_upwards() {
         let round = |value: i32, shift| shift_right(value + half(shift), shift);
-        for (value, rounded) in [(0, 0), (127, 0), (128, 1), (-128, 0), (-129, -1), (383, 1), (384, 2)] {
+        for (value, rounded) in [
+            (0, 0),
+            (127, 0),
+            (128, 1),
+            (-128, 0),
+            (-129, -1),
+            (383, 1),
+            (384, 2),
+        ] {
             assert_eq!(round(value, 8), rounded, "{value}");
         }
         for shift in 0..24 {
             for value in [-1_000_003, -77, -1, 0, 1, 5, 999_999] {
                 let nearest = (f64::from(value) / f64::from(1 << shift) + 0.5).floor();
-                assert_eq!(f64::from(round(value, shift)), nearest, "{value} >> {shift}");
+                assert_eq!(
+                    f64::from(round(value, shift)),
+                    nearest,
+                    "{value} >> {shift}"
+                );
             }
         }
     }
