@@ -11,6 +11,7 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod gains;
 mod input;
 mod log;
 mod name;
@@ -65,6 +66,8 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Find gains that balance a model, and write them for firmware
+    Gains(gains::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -85,6 +88,7 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Gains(args) => gains::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
