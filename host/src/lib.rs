@@ -16,6 +16,7 @@ pub mod model;
 mod number;
 pub mod output;
 pub mod report;
+pub mod servo;
 pub mod sim;
 
 pub use error::{Error, Place, Result};
