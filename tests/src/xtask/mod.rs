@@ -1,6 +1,7 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
 mod hidden;
+mod install;
 mod peers;
 mod program;
 mod real;
