@@ -1,7 +1,7 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
+//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `cli` sits on top and nothing depends on it.
 
 pub mod challenge;
 pub mod compare;
@@ -18,6 +18,7 @@ pub mod output;
 pub mod report;
 pub mod servo;
 pub mod sim;
+pub mod synth;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;
