@@ -1,9 +1,11 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `cli` sits on top and nothing depends on it.
+//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
+//! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
 pub mod challenge;
+pub mod closed_loop;
 pub mod compare;
 pub mod diagnose;
 pub mod dynamics;
