@@ -11,11 +11,14 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod identify;
 mod input;
 mod log;
+mod map;
 mod name;
 mod page;
 mod show;
+mod signals;
 mod talk;
 
 use clap::{Parser, Subcommand};
@@ -65,6 +68,11 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Identify a servo as a black box: discrete-time models by prediction error
+    Identify(identify::Args),
+    /// Map what a servo does at rest: dead zone, saturation, supply
+    #[command(subcommand)]
+    Map(map::Command),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -85,6 +93,8 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Identify(args) => identify::run(args, talk),
+            Command::Map(command) => map::run(command, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }

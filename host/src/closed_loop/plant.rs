@@ -38,10 +38,17 @@ impl Plant {
     /// # Errors
     /// A pose of another length, nothing driven, or effects this simulation does not have.
     pub fn new(model: &Model, pose_rad: &[f64]) -> Result<Plant> {
-        if let Some(other) = model.effects.iter().find(|e| e.effect.card().site != Site::Body) {
+        if let Some(other) = model
+            .effects
+            .iter()
+            .find(|e| e.effect.card().site != Site::Body)
+        {
             let title = other.effect.card().title;
             return Err(Error::design(
-                format!("the closed loop of `{}` cannot have this effect: {title}", model.name),
+                format!(
+                    "the closed loop of `{}` cannot have this effect: {title}",
+                    model.name
+                ),
                 "take it out of the model: dead zone, delay, saturation, resolution are conditions of the loop",
             ));
         }
