@@ -21,6 +21,7 @@ pub mod report;
 pub mod servo;
 pub mod sim;
 pub mod synth;
+pub mod view;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

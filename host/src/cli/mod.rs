@@ -20,6 +20,7 @@ mod page;
 mod show;
 mod signals;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -73,6 +74,8 @@ pub enum Command {
     /// Map what a servo does at rest: dead zone, saturation, supply
     #[command(subcommand)]
     Map(map::Command),
+    /// Play a motion on a page
+    View(view::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -95,6 +98,7 @@ impl Command {
             Command::Add(args) => add::run(args, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),
+            Command::View(args) => view::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
