@@ -3,6 +3,7 @@
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
 
+pub mod bus_sim;
 pub mod challenge;
 pub mod compare;
 pub mod diagnose;
