@@ -1,10 +1,12 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
+//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
+//! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
 pub mod bus_sim;
 pub mod challenge;
+pub mod closed_loop;
 pub mod compare;
 pub mod diagnose;
 pub mod dynamics;
@@ -18,6 +20,7 @@ mod number;
 pub mod output;
 pub mod report;
 pub mod sim;
+pub mod synth;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

@@ -1,0 +1,247 @@
+//! Equations of motion of a short chain with a dense mass matrix, in absolute angles.
+//!
+//! Lagrange's equations of a planar chain (Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006),
+//! chapter 7), with t_i the angle of link i from hanging and (p_j, r_j) the first moment that link j and all beyond it
+//! have about joint j, turned with the link:
+//!
+//! M_ij = L_i (cos t_i p_j + sin t_i r_j) for i < j, the velocity terms are its derivative times w^2, and gravity is
+//! base . (p_i, r_i). In absolute angles the diagonal is constant and no product w_i w_j appears. Solved by
+//! LDL^T. Up to about five links that is faster than [`Chain::forward`]'s O(n); the two agree to 1e-12.
+
+use super::chain::Chain;
+use super::sin_cos::sin_cos;
+
+/// Constants of a chain of `N` links.
+#[derive(Debug, Clone)]
+pub struct Dense<const N: usize> {
+    /// Joint to next joint, m.
+    length_m: [f64; N],
+    /// First moment of a link and all it carries, along and across it, kg m.
+    along: [f64; N],
+    across: [f64; N],
+    /// Diagonal of the mass matrix, kg m^2.
+    diagonal: [f64; N],
+    /// Reflected rotor inertia of each joint, kg m^2: couples a link with the one before.
+    armature: [f64; N],
+    /// Stands for gravity, m/s^2: see [`Chain::base_m_s2`].
+    base_m_s2: [f64; 2],
+}
+
+impl<const N: usize> Dense<N> {
+    /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it has `N` links.
+    pub fn new(chain: &Chain, gravity_turn_rad: f64) -> Option<Self> {
+        if chain.len() != N || N == 0 {
+            return None;
+        }
+        let mut dense = Dense {
+            length_m: [0.0; N],
+            along: [0.0; N],
+            across: [0.0; N],
+            diagonal: [0.0; N],
+            armature: [0.0; N],
+            base_m_s2: chain.base_m_s2(gravity_turn_rad),
+        };
+        let (mut beyond_kg, mut next_armature) = (0.0, 0.0);
+        for (i, link) in chain.links.iter().enumerate().rev() {
+            let (sin, cos) = link.com_angle_rad.sin_cos();
+            let moment = link.mass_kg * link.com_m;
+            dense.length_m[i] = link.length_m;
+            dense.along[i] = moment * cos + link.length_m * beyond_kg;
+            dense.across[i] = moment * sin;
+            dense.armature[i] = link.armature_kg_m2;
+            dense.diagonal[i] = link.inertia_kg_m2
+                + moment * link.com_m
+                + link.length_m * link.length_m * beyond_kg
+                + link.armature_kg_m2
+                + next_armature;
+            beyond_kg += link.mass_kg;
+            next_armature = link.armature_kg_m2;
+        }
+        Some(dense)
+    }
+
+    /// Absolute angles at which gravity asks for no torque and every link stands up, rad from hanging.
+    pub fn balanced_rad(&self) -> [f64; N] {
+        let (x, y) = (self.base_m_s2[0], self.base_m_s2[1]);
+        let turn = x.atan2(y);
+        std::array::from_fn(|i| std::f64::consts::PI - self.across[i].atan2(self.along[i]) - turn)
+    }
+
+    /// Absolute accelerations, rad/s^2, at absolute angles and speeds under a moment `load_nm` on each link.
+    #[inline]
+    pub fn accelerate(
+        &self,
+        angle_rad: &[f64; N],
+        speed_rad_s: &[f64; N],
+        load_nm: &[f64; N],
+    ) -> [f64; N] {
+        let mut lever = [[0.0; 2]; N];
+        let mut moment = [[0.0; 2]; N];
+        let mut rest = *load_nm;
+        let mut square = [0.0; N];
+        for i in 0..N {
+            let (sin, cos) = sin_cos(angle_rad[i]);
+            lever[i] = [self.length_m[i] * cos, self.length_m[i] * sin];
+            moment[i] = [
+                self.along[i] * cos - self.across[i] * sin,
+                self.along[i] * sin + self.across[i] * cos,
+            ];
+            rest[i] -= self.base_m_s2[0] * moment[i][0] + self.base_m_s2[1] * moment[i][1];
+            square[i] = speed_rad_s[i] * speed_rad_s[i];
+        }
+        let mut mass = [[0.0; N]; N];
+        for j in 0..N {
+            for i in 0..j {
+                let ([a, b], [p, r]) = (lever[i], moment[j]);
+                mass[j][i] = a * p + b * r;
+                let slope = a * r - b * p;
+                rest[i] += slope * square[j];
+                rest[j] -= slope * square[i];
+            }
+            mass[j][j] = self.diagonal[j];
+            if j > 0 {
+                mass[j][j - 1] -= self.armature[j];
+            }
+        }
+        solve(mass, rest)
+    }
+
+    /// Runs `steps` steps of classical Runge-Kutta of fourth order, `h` seconds each, under constant moments.
+    #[inline]
+    pub fn advance(
+        &self,
+        angle_rad: &mut [f64; N],
+        speed_rad_s: &mut [f64; N],
+        load_nm: &[f64; N],
+        h: f64,
+        steps: usize,
+    ) {
+        let (mut q, mut w) = (*angle_rad, *speed_rad_s);
+        for _ in 0..steps {
+            let a1 = self.accelerate(&q, &w, load_nm);
+            let w2 = ahead(&w, h / 2.0, &a1);
+            let a2 = self.accelerate(&ahead(&q, h / 2.0, &w), &w2, load_nm);
+            let w3 = ahead(&w, h / 2.0, &a2);
+            let a3 = self.accelerate(&ahead(&q, h / 2.0, &w2), &w3, load_nm);
+            let w4 = ahead(&w, h, &a3);
+            let a4 = self.accelerate(&ahead(&q, h, &w3), &w4, load_nm);
+            for i in 0..N {
+                q[i] += h / 6.0 * ((w[i] + w4[i]) + 2.0 * (w2[i] + w3[i]));
+                w[i] += h / 6.0 * ((a1[i] + a4[i]) + 2.0 * (a2[i] + a3[i]));
+            }
+        }
+        (*angle_rad, *speed_rad_s) = (q, w);
+    }
+}
+
+#[inline]
+fn ahead<const N: usize>(x: &[f64; N], h: f64, slope: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| x[i] + h * slope[i])
+}
+
+/// Solves `mass x = right`; of the symmetric matrix only the lower triangle is read.
+#[inline]
+fn solve<const N: usize>(mut mass: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
+    let mut inverse = [0.0; N];
+    for j in 0..N {
+        inverse[j] = 1.0 / mass[j][j];
+        for i in j + 1..N {
+            let share = mass[i][j] * inverse[j];
+            for k in j + 1..=i {
+                mass[i][k] -= share * mass[k][j];
+            }
+            right[i] -= share * right[j];
+        }
+    }
+    // The columns hold L D: dividing by D once per row is all that is left to do.
+    for i in (0..N).rev() {
+        let mut sum = right[i];
+        for k in i + 1..N {
+            sum -= mass[k][i] * right[k];
+        }
+        right[i] = sum * inverse[i];
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::{ChainLink, Workspace};
+    use proptest::prelude::*;
+
+    /// Links of which none is like another, some eccentric, some with a rotor.
+    fn chain(n: usize) -> Chain {
+        let link = |i: usize| ChainLink {
+            length_m: 0.1 + 0.03 * i as f64,
+            com_m: 0.05 + 0.02 * i as f64,
+            com_angle_rad: 0.2 * i as f64 - 0.1,
+            mass_kg: 0.3 + 0.1 * i as f64,
+            inertia_kg_m2: 1e-3 * (1.0 + i as f64),
+            armature_kg_m2: 1e-3 * (i % 2) as f64,
+        };
+        Chain {
+            links: (0..n).map(link).collect(),
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    /// Largest difference to the O(n) equations against the largest acceleration.
+    fn differs<const N: usize>(turn: f64, angle: &[f64], speed: &[f64], torque: &[f64]) -> f64 {
+        let chain = chain(N);
+        let mut theirs = [0.0; N];
+        chain.forward(
+            &mut Workspace::new(N),
+            chain.base_m_s2(turn),
+            &angle[..N],
+            &speed[..N],
+            &torque[..N],
+            &[false; N],
+            &mut theirs,
+        );
+        let sum = |x: &[f64]| std::array::from_fn::<f64, N, _>(|i| x[..=i].iter().sum());
+        let load = std::array::from_fn(|i| torque[i] - if i + 1 < N { torque[i + 1] } else { 0.0 });
+        let dense = Dense::<N>::new(&chain, turn).unwrap();
+        let ours = dense.accelerate(&sum(angle), &sum(speed), &load);
+        let theirs = sum(&theirs);
+        let largest = theirs.iter().fold(1.0, |m: f64, a| m.max(a.abs()));
+        let off = (0..N).fold(0.0, |m: f64, i| m.max((ours[i] - theirs[i]).abs()));
+        off / largest
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_the_articulated_bodies(
+            turn in -3.0f64..3.0,
+            values in prop::collection::vec(-3.0f64..3.0, 12),
+        ) {
+            let (q, w, t) = (&values[..4], &values[4..8], &values[8..]);
+            prop_assert!(differs::<1>(turn, q, w, t) < 1e-12);
+            prop_assert!(differs::<2>(turn, q, w, t) < 1e-12);
+            prop_assert!(differs::<3>(turn, q, w, t) < 1e-12);
+            prop_assert!(differs::<4>(turn, q, w, t) < 1e-12);
+        }
+
+        #[test]
+        fn nothing_moves_where_it_is_balanced(turn in -0.5f64..0.5) {
+            let dense = Dense::<4>::new(&chain(4), turn).unwrap();
+            let still = dense.accelerate(&dense.balanced_rad(), &[0.0; 4], &[0.0; 4]);
+            prop_assert!(still.iter().all(|a| a.abs() < 1e-10), "{still:?}");
+        }
+    }
+
+    #[test]
+    fn energy_is_kept_without_friction() {
+        let chain = chain(3);
+        let dense = Dense::<3>::new(&chain, 0.0).unwrap();
+        let energy = |q: &[f64; 3], w: &[f64; 3]| {
+            let relative = |x: &[f64; 3]| [x[0], x[1] - x[0], x[2] - x[1]];
+            let (kinetic, potential) = chain.energy_j(&relative(q), &relative(w));
+            kinetic + potential
+        };
+        let (mut q, mut w) = ([1.0, 1.5, 1.2], [0.0; 3]);
+        let before = energy(&q, &w);
+        dense.advance(&mut q, &mut w, &[0.0; 3], 1e-3, 5000);
+        assert!((energy(&q, &w) - before).abs() < 1e-8);
+    }
+}
