@@ -133,12 +133,12 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
         (
             "Gyro of 10 deg/s with constant perturbation: larger control, still stable (Figure 14 a,c,e)",
             "handstand paper",
-            figure("14"),
+            figure("14 a,c,e"),
         ),
         (
             "Dead zone of 10 % and 2 N m: not stabilised (Figure 14 b,d,f)",
             "handstand paper",
-            figure("14"),
+            figure("14 b,d,f"),
         ),
         (
             "An animation of the handstand",
@@ -182,10 +182,10 @@ fn delays(computed: &Computed) -> Result<(String, Shown)> {
     };
     let linear_s = edge(unstable, 0.0, 0.05)?;
     let said = format!(
-        "The sampled gains stand {:.1} ms from sample to torque (linear theory: {:.1} ms) before the loop is lost; the way there and \
-         back has to be shorter.",
-        1e3 * plain_s,
-        1e3 * linear_s
+        "The sampled loop is stable up to {:.1} ms from sample to torque; later than that it swings, and from {:.1} ms on it \
+         falls. Reading, deciding and commanding together must stay below.",
+        1e3 * linear_s,
+        1e3 * plain_s
     );
     Ok((said, Shown::Here(Holds::Yes)))
 }
