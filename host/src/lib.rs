@@ -18,6 +18,7 @@ pub mod log;
 pub mod model;
 mod number;
 pub mod output;
+pub mod paper;
 pub mod report;
 pub mod servo;
 pub mod sim;

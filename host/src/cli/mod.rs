@@ -17,6 +17,7 @@ mod log;
 mod map;
 mod name;
 mod page;
+mod paper;
 mod show;
 mod signals;
 mod talk;
@@ -76,6 +77,8 @@ pub enum Command {
     Map(map::Command),
     /// Play a motion on a page
     View(view::Args),
+    /// The paper's numbers, figures and findings beside our own
+    Paper(paper::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -99,6 +102,7 @@ impl Command {
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),
             Command::View(args) => view::run(args, talk),
+            Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }

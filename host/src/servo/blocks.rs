@@ -19,7 +19,7 @@ pub struct Block {
 }
 
 /// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right after a step of
-/// the input; what is left at a motion's end is dropped.
+/// the input, and the first of a motion, whose past is not known; what is left at a motion's end is dropped.
 ///
 /// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a passive joint: none.
 pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) -> Vec<Block> {
@@ -37,7 +37,7 @@ pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) ->
         };
         let measured = &motion.position_rad[joint];
         // The sample before a block is looked at too: its input may have acted into it.
-        let (mut before, mut first) = (0, 0);
+        let (mut before, mut first) = (None, 0);
         for last in 1..motion.len() {
             let duration_s = motion.time_s[last] - motion.time_s[first];
             // Rounding of time stamps must not add a sample to some blocks.
@@ -46,8 +46,11 @@ pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) ->
             }
             let mean =
                 |values: &[f64]| values[first..last].iter().sum::<f64>() / (last - first) as f64;
-            let (low, high) = range(&input[before..=last]);
-            if high - low <= most {
+            let calm = |before: usize| {
+                let (low, high) = range(&input[before..=last]);
+                high - low <= most
+            };
+            if before.is_some_and(calm) {
                 all.push(Block {
                     input: mean(input),
                     output: match output {
@@ -57,7 +60,7 @@ pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) ->
                     supply_v: motion.supply_v.as_ref().map_or(f64::NAN, |v| mean(v)),
                 });
             }
-            (before, first) = (first, last);
+            (before, first) = (Some(first), last);
         }
     }
     all
@@ -105,7 +108,7 @@ mod tests {
             .iter()
             .map(|b| (b.output * 1e9).round() / 1e9)
             .collect();
-        assert_eq!(speeds, [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
+        assert_eq!(speeds, [1.0, 1.0, 2.0, 2.0, 2.0]);
         assert!(blocks.iter().all(|b| (b.input - b.output).abs() < 1e-9));
     }
 }
