@@ -75,7 +75,7 @@ impl Computed {
         Ok(Computed {
             lqr: lqr(&plant, &q, &r)?,
             dlqr: dlqr(&sampled, &(100.0 * &q), &r)?,
-            poles: poles(&plant.a),
+            poles: poles(&plant.a)?,
             zeros: zeros(&plant),
             servo: servo(),
             servo_facts: servo_facts(),
