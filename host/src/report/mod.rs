@@ -5,15 +5,15 @@ mod candidates;
 mod failures;
 mod headline;
 mod json;
-mod page;
+pub(crate) mod page;
 mod parameters;
 mod provenance;
 mod remains;
 #[cfg(test)]
 mod sample;
-mod scale;
+pub(crate) mod scale;
 mod signatures;
-mod svg;
+pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
 mod text;

@@ -1,9 +1,11 @@
 //! The questions of `tests/peers`, answered by the library and timed in this process.
 
 mod arm;
+mod closed_loop;
 mod dynamics;
 
 pub use arm::{Arm, Starts};
+pub use closed_loop::{angles_after, runs_per_second};
 pub use dynamics::{farthest_off, forward_seconds};
 
 use std::time::Instant;

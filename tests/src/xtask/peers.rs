@@ -5,7 +5,7 @@
 
 use super::program::run as succeeds;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand_tests::peers::{Arm, farthest_off, forward_seconds};
+use handstand_tests::peers::{Arm, angles_after, farthest_off, forward_seconds, runs_per_second};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -19,6 +19,20 @@ pub struct Args {
     /// Times the two take turns at short tasks
     #[arg(long, default_value_t = 3)]
     rounds: usize,
+    /// Only these tasks
+    #[arg(long, value_enum, value_delimiter = ',')]
+    only: Vec<Task>,
+}
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Task {
+    /// One evaluation of the forward dynamics
+    Dynamics,
+    /// Runs of the closed loop
+    ClosedLoop,
+    /// Fits and diagnoses of a servo arm's logs
+    Fits,
 }
 
 /// Whether every target is met.
@@ -28,7 +42,8 @@ pub fn run(args: &Args) -> bool {
         return false;
     }
     let mut table = Rows::default();
-    let well = bench.measure(args.rounds.max(1), &mut table);
+    let wanted = |task| args.only.is_empty() || args.only.contains(&task);
+    let well = bench.measure(args.rounds.max(1), &wanted, &mut table);
     println!("\n{}", table.table);
     if let Err(why) = &well {
         println!("{why}");
@@ -91,8 +106,25 @@ impl Bench {
         Ok(self.folder.join(name))
     }
 
-    fn measure(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
-        self.dynamics(rounds, table)?;
+    fn measure(
+        &self,
+        rounds: usize,
+        wanted: &dyn Fn(Task) -> bool,
+        table: &mut Rows,
+    ) -> Result<(), String> {
+        if wanted(Task::Dynamics) {
+            self.dynamics(rounds, table)?;
+        }
+        if wanted(Task::ClosedLoop) {
+            self.closed_loop(rounds, table)?;
+        }
+        if wanted(Task::Fits) {
+            self.fits(rounds, table)?;
+        }
+        Ok(())
+    }
+
+    fn fits(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
         let load = |logs: &[PathBuf]| Arm::load(logs).map_err(|error| error.to_string());
         let arm = load(&[self.log("arm.csv", &[])?])?;
         let mut pairs = Vec::new();
@@ -172,6 +204,47 @@ impl Bench {
                 off <= 1e-9,
             );
         }
+        Ok(())
+    }
+}
+
+/// Threads on which closed-loop runs are timed.
+const THREADS: usize = 2;
+
+impl Bench {
+    /// Runs a second of the paper's closed loop, and whether they are the same runs.
+    fn closed_loop(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        let peers = [("mujoco_rk4", 20.0), ("numba", 1.0)];
+        let mut pairs = vec![Vec::new(); peers.len()];
+        let mut off = f64::NAN;
+        for _ in 0..rounds {
+            let before = runs_per_second(THREADS, 2000);
+            let threads = THREADS.to_string();
+            let theirs = self.script("closed_loop.py", &["--threads", &threads])?;
+            let ours = [before, runs_per_second(THREADS, 2000)];
+            for (pairs, (peer, _)) in pairs.iter_mut().zip(peers) {
+                let seconds = 1.0 / number(&theirs, &[peer]);
+                pairs.push((2.0 / (ours[0] + ours[1]), seconds));
+            }
+            let ours = angles_after(0.5);
+            let theirs = &theirs["half_second_rad"]["mujoco_rk4"];
+            off = (0..3)
+                .map(|i| (ours[i] - theirs[i].as_f64().unwrap_or(f64::NAN)).abs())
+                .fold(0.0, f64::max);
+        }
+        for (pairs, (peer, target)) in pairs.iter().zip(peers) {
+            table.faster(
+                &format!("closed-loop run of 5 s, 2 threads: {peer}"),
+                pairs,
+                target,
+            );
+        }
+        let name = "closed loop after 0.5 s: farthest off MuJoCo's RK4, rad";
+        table.add(
+            name,
+            ["", "", &format!("{off:.1e}"), "<= 1e-9"],
+            off <= 1e-9,
+        );
         Ok(())
     }
 }
