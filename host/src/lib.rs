@@ -19,6 +19,7 @@ mod number;
 pub mod output;
 pub mod report;
 pub mod sim;
+pub mod study;
 pub mod synth;
 
 pub use error::{Error, Place, Result};

@@ -16,6 +16,7 @@ mod log;
 mod name;
 mod page;
 mod show;
+mod study;
 mod talk;
 
 use clap::{Parser, Subcommand};
@@ -65,6 +66,9 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// See what the closed loop of robot and controller bears
+    #[command(subcommand)]
+    Study(study::Command),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -85,6 +89,7 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Study(command) => study::run(command, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
