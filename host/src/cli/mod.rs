@@ -11,13 +11,18 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod identify;
 mod input;
 mod log;
+mod map;
 mod name;
 mod page;
+mod paper;
 mod show;
 mod study;
+mod signals;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -69,6 +74,15 @@ pub enum Command {
     /// See what the closed loop of robot and controller bears
     #[command(subcommand)]
     Study(study::Command),
+    /// Identify a servo as a black box: discrete-time models by prediction error
+    Identify(identify::Args),
+    /// Map what a servo does at rest: dead zone, saturation, supply
+    #[command(subcommand)]
+    Map(map::Command),
+    /// Play a motion on a page
+    View(view::Args),
+    /// The paper's numbers, figures and findings beside our own
+    Paper(paper::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -90,6 +104,10 @@ impl Command {
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Study(command) => study::run(command, talk),
+            Command::Identify(args) => identify::run(args, talk),
+            Command::Map(command) => map::run(command, talk),
+            Command::View(args) => view::run(args, talk),
+            Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }

@@ -3,7 +3,8 @@
 //! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
 //! documentation count as one test each, and every test of the workspace as one.
 
-use super::program::{self, found, is_root, overheard};
+use super::install;
+use super::program::{self, overheard};
 use std::process::Command;
 
 /// Install what the tests need, then run all of them.
@@ -66,24 +67,7 @@ fn cargo(words: &[&str]) -> Command {
 fn install() {
     println!("Needed: the crates in Cargo.lock. Fetching them where they are not here yet.");
     program::run(&mut cargo(&["fetch", "--locked"]));
-    if found(&["chromium", "chromium-browser", "google-chrome"]) {
-        println!("Chromium, for the test that renders a report: here already.");
-    } else if !found(&["apt-get"]) {
-        println!(
-            "Chromium, for the test that renders a report: no apt-get here, so that test is skipped."
-        );
-    } else if !is_root() {
-        println!(
-            "Chromium, for the test that renders a report: only root may install it, so that test is skipped."
-        );
-    } else {
-        println!("Chromium, for the test that renders a report: installing it by apt-get.");
-        let mut apt = Command::new("apt-get");
-        apt.args(["install", "--yes", "--no-install-recommends", "chromium"]);
-        if !program::run(&mut apt) {
-            println!("It could not be installed, so that test is skipped.");
-        }
-    }
+    install::all();
 }
 
 fn tests(tally: &mut Tally) {
