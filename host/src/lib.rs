@@ -4,6 +4,7 @@
 //! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
 //! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
+pub mod bus_sim;
 pub mod challenge;
 pub mod closed_loop;
 pub mod compare;
