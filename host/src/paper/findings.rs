@@ -178,7 +178,7 @@ fn delays(computed: &Computed) -> Result<(String, Shown)> {
         let mut gains = computed.dlqr.k.clone();
         gains = gains.resize_horizontally(late.a.nrows(), 0.0);
         let closed = &late.a - &late.b * gains;
-        Ok(poles(&closed).iter().any(|pole| pole.norm() >= 1.0))
+        Ok(poles(&closed)?.iter().any(|pole| pole.norm() >= 1.0))
     };
     let linear_s = edge(unstable, 0.0, 0.05)?;
     let said = format!(
@@ -279,7 +279,7 @@ fn centroids(computed: &Computed) -> Result<(String, Shown)> {
         }
         let off = zoh(&linearise(&model, &upright(&model))?, TS_S, 0.0)?;
         let closed = &off.a - &off.b * &computed.dlqr.k;
-        worst = poles(&closed)
+        worst = poles(&closed)?
             .iter()
             .fold(worst, |worst, pole| worst.max(pole.norm()));
     }
