@@ -4,6 +4,7 @@
 //! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
 //! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
+pub mod bus_sim;
 pub mod challenge;
 pub mod closed_loop;
 pub mod compare;
@@ -18,9 +19,13 @@ pub mod log;
 pub mod model;
 mod number;
 pub mod output;
+pub mod paper;
 pub mod report;
+pub mod servo;
 pub mod sim;
+pub mod study;
 pub mod synth;
+pub mod view;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

@@ -1,4 +1,5 @@
 //! What the benchmarks measure with; `cargo xtask` prints it and the tests sample it.
 
+pub mod firmware;
 pub mod hidden;
 pub mod peers;

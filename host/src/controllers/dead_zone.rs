@@ -100,7 +100,7 @@ impl Design for DeadZoneInverse {
 
     fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
         Ok(Box::new(Inverted {
-            inner: StateFeedback::new(paper::rows(&paper::gain(known)?)),
+            inner: StateFeedback::new(known.joints(), paper::rows(&paper::gain(known)?)),
             drive: Drive::of(known),
             drives: known.drives(),
         }))

@@ -48,7 +48,7 @@ impl Design for Paper {
     }
 
     fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
-        let inner = StateFeedback::new(rows(&gain(known)?));
+        let inner = StateFeedback::new(known.joints(), rows(&gain(known)?));
         if self.0.speeds == Speeds::Differenced {
             return Ok(Box::new(Differencing {
                 inner,

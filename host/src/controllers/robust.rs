@@ -69,6 +69,9 @@ impl Design for Robust {
             &uncertain,
             &(DMatrix::identity(n, n) * WEIGHTS),
         )?;
-        Ok(Box::new(StateFeedback::new(paper::rows(&k))))
+        Ok(Box::new(StateFeedback::new(
+            known.joints(),
+            paper::rows(&k),
+        )))
     }
 }

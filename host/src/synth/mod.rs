@@ -1,22 +1,42 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
-//! `equations` -> `rest` -> `linearise` -> `discretise` -> `riccati` -> `gains`; `analysis` looks at plants; `robust` makes one
-//! gain for many plants.
+//! `equations` -> `rest` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
+//! `zeros` look at plants; `quantise` -> `fixed_law` is what
+//! ships; `design` is all of it as one value, `export` writes that;
+//! `robust` makes one gain for many plants.
 
+mod design;
 mod discretise;
+mod eigen;
 mod equations;
+mod estimator;
+pub mod export;
+mod fixed_law;
 mod gains;
 mod linearise;
+mod quantise;
+mod reach;
+mod refusal;
 mod rest;
 mod riccati;
 mod robust;
 mod system;
+mod weight;
 mod weights;
+mod zeros;
 
+pub use design::{Design, Estimation, Fixed, Request, Sensors, Signal, Time};
 pub use discretise::zoh;
+pub use eigen::{Mode, poles};
 pub use equations::Equations;
+pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
+pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, dlqr, lqr};
 pub use linearise::linearise;
-pub use rest::{Rest, input_delay_s, upright};
+pub use quantise::{Format, Ranges, quantise};
+pub use reach::{Reach, controllability, observability};
+pub use rest::{Rest, balanced, input_delay_s, upright};
 pub use robust::{grown, lost_share, multi_model, spectral_radius};
-pub use system::{Continuous, Discrete, poles};
+pub use system::{Continuous, Discrete};
+pub use weight::Weight;
+pub use zeros::transmission_zeros;

@@ -22,7 +22,7 @@ fn task() -> (ClosedLoop, StateFeedback) {
     let closed = ClosedLoop::ideal(plant.expect("three links, two drives"), 0.01);
     (
         closed,
-        StateFeedback::new(GAINS.map(|row| row.to_vec()).to_vec()),
+        StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec()),
     )
 }
 
@@ -47,15 +47,8 @@ pub fn angles_after(seconds: f64) -> Vec<f64> {
     let (closed, controller) = task();
     let mut last = Vec::new();
     let start = Start::at(START_RAD);
-    closed.watch(
-        &controller,
-        &start,
-        seconds,
-        &mut stream(1, 0),
-        &mut work,
-        |sample| {
-            last = sample.angle_rad.to_vec();
-        },
-    );
+    closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {
+        last = sample.angle_rad.to_vec();
+    });
     last
 }

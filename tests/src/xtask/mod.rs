@@ -1,5 +1,6 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod firmware;
 mod hidden;
 mod install;
 mod peers;
@@ -26,6 +27,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Build the CM-5's program: ELF, HEX and BIN
+    Firmware(firmware::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -37,6 +40,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::Firmware(args) => firmware::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

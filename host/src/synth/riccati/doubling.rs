@@ -1,4 +1,4 @@
-//! Riccati equations by structure-preserving doubling.
+//! Riccati equations by structure-preserving doubling: fast, and as accurate as their conditioning allows.
 //!
 //! Chu, Fan, Lin, Wang, International Journal of Control 77 (2004) 767 (discrete); Chu, Fan, Lin, Linear Algebra and
 //! its Applications 396 (2005) 55 (continuous, by Cayley's transform).
@@ -63,7 +63,7 @@ pub(super) fn cayley(
 }
 
 /// Replaces a matrix by its symmetric part.
-pub(super) fn symmetrise(m: &mut DMatrix<f64>) {
+pub(in crate::synth) fn symmetrise(m: &mut DMatrix<f64>) {
     for j in 0..m.ncols() {
         for i in 0..j {
             let mean = 0.5 * (m[(i, j)] + m[(j, i)]);
