@@ -149,3 +149,27 @@ fn the_longest_delay_is_the_one_of_the_eigenvalues() {
     let one = longest("best", Some(0.01));
     assert!(one.survives(0.01) && !one.survives(0.0), "{one:?}");
 }
+
+#[test]
+fn figures_are_the_same_on_any_number_of_threads() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| tried("best", "all-masses"))
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn other_drives_are_refused() {
+    let text = include_str!("../../models/handstand.toml").replacen(
+        "drive = \"torque\"",
+        "drive = \"duty\"\nstall_torque_nm = 1.5\nno_load_speed_rad_s = 6.0",
+        1,
+    );
+    let model = Model::parse(&text, Path::new("handstand.toml")).unwrap();
+    let refused = Known::ideal(&model, &upright(&model), 0.01).unwrap_err();
+    assert!(refused.to_string().contains("joint 2"), "{refused}");
+}
