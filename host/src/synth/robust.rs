@@ -180,10 +180,10 @@ fn search(
     let way = DMatrix::from_column_slice(k.nrows(), k.ncols(), way.as_slice());
     let mut reach = 1.0;
     for _ in 0..40 {
-        if let Some((next, gradient)) = mean_cost(plants, q, r, &(k + reach * &way)) {
-            if next <= cost + 1e-4 * reach * slope {
-                return Some((reach, next, gradient));
-            }
+        if let Some((next, gradient)) = mean_cost(plants, q, r, &(k + reach * &way))
+            && next <= cost + 1e-4 * reach * slope
+        {
+            return Some((reach, next, gradient));
         }
         reach /= 2.0;
     }
