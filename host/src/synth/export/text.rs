@@ -161,7 +161,9 @@ fn loop_lines(design: &Design) -> Vec<String> {
         left if left < 1e-16 => "below 1e-16".to_string(),
         left => format!("{left:.0e}"),
     };
-    lines.push(format!("Riccati residual      {residual} of the largest entry"));
+    lines.push(format!(
+        "Riccati residual      {residual} of the largest entry"
+    ));
     lines
 }
 
