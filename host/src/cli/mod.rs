@@ -12,6 +12,7 @@ mod diagnose;
 mod effects;
 mod fit;
 mod gains;
+mod given;
 mod identify;
 mod input;
 mod log;
