@@ -22,6 +22,7 @@ pub mod paper;
 pub mod report;
 pub mod servo;
 pub mod sim;
+pub mod study;
 pub mod synth;
 pub mod view;
 

@@ -21,6 +21,9 @@ pub struct Plant {
     base_m_s2: [f64; 2],
 }
 
+/// An upright robot is faster than the arms that models' own steps are made for, s.
+const LONGEST_STEP_S: f64 = 1e-3;
+
 /// The equations of motion that suit the number of links.
 #[derive(Debug, Clone)]
 pub(super) enum Equations {
@@ -64,7 +67,7 @@ impl Equations {
 impl Plant {
     /// The robot of a model around `pose_rad`, one angle per joint in the model's own convention.
     ///
-    /// Masses, centres of mass and gravity are those after the model's effects on them.
+    /// Masses, centres of mass and gravity are those after the model's effects on them; steps are 1 ms at most.
     ///
     /// # Errors
     /// A pose of another length, nothing driven, or effects this simulation does not have.
@@ -96,7 +99,8 @@ impl Plant {
         if let Some(first) = pose.first_mut() {
             *first += model.angle_zero.from_hanging_rad();
         }
-        Plant::of(rig.chain, rig.gravity_turn_rad, driven, pose, model.step_s)
+        let step_s = model.step_s.min(LONGEST_STEP_S);
+        Plant::of(rig.chain, rig.gravity_turn_rad, driven, pose, step_s)
     }
 
     /// A chain around a pose of relative angles, joint 1 from hanging, rad; `driven` counts joints from 0.

@@ -97,10 +97,10 @@ impl<'a> Run<'a> {
     #[inline]
     pub(super) fn next(&mut self, see: &mut impl FnMut(Sample<'_>)) -> Next {
         loop {
-            if self.now_s >= self.sample_s {
-                if let Some(outcome) = self.take_sample(see) {
-                    return Next::Over(outcome);
-                }
+            if self.now_s >= self.sample_s
+                && let Some(outcome) = self.take_sample(see)
+            {
+                return Next::Over(outcome);
             }
             while self.pending.due_s() <= self.now_s + AT_ONCE_S {
                 let actuator = &self.closed.conditions.actuator;

@@ -151,6 +151,7 @@ fn ahead<const N: usize, V: Lane>(x: &[V; N], span: V, slope: &[V; N]) -> [V; N]
 
 /// Solves `mass x = right`; of the symmetric matrix only the lower triangle is read.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "a matrix is read by its places")]
 fn solve<const N: usize, V: Lane>(mut mass: [[V; N]; N], mut right: [V; N]) -> [V; N] {
     let mut inverse = [V::splat(0.0); N];
     for j in 0..N {

@@ -99,8 +99,8 @@ impl Case {
         plant.disturbance_nm[0] = self.disturbance_nm;
         let balance = plant.balanced_rad();
         let rows = self.gains.row_iter();
-        let mut controller =
-            StateFeedback::new(rows.map(|r| r.iter().copied().collect()).collect());
+        let rows = rows.map(|r| r.iter().copied().collect()).collect();
+        let mut controller = StateFeedback::new(plant.joints(), rows);
         if self.compensated {
             controller = controller.holding(&balance);
         }

@@ -6,6 +6,7 @@ mod failures;
 mod headline;
 mod json;
 pub(crate) mod page;
+mod panels;
 mod parameters;
 mod provenance;
 mod remains;
@@ -24,6 +25,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
+pub use panels::{Curve, Panel, panels};
 pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
