@@ -19,8 +19,8 @@ mod name;
 mod page;
 mod paper;
 mod show;
-mod study;
 mod signals;
+mod study;
 mod talk;
 mod view;
 
