@@ -11,6 +11,7 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod gains;
 mod identify;
 mod input;
 mod log;
@@ -71,6 +72,8 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Find gains that balance a model, and write them for firmware
+    Gains(gains::Args),
     /// See what the closed loop of robot and controller bears
     #[command(subcommand)]
     Study(study::Command),
@@ -103,6 +106,7 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Gains(args) => gains::run(args, talk),
             Command::Study(command) => study::run(command, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),

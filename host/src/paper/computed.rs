@@ -7,7 +7,9 @@ use crate::model::Model;
 use crate::servo::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
 use crate::servo::polynomial::{at_one, roots};
 use crate::servo::{Estimate, Known, Record, Structure, estimate, settling_samples};
-use crate::synth::{Continuous, Discrete, Gains, dlqr, linearise, lqr, poles, upright, zoh};
+use crate::synth::{
+    Continuous, Discrete, Gains, dlqr, linearise, lqr, poles, transmission_zeros, upright, zoh,
+};
 use nalgebra::{Complex, DMatrix};
 
 /// Samples of the servo record.
@@ -76,7 +78,7 @@ impl Computed {
             lqr: lqr(&plant, &q, &r)?,
             dlqr: dlqr(&sampled, &(100.0 * &q), &r)?,
             poles: poles(&plant.a)?,
-            zeros: zeros(&plant),
+            zeros: zeros(&plant)?,
             servo: servo(),
             servo_facts: servo_facts(),
             sampled,
@@ -111,22 +113,23 @@ impl Computed {
     }
 }
 
-/// What moves while the torques hold two of the angles still: with q'' = A q + B u, holding them takes
-/// u = -B_held^-1 A_held q, and leaves the third angle q'' = s^2 q.
-fn zeros(plant: &Continuous) -> Vec<Zeros> {
-    let left_free = |free: usize| {
-        let held: Vec<usize> = (0..3).filter(|joint| *joint != free).collect();
-        let row = |joint: usize| plant.b.row(3 + joint).clone_owned();
-        let b_held = DMatrix::from_rows(&[row(held[0]), row(held[1])]);
-        let a_held = DMatrix::from_fn(2, 1, |i, _| plant.a[(3 + held[i], free)]);
-        let torque = b_held.lu().solve(&a_held)?;
-        let squared = plant.a[(3 + free, free)] - (plant.b.row(3 + free) * torque)[0];
-        Some(Zeros {
-            outputs: [held[0] + 1, held[1] + 1],
-            squared,
+/// To each two of the three angles.
+fn zeros(plant: &Continuous) -> Result<Vec<Zeros>> {
+    let to = |outputs: [usize; 2]| {
+        let c = DMatrix::from_fn(2, 6, |row, state| {
+            f64::from(u8::from(state + 1 == outputs[row]))
+        });
+        let zeros = transmission_zeros(&plant.a, &plant.b, &c)?;
+        let first = zeros
+            .first()
+            .copied()
+            .unwrap_or(Complex::new(f64::NAN, 0.0));
+        Ok(Zeros {
+            outputs,
+            squared: (first * first).re,
         })
     };
-    (0..3).filter_map(left_free).collect()
+    [[2, 3], [1, 3], [1, 2]].into_iter().map(to).collect()
 }
 
 /// BJ with the paper's orders, from data made with its eq. (2) and noise of our choice.

@@ -109,14 +109,21 @@ fn figures(study: &Study) -> Section {
 }
 
 fn drawn(figure: &Figure) -> Markup {
-    markup! {
-        h3 { "Figure " (figure.number) ": " (figure.title) }
+    let words = markup! {
         p { (figure.sentence) }
         p.note {
             "The paper: " (figure.claim) ". "
             b class=(if figure.holds == Holds::Yes { "good" } else { "bad" }) { (capital(figure.holds.words())) "." }
         }
-        div.panels { @for panel in &figure.panels { (chart(panel)) } }
+    };
+    let alone = figure.panels.len() == 1;
+    markup! {
+        h3 { "Figure " (figure.number) ": " (figure.title) }
+        @if !alone { (words) }
+        div.panels {
+            @for panel in &figure.panels { (chart(panel)) }
+            @if alone { div { (words) } }
+        }
     }
 }
 
@@ -150,7 +157,7 @@ fn chart(panel: &Panel) -> Markup {
             figcaption {
                 b { (panel.title) }
                 @for curve in &panel.curves {
-                    span.key class=(tone(curve.ink).class()) { span.swatch {} (curve.name) }
+                    span class={ "key " (tone(curve.ink).class()) } { span.swatch {} (curve.name) }
                 }
             }
             svg viewBox=(format!("0 0 {width} {height}")) role="img" aria-label=(panel.title) {

@@ -99,8 +99,8 @@ impl Case {
         plant.disturbance_nm[0] = self.disturbance_nm;
         let balance = plant.balanced_rad();
         let rows = self.gains.row_iter();
-        let mut controller =
-            StateFeedback::new(rows.map(|r| r.iter().copied().collect()).collect());
+        let rows = rows.map(|r| r.iter().copied().collect()).collect();
+        let mut controller = StateFeedback::new(plant.joints(), rows);
         if self.compensated {
             controller = controller.holding(&balance);
         }
@@ -111,8 +111,17 @@ impl Case {
 
     /// From rest, the arms leaning by `lean_rad` from the balance.
     pub(super) fn run(&self, lean_rad: f64) -> Result<Seen> {
+        self.run_from(|balance| balance[0] += lean_rad)
+    }
+
+    /// From rest in the upright pose, all links in a line.
+    pub(super) fn run_upright(&self) -> Result<Seen> {
+        self.run_from(|balance| balance.fill(0.0))
+    }
+
+    fn run_from(&self, start_at: impl Fn(&mut Vec<f64>)) -> Result<Seen> {
         let (closed, controller, mut start) = self.loop_and_controller()?;
-        start[0] += lean_rad;
+        start_at(&mut start);
         let mut seen = Seen {
             outcome: Outcome {
                 fell_s: None,
@@ -211,11 +220,11 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
         compensated,
         ..Case::ideal(&computed.lqr.k, CONTINUOUS_S)
     };
-    let without = case(ECCENTRIC_RAD, false).run(0.0)?;
-    let with = case(ECCENTRIC_RAD, true).run(0.0)?;
-    let falls = |angle: f64| Ok(case(angle, false).run(0.0)?.outcome.fell_s.is_some());
+    let without = case(ECCENTRIC_RAD, false).run_upright()?;
+    let with = case(ECCENTRIC_RAD, true).run_upright()?;
+    let falls = |angle: f64| Ok(case(angle, false).run_upright()?.outcome.fell_s.is_some());
     let limit = edge(falls, 0.0, ECCENTRIC_RAD)?;
-    let below = case(0.5 * limit, false).run(0.0)?.outcome;
+    let below = case(0.5 * limit, false).run_upright()?.outcome;
     let holds = without.outcome.fell_s.is_some() && with.outcome.survived();
     Ok(Figure {
         number: "12",
@@ -223,7 +232,7 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
         claim: "LQR does not stabilise the robot whose centres of mass are eccentric; with angle compensation it does",
         holds: if holds { Holds::Yes } else { Holds::No },
         sentence: format!(
-            "With every centre of mass {:.0} deg off its link's line the robot {} without compensation and {} with it; \
+            "Upright, with every centre of mass {:.0} deg off its link's line, the robot {} without compensation and {} with it; \
              without, it falls from {:.1} deg on, and at half of that leans by up to {} deg.",
             ECCENTRIC_RAD.to_degrees(),
             end(&without.outcome),

@@ -5,7 +5,7 @@ use super::figure::{Curve, Figure, Holds, Ink, Panel};
 use crate::error::Result;
 use crate::log::{Motion, Source};
 use crate::model::Model;
-use crate::number::short;
+use crate::number::interval;
 use crate::servo::generate::{PAPER_TS_S, noise};
 use crate::servo::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
 use crate::sim::{Memory, Plant, Start, predict};
@@ -118,15 +118,16 @@ fn line(map: &DeadZone, most: f64) -> Vec<(f64, f64)> {
 
 fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> String {
     let text = |side: &Side| match of(side) {
-        Some(known) => format!(
-            "{} ({} to {})",
-            short(scale * known.value),
-            short(scale * known.low),
-            short(scale * known.high)
-        ),
+        Some(known) => within(&known, scale),
         None => "none".to_string(),
     };
     format!("{} and {}", text(&map.up), text(&map.down))
+}
+
+/// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
+fn within(known: &Known, scale: f64) -> String {
+    let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
+    format!("{value} ({low} to {high})")
 }
 
 fn unfitted(number: &'static str, title: &'static str, claim: &'static str, why: &str) -> Figure {
@@ -168,7 +169,7 @@ fn dead_zone(model: &Model) -> Figure {
             false => Holds::InPart,
         },
         sentence: format!(
-            "Put into a simulated servo as 8.5 %, the dead zone comes back from its 10-bit position log as {} %.",
+            "Put into a simulated servo as 8.5 %, the dead zone comes back from its 10-bit position log as {} % (up and down).",
             sides(&map, |side| Some(side.edge), 100.0)
         ),
     }
@@ -223,14 +224,9 @@ fn supply(model: &Model) -> Figure {
             false => Holds::InPart,
         },
         sentence: format!(
-            "The simulated servo's speed error grows by {} % of the command per volt ({} to {}) and is none at {:.2} V \
-             ({:.2} to {:.2}).",
-            short(100.0 * slope.value),
-            short(100.0 * slope.low),
-            short(100.0 * slope.high),
-            right.value,
-            right.low,
-            right.high
+            "The simulated servo's speed error in % of the command grows per volt by {}, and is none at {} V.",
+            within(&slope, 100.0),
+            within(&right, 1.0)
         ),
     }
 }
