@@ -25,7 +25,7 @@ fn runs(c: &mut Criterion) {
     let pose = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
     let dense = Plant::new(&model, &pose).expect("our own model");
     let chain = dense.clone().by_articulated_bodies();
-    let controller = StateFeedback::new(GAINS.map(|row| row.to_vec()).to_vec());
+    let controller = StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec());
     let start = Start::at([0.01, -0.02, 0.02]);
     for (name, plant) in [("dense", dense), ("articulated bodies", chain)] {
         let closed = ClosedLoop::ideal(plant, 0.01);

@@ -15,14 +15,8 @@ pub struct StateFeedback {
 }
 
 impl StateFeedback {
-    /// Holds the pose itself, without torque, by gains on angles and speeds alone.
-    pub fn new(gains: Vec<Vec<f64>>) -> Self {
-        let joints = gains.first().map_or(0, |row| row.len() / 2);
-        StateFeedback::with_past(joints, gains)
-    }
-
-    /// As [`StateFeedback::new`] for a robot of `joints` joints, by gains that may have columns for past torques.
-    pub fn with_past(joints: usize, gains: Vec<Vec<f64>>) -> Self {
+    /// Holds the pose of a robot of `joints` joints, without torque.
+    pub fn new(joints: usize, gains: Vec<Vec<f64>>) -> Self {
         StateFeedback {
             hold: vec![0.0; 2 * joints],
             feed_nm: vec![0.0; gains.len()],

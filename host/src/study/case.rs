@@ -88,7 +88,7 @@ impl Case {
         }
         if self.design.word_bits == 0 {
             let rows = gains.row_iter().map(|row| row.iter().copied().collect());
-            let law = StateFeedback::with_past(joints, rows.collect());
+            let law = StateFeedback::new(joints, rows.collect());
             return Ok(Box::new(law.holding(&hold)));
         }
         let actuator = self.conditions.actuator;

@@ -22,7 +22,7 @@ fn task() -> (ClosedLoop, StateFeedback) {
     let closed = ClosedLoop::ideal(plant.expect("three links, two drives"), 0.01);
     (
         closed,
-        StateFeedback::new(GAINS.map(|row| row.to_vec()).to_vec()),
+        StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec()),
     )
 }
 
