@@ -97,14 +97,17 @@ const HANDSTAND: &str = include_str!("../models/handstand.toml");
 fn balanced(lean_rad: f64) -> String {
     let model = handstand::Model::parse(HANDSTAND, Path::new("handstand.toml")).unwrap();
     let plant = Plant::new(&model, &[FRAC_PI_2, 0.0, 0.0]).unwrap();
-    let controller = StateFeedback::new(vec![
+    let controller = StateFeedback::new(
+        3,
         vec![
-            -75.758443, -32.187228, -11.454290, -13.004784, -6.2134254, -2.3441985,
+            vec![
+                -75.758443, -32.187228, -11.454290, -13.004784, -6.2134254, -2.3441985,
+            ],
+            vec![
+                -62.056988, -26.928273, -9.0350845, -10.653945, -5.1619377, -1.8225471,
+            ],
         ],
-        vec![
-            -62.056988, -26.928273, -9.0350845, -10.653945, -5.1619377, -1.8225471,
-        ],
-    ]);
+    );
     let mut text = String::from(
         "time_s,q1_rad,dq1_rad_s,q2_rad,dq2_rad_s,torque2_nm,q3_rad,dq3_rad_s,torque3_nm\n",
     );
