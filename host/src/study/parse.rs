@@ -158,7 +158,7 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
         Limits::within(0.0, 20.0),
         &mut design.delay_periods,
     )?;
-    if let Some(bits) = whole(table, "word_bits", Limits::within(0.0, 32.0))? {
+    if let Some(bits) = whole(table, "word_bits", Limits::within(8.0, 32.0))? {
         design.word_bits = bits as u32;
     }
     let period_s = &mut case.conditions.clock.period_s;
