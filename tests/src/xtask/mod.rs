@@ -4,6 +4,7 @@ mod hidden;
 mod peers;
 mod program;
 mod real;
+mod scatter;
 mod test;
 
 use clap::{Parser, Subcommand};
