@@ -110,8 +110,8 @@ fn a_thousand_random_gains_are_scipy_s_and_exact() {
         for k in ours {
             let (scipy, exact) = (fixture.matrix(m, n), fixture.matrix(m, n));
             worst = worst.max(off(&k, &exact));
-            // Three of SciPy's continuous gains are farther than that from 60 digits themselves.
-            match off(&scipy, &exact) < 5e-10 {
+            // Four of SciPy's continuous gains are farther than that from 60 digits themselves.
+            match off(&scipy, &exact) < 9e-10 {
                 true => assert!(off(&k, &scipy) < 1e-9, "seed {seed}"),
                 false => scipy_off += 1,
             }
@@ -119,7 +119,7 @@ fn a_thousand_random_gains_are_scipy_s_and_exact() {
     }
     assert_eq!(fixture.at, fixture.values.len());
     assert!(worst < 1e-12, "{worst:e} off 60 digits");
-    assert!(scipy_off <= 5, "{scipy_off} gains of SciPy's are off");
+    assert!(scipy_off <= 4, "{scipy_off} gains of SciPy's are off");
 }
 
 /// `riccati.py`'s chain as a model.

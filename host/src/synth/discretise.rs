@@ -101,3 +101,57 @@ fn held(plant: &Continuous, t_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
         exponential.view((0, n), (n, m)).into_owned(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn plant(values: &[f64]) -> Continuous {
+        Continuous {
+            a: DMatrix::from_row_slice(2, 2, &values[..4]),
+            b: DMatrix::from_row_slice(2, 1, &values[4..6]),
+            c: DMatrix::identity(2, 2),
+        }
+    }
+
+    proptest! {
+        /// Against 100 short samples, each with the input that then acts.
+        #[test]
+        fn a_late_input_acts_late(
+            values in prop::collection::vec(-3.0f64..3.0, 6),
+            inputs in prop::collection::vec(-1.0f64..1.0, 6),
+            late in 0u32..250,
+        ) {
+            let plant = plant(&values);
+            let fine = zoh(&plant, 0.001, 0.0).unwrap();
+            let coarse = zoh(&plant, 0.1, 0.001 * f64::from(late)).unwrap();
+            prop_assert_eq!(coarse.delayed_inputs as u32, late.div_ceil(100));
+            let mut x = DMatrix::from_row_slice(2, 1, &[0.3, -0.2]);
+            let mut z = x.clone().resize_vertically(coarse.a.nrows(), 0.0);
+            for k in 0..600_i64 {
+                if k % 100 == 0 {
+                    z = &coarse.a * &z + &coarse.b * inputs[k as usize / 100];
+                }
+                let asked = (k - i64::from(late)).div_euclid(100);
+                let u = usize::try_from(asked).map_or(0.0, |asked| inputs[asked]);
+                x = &fine.a * &x + &fine.b * u;
+            }
+            let off = (z.rows(0, 2) - &x).amax();
+            prop_assert!(off < 1e-10 * x.amax().max(1.0), "{off:e}");
+        }
+    }
+
+    #[test]
+    fn a_whole_delay_is_whole() {
+        let plant = plant(&[0.0, 1.0, 2.0, -1.0, 0.0, 1.0]);
+        for (delay_s, delayed) in [(0.0, 0), (0.01, 1), (0.03, 3), (0.1 + 0.2, 30), (0.0301, 4)] {
+            let sampled = zoh(&plant, 0.01, delay_s).unwrap();
+            assert_eq!(sampled.delayed_inputs, delayed, "{delay_s}");
+            assert_eq!(sampled.plant_states(), 2);
+        }
+        for (ts_s, delay_s) in [(0.0, 0.0), (f64::NAN, 0.0), (0.01, -0.01), (0.01, 1.1)] {
+            assert_eq!(zoh(&plant, ts_s, delay_s).unwrap_err().exit_code(), 3);
+        }
+    }
+}

@@ -1,10 +1,15 @@
 //! The linear-quadratic regulator, continuous and sampled.
 
+use super::eigen::poles;
+use super::refusal::REGULATOR;
 use super::riccati::{Kind, Problem};
-use super::system::{Continuous, Discrete, poles};
+use super::system::{Continuous, Discrete};
 use super::weights;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use nalgebra::{Complex, DMatrix};
+
+/// A pole this near to the edge of stability is not told from one on it.
+const STABLE: f64 = 1e-8;
 
 /// u = -K x, the gains that minimise the sum (integral) of x'Qx + u'Ru.
 #[derive(Debug, Clone)]
@@ -60,17 +65,21 @@ pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gain
 
 impl Gains {
     fn of(problem: &Problem<'_>) -> Result<Gains> {
-        let solution = problem.solve().ok_or_else(unstabilised)?;
-        let mut poles = poles(&(problem.a - problem.b * &solution.k));
+        let refused = || problem.refusal(&REGULATOR);
+        let solution = problem.solve().ok_or_else(refused)?;
+        let mut poles = poles(&(problem.a - problem.b * &solution.k))?;
         let stable = match problem.kind {
-            Kind::Continuous => poles.iter().all(|pole| pole.re < 0.0),
+            Kind::Continuous => {
+                let slack = STABLE * problem.a.norm();
+                poles.iter().all(|pole| pole.re < -slack)
+            }
             Kind::Discrete => {
                 poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-                poles.iter().all(|pole| pole.norm() < 1.0)
+                poles.iter().all(|pole| pole.norm() < 1.0 - STABLE)
             }
         };
         if !stable {
-            return Err(unstabilised());
+            return Err(refused());
         }
         Ok(Gains {
             k: solution.k,
@@ -79,13 +88,6 @@ impl Gains {
             poles,
         })
     }
-}
-
-fn unstabilised() -> Error {
-    Error::design(
-        "no gain stabilises the plant",
-        "drive more joints, or weigh the states that are left free",
-    )
 }
 
 #[cfg(test)]
@@ -137,7 +139,7 @@ mod tests {
                 &["-467.263519", "697.956578"],
             ],
         );
-        let poles: Vec<f64> = poles(&plant.a).iter().map(|p| p.re).collect();
+        let poles: Vec<f64> = poles(&plant.a).unwrap().iter().map(|p| p.re).collect();
         for (pole, expected) in poles.iter().zip([21.2157, 12.5086, 5.6837]) {
             assert!((pole - expected).abs() < 5e-5, "{poles:?}");
         }
@@ -190,5 +192,103 @@ mod tests {
                 ],
             ],
         );
+    }
+
+    fn sampled(a: &[f64], b: &[f64]) -> Discrete {
+        let n = b.len();
+        Discrete {
+            a: DMatrix::from_row_slice(n, n, a),
+            b: DMatrix::from_row_slice(n, 1, b),
+            c: DMatrix::identity(n, n),
+            ts_s: 0.01,
+            delayed_inputs: 0,
+        }
+    }
+
+    fn refusal(result: Result<Gains>) -> String {
+        let error = result.unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        assert!(error.remedy().is_some());
+        error.to_string()
+    }
+
+    #[test]
+    fn what_cannot_be_stabilised_is_named() {
+        let (q, r) = (DMatrix::identity(2, 2), DMatrix::identity(1, 1));
+        let lost = sampled(&[0.5, 0.0, 0.0, 1.07], &[1.0, 0.0]);
+        let said = refusal(dlqr(&lost, &q, &r));
+        assert!(
+            said.contains("pole 1.070000, strongest in state 2: no input"),
+            "{said}"
+        );
+        let drifts = sampled(&[0.5, 0.0, 0.0, 1.0], &[1.0, 0.0]);
+        assert!(refusal(dlqr(&drifts, &q, &r)).contains("no input"));
+        let plant = Continuous {
+            a: lost.a.clone(),
+            b: lost.b.clone(),
+            c: lost.c.clone(),
+        };
+        assert!(refusal(lqr(&plant, &q, &r)).contains("1.070000 1/s"));
+    }
+
+    #[test]
+    fn a_mode_on_the_circle_must_be_weighed() {
+        let drifts = sampled(&[1.0, 0.0, 0.0, 0.5], &[1.0, 1.0]);
+        let q = DMatrix::from_diagonal(&nalgebra::dvector![0.0, 1.0]);
+        let said = refusal(dlqr(&drifts, &q, &DMatrix::identity(1, 1)));
+        assert!(said.contains("Q does not weigh it"), "{said}");
+    }
+
+    /// The least gain that stabilises mirrors the growing pole at the circle.
+    #[test]
+    fn growing_modes_need_no_weight() {
+        let grows = sampled(&[1.25, 0.0, 0.0, 0.5], &[1.0, 1.0]);
+        let gains = dlqr(&grows, &DMatrix::zeros(2, 2), &DMatrix::identity(1, 1)).unwrap();
+        assert!(
+            (gains.poles[0].norm() - 0.8).abs() < 1e-12,
+            "{:?}",
+            gains.poles
+        );
+        let plant = Continuous {
+            a: grows.a,
+            b: grows.b,
+            c: grows.c,
+        };
+        let gains = lqr(&plant, &DMatrix::zeros(2, 2), &DMatrix::identity(1, 1)).unwrap();
+        let mut poles: Vec<f64> = gains.poles.iter().map(|pole| pole.re).collect();
+        poles.sort_by(f64::total_cmp);
+        assert!(
+            (poles[0] + 1.25).abs() < 1e-9 && (poles[1] + 0.5).abs() < 1e-9,
+            "{poles:?}"
+        );
+    }
+
+    #[test]
+    fn weights_that_are_none_are_refused() {
+        let plant = sampled(&[0.5, 0.1, 0.0, 1.07], &[1.0, 1.0]);
+        let (q, r) = (DMatrix::identity(2, 2), DMatrix::identity(1, 1));
+        let matrix = |values: &[f64]| DMatrix::from_row_slice(2, 2, values);
+        for (bad, words) in [
+            (
+                matrix(&[1.0, 0.1, 0.0, 1.0]),
+                "Q is not symmetric: entry (2, 1) is 0, entry (1, 2) is 0.1",
+            ),
+            (
+                matrix(&[1.0, 2.0, 2.0, 1.0]),
+                "Q is not positive semidefinite: its least eigenvalue is -1",
+            ),
+            (matrix(&[1.0, 0.0, 0.0, f64::NAN]), "Q has an entry of NaN"),
+            (
+                DMatrix::identity(3, 3),
+                "Q is 3 x 3, but there are 2 states",
+            ),
+        ] {
+            let said = refusal(dlqr(&plant, &bad, &r));
+            assert!(said.contains(words), "{said}");
+        }
+        for bad in [0.0, -1.0] {
+            let said = refusal(dlqr(&plant, &q, &(&r * bad)));
+            assert!(said.contains("R is not positive definite"), "{said}");
+        }
     }
 }

@@ -1,19 +1,33 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
-//! `equations` -> `rest` -> `linearise` -> `discretise` -> `riccati` -> `gains`; `analysis` looks at plants.
+//! `equations` -> `rest` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
+//! `zeros` look at plants; `quantise` -> `fixed_law` is what ships.
 
 mod discretise;
+mod eigen;
 mod equations;
+mod estimator;
+mod fixed_law;
 mod gains;
 mod linearise;
+mod quantise;
+mod reach;
+mod refusal;
 mod rest;
 mod riccati;
 mod system;
 mod weights;
+mod zeros;
 
 pub use discretise::zoh;
+pub use eigen::{Mode, poles};
 pub use equations::Equations;
+pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
+pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, dlqr, lqr};
 pub use linearise::linearise;
+pub use quantise::{Format, Ranges, quantise};
+pub use reach::{Reach, controllability, observability};
 pub use rest::{Rest, input_delay_s, upright};
-pub use system::{Continuous, Discrete, poles};
+pub use system::{Continuous, Discrete};
+pub use zeros::transmission_zeros;

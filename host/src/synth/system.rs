@@ -1,6 +1,6 @@
 //! Linear plants in state space.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 /// x' = A x + B u, y = C x, in SI.
 ///
@@ -38,11 +38,4 @@ impl Discrete {
     pub fn plant_states(&self) -> usize {
         self.a.nrows() - self.delayed_inputs * self.b.ncols()
     }
-}
-
-/// Eigenvalues, those with the largest real part first.
-pub fn poles(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    let mut poles: Vec<Complex<f64>> = a.complex_eigenvalues().iter().copied().collect();
-    poles.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
-    poles
 }

@@ -16,12 +16,15 @@ pub(super) fn stein(mut m: DMatrix<f64>, f: DMatrix<f64>, accuracy: f64) -> Opti
         if !change.is_finite() {
             return None;
         }
-        if change <= accuracy * e.amax() {
+        // Where there is little to add up, M itself must be seen to decay.
+        if change <= accuracy * e.amax() && m.norm() < 0.9 {
             symmetrise(&mut e);
-            // Nothing to add up shows nothing of M.
-            return (m.amax() < 1e3).then_some(e);
+            return Some(e);
         }
         m = &m * &m;
+        if !m.amax().is_finite() {
+            return None;
+        }
     }
     None
 }
