@@ -3,7 +3,7 @@
 use crate::board::Board;
 use crate::design::{BETWEEN_BYTES_US, FIRST_BYTE_US};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
-use handstand_shared::dynamixel::{BROADCAST, ErrorBits, OVERHEAD, Packet, Request};
+use handstand_shared::dynamixel::{BROADCAST, ErrorBits, OVERHEAD, Packet, Request, read_packet};
 use handstand_shared::message::Statistics;
 use handstand_shared::packed::SERVOS;
 use handstand_shared::raw::ReturnDelay;
@@ -26,14 +26,8 @@ pub fn read<B: Board, const N: usize>(
     address: u8,
     delay: ReturnDelay,
 ) -> Result<([u8; N], ErrorBits), Failure> {
-    let mut out = [0; 8];
-    let request = Request::Read {
-        address,
-        count: N as u8,
-    };
-    let length = request.emit(id, &mut out).unwrap_or(0);
     board.bus_flush();
-    board.bus_send(out.get(..length).unwrap_or(&[]));
+    board.bus_send(&read_packet(id, address, N as u8));
     answer(board, id, delay)
 }
 
