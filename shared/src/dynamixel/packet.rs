@@ -1,6 +1,6 @@
 //! A packet as bytes: a checked view, and writing one.
 
-use super::OVERHEAD;
+use super::{OVERHEAD, WHOLE_SUM};
 
 /// Bytes known to be one whole packet with the right checksum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,9 +29,8 @@ impl<'a> Packet<'a> {
         if *length < 2 || rest.len() != usize::from(*length) {
             return Err(PacketError::Length);
         }
-        // The header sums up to -2.
         match sum(bytes.iter()) {
-            0xfd => Ok(Packet(bytes)),
+            WHOLE_SUM => Ok(Packet(bytes)),
             _ => Err(PacketError::Checksum),
         }
     }
