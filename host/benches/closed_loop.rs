@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, Workspace, stream};
+use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -25,21 +25,18 @@ fn runs(c: &mut Criterion) {
     let pose = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
     let dense = Plant::new(&model, &pose).expect("our own model");
     let chain = dense.clone().by_articulated_bodies();
-    let controller = StateFeedback::new(GAINS.map(|row| row.to_vec()).to_vec());
+    let controller = StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec());
     let start = Start::at([0.01, -0.02, 0.02]);
     for (name, plant) in [("dense", dense), ("articulated bodies", chain)] {
         let closed = ClosedLoop::ideal(plant, 0.01);
-        let mut work = Workspace::new(&closed, &controller);
+        let starts = vec![start.clone(); 32];
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let one = one.expect("a thread can be started");
+        c.bench_function(&format!("32 closed loops, 5 s, {name}, one thread"), |b| {
+            b.iter(|| one.install(|| closed.run_all(&controller, black_box(&starts), 5.0, 1)));
+        });
         c.bench_function(&format!("closed loop, 5 s, {name}"), |b| {
-            b.iter(|| {
-                closed.run(
-                    &controller,
-                    black_box(&start),
-                    5.0,
-                    &mut stream(1, 0),
-                    &mut work,
-                )
-            });
+            b.iter(|| closed.run(&controller, black_box(&start), 5.0, stream(1, 0)));
         });
     }
 }

@@ -18,9 +18,13 @@ pub mod log;
 pub mod model;
 mod number;
 pub mod output;
+pub mod paper;
 pub mod report;
+pub mod servo;
 pub mod sim;
+pub mod study;
 pub mod synth;
+pub mod view;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

@@ -106,3 +106,18 @@ fn refusals() {
         ],
     );
 }
+
+#[test]
+fn gains() {
+    let bench = bench();
+    bench.put("handstand.toml", include_str!("../models/handstand.toml"));
+    golden(
+        &bench,
+        "gains",
+        &[
+            "gains handstand.toml",
+            "gains handstand.toml --continuous --q 1",
+            "gains handstand.toml --delay 0.013 --lqg --limit 2",
+        ],
+    );
+}

@@ -97,7 +97,7 @@ pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
 
 /// The rig, what it hides, and its three motions.
 fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
-    let mut secret = Secret::random(&mut stream(seed, 0), hidden);
+    let mut secret = secret(seed, hidden);
     let rig = Rig::random(&mut stream(seed, 1), secret.as_ref());
     let mut payload = stream(seed, 2);
     let mounts = [
@@ -120,6 +120,20 @@ fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
         }
     }
 }
+
+/// What this seed hides. Each kind draws its values from a stream of its own: at one seed they lie at different
+/// places of their ranges.
+fn secret(seed: u64, hidden: Hidden) -> Option<Secret> {
+    let kind = Secret::kind(&mut stream(seed, 0), hidden)?;
+    let place = KINDS.iter().position(|known| *known == kind)?;
+    Some(Secret::random(
+        &mut stream(seed, SECRETS + place as u64),
+        kind,
+    ))
+}
+
+/// First of the streams from which the values of hidden effects are drawn; those of the rig lie below.
+const SECRETS: u64 = 100;
 
 fn motions(seed: u64, truth: &Physics, rig: &Rig, mounts: [Mount; 3]) -> [Recording; 3] {
     let believed = rig.physics(None);

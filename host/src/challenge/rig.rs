@@ -130,16 +130,22 @@ impl Rig {
 }
 
 impl Secret {
-    /// Draws what is hidden; `None` if nothing is, or if `hidden` names no effect of [`KINDS`].
-    pub fn random(rng: &mut ChaCha8Rng, hidden: Hidden) -> Option<Secret> {
-        let kind = match hidden {
-            Hidden::Nothing => return None,
-            Hidden::Effect(kind) => kind_named(kind)?,
-            Hidden::Random if rng.random_range(0..12) == 0 => return None,
-            Hidden::Random => KINDS[rng.random_range(0..KINDS.len())],
-        };
-        let parameters = parameters(rng, kind);
-        Some(Secret { kind, parameters })
+    /// Draws which effect is hidden; `None` if none is, or if `hidden` names no effect of [`KINDS`].
+    pub fn kind(rng: &mut ChaCha8Rng, hidden: Hidden) -> Option<&'static str> {
+        match hidden {
+            Hidden::Nothing => None,
+            Hidden::Effect(kind) => kind_named(kind),
+            Hidden::Random if rng.random_range(0..12) == 0 => None,
+            Hidden::Random => Some(KINDS[rng.random_range(0..KINDS.len())]),
+        }
+    }
+
+    /// Draws the values of this effect.
+    pub fn random(rng: &mut ChaCha8Rng, kind: &'static str) -> Secret {
+        Secret {
+            kind,
+            parameters: parameters(rng, kind),
+        }
     }
 }
 

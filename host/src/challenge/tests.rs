@@ -134,11 +134,25 @@ fn a_sealed_answer_opens_and_a_changed_one_does_not() {
 fn nothing_hidden_is_said_so() {
     let answer = generate(2, Hidden::Nothing).answer;
     assert_eq!((answer.kind, answer.parameters.len()), (None, 0));
-    let kinds: Vec<_> = (0..200)
-        .map(|seed| Secret::random(&mut stream(seed, 0), Hidden::Random))
-        .collect();
+    let kinds: Vec<_> = (0..200).map(|seed| secret(seed, Hidden::Random)).collect();
     let nothing = kinds.iter().filter(|secret| secret.is_none()).count();
     assert!((5..40).contains(&nothing), "{nothing}");
+}
+
+#[test]
+fn kinds_draw_their_values_apart() {
+    let share = |kind, low: f64, high: f64| {
+        let secret = secret(9, Hidden::Effect(kind)).unwrap();
+        (secret.parameters[0].1 - low) / (high - low)
+    };
+    let shares = [
+        share("viscous", 0.01, 0.04),
+        share("coulomb", 0.02, 0.06),
+        share("delay", 0.02, 0.08),
+    ];
+    for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+        assert!((shares[a] - shares[b]).abs() > 1e-3, "{shares:?}");
+    }
 }
 
 #[test]

@@ -11,12 +11,19 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod gains;
+mod identify;
 mod input;
 mod log;
+mod map;
 mod name;
 mod page;
+mod paper;
 mod show;
+mod signals;
+mod study;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -65,6 +72,20 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Find gains that balance a model, and write them for firmware
+    Gains(gains::Args),
+    /// See what the closed loop of robot and controller bears
+    #[command(subcommand)]
+    Study(study::Command),
+    /// Identify a servo as a black box: discrete-time models by prediction error
+    Identify(identify::Args),
+    /// Map what a servo does at rest: dead zone, saturation, supply
+    #[command(subcommand)]
+    Map(map::Command),
+    /// Play a motion on a page
+    View(view::Args),
+    /// The paper's numbers, figures and findings beside our own
+    Paper(paper::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
@@ -85,6 +106,12 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Gains(args) => gains::run(args, talk),
+            Command::Study(command) => study::run(command, talk),
+            Command::Identify(args) => identify::run(args, talk),
+            Command::Map(command) => map::run(command, talk),
+            Command::View(args) => view::run(args, talk),
+            Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
             Command::Demo(args) => demo::run(args, talk),
         }

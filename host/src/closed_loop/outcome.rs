@@ -20,6 +20,19 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Whether a link leans too far, or the numbers have run away.
+    #[inline]
+    pub(super) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
+        let mut lean = 0.0;
+        let stands = angle_rad.iter().all(|angle| {
+            lean += angle;
+            f64::abs(lean) <= self.fall_rad
+        });
+        !stands || !speed_rad_s.iter().all(|speed| speed.is_finite())
+    }
+}
+
 /// A run in figures, taken at the samples. Angles are deviations from the pose, joint by joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Outcome {

@@ -8,7 +8,7 @@ use crate::model::{Angles, Model};
 /// A chain near a pose: few links by dense equations, many by the O(n) ones, classical Runge-Kutta of fourth order.
 #[derive(Debug, Clone)]
 pub struct Plant {
-    equations: Equations,
+    pub(super) equations: Equations,
     /// Joints that are driven, from the base outwards, counted from 0.
     driven: Vec<usize>,
     /// Constant torque on each joint from outside, N m.
@@ -21,8 +21,12 @@ pub struct Plant {
     base_m_s2: [f64; 2],
 }
 
+/// An upright robot is faster than the arms that models' own steps are made for, s.
+const LONGEST_STEP_S: f64 = 1e-3;
+
+/// The equations of motion that suit the number of links.
 #[derive(Debug, Clone)]
-enum Equations {
+pub(super) enum Equations {
     One(Dense<1>),
     Two(Dense<2>),
     Three(Dense<3>),
@@ -30,10 +34,40 @@ enum Equations {
     Many,
 }
 
+impl Equations {
+    pub(super) fn one(&self) -> Option<&Dense<1>> {
+        match self {
+            Equations::One(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn two(&self) -> Option<&Dense<2>> {
+        match self {
+            Equations::Two(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn three(&self) -> Option<&Dense<3>> {
+        match self {
+            Equations::Three(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn four(&self) -> Option<&Dense<4>> {
+        match self {
+            Equations::Four(dense) => Some(dense),
+            _ => None,
+        }
+    }
+}
+
 impl Plant {
     /// The robot of a model around `pose_rad`, one angle per joint in the model's own convention.
     ///
-    /// Masses, centres of mass and gravity are those after the model's effects on them.
+    /// Masses, centres of mass and gravity are those after the model's effects on them; steps are 1 ms at most.
     ///
     /// # Errors
     /// A pose of another length, nothing driven, or effects this simulation does not have.
@@ -65,7 +99,8 @@ impl Plant {
         if let Some(first) = pose.first_mut() {
             *first += model.angle_zero.from_hanging_rad();
         }
-        Plant::of(rig.chain, rig.gravity_turn_rad, driven, pose, model.step_s)
+        let step_s = model.step_s.min(LONGEST_STEP_S);
+        Plant::of(rig.chain, rig.gravity_turn_rad, driven, pose, step_s)
     }
 
     /// A chain around a pose of relative angles, joint 1 from hanging, rad; `driven` counts joints from 0.
@@ -147,41 +182,87 @@ impl Plant {
             .collect()
     }
 
+    /// Into how many steps of what length a span is cut, s.
+    #[inline]
+    pub(super) fn steps(&self, span_s: f64) -> (usize, f64) {
+        let steps = (span_s / self.step_s - 1e-6).ceil().max(1.0);
+        (steps as usize, span_s / steps)
+    }
+
     /// Goes on for `span_s` under constant drive torques.
     #[inline]
     pub(super) fn advance(&self, body: &mut Body, torque_nm: &[f64], span_s: f64) {
-        let steps = (span_s / self.step_s - 1e-6).ceil().max(1.0);
-        let h = span_s / steps;
+        let (steps, h) = self.steps(span_s);
+        match &self.equations {
+            Equations::One(dense) => self.few(dense, body, torque_nm, h, steps),
+            Equations::Two(dense) => self.few(dense, body, torque_nm, h, steps),
+            Equations::Three(dense) => self.few(dense, body, torque_nm, h, steps),
+            Equations::Four(dense) => self.few(dense, body, torque_nm, h, steps),
+            Equations::Many => {
+                self.push(body, torque_nm);
+                self.many(body, h, steps);
+            }
+        }
+    }
+
+    /// Torques on the joints: the drives' and those from outside.
+    #[inline]
+    fn push(&self, body: &mut Body, torque_nm: &[f64]) {
         body.torque.copy_from_slice(&self.disturbance_nm);
         for (&joint, &torque) in self.driven.iter().zip(torque_nm) {
             body.torque[joint] += torque;
         }
-        let steps = steps as usize;
-        match &self.equations {
-            Equations::One(dense) => self.few(dense, body, h, steps),
-            Equations::Two(dense) => self.few(dense, body, h, steps),
-            Equations::Three(dense) => self.few(dense, body, h, steps),
-            Equations::Four(dense) => self.few(dense, body, h, steps),
-            Equations::Many => self.many(body, h, steps),
-        }
     }
 
     #[inline]
-    fn few<const N: usize>(&self, dense: &Dense<N>, body: &mut Body, h: f64, steps: usize) {
-        let (mut angle, mut speed, mut load) = ([0.0; N], [0.0; N], [0.0; N]);
-        let (mut q, mut w) = (0.0, 0.0);
+    fn few<const N: usize>(
+        &self,
+        dense: &Dense<N>,
+        body: &mut Body,
+        torque_nm: &[f64],
+        h: f64,
+        steps: usize,
+    ) {
+        let mut state = self.absolute(body, torque_nm);
+        let load = state.load_nm;
+        dense.advance(
+            &mut state.angle_rad,
+            &mut state.speed_rad_s,
+            &load,
+            h,
+            steps,
+        );
+        self.relative(&state, body);
+    }
+
+    /// The state in absolute angles, with the moment on each link.
+    #[inline]
+    pub(super) fn absolute<const N: usize>(
+        &self,
+        body: &mut Body,
+        torque_nm: &[f64],
+    ) -> Absolute<N> {
+        self.push(body, torque_nm);
+        let mut state = Absolute::default();
+        let (mut angle, mut speed) = (0.0, 0.0);
         for i in 0..N {
-            q += self.pose_rad[i] + body.angle_rad[i];
-            w += body.speed_rad_s[i];
-            (angle[i], speed[i]) = (q, w);
-            load[i] = body.torque[i] - if i + 1 < N { body.torque[i + 1] } else { 0.0 };
+            angle += self.pose_rad[i] + body.angle_rad[i];
+            speed += body.speed_rad_s[i];
+            (state.angle_rad[i], state.speed_rad_s[i]) = (angle, speed);
+            let beyond = if i + 1 < N { body.torque[i + 1] } else { 0.0 };
+            state.load_nm[i] = body.torque[i] - beyond;
         }
-        dense.advance(&mut angle, &mut speed, &load, h, steps);
-        (q, w) = (0.0, 0.0);
+        state
+    }
+
+    /// Back from absolute angles.
+    #[inline]
+    pub(super) fn relative<const N: usize>(&self, state: &Absolute<N>, body: &mut Body) {
+        let (mut angle, mut speed) = (0.0, 0.0);
         for i in 0..N {
-            body.angle_rad[i] = (angle[i] - q) - self.pose_rad[i];
-            body.speed_rad_s[i] = speed[i] - w;
-            (q, w) = (angle[i], speed[i]);
+            body.angle_rad[i] = (state.angle_rad[i] - angle) - self.pose_rad[i];
+            body.speed_rad_s[i] = state.speed_rad_s[i] - speed;
+            (angle, speed) = (state.angle_rad[i], state.speed_rad_s[i]);
         }
     }
 
@@ -223,6 +304,24 @@ impl Plant {
                 angle_rad[i] += h / 6.0 * sum(&many.speed);
                 speed_rad_s[i] += h / 6.0 * sum(&many.slope);
             }
+        }
+    }
+}
+
+/// A state in absolute angles, joint 1's from hanging.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Absolute<const N: usize> {
+    pub(super) angle_rad: [f64; N],
+    pub(super) speed_rad_s: [f64; N],
+    pub(super) load_nm: [f64; N],
+}
+
+impl<const N: usize> Default for Absolute<N> {
+    fn default() -> Self {
+        Absolute {
+            angle_rad: [0.0; N],
+            speed_rad_s: [0.0; N],
+            load_nm: [0.0; N],
         }
     }
 }

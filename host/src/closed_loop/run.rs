@@ -1,49 +1,13 @@
-//! One run of the loop, and many.
+//! One run of the loop, from event to event.
 
 use super::outcome::Tally;
+use super::pending::Pending;
 use super::plant::Body;
-use super::random::stream;
-use super::{Conditions, Controller, Limits, Outcome, Plant, Seen};
-use rand::Rng as _;
+use super::{ClosedLoop, Controller, Outcome, Seen, Start};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
-/// A robot under given circumstances, waiting for a controller.
-#[derive(Debug, Clone)]
-pub struct ClosedLoop {
-    /// The robot.
-    pub plant: Plant,
-    /// Its sensor, its drives and the clock.
-    pub conditions: Conditions,
-    /// What counts as fallen and as settled.
-    pub limits: Limits,
-}
-
-/// Where a run begins: deviations from the pose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Start {
-    /// Angle of each joint, rad.
-    pub angle_rad: Vec<f64>,
-    /// Speed of each joint, rad/s.
-    pub speed_rad_s: Vec<f64>,
-}
-
-impl Start {
-    /// At rest at these angles, rad.
-    pub fn at(angle_rad: impl Into<Vec<f64>>) -> Self {
-        let angle_rad = angle_rad.into();
-        Start {
-            speed_rad_s: vec![0.0; angle_rad.len()],
-            angle_rad,
-        }
-    }
-
-    /// At rest, each joint evenly anywhere within `spread_rad` of its pose.
-    pub fn random(joints: usize, spread_rad: f64, rng: &mut ChaCha8Rng) -> Self {
-        let angle = |_| spread_rad * rng.random_range(-1.0..=1.0);
-        Start::at((0..joints).map(angle).collect::<Vec<f64>>())
-    }
-}
+/// Times nearer than this are the same, s.
+const AT_ONCE_S: f64 = 1e-9;
 
 /// The loop at a sample, as deviations from the pose.
 #[derive(Debug, Clone, Copy)]
@@ -62,237 +26,178 @@ pub struct Sample<'a> {
     pub torque_nm: &'a [f64],
 }
 
-/// Memory of a run, reused from run to run.
-#[derive(Debug, Clone)]
-pub struct Workspace {
-    body: Body,
+/// A run on its way. All memory is taken at the beginning.
+#[derive(Debug)]
+pub(super) struct Run<'a> {
+    pub(super) closed: &'a ClosedLoop,
+    controller: &'a dyn Controller,
+    rng: ChaCha8Rng,
+    /// The robot now.
+    pub(super) body: Body,
+    /// Torques of the drives, N m.
+    pub(super) torque: Vec<f64>,
     memory: Vec<f64>,
     seen_rad: Vec<f64>,
     seen_rad_s: Vec<f64>,
-    torque: Vec<f64>,
     pending: Pending,
     ends: Vec<[f64; 2]>,
+    tally: Tally,
+    now_s: f64,
+    late_s: f64,
+    sample: usize,
+    samples: usize,
+    sample_s: f64,
 }
 
-impl Workspace {
-    /// Memory for runs of this loop with this controller.
-    pub fn new(closed: &ClosedLoop, controller: &dyn Controller) -> Self {
+/// What a run needs next.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Next {
+    /// The robot must go on for this long, s, under constant torques.
+    Span(f64),
+    /// Nothing: it is over.
+    Over(Outcome),
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(
+        closed: &'a ClosedLoop,
+        controller: &'a dyn Controller,
+        start: &Start,
+        seconds: f64,
+        rng: ChaCha8Rng,
+    ) -> Self {
         let (joints, drives) = (closed.plant.joints(), closed.plant.drives());
-        Workspace {
-            body: Body::new(&closed.plant),
-            memory: vec![0.0; controller.memory_len()],
+        let mut memory = vec![0.0; controller.memory_len()];
+        controller.reset(&mut memory);
+        let mut body = Body::new(&closed.plant);
+        body.angle_rad.copy_from_slice(&start.angle_rad);
+        body.speed_rad_s.copy_from_slice(&start.speed_rad_s);
+        let periods = seconds / closed.conditions.clock.period_s;
+        Run {
+            closed,
+            controller,
+            rng,
+            body,
+            torque: vec![0.0; drives],
+            memory,
             seen_rad: vec![0.0; joints],
             seen_rad_s: vec![0.0; joints],
-            torque: vec![0.0; drives],
             pending: Pending::new(drives, closed.conditions.actuator.delay_periods),
-            ends: vec![[0.0; 2]; joints],
-        }
-    }
-}
-
-/// Commands on their way, in a ring.
-#[derive(Debug, Clone)]
-struct Pending {
-    due_s: Vec<f64>,
-    command_nm: Vec<f64>,
-    drives: usize,
-    first: usize,
-    count: usize,
-}
-
-impl Pending {
-    fn new(drives: usize, delay_periods: f64) -> Self {
-        // A jittering sample can be half a period early, so one more may be on its way.
-        let places = delay_periods.max(0.0).ceil() as usize + 3;
-        Pending {
-            due_s: vec![0.0; places],
-            command_nm: vec![0.0; places * drives],
-            drives,
-            first: 0,
-            count: 0,
+            ends: vec![[f64::INFINITY, f64::NEG_INFINITY]; joints],
+            tally: Tally::new(),
+            now_s: 0.0,
+            late_s: (seconds - 1.0).max(seconds / 2.0),
+            sample: 0,
+            samples: (periods - 1e-6).ceil().max(1.0) as usize,
+            sample_s: 0.0,
         }
     }
 
-    /// Place for a command that is due at `due_s`.
+    /// Does all that is due now; what comes next. After a span the robot must have moved.
     #[inline]
-    fn push(&mut self, due_s: f64) -> &mut [f64] {
-        let place = (self.first + self.count) % self.due_s.len();
-        self.due_s[place] = due_s;
-        self.count += 1;
-        &mut self.command_nm[place * self.drives..][..self.drives]
-    }
-
-    /// When the next command is due.
-    #[inline]
-    fn due_s(&self) -> f64 {
-        match self.count {
-            0 => f64::INFINITY,
-            _ => self.due_s[self.first],
-        }
-    }
-
-    /// Takes the next command off.
-    #[inline]
-    fn pop(&mut self) -> &[f64] {
-        let place = self.first;
-        self.first = (place + 1) % self.due_s.len();
-        self.count -= 1;
-        &self.command_nm[place * self.drives..][..self.drives]
-    }
-}
-
-impl ClosedLoop {
-    /// A loop under ideal circumstances.
-    pub fn ideal(plant: Plant, period_s: f64) -> Self {
-        ClosedLoop {
-            plant,
-            conditions: Conditions::ideal(period_s),
-            limits: Limits::default(),
-        }
-    }
-
-    /// Runs for `seconds` or until it falls; drives give no torque before the first command arrives. `work` must have
-    /// been made for this loop and controller.
-    pub fn run(
-        &self,
-        controller: &dyn Controller,
-        start: &Start,
-        seconds: f64,
-        rng: &mut ChaCha8Rng,
-        work: &mut Workspace,
-    ) -> Outcome {
-        self.watch(controller, start, seconds, rng, work, |_| ())
-    }
-
-    /// As [`ClosedLoop::run`], showing every sample to `see`.
-    pub fn watch(
-        &self,
-        controller: &dyn Controller,
-        start: &Start,
-        seconds: f64,
-        rng: &mut ChaCha8Rng,
-        work: &mut Workspace,
-        mut see: impl FnMut(Sample<'_>),
-    ) -> Outcome {
-        let Conditions {
-            sensor,
-            actuator,
-            clock,
-        } = self.conditions;
-        work.body.angle_rad.copy_from_slice(&start.angle_rad);
-        work.body.speed_rad_s.copy_from_slice(&start.speed_rad_s);
-        work.torque.fill(0.0);
-        work.ends.fill([f64::INFINITY, f64::NEG_INFINITY]);
-        work.pending.count = 0;
-        controller.reset(&mut work.memory);
-
-        let samples = (seconds / clock.period_s - 1e-6).ceil().max(1.0) as usize;
-        let late_s = (seconds - 1.0).max(seconds / 2.0);
-        let delay_s = actuator.delay_periods * clock.period_s;
-        let mut tally = Tally::new();
-        let mut now_s = 0.0;
-        for k in 0..=samples {
-            // The run begins and ends on time.
-            let sample_s = match k {
-                0 => 0.0,
-                _ if k == samples => k as f64 * clock.period_s,
-                _ => clock.time_s(k, rng),
-            };
-            self.go_on(now_s, sample_s, &mut tally, work);
-            now_s = sample_s;
-            if self.has_fallen(&work.body) {
-                return tally.outcome(now_s, true, self.plant.drives(), &work.ends);
-            }
-            let late = now_s >= late_s;
-            let settle = self.limits.settle_rad;
-            tally.sample(now_s, &work.body.angle_rad, settle, late, &mut work.ends);
-            sensor.read(
-                clock.period_s,
-                k == 0,
-                &work.body.angle_rad,
-                &work.body.speed_rad_s,
-                &mut work.seen_rad,
-                &mut work.seen_rad_s,
-                rng,
-            );
-            let seen = Seen {
-                angle_rad: &work.seen_rad,
-                speed_rad_s: &work.seen_rad_s,
-            };
-            let lost = clock.loses(rng);
-            let command = work.pending.push(now_s + delay_s);
-            controller.control(&mut work.memory, seen, command);
-            see(Sample {
-                time_s: now_s,
-                angle_rad: &work.body.angle_rad,
-                speed_rad_s: &work.body.speed_rad_s,
-                seen,
-                command_nm: command,
-                torque_nm: &work.torque,
-            });
-            if lost {
-                work.pending.count -= 1;
-            }
-        }
-        tally.outcome(now_s, false, self.plant.drives(), &work.ends)
-    }
-
-    /// From `now_s` to `until_s`, commands taking effect as they come due.
-    #[inline]
-    fn go_on(&self, mut now_s: f64, until_s: f64, tally: &mut Tally, work: &mut Workspace) {
-        // Nearer than this is at once.
-        const AT_ONCE_S: f64 = 1e-9;
+    pub(super) fn next(&mut self, see: &mut impl FnMut(Sample<'_>)) -> Next {
         loop {
-            while work.pending.due_s() <= now_s + AT_ONCE_S {
-                for (torque, command) in work.torque.iter_mut().zip(work.pending.pop()) {
-                    *torque = self.conditions.actuator.torque_nm(*command);
+            if self.now_s >= self.sample_s
+                && let Some(outcome) = self.take_sample(see)
+            {
+                return Next::Over(outcome);
+            }
+            while self.pending.due_s() <= self.now_s + AT_ONCE_S {
+                let actuator = &self.closed.conditions.actuator;
+                for (torque, command) in self.torque.iter_mut().zip(self.pending.pop()) {
+                    *torque = actuator.torque_nm(*command);
                 }
             }
-            let next_s = match work.pending.due_s() {
-                due if due < until_s - AT_ONCE_S => due,
-                _ => until_s,
+            let next_s = match self.pending.due_s() {
+                due if due < self.sample_s - AT_ONCE_S => due,
+                _ => self.sample_s,
             };
-            if next_s > now_s {
-                self.plant
-                    .advance(&mut work.body, &work.torque, next_s - now_s);
-                tally.torque(&work.torque, next_s - now_s);
-            }
-            now_s = next_s;
-            if now_s >= until_s {
-                return;
+            let span_s = next_s - self.now_s;
+            self.now_s = next_s;
+            if span_s > 0.0 {
+                self.tally.torque(&self.torque, span_s);
+                return Next::Span(span_s);
             }
         }
     }
 
-    /// Whether a link leans too far, or the numbers have run away.
+    /// A sample: the robot is judged, seen and commanded. The outcome if that was the end.
     #[inline]
-    fn has_fallen(&self, body: &Body) -> bool {
-        let mut lean = 0.0;
-        let stands = body.angle_rad.iter().all(|angle| {
-            lean += angle;
-            f64::abs(lean) <= self.limits.fall_rad
+    fn take_sample(&mut self, see: &mut impl FnMut(Sample<'_>)) -> Option<Outcome> {
+        let ClosedLoop {
+            plant,
+            conditions,
+            limits,
+        } = self.closed;
+        if limits.has_fallen(&self.body.angle_rad, &self.body.speed_rad_s) {
+            let outcome = self
+                .tally
+                .outcome(self.now_s, true, plant.drives(), &self.ends);
+            return Some(outcome);
+        }
+        let late = self.now_s >= self.late_s;
+        let angle_rad = &self.body.angle_rad;
+        self.tally.sample(
+            self.now_s,
+            angle_rad,
+            limits.settle_rad,
+            late,
+            &mut self.ends,
+        );
+        conditions.sensor.read(
+            conditions.clock.period_s,
+            self.sample == 0,
+            angle_rad,
+            &self.body.speed_rad_s,
+            &mut self.seen_rad,
+            &mut self.seen_rad_s,
+            &mut self.rng,
+        );
+        let seen = Seen {
+            angle_rad: &self.seen_rad,
+            speed_rad_s: &self.seen_rad_s,
+        };
+        let delay_s = conditions.actuator.delay_periods * conditions.clock.period_s;
+        let lost = conditions.clock.loses(&mut self.rng);
+        let command = self.pending.push(self.now_s + delay_s);
+        self.controller.control(&mut self.memory, seen, command);
+        see(Sample {
+            time_s: self.now_s,
+            angle_rad,
+            speed_rad_s: &self.body.speed_rad_s,
+            seen,
+            command_nm: command,
+            torque_nm: &self.torque,
         });
-        !stands || !body.speed_rad_s.iter().all(|speed| speed.is_finite())
+        if lost {
+            self.pending.lose();
+        }
+        if self.sample == self.samples {
+            let outcome = self
+                .tally
+                .outcome(self.now_s, false, plant.drives(), &self.ends);
+            return Some(outcome);
+        }
+        self.sample += 1;
+        // The run ends on time.
+        self.sample_s = match self.sample == self.samples {
+            true => self.samples as f64 * conditions.clock.period_s,
+            false => conditions.clock.time_s(self.sample, &mut self.rng),
+        };
+        None
     }
 
-    /// Runs from every start, on all cores; run `i` has the chances of [`stream`]`(seed, i)`.
-    pub fn run_all(
-        &self,
-        controller: &dyn Controller,
-        starts: &[Start],
-        seconds: f64,
-        seed: u64,
-    ) -> Vec<Outcome> {
-        starts
-            .par_iter()
-            .enumerate()
-            .map_init(
-                || Workspace::new(self, controller),
-                |work, (index, start)| {
-                    let rng = &mut stream(seed, index as u64);
-                    self.run(controller, start, seconds, rng, work)
-                },
-            )
-            .collect()
+    /// To its end, alone.
+    pub(super) fn finish(mut self, mut see: impl FnMut(Sample<'_>)) -> Outcome {
+        loop {
+            match self.next(&mut see) {
+                Next::Over(outcome) => return outcome,
+                Next::Span(span_s) => {
+                    self.closed
+                        .plant
+                        .advance(&mut self.body, &self.torque, span_s);
+                }
+            }
+        }
     }
 }

@@ -4,14 +4,17 @@ use std::path::Path;
 
 /// The paper's discrete gains: Q = 100 I, R = I, 10 ms.
 fn paper_gains() -> StateFeedback {
-    StateFeedback::new(vec![
+    StateFeedback::new(
+        3,
         vec![
-            -75.758443, -32.187228, -11.454290, -13.004784, -6.2134254, -2.3441985,
+            vec![
+                -75.758443, -32.187228, -11.454290, -13.004784, -6.2134254, -2.3441985,
+            ],
+            vec![
+                -62.056988, -26.928273, -9.0350845, -10.653945, -5.1619377, -1.8225471,
+            ],
         ],
-        vec![
-            -62.056988, -26.928273, -9.0350845, -10.653945, -5.1619377, -1.8225471,
-        ],
-    ])
+    )
 }
 
 fn model() -> Model {
@@ -24,8 +27,7 @@ fn upright() -> Plant {
 }
 
 fn one(closed: &ClosedLoop, controller: &dyn Controller, start: &Start, seconds: f64) -> Outcome {
-    let mut work = Workspace::new(closed, controller);
-    closed.run(controller, start, seconds, &mut stream(1, 0), &mut work)
+    closed.run(controller, start, seconds, stream(1, 0))
 }
 
 const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
@@ -110,14 +112,12 @@ fn a_command_takes_effect_after_its_delay() {
     let mut closed = ClosedLoop::ideal(upright(), 0.01);
     closed.limits.fall_rad = f64::INFINITY;
     let torques = |closed: &ClosedLoop| {
-        let mut work = Workspace::new(closed, &Counting);
         let mut seen = Vec::new();
         closed.watch(
             &Counting,
             &Start::at([0.0; 3]),
             0.06,
-            &mut stream(1, 0),
-            &mut work,
+            stream(1, 0),
             |sample| {
                 seen.push(sample.torque_nm[0]);
             },
@@ -174,6 +174,35 @@ fn sensors_round_and_difference() {
     );
     assert_eq!(angle, [0.02, -0.01]);
     assert!((speed[1] - 0.2).abs() < 1e-12 && speed[0] == 1.0);
+}
+
+#[test]
+fn a_run_is_the_same_whatever_runs_beside_it() {
+    let plain = ClosedLoop::ideal(upright(), 0.01);
+    let mut late = plain.clone();
+    late.conditions.actuator.delay_periods = 0.3;
+    let mut wild = plain.clone();
+    wild.conditions.clock.jitter = 0.4;
+    let controller = paper_gains();
+    let jobs: Vec<Job<'_>> = (0..31)
+        .map(|i| Job {
+            closed: [&plain, &late, &wild][i % 3],
+            controller: &controller,
+            // Some fall at once, some later, some never.
+            start: Start::at([0.004 * i as f64, 0.0, 0.0]),
+            seconds: 0.1 * i as f64,
+            rng: stream(4, i as u64),
+        })
+        .collect();
+    let alone: Vec<Outcome> = jobs
+        .iter()
+        .map(|j| {
+            j.closed
+                .run(j.controller, &j.start, j.seconds, j.rng.clone())
+        })
+        .collect();
+    assert!(alone.iter().any(|o| o.survived()) && !alone.iter().all(|o| o.survived()));
+    assert_eq!(run_jobs(jobs), alone);
 }
 
 #[test]

@@ -1,8 +1,15 @@
 //! Which physical effect is missing: which candidates mend the model, what may be claimed, and in which words.
 
+mod bench;
 mod candidate;
+mod consistency;
+mod evidence;
 mod findings;
+mod horizon;
+mod options;
+mod progress;
 mod remainder;
+mod restart;
 mod score;
 mod search;
 mod trial;
@@ -14,4 +21,6 @@ pub use findings::{
     Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, Remainder, RuledOut,
     Verdict,
 };
-pub use search::{DiagnoseOptions, Progress, diagnose};
+pub use options::DiagnoseOptions;
+pub use progress::Progress;
+pub use search::diagnose;

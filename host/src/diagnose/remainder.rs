@@ -25,14 +25,13 @@ struct Term {
     values: [f64; 4],
 }
 
-/// What is left to explain, judged on held-out motions; `None` without any, or with nothing left above the noise.
+/// What is left to explain, judged on held-out motions; `None` with nothing left above the noise.
 pub(super) fn remainder(
     fit: &Fit,
     training: &Data,
-    held_out: Option<&Data>,
+    held_out: &Data,
     seed: u64,
 ) -> Option<Remainder> {
-    let held_out = held_out?;
     let settled = settle(&fit.model, held_out);
     let before = Score::of(&settled, held_out);
     if before.rms() < AT_FLOOR {

@@ -196,20 +196,11 @@ impl Trial {
             .map_or(&self.search, |judged| &judged.fit)
     }
 
-    /// Whether an added effect has an amplitude where it vanishes, or any value at the edge of the possible.
+    /// Whether an added effect has a value at the edge of the possible: it vanishes there, or stands in for another.
     pub fn rests_on_bound(&self) -> bool {
         let on_bound = self.fit().on_bound();
-        let added = self.fit().free.len() - self.added_values();
-        let mut at = added;
-        for candidate in &self.set {
-            for parameter in candidate.effect.card().parameters {
-                if on_bound[at] && parameter.off.is_some() {
-                    return true;
-                }
-                at += 1;
-            }
-        }
-        false
+        let added = on_bound.len() - self.added_values();
+        on_bound[added..].contains(&true)
     }
 }
 

@@ -1,23 +1,26 @@
 //! What may be claimed, and in which words.
 
+use super::bench::Bench;
 use super::findings::{
     Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, Remainder, RuledOut,
     Verdict,
 };
 use super::score::{Score, fall};
-use super::search::Bench;
 use super::trial::Trial;
 use super::words;
 use crate::identify::{Data, Horizon, Interval, intervals};
+use crate::number::percent;
 
 /// Everything the verdict rests on.
 pub(super) struct Case<'a> {
-    pub bench: &'a Bench,
+    pub bench: &'a Bench<'a>,
     /// Every set that was tried.
     pub trials: Vec<Trial>,
     /// The smallest set that pays.
     pub best: Option<Trial>,
     pub remainder: Option<Remainder>,
+    /// Share of what is left that goes when every motion has values of its own.
+    pub own_values_share: Option<f64>,
     pub seed: u64,
 }
 
@@ -25,8 +28,10 @@ pub(super) struct Case<'a> {
 const UNEXPLAINED_LOW: f64 = 0.2;
 /// The same for the estimate itself.
 const UNEXPLAINED_SHARE: f64 = 0.35;
-/// An explanation that leaves more than this share of the squared error above the noise is not one.
-const LEAST_EXPLAINED: f64 = 0.58;
+/// An explanation that leaves more than this share of the squared error above the noise is not the whole of it.
+const MOST_LEFT: f64 = 0.125;
+/// Where more than this share of what is left goes as every motion gets values of its own, they are no constants.
+const MOST_INCONSTANT: f64 = 0.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
 const FAR_OFF: f64 = 2.0;
 
@@ -57,16 +62,22 @@ impl Case<'_> {
         let structured = self.remainder.as_ref().is_some_and(|r| {
             r.explainable_low > UNEXPLAINED_LOW && r.explainable_share > UNEXPLAINED_SHARE
         });
-        structured || self.leaves_most()
+        structured || self.leaves_much() || self.inconstant()
     }
 
-    /// Whether the best explanation leaves most of the squared error above the noise, or the base model, with no
-    /// explanation found, is far off.
-    fn leaves_most(&self) -> bool {
+    /// Whether the best explanation needs other values in every motion.
+    fn inconstant(&self) -> bool {
+        let share = self.own_values_share.unwrap_or(0.0);
+        self.best.is_some() && share > MOST_INCONSTANT
+    }
+
+    /// Whether the best explanation leaves a good part of the squared error above the noise, or the base model, with
+    /// no explanation found, is far off.
+    fn leaves_much(&self) -> bool {
         let left = self.chosen().deciding_mean();
         let before = self.bench.base.deciding_mean();
         if self.best.is_some() {
-            left > FAR_OFF && left - 1.0 > LEAST_EXPLAINED * (before - 1.0)
+            left > FAR_OFF && left - 1.0 > MOST_LEFT * (before - 1.0)
         } else {
             left.sqrt() > FAR_OFF * FAR_OFF
         }
@@ -143,6 +154,12 @@ pub(super) fn conclude(case: &Case) -> Diagnosis {
             "a shuffled regressor gains as much as the best effect: nothing may be named"
                 .to_string(),
         );
+    }
+    if case.inconstant() {
+        diagnosis.warnings.push(format!(
+            "values that fit one motion do not fit another: each by itself would leave {} less of the squared error",
+            percent(case.own_values_share.unwrap_or(0.0))
+        ));
     }
     words::complete(&mut diagnosis);
     diagnosis

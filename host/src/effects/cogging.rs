@@ -27,10 +27,10 @@ static CARD: Card = Card {
         Parameter {
             key: "periods_per_turn",
             unit: "1",
-            meaning: "ripples in one turn of the joint",
+            meaning: "ripples in one turn of the joint; one or two would be gravity, not teeth or poles",
             off: None,
             typical: (4.0, 60.0),
-            bounds: (1.0, 200.0),
+            bounds: (3.0, 200.0),
             starts: &[
                 12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
             ],

@@ -1,8 +1,10 @@
 //! How well the fitted values are known.
 
+use super::cluster::{Cluster, clusters};
 use super::data::Data;
 use super::fit::Fit;
-use nalgebra::{DMatrix, DVector};
+use super::student::quantile_975;
+use nalgebra::DMatrix;
 
 /// A fitted value's 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,52 +17,40 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Length of the blocks within which residuals may be correlated, s.
-const BLOCK_S: f64 = 0.5;
+/// Share of a cluster's information that is taken out with it: a value that rests on one cluster alone still gets
+/// an interval, some twenty times as wide as its own score says.
+const TAKEN_OUT: f64 = 0.95;
 
 /// Intervals of the fitted values, and their correlation matrix.
 ///
-/// The covariance is the larger, value by value, of the classical one (residual variance times inverse normal
-/// matrix) and one robust to residuals that are correlated within blocks of half a second (Liang & Zeger 1986),
-/// which a model with something missing leaves. Start states count as unknowns. `None` where the data do not
-/// determine the values at all.
+/// An encoder at rest misreads by the same amount until it moves on, so neighbouring residuals tell little more
+/// than one of them. The standard error is that of a jackknife over clusters of time, which may be correlated
+/// inside as they like (CV3 in MacKinnon, Nielsen & Webb 2023; one linear step for each cluster left out), or the
+/// classical one (residual variance times inverse normal matrix) where that is larger. A value may rest on few
+/// clusters: the interval is Student's with as many degrees of freedom as clusters really carry it (Bell &
+/// McCaffrey 2002). Start states count as unknowns. `None` where the data do not determine the values at all.
 pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let count = fit.free.len();
-    let projected: Vec<DMatrix<f64>> = fit.jacobian.iter().map(project).collect();
-    let mut normal = DMatrix::zeros(count, count);
-    for jacobian in &projected {
-        normal += jacobian.tr_mul(jacobian);
-    }
-    let scale: Vec<f64> = (0..count).map(|i| normal[(i, i)].sqrt()).collect();
-    if scale.iter().any(|s| *s <= 0.0 || !s.is_finite()) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(count, count, |r, c| normal[(r, c)] / (scale[r] * scale[c]));
-    let inverse = scaled.try_inverse()?;
-    let inverse = DMatrix::from_fn(count, count, |r, c| inverse[(r, c)] / (scale[r] * scale[c]));
-
-    let unknowns = count
-        + fit
-            .nodes
-            .iter()
-            .map(super::node::Node::unknowns)
-            .sum::<usize>();
-    let freedom = fit.residuals.count().saturating_sub(unknowns).max(1) as f64;
-    let variance = fit.residuals.cost() / freedom;
-    let robust = &inverse * block_scores(fit, data, &projected) * &inverse;
-
+    let clusters = clusters(fit, data);
+    let normal: DMatrix<f64> = clusters
+        .iter()
+        .fold(DMatrix::zeros(count, count), |sum, cluster| {
+            sum + &cluster.information
+        });
+    let inverse = inverse(&normal)?;
+    let residual = residual_variance(fit);
+    let jackknife = jackknife(&clusters, &normal);
     let values = fit.values();
     let intervals = (0..count)
         .map(|i| {
-            let standard_error = (variance * inverse[(i, i)])
-                .max(robust[(i, i)])
-                .max(0.0)
-                .sqrt();
+            let variance = jackknife[i].max(residual * inverse[(i, i)]).max(0.0);
+            let freedom = freedom(&clusters, &inverse, i);
+            let reach = quantile_975(freedom) * variance.sqrt();
             let (low, high) = fit.free[i].bounds(&fit.model);
             Interval {
-                standard_error,
-                low: (values[i] - 1.96 * standard_error).max(low),
-                high: (values[i] + 1.96 * standard_error).min(high),
+                standard_error: variance.sqrt(),
+                low: (values[i] - reach).max(low),
+                high: (values[i] + reach).min(high),
             }
         })
         .collect();
@@ -68,6 +58,56 @@ pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)
         inverse[(r, c)] / (inverse[(r, r)] * inverse[(c, c)]).sqrt()
     });
     Some((intervals, correlation))
+}
+
+/// Squared weighted residual for each sample beyond those that the unknowns take up.
+fn residual_variance(fit: &Fit) -> f64 {
+    let start_states: usize = fit.nodes.iter().map(super::node::Node::unknowns).sum();
+    let unknowns = fit.free.len() + start_states;
+    let freedom = fit.residuals.count().saturating_sub(unknowns).max(1);
+    fit.residuals.cost() / freedom as f64
+}
+
+/// Inverse of a normal matrix, scaled to a unit diagonal on the way; none where a value changes nothing.
+fn inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let count = normal.nrows();
+    let scale: Vec<f64> = (0..count).map(|i| normal[(i, i)].sqrt()).collect();
+    if scale.iter().any(|s| *s <= 0.0 || !s.is_finite()) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(count, count, |r, c| normal[(r, c)] / (scale[r] * scale[c]));
+    let inverse = scaled.try_inverse()?;
+    Some(DMatrix::from_fn(count, count, |r, c| {
+        inverse[(r, c)] / (scale[r] * scale[c])
+    }))
+}
+
+/// Variance of each value by how far it moves when one cluster after another is left out.
+fn jackknife(clusters: &[Cluster], normal: &DMatrix<f64>) -> Vec<f64> {
+    let mut sum = vec![0.0; normal.nrows()];
+    for cluster in clusters {
+        if let Some(inverse) = inverse(&(normal - &cluster.information * TAKEN_OUT)) {
+            let moved = inverse * &cluster.score;
+            for (sum, moved) in sum.iter_mut().zip(moved.iter()) {
+                *sum += moved * moved;
+            }
+        }
+    }
+    let count = clusters.len() as f64;
+    sum.iter().map(|sum| sum * (count - 1.0) / count).collect()
+}
+
+/// Degrees of freedom of value `i`'s variance: the number of clusters, fewer where some tell more of it than others
+/// (Satterthwaite's, for errors of equal variance).
+fn freedom(clusters: &[Cluster], inverse: &DMatrix<f64>, i: usize) -> f64 {
+    let row = inverse.row(i);
+    let (mut sum, mut squares) = (0.0, 1e-300);
+    for cluster in clusters {
+        let part = (row * &cluster.information * row.transpose())[(0, 0)];
+        sum += part;
+        squares += part * part;
+    }
+    (sum * sum / squares).max(1.0)
 }
 
 /// Parameter columns with what the window's own start state could explain taken out.
@@ -80,35 +120,4 @@ pub(super) fn project(window: &super::normal::WindowJacobian) -> DMatrix<f64> {
         }
         None => window.parameters.clone(),
     }
-}
-
-/// Sum over blocks of time of the outer product of their scores, corrected for the number of blocks.
-fn block_scores(fit: &Fit, data: &Data, projected: &[DMatrix<f64>]) -> DMatrix<f64> {
-    let count = fit.free.len();
-    let joints = data.sigma_rad.len();
-    let mut sum = DMatrix::zeros(count, count);
-    let mut blocks = 0usize;
-    for (w, window) in data.windows.iter().enumerate() {
-        let time = &data.motions[window.motion].time_s[window.samples.clone()];
-        let samples = time.len();
-        let mut begin = 0;
-        while begin < samples {
-            let mut end = begin + 1;
-            while end < samples && time[end] - time[begin] < BLOCK_S {
-                end += 1;
-            }
-            let mut score = DVector::zeros(count);
-            for joint in 0..joints {
-                for k in begin..end {
-                    let row = joint * samples + k;
-                    score += projected[w].row(row).transpose() * fit.residuals.windows[w][row];
-                }
-            }
-            sum += &score * score.transpose();
-            blocks += 1;
-            begin = end;
-        }
-    }
-    let blocks = blocks as f64;
-    sum * (blocks / (blocks - count as f64).max(1.0))
 }

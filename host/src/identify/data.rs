@@ -57,6 +57,21 @@ impl Data {
         }
     }
 
+    /// One of the motions, cut as it is here.
+    pub fn only(&self, motion: usize) -> Data {
+        let windows = self.windows.iter().filter(|w| w.motion == motion);
+        Data {
+            motions: vec![self.motions[motion].clone()],
+            windows: windows
+                .map(|w| Window {
+                    motion: 0,
+                    samples: w.samples.clone(),
+                })
+                .collect(),
+            sigma_rad: self.sigma_rad.clone(),
+        }
+    }
+
     /// Number of samples in all windows.
     pub fn samples(&self) -> usize {
         self.windows.iter().map(|w| w.samples.len()).sum()

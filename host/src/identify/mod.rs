@@ -1,5 +1,6 @@
 //! Fitting a model's free parameters to measured motions by multiple shooting.
 
+mod cluster;
 mod covariance;
 mod data;
 mod fit;
@@ -10,6 +11,7 @@ mod normal;
 mod projector;
 mod residual;
 mod staged;
+mod student;
 
 pub use covariance::{Interval, intervals};
 pub use data::{Data, Horizon, Window};

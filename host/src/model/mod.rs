@@ -7,7 +7,7 @@ mod columns;
 pub mod edit;
 mod parse;
 mod path;
-mod reader;
+pub(crate) mod reader;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};

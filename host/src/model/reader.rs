@@ -7,7 +7,7 @@ use toml_edit::{Item, TableLike, Value};
 
 /// The text a table came from, and its name for errors.
 #[derive(Debug)]
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     pub text: &'a str,
     pub file: &'a Path,
 }
@@ -47,7 +47,7 @@ const SYNTAX: &str = "write `key = value` lines under `[table]` headings; text n
 
 /// What a number may be.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     pub low: f64,
     pub high: f64,
     /// Whether `low` itself is refused, shown as "above".
@@ -91,7 +91,7 @@ impl Limits {
 }
 
 /// One table of the file, named for messages: `[rig]`, `[[link]] 2`.
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     source: &'a Source<'a>,
     name: String,
     items: &'a dyn TableLike,
@@ -393,7 +393,7 @@ fn article(kind: &str) -> String {
 }
 
 /// Which of the known names was meant, and which there are.
-pub(super) fn suggest(name: &str, known: &[&str]) -> String {
+pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
     let all = known.join(", ");
     let slips = |known: &str| strsim::damerau_levenshtein(name, known);
     let near = known

@@ -148,7 +148,11 @@ impl Design {
                 let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
                 let sampled = zoh(&plant, ts_s, delay_s)?;
                 let all = sampled.a.nrows();
-                let size = if request.q.size() == Some(all) { all } else { n };
+                let size = if request.q.size() == Some(all) {
+                    all
+                } else {
+                    n
+                };
                 let q = request.q.matrix("Q", size, "states")?;
                 (dlqr(&sampled, &q, &r)?, Some((sampled, delay_s)), q)
             }
@@ -158,7 +162,9 @@ impl Design {
         let outputs = DMatrix::from_rows(&outputs.collect::<Vec<_>>());
         let angles = plant.c.rows(0, model.link_count()).into_owned();
         let inputs: Vec<Signal> = driven.iter().map(|joint| input(model, *joint)).collect();
-        let delayed = sampled.as_ref().map_or(0, |(sampled, _)| sampled.delayed_inputs);
+        let delayed = sampled
+            .as_ref()
+            .map_or(0, |(sampled, _)| sampled.delayed_inputs);
         let mut design = Design {
             model: model.name.clone(),
             states: states(model.link_count(), &inputs, delayed),
@@ -190,7 +196,9 @@ impl Design {
     }
 
     fn fixed(&self, request: &Request, plant: &Discrete, input: Vec<f64>) -> Result<Fixed> {
-        let mut state = request.state_range.diagonal("the range of states", plant.plant_states())?;
+        let mut state = request
+            .state_range
+            .diagonal("the range of states", plant.plant_states())?;
         let mut format = request.format.clone();
         if plant.delayed_inputs > 0 {
             // Past inputs come back in the steps in which they went out.
@@ -200,7 +208,10 @@ impl Design {
                 .input_step
                 .get_or_insert_with(|| input.iter().map(step).collect())
                 .clone();
-            let own = state.iter().zip(&self.x0).map(|(range, x)| step(&(range + x.abs())));
+            let own = state
+                .iter()
+                .zip(&self.x0)
+                .map(|(range, x)| step(&(range + x.abs())));
             let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
             for _ in 0..plant.delayed_inputs {
                 steps.extend(&input_step);
@@ -223,7 +234,12 @@ impl Design {
         Ok(Fixed { ranges, law, loss })
     }
 
-    fn estimator(&self, sensors: &Sensors, plant: Discrete, input_range: &[f64]) -> Result<Estimation> {
+    fn estimator(
+        &self,
+        sensors: &Sensors,
+        plant: Discrete,
+        input_range: &[f64],
+    ) -> Result<Estimation> {
         let (own, joints) = (plant.plant_states(), plant.plant_states() / 2);
         let rows: Vec<usize> = (0..=joints).collect();
         let plant = Discrete {
@@ -236,7 +252,10 @@ impl Design {
             Some(process) => process.matrix("W", own, "states")?,
             None => {
                 let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
-                let sd = input_range.iter().map(|range| 0.01 * range).collect::<Vec<_>>();
+                let sd = input_range
+                    .iter()
+                    .map(|range| 0.01 * range)
+                    .collect::<Vec<_>>();
                 let noisy = held * DMatrix::from_diagonal(&sd.into());
                 &noisy * noisy.transpose()
             }
@@ -304,7 +323,10 @@ fn states(joints: usize, inputs: &[Signal], delayed: usize) -> Vec<Signal> {
             unit: input.unit,
         })
     });
-    of("q", "rad").chain(of("dq", "rad/s")).chain(past).collect()
+    of("q", "rad")
+        .chain(of("dq", "rad/s"))
+        .chain(past)
+        .collect()
 }
 
 fn point(rest: &Rest, delayed: usize) -> Vec<f64> {

@@ -1,24 +1,30 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
 //! `equations` -> `rest` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
-//! `zeros` look at plants; `quantise` -> `fixed_law` is what ships.
+//! `zeros` look at plants; `quantise` -> `fixed_law` is what
+//! ships; `design` is all of it as one value, `export` writes that.
 
+mod design;
 mod discretise;
 mod eigen;
 mod equations;
 mod estimator;
+pub mod export;
 mod fixed_law;
 mod gains;
 mod linearise;
+mod qr;
 mod quantise;
 mod reach;
 mod refusal;
 mod rest;
 mod riccati;
 mod system;
+mod weight;
 mod weights;
 mod zeros;
 
+pub use design::{Design, Estimation, Fixed, Request, Sensors, Signal, Time};
 pub use discretise::zoh;
 pub use eigen::{Mode, poles};
 pub use equations::Equations;
@@ -28,6 +34,7 @@ pub use gains::{Gains, dlqr, lqr};
 pub use linearise::linearise;
 pub use quantise::{Format, Ranges, quantise};
 pub use reach::{Reach, controllability, observability};
-pub use rest::{Rest, input_delay_s, upright};
+pub use rest::{Rest, balanced, input_delay_s, upright};
 pub use system::{Continuous, Discrete};
+pub use weight::Weight;
 pub use zeros::transmission_zeros;

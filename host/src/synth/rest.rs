@@ -1,12 +1,18 @@
 //! The rig at rest in a pose: what holds it there, and how every drive and effect answers small changes.
 
 use super::equations::Equations;
-use crate::effects::{AtRest, DriveState, Effect, Rig, Site, Slope};
+use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Rig, Site, Slope};
 use crate::error::{Error, Result};
 use crate::model::{Angles, Drive, EffectInstance, Model};
+use nalgebra::DVector;
 
 /// Share of the largest gravity torque that a passive joint may be off balance.
 const BALANCED: f64 = 1e-6;
+/// Of Newton's iteration.
+const MOST_STEPS: usize = 100;
+const LONGEST_STEP_RAD: f64 = 0.2;
+/// The step after one so small is lost in rounding.
+const SETTLED_RAD: f64 = 1e-9;
 
 /// A rig at rest.
 #[derive(Debug, Clone)]
@@ -48,6 +54,84 @@ pub fn upright(model: &Model) -> Vec<f64> {
         .collect()
 }
 
+/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they balance.
+///
+/// This is the angle compensation that links with eccentric centres of mass need.
+///
+/// # Errors
+/// No equilibrium within reach of Newton's iteration, or an effect without a slope.
+pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
+    check_size(model, pose_rad)?;
+    let passive: Vec<usize> = (0..model.link_count())
+        .filter(|&joint| !model.joints[joint].drive.is_driven())
+        .collect();
+    let equations = Equations::of(&Rig::of(model, false));
+    let mut angle_rad = relative(model, pose_rad);
+    for _ in 0..MOST_STEPS {
+        let pose_rad = convention(model, &angle_rad);
+        if passive.is_empty() {
+            return Ok(pose_rad);
+        }
+        let gravity_nm = equations.gravity(&angle_rad);
+        let slope = equations.gravity_slope(&angle_rad);
+        let mut left = DVector::zeros(passive.len());
+        let mut slope = slope.select_rows(&passive).select_columns(&passive);
+        for (i, &joint) in passive.iter().enumerate() {
+            let own = At::new(model, joint, &angle_rad, &pose_rad).own()?;
+            left[i] = gravity_nm[joint] - own.torque_nm;
+            slope[(i, i)] -= own.per_rad;
+        }
+        let Some(step) = slope.lu().solve(&left) else {
+            break;
+        };
+        for (&joint, step) in passive.iter().zip(step.iter()) {
+            angle_rad[joint] -= step.clamp(-LONGEST_STEP_RAD, LONGEST_STEP_RAD);
+        }
+        if step.amax() < SETTLED_RAD {
+            return Ok(convention(model, &angle_rad));
+        }
+    }
+    Err(Error::design(
+        "no equilibrium was found near this pose",
+        "start from a pose nearer to balance",
+    ))
+}
+
+/// Relative angles, the first from hanging, in the model's own convention.
+fn convention(model: &Model, relative_rad: &[f64]) -> Vec<f64> {
+    let zero = model.angle_zero.from_hanging_rad();
+    let mut sum = -zero;
+    let angle = |(joint, &angle): (usize, &f64)| {
+        sum += angle;
+        match model.angles {
+            Angles::Relative if joint == 0 => angle - zero,
+            Angles::Relative => angle,
+            Angles::Absolute => sum,
+        }
+    };
+    relative_rad.iter().enumerate().map(angle).collect()
+}
+
+fn check_size(model: &Model, pose_rad: &[f64]) -> Result<()> {
+    let n = model.link_count();
+    if pose_rad.len() != n {
+        return Err(Error::design(
+            format!(
+                "the pose has {} angles, the model {n} joints",
+                pose_rad.len()
+            ),
+            "give one angle per joint, from the base outwards",
+        ));
+    }
+    match pose_rad.iter().find(|angle| !angle.is_finite()) {
+        None => Ok(()),
+        Some(angle) => Err(Error::design(
+            format!("the pose has an angle of {angle}"),
+            "give angles in rad",
+        )),
+    }
+}
+
 /// The delay of the drives, s: the same for all of them.
 ///
 /// # Errors
@@ -55,7 +139,8 @@ pub fn upright(model: &Model) -> Vec<f64> {
 pub fn input_delay_s(model: &Model) -> Result<f64> {
     let delay = |joint: usize| -> f64 {
         let at = model.effects.iter().filter(|e| e.joint == Some(joint));
-        at.map(|e| e.effect.delay_s(&e.values)).sum()
+        // An empty sum would be -0.
+        at.fold(0.0, |sum, e| sum + e.effect.delay_s(&e.values))
     };
     let driven = (0..model.link_count()).filter(|&joint| model.joints[joint].drive.is_driven());
     let delays: Vec<f64> = driven.map(delay).collect();
@@ -75,22 +160,8 @@ impl Rest {
     /// # Errors
     /// A pose that nothing holds, or an effect that has no slope there.
     pub fn of(model: &Model, pose_rad: &[f64]) -> Result<Rest> {
+        check_size(model, pose_rad)?;
         let n = model.link_count();
-        if pose_rad.len() != n {
-            return Err(Error::design(
-                format!(
-                    "the pose has {} angles, the model {n} joints",
-                    pose_rad.len()
-                ),
-                "give one angle per joint, from the base outwards",
-            ));
-        }
-        if let Some(angle) = pose_rad.iter().find(|angle| !angle.is_finite()) {
-            return Err(Error::design(
-                format!("the pose has an angle of {angle}"),
-                "give angles in rad",
-            ));
-        }
         let relative_rad = relative(model, pose_rad);
         let equations = Equations::of(&Rig::of(model, false));
         let gravity_nm = equations.gravity(&relative_rad);
@@ -108,7 +179,7 @@ impl Rest {
             joints: Vec::new(),
         };
         for (joint, &gravity_nm) in gravity_nm.iter().enumerate() {
-            let at = At::new(model, joint, &rest)?;
+            let at = At::new(model, joint, &rest.relative_rad, pose_rad);
             let (slope, input) = at.held(gravity_nm, BALANCED * scale_nm)?;
             rest.inputs.extend(input);
             rest.joints.push(slope);
@@ -129,6 +200,14 @@ fn relative(model: &Model, pose_rad: &[f64]) -> Vec<f64> {
     pose_rad.iter().enumerate().map(angle).collect()
 }
 
+/// What acts at a joint besides gravity and its drive.
+#[derive(Debug, Clone, Copy, Default)]
+struct Own {
+    torque_nm: f64,
+    per_rad: f64,
+    per_rad_s: f64,
+}
+
 /// One joint and what acts on it.
 struct At<'a> {
     joint: usize,
@@ -139,13 +218,10 @@ struct At<'a> {
 }
 
 impl<'a> At<'a> {
-    fn new(model: &'a Model, joint: usize, rest: &Rest) -> Result<At<'a>> {
+    fn new(model: &'a Model, joint: usize, relative_rad: &[f64], pose_rad: &[f64]) -> At<'a> {
         // Those of one site act in the library's order, however the file lists them.
         let mut effects = Vec::new();
-        for effect in crate::effects::EFFECTS
-            .iter()
-            .chain(crate::effects::CONTROLS)
-        {
+        for effect in EFFECTS.iter().chain(CONTROLS) {
             let here = |e: &&EffectInstance| e.effect == *effect && e.joint == Some(joint);
             effects.extend(model.effects.iter().filter(here));
         }
@@ -156,13 +232,13 @@ impl<'a> At<'a> {
         } else {
             0.0
         };
-        Ok(At {
+        At {
             joint,
             drive: &model.joints[joint].drive,
             effects,
-            angle_rad: rest.relative_rad[joint] - zero,
-            pose_rad: rest.pose_rad[joint],
-        })
+            angle_rad: relative_rad[joint] - zero,
+            pose_rad: pose_rad[joint],
+        }
     }
 
     fn of(&self, site: Site) -> impl Iterator<Item = (&'static dyn Effect, &'a [f64])> + '_ {
@@ -186,6 +262,30 @@ impl<'a> At<'a> {
         })
     }
 
+    /// Torques of springs and the like, with their slopes.
+    fn own(&self) -> Result<Own> {
+        let at = AtRest {
+            angle_rad: self.angle_rad,
+            duty: 0.0,
+            torque_nm: 0.0,
+            full_torque_nm: 1.0,
+        };
+        let state = JointState {
+            angle_rad: self.angle_rad,
+            speed_rad_s: 0.0,
+            drive_nm: 0.0,
+            shuffled_rad_s: 0.0,
+        };
+        let mut own = Own::default();
+        for (effect, values) in self.of(Site::Joint) {
+            let slope = self.slope(effect, values, &at)?;
+            own.torque_nm += effect.torque(values, &state);
+            own.per_rad += slope.per_rad;
+            own.per_rad_s += slope.per_rad_s;
+        }
+        Ok(own)
+    }
+
     /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within `slack_nm`.
     fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<(JointSlope, Option<f64>)> {
         let mut at = AtRest {
@@ -198,28 +298,18 @@ impl<'a> At<'a> {
             reading: 1.0,
             ..JointSlope::default()
         };
-        let mut own_nm = 0.0;
         for (effect, values) in self.of(Site::Friction).chain(self.of(Site::Sensor)) {
             self.slope(effect, values, &at)?;
         }
-        for (effect, values) in self.of(Site::Joint) {
-            let own = self.slope(effect, values, &at)?;
-            let state = crate::effects::JointState {
-                angle_rad: self.angle_rad,
-                speed_rad_s: 0.0,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            };
-            own_nm += effect.torque(values, &state);
-            slope.per_rad += own.per_rad;
-            slope.per_rad_s += own.per_rad_s;
-        }
+        let own = self.own()?;
+        slope.per_rad += own.per_rad;
+        slope.per_rad_s += own.per_rad_s;
         let mut reading_rad = self.pose_rad;
         for (effect, values) in self.of(Site::Encoder) {
             slope.reading *= self.slope(effect, values, &at)?.gain;
             reading_rad = effect.encode(values, reading_rad);
         }
-        let needed_nm = gravity_nm - own_nm;
+        let needed_nm = gravity_nm - own.torque_nm;
         if !self.drive.is_driven() {
             if needed_nm.abs() > slack_nm {
                 return Err(Error::design(
@@ -228,7 +318,7 @@ impl<'a> At<'a> {
                         self.joint + 1,
                         self.pose_rad
                     ),
-                    "choose a pose in which every passive joint balances",
+                    "choose a pose in which every passive joint balances; --balance finds the nearest",
                 ));
             }
             return Ok((slope, None));

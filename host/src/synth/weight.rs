@@ -37,7 +37,10 @@ impl Weight {
             }
             Weight::Matrix(matrix) if matrix.shape() == (size, size) => Ok(matrix.clone()),
             Weight::Diagonal(values) => Err(Error::design(
-                format!("{name} has {} values, but there are {size} {of}", values.len()),
+                format!(
+                    "{name} has {} values, but there are {size} {of}",
+                    values.len()
+                ),
                 "give one number for all, or one for each",
             )),
             Weight::Matrix(matrix) => Err(Error::design(
@@ -60,7 +63,10 @@ impl Weight {
             Weight::Scalar(value) => Ok(vec![*value; size]),
             Weight::Diagonal(values) if values.len() == size => Ok(values.clone()),
             _ => Err(Error::design(
-                format!("{name} has {} values, but {size} are needed", self.size().unwrap_or(1)),
+                format!(
+                    "{name} has {} values, but {size} are needed",
+                    self.size().unwrap_or(1)
+                ),
                 "give one number for all, or one for each",
             )),
         }

@@ -82,17 +82,36 @@ fn figure_cells(figure: &Figure) -> Vec<String> {
     ]
 }
 
-/// A line for every outcome that falls short.
-pub fn misses(outcomes: &[Outcome]) -> Vec<String> {
-    outcomes.iter().filter_map(miss).collect()
+/// One outcome on a line: what was hidden, what was said, and how near the truth it came.
+pub fn line(outcome: &Outcome) -> String {
+    let hidden = outcome.hidden.as_deref().unwrap_or("nothing");
+    let library = if outcome.left_out { "left out" } else { "" };
+    let mut line = format!(
+        "{hidden:20} seed {:<4} {library:8}  {}; held out {:.2} -> {:.2} mrad, {:.2} x the truth's",
+        outcome.seed,
+        said(outcome),
+        1e3 * outcome.before_rad,
+        1e3 * outcome.after_rad,
+        outcome.ratio(),
+    );
+    if !outcome.values.is_empty() {
+        let held = outcome.values.iter().filter(|value| value.covered).count();
+        line += &format!("; intervals {held} of {}", outcome.values.len());
+    }
+    line += &format!("; {:.1} s", outcome.seconds);
+    if miss(outcome).is_some() {
+        line += "  <- short";
+    }
+    line
 }
 
-fn miss(outcome: &Outcome) -> Option<String> {
+/// The verdict with its effects.
+fn said(outcome: &Outcome) -> String {
     let set = |kinds: &[String]| match kinds {
         [] => "no effect".to_owned(),
         kinds => kinds.join("+"),
     };
-    let said = match outcome.verdict {
+    match outcome.verdict {
         Verdict::Nominal => "nominal".to_owned(),
         Verdict::Named => format!("named {}", set(&outcome.effects)),
         Verdict::Unexplained => format!("unexplained, with {}", set(&outcome.effects)),
@@ -102,7 +121,16 @@ fn miss(outcome: &Outcome) -> Option<String> {
             let sets: Vec<String> = sets.map(|kinds| set(kinds)).collect();
             format!("ambiguous: {}", sets.join(" | "))
         }
-    };
+    }
+}
+
+/// A line for every outcome that falls short.
+pub fn misses(outcomes: &[Outcome]) -> Vec<String> {
+    outcomes.iter().filter_map(miss).collect()
+}
+
+fn miss(outcome: &Outcome) -> Option<String> {
+    let said = said(outcome);
     let errors = format!(
         "error {:.2} -> {:.2}, truth {:.2} mrad",
         1e3 * outcome.before_rad,

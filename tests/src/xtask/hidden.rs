@@ -2,11 +2,12 @@
 //!
 //! Every effect of the challenges on several benches, benches that hide nothing, and every effect again with a
 //! library that lacks it. Training on two motions of 20 s, held out a third. The same arguments give the same
-//! table on any number of threads. Fails when a target is missed.
+//! tables on any number of threads. A line goes to stderr as each diagnosis ends, whichever ends first; the tables
+//! go to stdout. Fails when a target is missed.
 
 use clap::builder::PossibleValuesParser;
 use handstand::challenge::{KINDS, kind_named};
-use handstand_tests::hidden::{Plan, Tally, misses, table, try_all};
+use handstand_tests::hidden::{Plan, Tally, line, misses, table, try_all};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
@@ -57,12 +58,7 @@ pub fn run(args: &Args) -> bool {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let bar = ProgressBar::new(cases.len() as u64).with_style(style());
     let found = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
-        bar.set_message(
-            outcome
-                .hidden
-                .clone()
-                .unwrap_or_else(|| "nothing".to_owned()),
-        );
+        bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
     });
     bar.finish_and_clear();
@@ -86,6 +82,6 @@ pub fn run(args: &Args) -> bool {
 }
 
 fn style() -> ProgressStyle {
-    ProgressStyle::with_template("{bar:30} {pos} of {len}, {eta} left: {msg}")
+    ProgressStyle::with_template("{bar:30} {pos} of {len}, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }

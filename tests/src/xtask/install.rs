@@ -18,12 +18,26 @@ pub struct Need {
 }
 
 /// Every need; a new one is one entry.
-pub const NEEDS: &[Need] = &[Need {
-    name: "Chromium",
-    wanted_for: "the tests that render pages",
-    signs: &["chromium", "chromium-browser", "google-chrome"],
-    packages: &["chromium"],
-}];
+pub const NEEDS: &[Need] = &[
+    Need {
+        name: "Chromium",
+        wanted_for: "the tests that render pages",
+        signs: &["chromium", "chromium-browser", "google-chrome"],
+        packages: &["chromium"],
+    },
+    Need {
+        name: "Slurm",
+        wanted_for: "the test of the recipe for job arrays",
+        signs: &["slurmctld", "/usr/sbin/slurmctld"],
+        packages: &["slurm-wlm"],
+    },
+    Need {
+        name: "GNU parallel",
+        wanted_for: "the test of the recipe for several processes",
+        signs: &["parallel"],
+        packages: &["parallel"],
+    },
+];
 
 impl Need {
     /// Whether it is here.

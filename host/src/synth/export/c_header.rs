@@ -1,8 +1,8 @@
 //! The gains as a C header that compiles by itself.
 
+use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use super::Provenance;
 use crate::synth::design::{Design, Fixed};
 use std::fmt::Write as _;
 

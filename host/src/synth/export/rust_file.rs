@@ -1,8 +1,8 @@
 //! The gains as a Rust file that compiles by itself, `no_std` included.
 
+use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use super::Provenance;
 use crate::synth::design::{Design, Fixed};
 use std::fmt::Write as _;
 
@@ -15,10 +15,13 @@ pub fn rust_file(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
         let _ = writeln!(text, "// {line}");
     }
     let rows = (0..m).map(|i| format!("[{}]", list(law.k.row(i).iter())));
-    let limits = law.limits.iter().map(|[low, high]| format!("[{low}, {high}]"));
-    let vectors = golden(law).into_iter().map(|g| {
-        format!("    ([{}], [{}]),\n", list(&g.x), list(&g.u))
-    });
+    let limits = law
+        .limits
+        .iter()
+        .map(|[low, high]| format!("[{low}, {high}]"));
+    let vectors = golden(law)
+        .into_iter()
+        .map(|g| format!("    ([{}], [{}]),\n", list(&g.x), list(&g.u)));
     let vectors: Vec<String> = vectors.collect();
     let _ = write!(
         text,

@@ -12,7 +12,13 @@ pub fn csv(design: &Design) -> String {
     let names: Vec<&str> = design.states.iter().map(|s| s.name.as_str()).collect();
     let mut text = format!("input,{}\n", names.join(","));
     for (i, input) in design.inputs.iter().enumerate() {
-        let row: Vec<String> = design.gains.k.row(i).iter().map(|k| format!("{k:?}")).collect();
+        let row: Vec<String> = design
+            .gains
+            .k
+            .row(i)
+            .iter()
+            .map(|k| format!("{k:?}"))
+            .collect();
         let _ = writeln!(text, "{},{}", input.name, row.join(","));
     }
     text
@@ -115,7 +121,10 @@ fn signals(signals: &[Signal]) -> Vec<Value> {
 }
 
 fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
 }
 
 fn complex(values: &[Complex<f64>]) -> Vec<[f64; 2]> {
@@ -150,8 +159,14 @@ pub fn matlab(design: &Design, made: &Provenance) -> String {
     put("Q", &design.weights[0]);
     put("R", &design.weights[1]);
     put("K", &design.gains.k);
-    put("x0", &DMatrix::from_row_slice(1, design.x0.len(), &design.x0));
-    put("u0", &DMatrix::from_row_slice(1, design.u0.len(), &design.u0));
+    put(
+        "x0",
+        &DMatrix::from_row_slice(1, design.x0.len(), &design.x0),
+    );
+    put(
+        "u0",
+        &DMatrix::from_row_slice(1, design.u0.len(), &design.u0),
+    );
     if let Some(estimation) = &design.estimator {
         let controller = &estimation.compensator;
         put("L", &estimation.estimator.gain);
@@ -161,9 +176,15 @@ pub fn matlab(design: &Design, made: &Provenance) -> String {
         put("Dc", &controller.d);
     }
     let ts = ts_s.map_or_else(String::new, |ts_s| format!(", {ts_s:?}"));
-    let _ = writeln!(text, "plant = ss(A, B, C, zeros(size(C, 1), size(B, 2)){ts});");
+    let _ = writeln!(
+        text,
+        "plant = ss(A, B, C, zeros(size(C, 1), size(B, 2)){ts});"
+    );
     if design.estimator.is_some() {
-        let _ = writeln!(text, "controller = ss(Ac, Bc, Cc, Dc{ts}); % from y to u, the sign of the feedback included");
+        let _ = writeln!(
+            text,
+            "controller = ss(Ac, Bc, Cc, Dc{ts}); % from y to u, the sign of the feedback included"
+        );
     }
     text
 }

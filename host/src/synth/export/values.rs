@@ -13,11 +13,19 @@ pub(super) fn list<T: Display>(values: impl IntoIterator<Item = T>) -> String {
 /// What the head of a file says, a line each.
 pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<String> {
     let law = &fixed.law;
-    let names = |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));
+    let names =
+        |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));
     let plain = |values: &[f64]| list(values.iter());
     vec![
-        format!("Gains of `{}`: u = sat(u0 - K (x - x0)) in fixed point.", design.model),
-        format!("Made by handstand {} from {}", env!("CARGO_PKG_VERSION"), made.model),
+        format!(
+            "Gains of `{}`: u = sat(u0 - K (x - x0)) in fixed point.",
+            design.model
+        ),
+        format!(
+            "Made by handstand {} from {}",
+            env!("CARGO_PKG_VERSION"),
+            made.model
+        ),
         format!("  sha256 {}", made.sha256),
         format!("  $ {}", made.command),
         format!("States x: {}", names(&design.states)),
@@ -28,7 +36,13 @@ pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<Str
         format!("  limits: {}", plain(&fixed.ranges.input)),
         format!(
             "No states whatever overflow the 32-bit sum: {} bits of margin.",
-            list(fixed.loss.margin_bits.iter().map(|bits| format!("{bits:.2}")))
+            list(
+                fixed
+                    .loss
+                    .margin_bits
+                    .iter()
+                    .map(|bits| format!("{bits:.2}"))
+            )
         ),
         format!(
             "Spectral radius of the loop: {:.6} as designed, {:.6} with these gains.",

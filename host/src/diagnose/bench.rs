@@ -1,0 +1,152 @@
+//! What every trial is measured with: the motions cut for the search and for the judgement, the base model fitted,
+//! the candidates.
+
+use super::candidate::{Candidate, candidates};
+use super::findings::Remainder;
+use super::horizon::{longest_useful, search_horizon};
+use super::options::DiagnoseOptions;
+use super::progress::{Progress, Steps};
+use super::remainder::remainder;
+use super::restart::{FEW, base_fit};
+use super::score::AT_FLOOR;
+use super::search::planned_steps;
+use super::trial::Trial;
+use crate::effects::{CONTROLS, SHAM};
+use crate::identify::{Data, Horizon, longest_stable};
+use crate::log::Motion;
+use crate::model::Model;
+
+/// Iterations of a finalist.
+pub(super) const FINISH: usize = 25;
+/// Iterations over the judging horizon, from what the windows found.
+const JUDGE: usize = 12;
+
+/// What every trial is measured with.
+pub(super) struct Bench<'a> {
+    /// Training motions in short windows, to search on.
+    pub search: Data,
+    /// Training motions over the judging horizon.
+    pub training: Data,
+    /// Held-out motions over the judging horizon.
+    pub held_out: Option<Data>,
+    pub base: Trial,
+    pub horizon: Horizon,
+    /// How long the windows of `search` are.
+    pub search_horizon: Horizon,
+    pub shams: Vec<Trial>,
+    pub candidates: Vec<Candidate>,
+    /// The model as it came.
+    pub start: Model,
+    pub seed: u64,
+    /// Most effects named together.
+    pub most_effects: usize,
+    pub steps: Steps<'a>,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(
+        model: &Model,
+        training: Vec<Motion>,
+        held_out: Vec<Motion>,
+        options: &DiagnoseOptions,
+        progress: &'a (dyn Fn(Progress) + Sync),
+    ) -> Bench<'a> {
+        let mut all = training.clone();
+        all.extend(held_out.iter().cloned());
+        let candidates = candidates(model, &all, &options.without);
+        // Without motions to judge by, two effects together can't be told from luck.
+        let most_effects = if held_out.is_empty() {
+            1
+        } else {
+            options.most_effects
+        };
+        let steps = Steps::new(planned_steps(candidates.len(), most_effects), progress);
+        let whole = Data::new(model, training, Horizon::Whole);
+        let longest = options
+            .horizon
+            .unwrap_or_else(|| longest_stable(model, &whole));
+        let few = held_out.is_empty() && whole.samples() < FEW;
+        let search_horizon = search_horizon(&whole, longest, few);
+        let search = whole.recut(search_horizon);
+        let mut base = Trial::new(Vec::new(), base_fit(model, &search, few, options.seed));
+        let (horizon, training) = match options.horizon {
+            Some(horizon) => (horizon, whole.recut(horizon)),
+            None => longest_useful(&base.search.model, &whole, longest),
+        };
+        let held_out = (!held_out.is_empty()).then(|| Data {
+            sigma_rad: training.sigma_rad.clone(),
+            ..Data::new(model, held_out, horizon)
+        });
+        base.judge(&training, held_out.as_ref(), FINISH);
+        let mut bench = Bench {
+            search,
+            training,
+            held_out,
+            base,
+            horizon,
+            search_horizon,
+            shams: Vec::new(),
+            candidates,
+            start: model.clone(),
+            seed: options.seed,
+            most_effects,
+            steps,
+        };
+        bench.shams = bench.try_shams(model.link_count());
+        bench
+    }
+
+    /// What a trial leaves to explain: in short windows, or where those show nothing, over the judging horizon.
+    ///
+    /// A large remainder is best told in windows, over which the simulation can be taken for linear; a small one
+    /// shows only over the longer horizon.
+    pub fn remainder(&self, trial: &Trial) -> Option<Remainder> {
+        let held_out = self.held_out.as_ref()?;
+        let unseen = held_out.recut(self.search_horizon);
+        remainder(&trial.search, &self.search, &unseen, self.seed).or_else(|| {
+            let judged = trial.judged.as_ref()?;
+            remainder(&judged.fit, &self.training, held_out, self.seed)
+        })
+    }
+
+    /// Whether a trial leaves nothing but noise.
+    pub fn at_floor(&self, trial: &Trial) -> bool {
+        trial.judged.as_ref().is_some_and(|judged| {
+            judged.training.rms() < AT_FLOOR
+                && judged
+                    .held_out
+                    .as_ref()
+                    .is_none_or(|score| score.rms() < AT_FLOOR)
+        })
+    }
+
+    /// Judges a trial over the judging horizon.
+    pub fn judge(&self, trial: &mut Trial) {
+        trial.judge(&self.training, self.held_out.as_ref(), JUDGE);
+    }
+
+    /// Few samples and nothing held out: simulations are cheap, and a single motion has more false valleys.
+    pub fn small(&self) -> bool {
+        self.held_out.is_none() && self.search.samples() < FEW
+    }
+
+    fn try_shams(&self, joints: usize) -> Vec<Trial> {
+        let shams: Vec<Candidate> = CONTROLS
+            .iter()
+            .filter(|effect| effect.card().id == SHAM)
+            .flat_map(|&effect| {
+                (0..joints).map(move |joint| Candidate {
+                    effect,
+                    joint: Some(joint),
+                })
+            })
+            .collect();
+        self.first_look(&self.base, &shams, 1)
+            .into_iter()
+            .map(|mut trial| {
+                self.judge(&mut trial);
+                trial
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,27 @@
+//! What a diagnosis may be told.
+
+use crate::identify::Horizon;
+
+/// How to diagnose.
+#[derive(Debug, Clone)]
+pub struct DiagnoseOptions {
+    /// Seed of the bootstrap.
+    pub seed: u64,
+    /// Effects left out of the library.
+    pub without: Vec<String>,
+    /// Window length; chosen from the data when absent.
+    pub horizon: Option<Horizon>,
+    /// Most effects named together.
+    pub most_effects: usize,
+}
+
+impl Default for DiagnoseOptions {
+    fn default() -> Self {
+        DiagnoseOptions {
+            seed: 0,
+            without: Vec::new(),
+            horizon: None,
+            most_effects: 3,
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! How far a diagnosis has come, in steps of about the same length.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How far a diagnosis has come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    /// Steps done.
+    pub done: usize,
+    /// Steps in all, unless the search ends early.
+    pub total: usize,
+    /// What is being done.
+    pub what: &'static str,
+}
+
+/// What is done, one after the other.
+const STAGES: [&str; 5] = [
+    "the model as it is",
+    "every effect alone",
+    "pairs and swaps",
+    "larger sets",
+    "what remains",
+];
+/// The stage of sets of one effect; the stage of pairs is 2.
+pub(super) const ALONE: usize = 1;
+/// The stage of three effects and more.
+pub(super) const LARGER: usize = 3;
+/// The stage of what remains.
+pub(super) const REMAINS: usize = 4;
+
+/// Counts the fits of a diagnosis, which run side by side, and tells who listens.
+pub(super) struct Steps<'a> {
+    heard: &'a (dyn Fn(Progress) + Sync),
+    done: AtomicUsize,
+    stage: AtomicUsize,
+    total: usize,
+}
+
+impl<'a> Steps<'a> {
+    /// None done yet of `total`.
+    pub fn new(total: usize, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        let steps = Steps {
+            heard,
+            done: AtomicUsize::new(0),
+            stage: AtomicUsize::new(0),
+            total,
+        };
+        steps.step(0);
+        steps
+    }
+
+    /// `count` more steps are done.
+    pub fn step(&self, count: usize) {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
+        let stage = self.stage.load(Ordering::Relaxed).min(STAGES.len() - 1);
+        (self.heard)(Progress {
+            done: done.min(self.total),
+            total: self.total,
+            what: STAGES[stage],
+        });
+    }
+
+    /// A stage begins, with `done` steps done or found to be needless.
+    pub fn begin(&self, stage: usize, done: usize) {
+        self.stage.store(stage, Ordering::Relaxed);
+        self.done.store(done, Ordering::Relaxed);
+        self.step(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn steps_never_pass_the_total() {
+        let told = Mutex::new(Vec::new());
+        let heard = |progress: Progress| told.lock().unwrap().push((progress.done, progress.what));
+        let steps = Steps::new(4, &heard);
+        steps.step(3);
+        steps.step(3);
+        steps.begin(REMAINS, 4);
+        let told = told.lock().unwrap();
+        let [model, remains] = [STAGES[0], STAGES[REMAINS]];
+        assert_eq!(*told, [(0, model), (3, model), (4, model), (4, remains)]);
+    }
+}
