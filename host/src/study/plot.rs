@@ -31,7 +31,7 @@ pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
     let mut survival = curve(ran, "", |f| Some(100.0 * f.survival));
     survival.intervals = ran.levels.iter().map(percent).collect();
     panels(
-        &format!("{robot}: {} against {}", "what the loop bears", card.title),
+        &format!("{robot}: sweep of the {}", card.title),
         &[
             panel("runs that stand, %, with 95 % interval", vec![survival]),
             panel(

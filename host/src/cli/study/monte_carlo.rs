@@ -4,7 +4,7 @@
 //! it was. The rows are the same for any number of threads and shards. A whole study ends in `runs.csv`,
 //! `summary.json` and `survival.svg`; a shard leaves its journal for `handstand study merge`.
 //!
-//! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `runs`.
+//! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
 use super::super::{Outcome, talk::Talk};
 use handstand::study::{
