@@ -11,6 +11,7 @@ mod demo;
 mod diagnose;
 mod effects;
 mod fit;
+mod fitting;
 mod gains;
 mod identify;
 mod input;

@@ -13,6 +13,7 @@ pub mod export;
 mod fixed_law;
 mod gains;
 mod linearise;
+mod qr;
 mod quantise;
 mod reach;
 mod refusal;
