@@ -14,6 +14,7 @@
 
 use super::talk::Talk;
 use super::{Outcome, input, show};
+use handstand::number::exact;
 use handstand::controllers::{SHARE, Uncertain, WEIGHTS, robust_gain};
 use handstand::synth::{Discrete, dlqr, lost_share, spectral_radius, upright};
 use handstand::{Error, Model, Result};
@@ -121,7 +122,7 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         ("DLQR, Q = 100 I, R = I".to_string(), paper(100.0)?),
         ("DLQR, Q = I, R = I".to_string(), paper(1.0)?),
         (
-            format!("multi-model, {} % of each mass", show::number(args.design)),
+            format!("multi-model, {} % of each mass", exact(args.design)),
             multi,
         ),
     ];
@@ -184,7 +185,7 @@ fn text(args: &Args, rows: &[Row]) -> String {
         format!(
             "{} robots, each mass within {} % of the model's:",
             args.draws,
-            show::number(args.masses)
+            exact(args.masses)
         ),
         table.to_string(),
         String::new(),
