@@ -14,8 +14,8 @@
 
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::number::exact;
 use handstand::controllers::{SHARE, Uncertain, WEIGHTS, robust_gain};
+use handstand::number::exact;
 use handstand::synth::{Discrete, dlqr, lost_share, spectral_radius, upright};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;
