@@ -58,6 +58,22 @@ fn effects() {
 }
 
 #[test]
+fn controllers() {
+    golden(
+        &bench(),
+        "controllers",
+        &[
+            "controllers",
+            "controllers arm.toml --controller pid",
+            "controllers arm.toml --condition rain",
+            "controllers arm.toml --seconds 1",
+            "controllers arm.toml",
+            "robust arm.toml --masses 100",
+        ],
+    );
+}
+
+#[test]
 fn log_check() {
     golden(
         &bench(),

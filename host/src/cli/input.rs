@@ -19,6 +19,14 @@ pub fn horizon(text: &str) -> Result<Horizon, String> {
     }
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("give a number above 0".to_string()),
+    }
+}
+
 /// An error and its remedy in one line, as argument errors are told.
 pub fn said(error: Error) -> String {
     match error.remedy() {

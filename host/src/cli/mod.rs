@@ -7,6 +7,8 @@
 mod add;
 mod challenge;
 mod compare;
+mod controllers;
+mod delays;
 mod demo;
 mod diagnose;
 mod effects;
@@ -21,6 +23,7 @@ mod map;
 mod name;
 mod page;
 mod paper;
+mod robust;
 mod show;
 mod signals;
 mod study;
@@ -91,6 +94,12 @@ pub enum Command {
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
+    /// Try controllers under everything the robot does to them
+    Controllers(controllers::Args),
+    /// Find the longest delay each controller survives
+    Delays(delays::Args),
+    /// See what gains make of robots whose masses are not the model's
+    Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
 }
@@ -115,6 +124,9 @@ impl Command {
             Command::View(args) => view::run(args, talk),
             Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
+            Command::Controllers(args) => controllers::run(args, talk),
+            Command::Delays(args) => delays::run(args, talk),
+            Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
     }

@@ -5,13 +5,16 @@ mod covariance;
 mod data;
 mod fit;
 mod horizon;
+mod jacobian;
 mod node;
 mod noise;
 mod normal;
 mod profile;
 mod projector;
 mod residual;
+mod search;
 mod staged;
+mod step;
 mod student;
 
 pub use covariance::{Interval, intervals};

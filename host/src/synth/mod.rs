@@ -2,7 +2,8 @@
 //!
 //! `equations` -> `rest` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
 //! `zeros` look at plants; `quantise` -> `fixed_law` is what
-//! ships; `design` is all of it as one value, `export` writes that.
+//! ships; `design` is all of it as one value, `export` writes that;
+//! `robust` makes one gain for many plants.
 
 mod design;
 mod discretise;
@@ -21,6 +22,7 @@ mod refusal;
 mod request;
 mod rest;
 mod riccati;
+mod robust;
 mod signal;
 mod system;
 mod weight;
@@ -40,6 +42,7 @@ pub use quantise::{Format, Ranges, quantise};
 pub use reach::{Reach, controllability, observability};
 pub use request::{Request, Sensors, Time};
 pub use rest::{Rest, input_delay_s};
+pub use robust::{grown, lost_share, multi_model, spectral_radius};
 pub use signal::Signal;
 pub use system::{Continuous, Discrete};
 pub use weight::Weight;
