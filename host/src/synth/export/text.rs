@@ -1,8 +1,7 @@
 //! A design for people.
 
 use crate::number::short;
-use crate::synth::{Design, Estimation, Fixed};
-use crate::synth::{Mode, Reach};
+use crate::synth::{Design, Estimation, Fixed, Mode, Reach};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 
