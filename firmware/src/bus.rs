@@ -3,7 +3,9 @@
 use crate::board::Board;
 use crate::design::{BETWEEN_BYTES_US, FIRST_BYTE_US};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
-use handstand_shared::dynamixel::{BROADCAST, ErrorBits, OVERHEAD, Packet, Request};
+use handstand_shared::dynamixel::{
+    BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, read_packet,
+};
 use handstand_shared::message::Statistics;
 use handstand_shared::packed::SERVOS;
 use handstand_shared::raw::ReturnDelay;
@@ -26,42 +28,40 @@ pub fn read<B: Board, const N: usize>(
     address: u8,
     delay: ReturnDelay,
 ) -> Result<([u8; N], ErrorBits), Failure> {
-    let mut out = [0; 8];
-    let request = Request::Read {
-        address,
-        count: N as u8,
-    };
-    let length = request.emit(id, &mut out).unwrap_or(0);
     board.bus_flush();
-    board.bus_send(out.get(..length).unwrap_or(&[]));
+    board.bus_send(&read_packet(id, address, N as u8));
     answer(board, id, delay)
 }
 
+/// Sums up while it waits for bytes, so that little is left to do after the last one.
 fn answer<B: Board, const N: usize>(
     board: &mut B,
     id: u8,
     delay: ReturnDelay,
 ) -> Result<([u8; N], ErrorBits), Failure> {
-    // The longest answer asked for has 8 bytes of registers.
-    const { assert!(N <= 8) };
-    let mut bytes = [0; OVERHEAD + 8];
-    let whole = bytes.get_mut(..OVERHEAD + N).ok_or(Failure::Garbled)?;
-    let mut within_us = delay.to_us().saturating_add(FIRST_BYTE_US);
-    let mut failure = Failure::Silent;
-    for slot in whole.iter_mut() {
-        *slot = board.bus_receive(within_us).ok_or(failure)?;
-        within_us = BETWEEN_BYTES_US;
-        failure = Failure::Garbled;
+    let first_us = delay.to_us().saturating_add(FIRST_BYTE_US);
+    let mut sum = board.bus_receive(first_us).ok_or(Failure::Silent)?;
+    let mut next = || {
+        let byte = board
+            .bus_receive(BETWEEN_BYTES_US)
+            .ok_or(Failure::Garbled)?;
+        sum = sum.wrapping_add(byte);
+        Ok(byte)
+    };
+    let header = next()?;
+    let (from, length, error) = (next()?, next()?, next()?);
+    let mut data = [0; N];
+    for slot in &mut data {
+        *slot = next()?;
     }
-    let packet = Packet::new(whole).map_err(|_| Failure::Garbled)?;
-    if packet.id() != id {
-        return Err(Failure::Stranger);
+    next()?;
+    if sum != WHOLE_SUM || header != 0xff || usize::from(length) != N + 2 {
+        return Err(Failure::Garbled);
     }
-    let data = packet.parameters().try_into();
-    Ok((
-        data.map_err(|_| Failure::Garbled)?,
-        ErrorBits(packet.code()),
-    ))
+    match from == id {
+        true => Ok((data, ErrorBits(error))),
+        false => Err(Failure::Stranger),
+    }
 }
 
 /// Counts an answer or the lack of it.

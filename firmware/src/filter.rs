@@ -99,7 +99,7 @@ mod tests {
         for byte in [0xff, 0xff, 1, 200] {
             filter.push(byte);
         }
-        assert!((0..=GIVEN_UP).map(|_| filter.tick()).any(|stale| stale));
+        assert!((0..=GIVEN_UP).any(|_| filter.tick()));
         assert_eq!(filter.push(0), Way::Frame);
     }
 }

@@ -102,71 +102,38 @@ impl Servos {
     /// Reads all positions, and the slow channels of two servos in turn. A silent servo costs its own time only.
     pub fn read<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics, started: u16) {
         self.begin_round();
-        let slow_from = self.slow_from;
-        let slow_next = self.after(slow_from);
-        let mut errors = ErrorBits(0);
-        for place in 0..self.count {
-            let Some(mut servo) = self.servos.get(usize::from(place)).copied() else {
-                break;
-            };
-            let turn = match place {
-                _ if place == slow_from => Some(0),
-                _ if place == slow_next => Some(1),
-                _ => None,
-            };
-            let reading = match turn {
-                Some(turn) => self.read_slow(board, &mut servo, turn, statistics, started),
-                None => read(board, &servo, statistics, started)
-                    .map(|(position, error)| (Position(u16::from_le_bytes(position)), error)),
+        let slow_next = self.after(self.slow_from);
+        let mut errors = 0;
+        let all = self.servos.iter_mut().zip(&mut statistics.missed);
+        // The counters and the rest of the statistics are changed in turn.
+        let mut counted = Statistics::default();
+        for (place, (servo, missed)) in (0..self.count).zip(all) {
+            let reading = if place == self.slow_from || place == slow_next {
+                let turn = usize::from(place != self.slow_from);
+                let reading = read::<B, 8>(board, servo, &mut counted, started);
+                let slow = reading.map_or(SILENT, slow_of);
+                if reading.is_ok() {
+                    self.lowest = self.lowest.min(Supply(slow.supply));
+                }
+                if let Some(slot) = self.slow.get_mut(turn) {
+                    *slot = slow;
+                }
+                reading.map(|([low, high, ..], error)| ([low, high], error))
+            } else {
+                read::<B, 2>(board, servo, &mut counted, started)
             };
             servo.present = reading.is_ok();
             match reading {
                 Ok((position, error)) => {
-                    servo.position = Position(position.0.min(Position::MAX.0));
-                    if servo.armed {
-                        errors = errors.with(error);
-                    }
+                    servo.position = Position(u16::from_le_bytes(position) & Position::MAX.0);
+                    errors |= if servo.armed { error.0 } else { 0 };
                 }
-                Err(_) => {
-                    if let Some(missed) = statistics.missed.get_mut(usize::from(place)) {
-                        *missed = missed.saturating_add(1);
-                    }
-                }
-            }
-            if let Some(slot) = self.servos.get_mut(usize::from(place)) {
-                *slot = servo;
+                Err(_) => *missed = missed.saturating_add(1),
             }
         }
-        self.errors = errors;
+        self.errors = ErrorBits(errors);
+        add(statistics, &counted);
         self.ask_delay(board, statistics);
-    }
-
-    fn read_slow<B: Board>(
-        &mut self,
-        board: &mut B,
-        servo: &mut Servo,
-        turn: usize,
-        statistics: &mut Statistics,
-        started: u16,
-    ) -> Result<(Position, ErrorBits), Failure> {
-        let reading = read::<B, 8>(board, servo, statistics, started);
-        let slow = match reading {
-            Ok(([_, _, s0, s1, l0, l1, supply, temperature], error)) => {
-                self.lowest = self.lowest.min(Supply(supply));
-                Slow {
-                    error: error.0,
-                    speed: [s0, s1],
-                    load: [l0, l1],
-                    supply,
-                    temperature,
-                }
-            }
-            Err(_) => SILENT,
-        };
-        if let Some(slot) = self.slow.get_mut(turn) {
-            *slot = slow;
-        }
-        reading.map(|([low, high, ..], error)| (Position(u16::from_le_bytes([low, high])), error))
     }
 
     /// Moves on to the next two servos; at the end of a round the lowest supply of it is known.
@@ -249,6 +216,25 @@ impl Servos {
         let armed = self.all().iter().filter(|servo| servo.armed);
         armed.map(move |servo| (servo.id, value(servo)))
     }
+}
+
+fn slow_of(([_, _, s0, s1, l0, l1, supply, temperature], error): ([u8; 8], ErrorBits)) -> Slow {
+    Slow {
+        error: error.0,
+        speed: [s0, s1],
+        load: [l0, l1],
+        supply,
+        temperature,
+    }
+}
+
+/// Adds one tick's counts.
+fn add(to: &mut Statistics, tick: &Statistics) {
+    to.answers = to.answers.saturating_add(tick.answers);
+    to.timeouts = to.timeouts.saturating_add(tick.timeouts);
+    to.garbled = to.garbled.saturating_add(tick.garbled);
+    to.strangers = to.strangers.saturating_add(tick.strangers);
+    to.retries = to.retries.saturating_add(tick.retries);
 }
 
 /// Reads from the position on; once more if the servo answered in the last tick and there is time.

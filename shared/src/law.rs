@@ -1,23 +1,50 @@
 //! The control law: u = sat(u0 - K (x - x0)), with one rounding and one saturation.
 
 use crate::fixed::{mac, saturate, shift_right};
-use crate::gains::GainTable;
+use crate::gains::{GainTable, Row};
+
+#[cfg(target_arch = "avr")]
+mod avr;
 
 /// The inputs for the states `x`, both in the table's steps.
 ///
 /// Exact up to its one rounding for every `x`, if the table is safe ([`GainTable::is_safe`]).
 #[inline]
 pub fn control<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i16; M] {
+    let mut u = [0; M];
+    let sums = sums(table, x);
+    for ((u, row), sum) in u.iter_mut().zip(&table.rows).zip(sums) {
+        *u = finish(sum, row);
+    }
+    u
+}
+
+/// The one rounding and the one saturation.
+#[inline]
+fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
+    match row.shift {
+        // What is left has 16 bits, and an 8-bit machine compares it in half the time.
+        16 => ((sum >> 16) as i16).min(row.high).max(row.low),
+        shift => saturate(shift_right(sum, shift), row.low, row.high),
+    }
+}
+
+/// bias - K (x - x0), wrapping.
+#[inline]
+fn sums<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i32; M] {
+    #[cfg(target_arch = "avr")]
+    if let Some(sums) = avr::fast(table, x) {
+        return sums;
+    }
     let mut departure = [0; N];
     for ((departure, x), x0) in departure.iter_mut().zip(x).zip(&table.x0) {
         *departure = x.saturating_sub(*x0);
     }
-    let mut u = [0; M];
-    for (u, row) in u.iter_mut().zip(&table.rows) {
-        let sum = row.bias.wrapping_sub(mac(&row.k, &departure));
-        *u = saturate(shift_right(sum, row.shift), row.low, row.high);
+    let mut sums = [0; M];
+    for (sum, row) in sums.iter_mut().zip(&table.rows) {
+        *sum = row.bias.wrapping_sub(mac(&row.k, &departure));
     }
-    u
+    sums
 }
 
 #[cfg(test)]

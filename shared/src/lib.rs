@@ -3,7 +3,9 @@
 //! Read downward only: `raw` -> `control_table`; `dynamixel`; `crc` -> `frame`; `packed` -> `message`; `fixed` -> `gains` -> `law`;
 //! `velocity`.
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
+#![cfg_attr(target_arch = "avr", deny(unsafe_code))]
+#![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
 
 pub mod control_table;
 pub mod crc;

@@ -13,6 +13,7 @@ fn main() {
         return;
     }
     println!("cargo::rustc-cfg=simavr");
+    println!("cargo::metadata=available=1");
     cc::Build::new()
         .file("src/shim.c")
         .include("/usr/include/simavr")

@@ -142,11 +142,9 @@ impl App {
             Some(right) if right != token => return Err(Refusal::Token),
             Some(_) => {}
         }
-        if self.servos.supply.is_none_or(|supply| supply < LOW_SUPPLY) {
-            return Err(Refusal::Supply);
-        }
         match self.state {
             State::Stream(Drive::Off) => {
+                self.has_supply()?;
                 self.wish = Wish::Stay;
                 self.low = (0, self.servos.rounds);
                 self.servos.arm(board);
@@ -157,6 +155,13 @@ impl App {
             State::Stream(Drive::On | Drive::Soft { .. })
             | State::Balance(Drive::On | Drive::Soft { .. }) => Err(Refusal::Armed),
             State::Bridge | State::Fault(_) => Err(Refusal::State),
+        }
+    }
+
+    fn has_supply(&self) -> Result<(), Refusal> {
+        match self.servos.supply {
+            Some(supply) if supply >= LOW_SUPPLY => Ok(()),
+            Some(_) | None => Err(Refusal::Supply),
         }
     }
 

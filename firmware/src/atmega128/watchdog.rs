@@ -16,6 +16,8 @@ pub fn start(r: &Peripherals) {
         r.WDT.wdtcr().write(|w| w.bits(CHANGE | ENABLE));
         r.WDT.wdtcr().write(|w| w.bits(ENABLE | AFTER_30_MS));
     }
+    // The new time counts from here.
+    avr_device::asm::wdr();
 }
 
 /// Reads and clears the reset flags.

@@ -135,9 +135,10 @@ impl Servo {
         self.get(TORQUE_ENABLE) != 0
     }
 
-    /// When within each millisecond its motor interrupt comes, ns: another moment in each servo.
+    /// When within each millisecond its motor interrupt comes, ns: in each servo at another moment, scattered by a
+    /// hash, for servos started together would all stall a regular reader alike.
     pub(super) fn stall_phase_ns(&self) -> u64 {
-        u64::from(self.id()) * 377_123 % 1_000_000
+        ((u64::from(self.id()) * 2_654_435_761) >> 8) % 1_000_000
     }
 
     /// What drives its motor now.

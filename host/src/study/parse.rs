@@ -6,7 +6,10 @@ use super::uncertain::{Distribution, Place, QUANTITIES, Uncertain};
 use crate::closed_loop::{Conditions, Gyro, Velocity};
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::model::reader::{Limits, Source, Table, suggest};
+use crate::model::limits::Limits;
+use crate::model::reader::Table;
+use crate::model::source::Source;
+use crate::model::suggest::suggest;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 

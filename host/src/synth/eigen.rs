@@ -1,26 +1,19 @@
 //! Eigenvalues of a general matrix, and the distance of modes from those that an input or output can reach.
 
+use super::qr::eigenvalues;
 use crate::error::{Error, Result};
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
-
-/// Steps of the QR algorithm per row; it takes two or three.
-const STEPS_PER_ROW: usize = 100;
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Eigenvalues, those with the largest real part first.
 ///
 /// # Errors
 /// Entries that are no numbers.
 pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
-    let mut balanced = a.clone();
     if a.iter().all(|value| value.is_finite()) {
+        let mut balanced = a.clone();
         balance_parlett_reinsch(&mut balanced);
-        let steps = STEPS_PER_ROW * a.nrows().max(10);
-        if a.is_empty() {
-            return Ok(Vec::new());
-        }
-        if let Some(schur) = Schur::try_new(balanced, f64::EPSILON, steps) {
-            let mut poles: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+        if let Some(mut poles) = eigenvalues(balanced) {
             poles.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
             return Ok(poles);
         }

@@ -10,13 +10,15 @@ mod status;
 
 pub use packet::{Packet, PacketError};
 pub use parser::Parser;
-pub use request::{Instruction, Request, RequestError};
+pub use request::{Instruction, Request, RequestError, read_packet};
 pub use status::{ErrorBits, Status};
 
 /// Every servo listens to this id; none answers it.
 pub const BROADCAST: u8 = 254;
 /// Bytes of a packet that are not parameters.
 pub const OVERHEAD: usize = 6;
+/// All bytes of a sound packet, the header included, sum up to this.
+pub const WHOLE_SUM: u8 = 0xfd;
 /// The longest packet there can be.
 pub const MAX_PACKET: usize = 4 + 255;
 

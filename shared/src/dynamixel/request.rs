@@ -136,6 +136,25 @@ impl<'a> Request<'a> {
     }
 }
 
+/// The packet of a READ, which is sent most: built without loops, for the time of a slow processor.
+pub const fn read_packet(id: u8, address: u8, count: u8) -> [u8; 8] {
+    let sum = id
+        .wrapping_add(4)
+        .wrapping_add(Instruction::Read as u8)
+        .wrapping_add(address)
+        .wrapping_add(count);
+    [
+        0xff,
+        0xff,
+        id,
+        4,
+        Instruction::Read as u8,
+        address,
+        count,
+        !sum,
+    ]
+}
+
 /// Whether the blocks of a SYNC_WRITE are all of id and `width` bytes. Counted, for the AVR divides slowly.
 fn is_whole(blocks: &[u8], width: u8) -> bool {
     let block = usize::from(width) + 1;
@@ -221,6 +240,8 @@ mod tests {
     proptest! {
         #[test]
         fn every_request_survives(id in 0..=BROADCAST, address: u8, count in 1u8.., data in proptest::collection::vec(any::<u8>(), 1..50)) {
+            let (out, length) = bytes(id, Request::Read { address, count });
+            prop_assert_eq!(&out[..length], read_packet(id, address, count));
             let width = 4;
             let blocks = &data[..data.len() / 5 * 5];
             for request in [

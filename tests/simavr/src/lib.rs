@@ -10,9 +10,13 @@ pub const AVAILABLE: bool = cfg!(simavr);
 #[cfg(simavr)]
 mod core;
 #[cfg(simavr)]
+mod law;
+#[cfg(simavr)]
 mod rig;
 
 #[cfg(simavr)]
 pub use core::{Core, Event};
+#[cfg(simavr)]
+pub use law::Law;
 #[cfg(simavr)]
 pub use rig::{Rig, Seen};

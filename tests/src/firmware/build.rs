@@ -13,6 +13,8 @@ pub struct Built {
     pub hex: PathBuf,
     /// For the CM-5's boot loader.
     pub bin: PathBuf,
+    /// The control law alone, for the bench.
+    pub law: PathBuf,
 }
 
 impl Built {
@@ -22,6 +24,7 @@ impl Built {
             elf: file("elf"),
             hex: file("hex"),
             bin: file("bin"),
+            law: folder.join("law.elf"),
         }
     }
 }
@@ -49,8 +52,7 @@ pub fn build(toolchain: &Toolchain) -> Result<Built, String> {
         "--locked",
         "--package",
         "handstand-firmware",
-        "--bin",
-        "handstand-firmware",
+        "--bins",
         "--profile",
         "avr",
         "--target",

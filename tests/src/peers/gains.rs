@@ -1,16 +1,15 @@
 //! Gains by the library on the tasks of `tests/peers/dlqr.py`.
 
+use super::median_seconds;
 use handstand::Model;
 use handstand::model::{Angles, Drive};
 use handstand::synth::{Discrete, dlqr, linearise, upright, zoh};
 use nalgebra::DMatrix;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-/// Calls to a measurement, and measurements of which the median counts.
-const CALLS: usize = 20;
-const REPEATS: usize = 15;
+/// Calls to a measurement, times the square of the number of states.
+const CALLS: usize = 5000;
 
 /// Matrices and gains of a chain of 30 links, to 60 digits.
 pub fn chain_fixture() -> PathBuf {
@@ -22,24 +21,22 @@ pub fn dlqr_seconds(links: usize) -> f64 {
     let plant = chain(links);
     let (n, m) = plant.b.shape();
     let (q, r) = (DMatrix::identity(n, n), DMatrix::identity(m, m));
-    let mut times: Vec<f64> = (0..REPEATS)
-        .map(|_| {
-            let start = Instant::now();
-            for _ in 0..CALLS {
-                let _ = black_box(dlqr(black_box(&plant), &q, &r));
-            }
-            start.elapsed().as_secs_f64() / CALLS as f64
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[REPEATS / 2]
+    let calls = (CALLS / (n * n)).max(3);
+    let seconds = median_seconds(15, || {
+        for _ in 0..calls {
+            let _ = black_box(dlqr(black_box(&plant), &q, &r));
+        }
+    });
+    seconds / calls as f64
 }
 
 /// How far the gains of 60 states are from 60 digits, relative, in their largest entry.
 pub fn dlqr_off() -> Option<f64> {
     let bytes = std::fs::read(chain_fixture()).ok()?;
     let values = bytes.chunks_exact(8);
-    let values: Vec<f64> = values.map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default())).collect();
+    let values: Vec<f64> = values
+        .map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default()))
+        .collect();
     let (a, rest) = values.split_at_checked(60 * 60)?;
     let (b, exact) = rest.split_at_checked(60 * 29)?;
     let plant = Discrete {
@@ -50,7 +47,12 @@ pub fn dlqr_off() -> Option<f64> {
         delayed_inputs: 0,
     };
     let exact = DMatrix::from_row_slice(29, 60, exact);
-    let gains = dlqr(&plant, &DMatrix::identity(60, 60), &DMatrix::identity(29, 29)).ok()?;
+    let gains = dlqr(
+        &plant,
+        &DMatrix::identity(60, 60),
+        &DMatrix::identity(29, 29),
+    )
+    .ok()?;
     Some((gains.k - &exact).amax() / exact.amax())
 }
 

@@ -1,11 +1,13 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod bench_firmware;
 mod firmware;
 mod hidden;
 mod install;
 mod peers;
 mod program;
 mod real;
+mod scatter;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -29,6 +31,8 @@ enum Chore {
     Real(real::Args),
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(firmware::Args),
+    /// Measure the firmware: cycles, times, losses and frames
+    BenchFirmware(bench_firmware::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -41,6 +45,7 @@ impl Chores {
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
             Chore::Firmware(args) => firmware::run(args),
+            Chore::BenchFirmware(args) => bench_firmware::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

@@ -5,7 +5,10 @@
 
 use super::program::run as succeeds;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand_tests::peers::{Arm, angles_after, farthest_off, forward_seconds, runs_per_second};
+use handstand_tests::peers::{
+    Arm, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off, forward_seconds,
+    runs_per_second,
+};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -31,6 +34,8 @@ enum Task {
     Dynamics,
     /// Runs of the closed loop
     ClosedLoop,
+    /// Gains from Riccati equations
+    Gains,
     /// Fits and diagnoses of a servo arm's logs
     Fits,
 }
@@ -86,6 +91,18 @@ impl Bench {
         (venv.join("bin/python").is_file()
             || succeeds(Command::new("python3").args(["-m", "venv"]).arg(&venv)))
             && succeeds(&mut pip)
+            && self.install_drake()
+    }
+
+    /// Drake has no package for every system: its rows are left out there.
+    fn install_drake(&self) -> bool {
+        let mut pip = Command::new(self.folder.join("venv/bin/pip"));
+        pip.args(["install", "--quiet", "-r"])
+            .arg(self.scripts.join("requirements-drake.txt"));
+        if !succeeds(&mut pip) {
+            println!("Drake cannot be installed here: its rows are left out.");
+        }
+        true
     }
 
     /// Runs a script on files of the folder; its JSON.
@@ -117,6 +134,9 @@ impl Bench {
         }
         if wanted(Task::ClosedLoop) {
             self.closed_loop(rounds, table)?;
+        }
+        if wanted(Task::Gains) {
+            self.gains(rounds, table)?;
         }
         if wanted(Task::Fits) {
             self.fits(rounds, table)?;
@@ -245,6 +265,46 @@ impl Bench {
             ["", "", &format!("{off:.1e}"), "<= 1e-9"],
             off <= 1e-9,
         );
+        Ok(())
+    }
+}
+
+impl Bench {
+    /// DLQR syntheses: times by number of states, and how right the gains of 60 states are.
+    fn gains(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        let fixture = chain_fixture();
+        let fixture = fixture.to_string_lossy();
+        let targets = [
+            ("scipy", 6, 5.0),
+            ("drake", 6, 1.0),
+            ("scipy", 20, 1.0),
+            ("scipy", 60, 1.0),
+            ("drake", 60, 1.0),
+        ];
+        let mut pairs = vec![Vec::new(); targets.len()];
+        let mut theirs = Value::Null;
+        for _ in 0..rounds {
+            let before = targets.map(|(_, states, _)| dlqr_seconds(states / 2));
+            theirs = self.script("dlqr.py", &[&fixture])?;
+            for (at, (peer, states, _)) in targets.into_iter().enumerate() {
+                let ours = 0.5 * (before[at] + dlqr_seconds(states / 2));
+                pairs[at].push((ours, number(&theirs, &[peer, &states.to_string()])));
+            }
+        }
+        let there = |peer: &str| !theirs[peer].is_null();
+        for (pairs, (peer, states, target)) in pairs.iter().zip(targets) {
+            match there(peer) {
+                true => table.faster(&format!("DLQR, {states} states: {peer}"), pairs, target),
+                false => println!("{peer} is not installed: its rows are left out"),
+            }
+        }
+        let ours = dlqr_off().unwrap_or(f64::NAN);
+        for peer in ["scipy", "drake"].into_iter().filter(|peer| there(peer)) {
+            let off = number(&theirs, &[peer, "off"]);
+            let cells = [&format!("{ours:.1e}"), &format!("{off:.1e}"), "", "<= 1e-6"];
+            let name = format!("K of 60 states, off 60 digits: {peer}");
+            table.add(&name, cells.map(|cell: &str| cell), ours <= 1e-6);
+        }
         Ok(())
     }
 }

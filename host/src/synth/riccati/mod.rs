@@ -4,6 +4,7 @@
 //! precision; `newton` then corrects it against a residual taken in twice the digits (`twofold`), each correction
 //! being a Stein equation (`stein`). Of 60 states that is the difference between two digits of K and ten.
 
+mod dense;
 mod doubling;
 mod newton;
 mod problem;

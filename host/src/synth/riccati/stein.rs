@@ -1,5 +1,6 @@
 //! E = M'E M + F by doubling (Smith, SIAM Journal on Applied Mathematics 16 (1968) 198), and Lyapunov's equation.
 
+use super::dense::{product, transposed_product};
 use super::doubling::symmetrise;
 use nalgebra::DMatrix;
 
@@ -10,7 +11,7 @@ const MOST_DOUBLINGS: usize = 60;
 pub(super) fn stein(mut m: DMatrix<f64>, f: DMatrix<f64>, accuracy: f64) -> Option<DMatrix<f64>> {
     let mut e = f;
     for _ in 0..MOST_DOUBLINGS {
-        let more = m.transpose() * (&e * &m);
+        let more = transposed_product(&m, &product(&e, &m));
         e += &more;
         let change = more.amax();
         if !change.is_finite() {
@@ -21,7 +22,7 @@ pub(super) fn stein(mut m: DMatrix<f64>, f: DMatrix<f64>, accuracy: f64) -> Opti
             symmetrise(&mut e);
             return Some(e);
         }
-        m = &m * &m;
+        m = product(&m, &m);
         if !m.amax().is_finite() {
             return None;
         }
