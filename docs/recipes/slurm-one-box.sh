@@ -1,15 +1,15 @@
 #!/bin/sh
 # Slurm on this one machine, without systemd and munge: for trying job arrays, not for sharing a machine.
 #
-#   slurm-one-box.sh start FOLDER [NODES]    daemons as NODES nodes (1); all their files in FOLDER
+#   slurm-one-box.sh start FOLDER    all files of the daemons in FOLDER
 #   slurm-one-box.sh stop FOLDER
 #
-# Afterwards: export SLURM_CONF=FOLDER/slurm.conf. Needs Debian's slurm-wlm and root. Nobody is asked who they are
-# (auth/none), so everybody on the machine may do as root does: the ports are bound, and should stay, behind a firewall.
+# After `start`: export SLURM_CONF=FOLDER/slurm.conf. Needs Debian's slurm-wlm and root. Nobody is asked who they are
+# (auth/none): whoever reaches the ports can run anything as root. Keep them behind a firewall, and stop when done.
 set -eu
 
 usage() {
-    echo "usage: $0 start FOLDER [NODES] | stop FOLDER" >&2
+    echo "usage: $0 start FOLDER | stop FOLDER" >&2
     exit 2
 }
 
@@ -17,7 +17,6 @@ usage() {
 action=$1
 mkdir -p "$2"
 folder=$(cd "$2" && pwd)
-nodes=${3:-1}
 
 stop() {
     for file in "$folder"/*.pid; do
@@ -37,7 +36,7 @@ start() {
     port=${SLURM_ONE_BOX_PORT:-26817}
     cpus=$(nproc)
     host=$(hostname -s)
-    mkdir -p "$folder/state"
+    mkdir -p "$folder/state" "$folder/spool"
     {
         echo "ClusterName=one-box"
         echo "SlurmctldHost=$host(127.0.0.1)"
@@ -57,31 +56,27 @@ start() {
         echo "SlurmctldPort=$port"
         echo "SlurmctldPidFile=$folder/slurmctld.pid"
         echo "SlurmctldLogFile=$folder/slurmctld.log"
-        echo "SlurmdPidFile=$folder/%n.pid"
-        echo "SlurmdLogFile=$folder/%n.log"
-        echo "SlurmdSpoolDir=$folder/%n"
+        echo "SlurmdPidFile=$folder/slurmd.pid"
+        echo "SlurmdLogFile=$folder/slurmd.log"
+        echo "SlurmdSpoolDir=$folder/spool"
         echo "StateSaveLocation=$folder/state"
-        for node in $(seq "$nodes"); do
-            echo "NodeName=box$node NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + node)) CPUs=$cpus State=UNKNOWN"
-        done
+        echo "NodeName=box NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=$cpus State=UNKNOWN"
         echo "PartitionName=all Nodes=ALL Default=YES State=UP"
     } >"$folder/slurm.conf"
     export SLURM_CONF="$folder/slurm.conf"
     slurmctld -c -f "$SLURM_CONF"
-    for node in $(seq "$nodes"); do
-        mkdir -p "$folder/box$node"
-        slurmd -c -N "box$node" -f "$SLURM_CONF"
-    done
+    slurmd -c -N box -f "$SLURM_CONF"
     for _ in $(seq 300); do
-        idle=$(sinfo --noheader --Node --format=%T 2>/dev/null | grep -c '^idle$' || true)
-        if [ "$idle" = "$nodes" ]; then
+        if [ "$(sinfo --noheader --format=%T 2>/dev/null)" = idle ]; then
             echo "export SLURM_CONF=$SLURM_CONF"
             return
         fi
         sleep 0.1
     done
-    echo "the nodes did not come up within 30 s; see $folder/*.log" >&2
-    tail -n 20 "$folder"/*.log >&2 || true
+    echo "Slurm did not come up within 30 s; its logs end in:" >&2
+    for log in "$folder"/*.log; do
+        tail -n 10 "$log" >&2 || true
+    done
     stop
     exit 1
 }

@@ -16,7 +16,7 @@ pub mod extend;
 pub mod identify;
 pub mod log;
 pub mod model;
-mod number;
+pub mod number;
 pub mod output;
 pub mod paper;
 pub mod report;

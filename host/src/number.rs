@@ -15,6 +15,19 @@ pub(crate) fn short(value: f64) -> String {
     plain(value, decimals(2 - power))
 }
 
+/// Four significant digits, for values that go on into a file or another command.
+pub fn exact(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let power = power(value);
+    if (-4..6).contains(&power) {
+        format!("{value:.*}", decimals(3 - power))
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
 /// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
 pub(crate) fn given(value: f64) -> String {
     let text = short(value);
@@ -28,6 +41,18 @@ pub(crate) fn given(value: f64) -> String {
 /// An angle in milliradians, without the unit.
 pub(crate) fn mrad(value_rad: f64) -> String {
     short(1e3 * value_rad)
+}
+
+/// As [`mrad`], with three digits at most behind the point, as columns that are compared bear them.
+pub(crate) fn mrad_in_column(value_rad: f64) -> String {
+    let value = 1e3 * value_rad;
+    let digits = match value.abs() {
+        v if v >= 99.95 => 0,
+        v if v >= 9.995 => 1,
+        v if v >= 0.9995 => 2,
+        _ => 3,
+    };
+    format!("{value:.digits$}")
 }
 
 /// A share of 1 as a percentage, with its sign.
@@ -118,6 +143,11 @@ mod tests {
         assert_eq!(given(100.0), "100");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
+        assert_eq!(exact(0.0123456), "0.01235");
+        assert_eq!(exact(123456.0), "123456");
+        assert_eq!(exact(1.5e-9), "1.500e-9");
+        assert_eq!(mrad_in_column(0.01234), "12.3");
+        assert_eq!(mrad_in_column(1e-5), "0.010");
     }
 
     #[test]

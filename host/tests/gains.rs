@@ -260,3 +260,48 @@ fn files_carry_every_digit() {
     assert!(radius(&kept["estimator"]["loop_poles"]) < 1.0);
     assert!(Path::new(&bench.path("plant.json")).is_file());
 }
+
+#[test]
+fn the_model_s_own_delay_and_eccentric_masses_are_designed_for() {
+    let bench = bench();
+    let model = include_str!("../models/handstand.toml");
+    let late = |joint: u8, seconds: f64| {
+        format!("[[effect]]\nkind = \"delay\"\njoint = {joint}\ndelay_s = {seconds}\n")
+    };
+    bench.put(
+        "late.toml",
+        format!("{model}\n{}{}", late(2, 0.02), late(3, 0.02)),
+    );
+    bench.put(
+        "uneven.toml",
+        format!("{model}\n{}{}", late(2, 0.02), late(3, 0.01)),
+    );
+    let tilted = "[[effect]]\nkind = \"com_angle\"\njoint = 3\nangle_rad = 0.05\n";
+    bench.put("tilted.toml", format!("{model}\n{tilted}"));
+    let json = |line: &str| -> Value {
+        let ran = bench.run(&format!("gains {line} --json"));
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let late = json("late.toml");
+    assert_eq!(late["sampled"]["delay_s"], 0.02);
+    assert_eq!(late["sampled"]["delayed_inputs"], 2);
+    assert_eq!(late["states"][6]["name"], "u2(k-1)");
+    assert_eq!(json("uneven.toml --delay 0.02")["k"], late["k"]);
+    let uneven = bench.run("gains uneven.toml");
+    assert_eq!(uneven.code, Some(3));
+    assert!(
+        uneven.stderr.contains("the drives differ in delay"),
+        "{}",
+        uneven.stderr
+    );
+
+    let upright = bench.run("gains tilted.toml");
+    assert_eq!(upright.code, Some(3));
+    assert!(upright.stderr.contains("--balance"), "{}", upright.stderr);
+    let balanced = json("tilted.toml --balance");
+    let q1 = balanced["x0"][0].as_f64().unwrap() - std::f64::consts::FRAC_PI_2;
+    // The hips' torque holds the legs; the whole leans the other way.
+    assert!((-0.05..-0.005).contains(&q1), "{q1}");
+    assert!(balanced["u0"][1].as_f64().unwrap().abs() > 0.01);
+}

@@ -86,6 +86,11 @@ fn compare() {
 }
 
 #[test]
+fn paper() {
+    golden(&bench(), "paper", &["paper"]);
+}
+
+#[test]
 fn refusals() {
     let bench = bench();
     let (model, log) = (include_str!("data/arm.toml"), include_str!("data/arm.csv"));

@@ -13,11 +13,11 @@
 //! Exit code 1, and no file, when the logs do not determine the values. `--json` prints what `handstand fit`
 //! prints, and `effect`, as `delay@1`.
 
+use super::fitting::Fitting;
 use super::talk::Talk;
 use super::{Outcome, fit, input, name, show};
 use handstand::diagnose::Candidate;
 use handstand::extend::{Extension, extend};
-use handstand::identify::Horizon;
 use handstand::log::LogRequest;
 use handstand::model::edit::{self, Fitted};
 use handstand::model::{EffectInstance, ParameterPath};
@@ -35,18 +35,8 @@ pub struct Args {
     /// Logs to fit
     #[arg(long = "fit", required = true, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
-    /// Logs to judge by, which are not fitted
-    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
-    holdout: Vec<LogRequest>,
-    /// Seconds the model runs without correction, or `whole`; chosen by its stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
-    /// New model file
-    #[arg(long, short, value_name = "NEW.toml")]
-    output: PathBuf,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    fitting: Fitting,
 }
 
 /// Fits, writes, prints.
@@ -54,13 +44,19 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let candidate = name::candidate(&args.effect, &model)?;
-    input::vacant(&args.output, args.force)?;
-    let split = input::motions(&model, &args.logs, &args.holdout)?;
+    args.fitting.vacant()?;
+    let split = input::motions(&model, &args.logs, &args.fitting.holdout)?;
     let bar = talk.bar().with_message(format!("starts of {candidate}"));
-    let extension = extend(&model, candidate, &split, args.horizon, &|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
+    let extension = extend(
+        &model,
+        candidate,
+        &split,
+        args.fitting.horizon,
+        &|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        },
+    );
     bar.finish_and_clear();
     let extension = match extension {
         Ok(extension) => extension,
@@ -74,10 +70,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let fitted = fitted(&extension, candidate, input::files(&split.training));
     let effect = instance(&extension, candidate);
     let text = edit::add_effect(&text, &args.model, &effect, Some(&fitted))?;
-    output::write_new(&args.output, &text, args.force)?;
+    output::write_new(&args.fitting.output, &text, args.fitting.force)?;
     if talk.json {
         let mut data = show::extension_json(&extension);
-        data["model"] = json!(args.output.to_string_lossy());
+        data["model"] = json!(args.fitting.output.to_string_lossy());
         data["effect"] = json!(candidate.to_string());
         talk.data(&data)?;
         return Ok(Outcome::Done);
@@ -85,7 +81,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     fit::report(
         &extension,
         "for the model refitted without it",
-        &args.output,
+        &args.fitting.output,
         talk,
     )
 }

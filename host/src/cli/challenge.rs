@@ -14,6 +14,7 @@
 use super::talk::Talk;
 use super::{Outcome, name, show};
 use handstand::challenge::{self, Hidden, Score, kind_named};
+use handstand::number::exact;
 use handstand::{Error, Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -117,19 +118,19 @@ pub fn text(score: &Score) -> String {
         found,
     ]);
     for value in &score.values {
-        let found = value.found.map_or("-".to_string(), show::number);
-        table.add_row([value.key.clone(), show::number(value.hidden), found]);
+        let found = value.found.map_or("-".to_string(), exact);
+        table.add_row([value.key.clone(), exact(value.hidden), found]);
     }
-    let truth = show::number(1e3 * score.true_error_rad);
+    let truth = exact(1e3 * score.true_error_rad);
     table.add_row([
         "error on c.csv, mrad".into(),
         truth,
-        show::number(1e3 * score.error_rad),
+        exact(1e3 * score.error_rad),
     ]);
     let said = match score.solved {
         true => "Solved: the model names what was hidden.",
         false => "Not solved: the model does not name what was hidden.",
     };
-    let nominal = show::number(1e3 * score.nominal_error_rad);
+    let nominal = exact(1e3 * score.nominal_error_rad);
     format!("{table}\n\nnominal.toml leaves {nominal} mrad on c.csv.\n{said}")
 }

@@ -11,10 +11,10 @@
 //! `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error` (`unit`, `before`, `after`,
 //! `floor`, `held_out`), `horizon_s`, `converged`, `warnings`; or `refused` and `blind`.
 
+use super::fitting::Fitting;
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::extend::{Extension, Undetermined, refit};
-use handstand::identify::Horizon;
 use handstand::log::LogRequest;
 use handstand::model::ParameterPath;
 use handstand::{Error, Model, Result, model::edit, output};
@@ -29,21 +29,11 @@ pub struct Args {
     /// Logs to fit
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
-    /// Log to judge by, which is not fitted
-    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
-    holdout: Vec<LogRequest>,
     /// Value to fit instead of those the model frees: `link1.com_m`, `coulomb@1.torque_nm`
     #[arg(long, value_name = "PATH")]
     free: Vec<String>,
-    /// Seconds the model runs without correction, or `whole`; chosen by its stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
-    /// New model file
-    #[arg(long, short, value_name = "NEW.toml")]
-    output: PathBuf,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    fitting: Fitting,
 }
 
 /// Fits, writes, prints.
@@ -51,15 +41,20 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free(&model, &args.free)?;
-    input::vacant(&args.output, args.force)?;
-    let split = input::motions(&model, &args.logs, &args.holdout)?;
-    let extension = match refit(&model, &free, &split, args.horizon) {
+    args.fitting.vacant()?;
+    let split = input::motions(&model, &args.logs, &args.fitting.holdout)?;
+    let extension = match refit(&model, &free, &split, args.fitting.horizon) {
         Ok(extension) => extension,
         Err(why) => return refuse(&why, talk),
     };
     let text = edit::set_values(&text, &args.model, &values(&extension))?;
-    output::write_new(&args.output, &text, args.force)?;
-    report(&extension, "for the model as it was", &args.output, talk)
+    output::write_new(&args.fitting.output, &text, args.fitting.force)?;
+    report(
+        &extension,
+        "for the model as it was",
+        &args.fitting.output,
+        talk,
+    )
 }
 
 /// The values to fit: those named, or the model's own.

@@ -12,15 +12,14 @@
 //! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
+use super::given::{Given, weight};
 use super::talk::Talk;
 use super::{Outcome, input, page};
-use handstand::error::Place;
 use handstand::model::Model;
 use handstand::output::write_new;
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
 use handstand::{Error, Result};
-use nalgebra::DMatrix;
 use std::path::{Path, PathBuf};
 
 /// Gains that balance a model at a pose.
@@ -98,29 +97,10 @@ pub struct Args {
     force: bool,
 }
 
-/// A weight as given: numbers, or a file to be read.
-#[derive(Debug, Clone)]
-enum Given {
-    Numbers(Weight),
-    File(PathBuf),
-}
-
 #[derive(Debug, Clone)]
 enum Pose {
     Upright,
     Angles(Vec<f64>),
-}
-
-fn weight(text: &str) -> Result<Given, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers {
-        Ok(numbers) => Ok(Given::Numbers(match numbers[..] {
-            [one] => Weight::Scalar(one),
-            _ => Weight::Diagonal(numbers),
-        })),
-        Err(_) if Path::new(text).is_file() => Ok(Given::File(text.into())),
-        Err(_) => Err("give a number, numbers between commas, or a CSV file that exists".into()),
-    }
 }
 
 fn pose(text: &str) -> Result<Pose, String> {
@@ -139,60 +119,6 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
         Some("json" | "m") => Ok(path),
         _ => Err("end the name in .json (python-control and others) or .m (MATLAB, Octave)".into()),
     }
-}
-
-impl Given {
-    fn read(&self) -> Result<Weight> {
-        match self {
-            Given::Numbers(weight) => Ok(weight.clone()),
-            Given::File(path) => matrix(path).map(Weight::Matrix),
-        }
-    }
-
-    /// One number for each of so many.
-    fn list(&self, name: &str, size: usize) -> Result<Vec<f64>> {
-        self.read()?.diagonal(name, size)
-    }
-}
-
-/// A matrix from a CSV file, without header.
-fn matrix(path: &Path) -> Result<DMatrix<f64>> {
-    let text = input::text(path)?;
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for (line, row) in text
-        .lines()
-        .enumerate()
-        .filter(|(_, row)| !row.trim().is_empty())
-    {
-        let mut values = Vec::new();
-        for (column, field) in row.split(',').enumerate() {
-            let value = field.trim().parse().map_err(|_| {
-                Error::data(
-                    Place::at(path, line + 1, column + 1),
-                    format!("`{}` is no number", field.trim()),
-                    "give a matrix of numbers, a row per line, commas between them, no header",
-                )
-            })?;
-            values.push(value);
-        }
-        if rows
-            .first()
-            .is_some_and(|first| first.len() != values.len())
-        {
-            return Err(Error::data(
-                Place::at(path, line + 1, 1),
-                format!(
-                    "{} numbers where the first row has {}",
-                    values.len(),
-                    rows[0].len()
-                ),
-                "give every row the same number of values",
-            ));
-        }
-        rows.push(values);
-    }
-    let columns = rows.first().map_or(0, Vec::len);
-    Ok(DMatrix::from_row_slice(rows.len(), columns, &rows.concat()))
 }
 
 /// Designs, prints, writes the files.

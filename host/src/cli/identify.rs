@@ -17,6 +17,7 @@ use super::signals::{self, Chosen, Signals};
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::{LogRequest, Motion};
+use handstand::number::exact;
 use handstand::servo::{
     Estimate, Fitted, Known, Record, Structure, Trial, dynamics, record, sampling_period_s, select,
     structures, transfer_function, try_all,
@@ -127,7 +128,7 @@ fn text(data: &Data, trials: &[Trial], chosen: Option<usize>) -> String {
         "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
         count(&data.training),
         count(&data.validation),
-        show::number(1e3 * data.ts_s),
+        exact(1e3 * data.ts_s),
         unit(data.chosen.input_unit),
         unit(data.chosen.output_unit),
     );
@@ -191,7 +192,7 @@ fn table(trials: &[Trial], chosen: Option<usize>) -> String {
         table.add_row([
             trial.structure.to_string(),
             trial.structure.count().to_string(),
-            show::number(score.error_rms),
+            exact(score.error_rms),
             format!("{:.2} %", score.predicted_fit_percent),
             format!("{:.2} %", score.simulated_fit_percent),
             format!("{:.1}", fitted.estimate.aic() - least_aic),
@@ -223,7 +224,7 @@ fn model(data: &Data, fitted: &Fitted) -> String {
         .zip(values)
         .zip(estimate.half_widths())
     {
-        coefficients.add_row([name, show::number(value), ends(&Known::around(value, half))]);
+        coefficients.add_row([name, exact(value), ends(&Known::around(value, half))]);
     }
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
@@ -232,7 +233,7 @@ fn model(data: &Data, fitted: &Fitted) -> String {
         coefficients.to_string(),
         format!(
             "static gain {} ({})",
-            show::number(dynamics.gain.value),
+            exact(dynamics.gain.value),
             ends(&dynamics.gain)
         ),
     ];
@@ -240,7 +241,7 @@ fn model(data: &Data, fitted: &Fitted) -> String {
         lines.push(format!("pole {}", pole_text(pole)));
     }
     lines.push(match dynamics.settling_s {
-        Some(settling) => format!("settles to 2 % in {} s", show::number(settling)),
+        Some(settling) => format!("settles to 2 % in {} s", exact(settling)),
         None => "does not settle".to_string(),
     });
     lines.extend(fitted.validation.tests.iter().map(|test| {
@@ -255,35 +256,31 @@ fn model(data: &Data, fitted: &Fitted) -> String {
 
 fn pole_text(pole: &handstand::servo::Pole) -> String {
     let place = match pole.im.value == 0.0 {
-        true => format!("z = {} ({})", show::number(pole.re.value), ends(&pole.re)),
+        true => format!("z = {} ({})", exact(pole.re.value), ends(&pole.re)),
         false => format!(
             "z = {} ({}) +- {} j ({})",
-            show::number(pole.re.value),
+            exact(pole.re.value),
             ends(&pole.re),
-            show::number(pole.im.value),
+            exact(pole.im.value),
             ends(&pole.im)
         ),
     };
     format!(
         "{place}, |z| = {}: {} rad/s",
-        show::number(pole.radius.value),
+        exact(pole.radius.value),
         match pole.im.value == 0.0 {
-            true => show::number(pole.decay_rad_s),
+            true => exact(pole.decay_rad_s),
             false => format!(
                 "{} +- {} j",
-                show::number(pole.decay_rad_s),
-                show::number(pole.turn_rad_s)
+                exact(pole.decay_rad_s),
+                exact(pole.turn_rad_s)
             ),
         }
     )
 }
 
 fn ends(known: &Known) -> String {
-    format!(
-        "{} to {}",
-        show::number(known.low),
-        show::number(known.high)
-    )
+    format!("{} to {}", exact(known.low), exact(known.high))
 }
 
 fn found_json(data: &Data, trials: &[Trial], chosen: Option<usize>) -> Value {

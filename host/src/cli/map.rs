@@ -15,6 +15,7 @@ use super::signals::{self, Signals};
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::LogRequest;
+use handstand::number::exact;
 use handstand::servo::{Block, DeadZone, Known, Side, Supply, blocks};
 use handstand::{Error, Result};
 use serde_json::{Value, json};
@@ -95,22 +96,18 @@ fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
             .map_or("none seen".to_string(), |limit| known(&limit))
     };
     row("limit", &limit, output_unit.into());
-    row(
-        "left over, RMS",
-        &|s| show::number(s.rms),
-        output_unit.into(),
-    );
+    row("left over, RMS", &|s| exact(s.rms), output_unit.into());
     row("blocks", &|s| s.blocks.to_string(), String::new());
     let most = match inverse.limit {
-        Some(limit) => format!(", |y| up to {} {output_unit}", show::number(limit)),
+        Some(limit) => format!(", |y| up to {} {output_unit}", exact(limit)),
         None => String::new(),
     };
     talk.print(&format!(
         "{table}\n\nTurned round, the command u for an output y{most}:\n  y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
-        show::number(inverse.edge_up),
-        show::number(inverse.per_output_up),
-        show::number(inverse.edge_down),
-        show::number(inverse.per_output_down),
+        exact(inverse.edge_up),
+        exact(inverse.per_output_up),
+        exact(inverse.edge_down),
+        exact(inverse.per_output_down),
     ))?;
     Ok(Outcome::Done)
 }
@@ -146,10 +143,10 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
         "speed error per volt  {} % of the command\nright at              {} V\nsupply seen           {} to {} V, {} blocks\nleft over, RMS        {} % of the command\n{seen}",
         known(&percent),
         known(&line.right_at_v),
-        show::number(line.range_v.0),
-        show::number(line.range_v.1),
+        exact(line.range_v.0),
+        exact(line.range_v.1),
         line.blocks,
-        show::number(100.0 * line.rms),
+        exact(100.0 * line.rms),
     ))?;
     Ok(Outcome::Done)
 }
@@ -166,8 +163,8 @@ fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
 fn known(known: &Known) -> String {
     format!(
         "{} ({} to {})",
-        show::number(known.value),
-        show::number(known.low),
-        show::number(known.high)
+        exact(known.value),
+        exact(known.low),
+        exact(known.high)
     )
 }

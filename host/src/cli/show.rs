@@ -4,6 +4,7 @@ use comfy_table::{ContentArrangement, Table, TableComponent, presets};
 use handstand::diagnose::FittedValue;
 use handstand::extend::{Extension, Fall, Undetermined};
 use handstand::identify::Horizon;
+use handstand::number::exact;
 use serde_json::{Value, json};
 
 /// A plain table without frame.
@@ -21,27 +22,14 @@ pub fn table<const N: usize>(header: [&str; N]) -> Table {
     table
 }
 
-/// A number to four significant digits.
-pub fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let size = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&size) {
-        format!("{value:.*}", usize::try_from(3 - size).unwrap_or(0))
-    } else {
-        format!("{value:.3e}")
-    }
-}
-
 /// An extension for people: its values, then its errors; `before` says which model left the error before.
 pub fn extension(extension: &Extension, before: &str) -> String {
     let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
     for value in &extension.values {
         table.add_row([
             value.path.clone(),
-            number(value.value),
-            format!("{} to {}", number(value.low), number(value.high)),
+            exact(value.value),
+            format!("{} to {}", exact(value.low), exact(value.high)),
             value.unit.clone(),
             if value.on_bound { "on its bound" } else { "" }.to_string(),
         ]);
@@ -52,7 +40,7 @@ pub fn extension(extension: &Extension, before: &str) -> String {
         fall(&extension.error, before),
     ];
     if let Horizon::Seconds(seconds) = extension.horizon {
-        lines.push(format!("The model ran {} s at a time.", number(seconds)));
+        lines.push(format!("The model ran {} s at a time.", exact(seconds)));
     }
     lines.extend(
         warnings(extension)
@@ -70,9 +58,9 @@ fn fall(error: &Fall, before: &str) -> String {
     };
     format!(
         "Error {whose}: {} mrad {before} -> {} mrad for the new one; noise alone leaves {} mrad.",
-        number(1e3 * error.before_rad),
-        number(1e3 * error.after_rad),
-        number(1e3 * error.floor_rad)
+        exact(1e3 * error.before_rad),
+        exact(1e3 * error.after_rad),
+        exact(1e3 * error.floor_rad)
     )
 }
 

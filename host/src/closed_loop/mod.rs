@@ -13,7 +13,6 @@ mod clock;
 mod closed;
 mod conditions;
 mod controller;
-mod fixed_feedback;
 mod outcome;
 mod pending;
 mod plant;
@@ -21,7 +20,7 @@ mod random;
 mod run;
 mod sensor;
 mod side_by_side;
-mod state_feedback;
+pub(crate) mod state_feedback;
 
 #[cfg(test)]
 mod tests;
@@ -31,7 +30,6 @@ pub use clock::Clock;
 pub use closed::{ClosedLoop, Job, Start, run_jobs};
 pub use conditions::{AX12_STEP_RAD, Conditions};
 pub use controller::{Controller, Seen};
-pub use fixed_feedback::{FixedFeedback, Ranges};
 pub use outcome::{Limits, Outcome};
 pub use plant::Plant;
 pub use random::{normal, stream};

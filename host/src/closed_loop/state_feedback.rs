@@ -57,7 +57,7 @@ impl Controller for StateFeedback {
 
 /// Makes the torques the newest of those that `memory` holds.
 #[inline]
-pub(super) fn remember(memory: &mut [f64], torque_nm: &[f64]) {
+pub(crate) fn remember(memory: &mut [f64], torque_nm: &[f64]) {
     if memory.is_empty() {
         return;
     }

@@ -5,11 +5,11 @@ use super::failure::{failures, ranked};
 use super::moment::{moments, speed_rad_s};
 use super::residual_tests::{independence, linearity, whiteness};
 use super::run::fit_percent;
-use super::text::mrad;
 use super::*;
 use crate::identify::Horizon;
 use crate::log::{Motion, Source};
 use crate::model::Model;
+use crate::number::mrad_in_column;
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -285,7 +285,7 @@ fn text_sets_models_side_by_side_and_tells_the_last_in_full() {
 fn milliradians_bear_three_digits() {
     let shown: Vec<String> = [0.41123, 0.0123456, 0.0016, 0.000443, 0.0]
         .into_iter()
-        .map(mrad)
+        .map(mrad_in_column)
         .collect();
     assert_eq!(shown, ["411", "12.3", "1.60", "0.443", "0.000"]);
 }

@@ -1,6 +1,7 @@
 //! A comparison as text: models side by side, then where the last of them fails.
 
 use super::{Comparison, SignalError};
+use crate::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 
@@ -61,7 +62,7 @@ pub fn waterfall(comparisons: &[Comparison]) -> String {
     for (name, rad) in steps {
         let length = if most > 0.0 { rad / most } else { 0.0 };
         let bar = "#".repeat((length * BAR as f64).round() as usize);
-        let line = format!("  {name:width$}  {:>8} mrad  {bar}", mrad(rad));
+        let line = format!("  {name:width$}  {:>8} mrad  {bar}", mrad_in_column(rad));
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
@@ -118,7 +119,7 @@ fn table(comparisons: &[Comparison]) -> Table {
         };
         row(&mut table, comparisons, &label, |c| {
             let found = c.horizons.iter().find(|h| h.horizon_s == rung);
-            found.map_or("-".to_string(), |h| mrad(h.rms_rad))
+            found.map_or("-".to_string(), |h| mrad_in_column(h.rms_rad))
         });
     }
     for column in table.column_iter_mut().skip(1) {
@@ -137,10 +138,10 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
         String::new()
     };
     let lines: [(&str, Cell); 6] = [
-        ("rms, mrad", |s| mrad(s.rms)),
-        ("largest, mrad", |s| mrad(s.largest)),
+        ("rms, mrad", |s| mrad_in_column(s.rms)),
+        ("largest, mrad", |s| mrad_in_column(s.largest)),
         ("fit, %", |s| format!("{:.1}", s.fit_percent)),
-        ("floor, mrad", |s| mrad(s.floor)),
+        ("floor, mrad", |s| mrad_in_column(s.floor)),
         ("squared error above floor, %", |s| {
             format!("{:.0}", 100.0 * s.share_above_floor)
         }),
@@ -164,18 +165,6 @@ fn row(
 ) {
     let cells = comparisons.iter().map(cell);
     table.add_row(std::iter::once(label.to_string()).chain(cells));
-}
-
-/// Milliradians with three digits, as many as a comparison bears.
-pub(super) fn mrad(rad: f64) -> String {
-    let value = 1e3 * rad;
-    let digits = match value.abs() {
-        v if v >= 99.95 => 0,
-        v if v >= 9.995 => 1,
-        v if v >= 0.9995 => 2,
-        _ => 3,
-    };
-    format!("{value:.digits$}")
 }
 
 fn short(seconds: f64) -> String {

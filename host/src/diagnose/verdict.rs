@@ -8,7 +8,7 @@ use super::findings::{
 use super::score::{Score, fall};
 use super::trial::Trial;
 use super::words;
-use crate::identify::{Data, Horizon, Interval, intervals};
+use crate::identify::{Data, Horizon, Interval, intervals, profiled};
 use crate::number::percent;
 
 /// Everything the verdict rests on.
@@ -176,7 +176,8 @@ fn fitted_values(
     bench: &Bench,
 ) -> (Vec<FittedValue>, Vec<(String, String, f64)>, bool) {
     let fit = trial.fit();
-    let known = intervals(fit, &bench.training);
+    let known = intervals(fit, &bench.training)
+        .map(|(intervals, correlation)| (profiled(fit, &bench.training, &intervals), correlation));
     let on_bound = fit.on_bound();
     let mut values = Vec::new();
     for (i, (path, value)) in fit.free.iter().zip(fit.values()).enumerate() {

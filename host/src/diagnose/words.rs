@@ -261,3 +261,6 @@ pub fn address(effect: &FittedEffect) -> String {
         None => effect.kind.clone(),
     }
 }
+
+#[cfg(test)]
+mod tests;

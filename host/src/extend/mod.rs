@@ -9,7 +9,7 @@ pub use fall::{Fall, rms_rad};
 
 use crate::diagnose::{Candidate, FittedValue};
 use crate::identify::{Data, Fit, FitOptions, Horizon, fit, intervals, longest_stable, settle};
-use crate::identify::{Node, approach, fit_staged, residuals};
+use crate::identify::{Node, approach, fit_staged, profiled, residuals};
 use crate::log::Split;
 use crate::model::{Model, ParameterPath};
 use std::fmt;
@@ -139,6 +139,7 @@ fn finish(
             blind: blind(&found, data),
         });
     };
+    let intervals = profiled(&found, data, &intervals);
     let rows = found.free.iter().zip(found.values()).zip(intervals);
     let values = rows.zip(found.on_bound());
     let values = values.map(|(((path, value), interval), on_bound)| FittedValue {

@@ -69,7 +69,7 @@ fn residual_variance(fit: &Fit) -> f64 {
 }
 
 /// Inverse of a normal matrix, scaled to a unit diagonal on the way; none where a value changes nothing.
-fn inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = normal.nrows();
     let scale: Vec<f64> = (0..count).map(|i| normal[(i, i)].sqrt()).collect();
     if scale.iter().any(|s| *s <= 0.0 || !s.is_finite()) {

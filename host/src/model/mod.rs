@@ -3,15 +3,21 @@
 //! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line; [`edit`]
 //! writes effects and fitted values back without losing a comment.
 
+mod address;
 mod columns;
 pub mod edit;
+mod field;
+pub(crate) mod limits;
 mod parse;
 mod path;
 pub(crate) mod reader;
+pub(crate) mod source;
+pub(crate) mod suggest;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};
-pub use path::{JointField, LinkField, ParameterPath};
+pub use field::{JointField, LinkField};
+pub use path::ParameterPath;
 pub use unit::{Dimension, Unit};
 
 use crate::error::Result;

@@ -1,94 +1,11 @@
 //! Reads TOML tables with every complaint at its line and column.
 
-use crate::error::{Error, Place, Result};
+use super::limits::Limits;
+use super::source::Source;
+use super::suggest::{split_unit, suggest};
+use crate::error::{Error, Result};
 use std::ops::Range;
-use std::path::Path;
 use toml_edit::{Item, TableLike, Value};
-
-/// The text a table came from, and its name for errors.
-#[derive(Debug)]
-pub(crate) struct Source<'a> {
-    pub text: &'a str,
-    pub file: &'a Path,
-}
-
-impl Source<'_> {
-    /// Parses the text, keeping where everything stands.
-    ///
-    /// # Errors
-    /// TOML that does not parse, at the place where it stops making sense.
-    pub fn document(&self) -> Result<toml_edit::Document<&str>> {
-        toml_edit::Document::parse(self.text).map_err(|error| {
-            let what = error.message().trim().replace('\n', ", ");
-            self.error(error.span(), format!("not TOML: {what}"), SYNTAX)
-        })
-    }
-
-    /// A complaint about the text at `span`.
-    pub fn error(
-        &self,
-        span: Option<Range<usize>>,
-        what: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Error {
-        let mut start = span.map_or(0, |span| span.start).min(self.text.len());
-        while !self.text.is_char_boundary(start) {
-            start -= 1;
-        }
-        let before = &self.text[..start];
-        let line = before.matches('\n').count() + 1;
-        let last = before.rsplit('\n').next().unwrap_or("");
-        let place = Place::at(self.file, line, last.chars().count() + 1);
-        Error::data(place, what, remedy)
-    }
-}
-
-const SYNTAX: &str = "write `key = value` lines under `[table]` headings; text needs quotes";
-
-/// What a number may be.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    pub low: f64,
-    pub high: f64,
-    /// Whether `low` itself is refused, shown as "above".
-    pub above: bool,
-}
-
-impl Limits {
-    pub const fn within(low: f64, high: f64) -> Self {
-        Limits {
-            low,
-            high,
-            above: false,
-        }
-    }
-
-    pub const fn above(low: f64, high: f64) -> Self {
-        Limits {
-            low,
-            high,
-            above: true,
-        }
-    }
-
-    fn allow(self, number: f64) -> bool {
-        number <= self.high
-            && if self.above {
-                number > self.low
-            } else {
-                number >= self.low
-            }
-    }
-
-    fn wish(self) -> String {
-        let Limits { low, high, above } = self;
-        match (above, high.is_finite()) {
-            (true, true) => format!("give a number above {low}, up to {high}"),
-            (true, false) => format!("give a number above {low}"),
-            (false, _) => format!("give a number from {low} to {high}"),
-        }
-    }
-}
 
 /// One table of the file, named for messages: `[rig]`, `[[link]] 2`.
 pub(crate) struct Table<'a> {
@@ -390,46 +307,4 @@ impl<'a> Table<'a> {
 fn article(kind: &str) -> String {
     let vowel = kind.starts_with(['a', 'e', 'i', 'o', 'u']);
     format!("{} {kind}", if vowel { "an" } else { "a" })
-}
-
-/// Which of the known names was meant, and which there are.
-pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
-    let all = known.join(", ");
-    let slips = |known: &str| strsim::damerau_levenshtein(name, known);
-    let near = known
-        .iter()
-        .map(|known| (strsim::jaro_winkler(name, known), *known))
-        .filter(|(likeness, known)| *likeness > 0.8 || slips(known) <= known.len() / 3)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, known)| known);
-    match near {
-        Some(near) => format!("did you mean `{near}`? known here: {all}"),
-        None => format!("known here: {all}"),
-    }
-}
-
-/// Unit suffixes of keys, longest first where one ends in another.
-const SUFFIXES: &[(&str, &str)] = &[
-    ("_nm_s2_rad2", "N m s^2/rad^2"),
-    ("_nm_s_rad", "N m s/rad"),
-    ("_nm_rad", "N m/rad"),
-    ("_s_per_rad", "s/rad"),
-    ("_per_rad", "1/rad"),
-    ("_kg_m2", "kg m^2"),
-    ("_m_s2", "m/s^2"),
-    ("_rad_s", "rad/s"),
-    ("_rad", "rad"),
-    ("_ohm", "ohm"),
-    ("_kg", "kg"),
-    ("_nm", "N m"),
-    ("_m", "m"),
-    ("_s", "s"),
-    ("_v", "V"),
-];
-
-/// A key's stem and the unit its suffix names.
-fn split_unit(key: &str) -> Option<(&str, &'static str)> {
-    SUFFIXES
-        .iter()
-        .find_map(|(suffix, unit)| key.strip_suffix(suffix).map(|stem| (stem, *unit)))
 }

@@ -11,6 +11,7 @@ mod page;
 mod printed;
 mod robot;
 mod servo;
+mod timing;
 
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ pub use findings::{Finding, Shown, findings};
 pub use page::html;
 pub use printed::{PRINTED, Printed, Quantity};
 pub use robot::handstand;
+pub use timing::{Timing, timing};
 
 use crate::error::Result;
 

@@ -8,6 +8,8 @@ use std::fmt;
 
 /// Most coefficients of one polynomial.
 const MOST: usize = 20;
+/// Most structures of one grid.
+const MOST_STRUCTURES: usize = 2000;
 
 /// A family of models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -166,7 +168,12 @@ pub fn structures(text: &str) -> Result<Vec<Structure>> {
     let mut grid: Vec<Vec<usize>> = vec![Vec::new()];
     for (field, name) in fields.iter().zip(names) {
         let range = order_range(field)
-            .ok_or_else(|| wrong(format!("'{field}' is no order {name} from 0 to {MOST}")))?;
+            .filter(|range| range.clone().count() * grid.len() <= MOST_STRUCTURES)
+            .ok_or_else(|| {
+                wrong(format!(
+                    "'{field}' is no order {name} from 0 to {MOST}, or makes more than {MOST_STRUCTURES} structures"
+                ))
+            })?;
         if *name == "nb" && *range.start() == 0 {
             return Err(wrong("B needs a coefficient: nb is 1 or more".into()));
         }
@@ -219,6 +226,7 @@ mod tests {
             "oe:1,99,1",
             "oe:2-1,1,1",
             "oe:1,x,1",
+            "bj:1-20,0-20,0-20,0-20,1",
         ] {
             let error = structures(text).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{text}");

@@ -1,11 +1,10 @@
 //! One robot under one set of circumstances, and the controller designed for it.
 
-use crate::closed_loop::{
-    ClosedLoop, Conditions, Controller, FixedFeedback, Limits, Plant, Ranges, StateFeedback,
-};
+use super::fixed_controller::FixedController;
+use crate::closed_loop::{ClosedLoop, Conditions, Controller, Limits, Plant, StateFeedback};
 use crate::error::Result;
 use crate::model::Model;
-use crate::synth;
+use crate::synth::{self, Format, Ranges};
 use nalgebra::DMatrix;
 
 /// How the controller comes about: a sampled regulator for the robot as it is believed to be.
@@ -17,7 +16,7 @@ pub struct Design {
     pub r: f64,
     /// Delay the design counts on, periods.
     pub delay_periods: f64,
-    /// Word length of the law, bits; 0 computes in floating point.
+    /// Word length of the law, 8 to 32 bits; 0 computes in floating point.
     pub word_bits: u32,
 }
 
@@ -82,27 +81,37 @@ impl Case {
         gains: &DMatrix<f64>,
         closed: &ClosedLoop,
     ) -> Result<Box<dyn Controller>> {
-        let rows = gains.row_iter().map(|row| row.iter().copied().collect());
-        let mut law = StateFeedback::new(self.robot.link_count(), rows.collect());
+        let joints = closed.plant.joints();
+        let mut hold = vec![0.0; joints];
         if self.compensated {
-            law = law.holding(&closed.plant.balanced_rad());
+            hold = closed.plant.balanced_rad();
         }
         if self.design.word_bits == 0 {
-            return Ok(Box::new(law));
+            let rows = gains.row_iter().map(|row| row.iter().copied().collect());
+            let law = StateFeedback::new(joints, rows.collect());
+            return Ok(Box::new(law.holding(&hold)));
         }
         let actuator = self.conditions.actuator;
         // Without a limit, four times the full range still has a word.
         let most = if actuator.saturates { 1.0 } else { 4.0 };
-        let ranges = Ranges {
-            angle_rad: closed.limits.fall_rad,
-            speed_rad_s: SPEED_RANGE_RAD_S,
-            torque_nm: most * actuator.full_torque_nm,
+        let torque_nm = most * actuator.full_torque_nm;
+        let range = |state: usize| match state {
+            _ if state < joints => closed.limits.fall_rad,
+            _ if state < 2 * joints => SPEED_RANGE_RAD_S,
+            _ => torque_nm,
         };
-        Ok(Box::new(FixedFeedback::new(
-            &law,
-            ranges,
-            self.design.word_bits,
-        )?))
+        let ranges = Ranges {
+            state: (0..gains.ncols()).map(range).collect(),
+            input: vec![torque_nm; gains.nrows()],
+        };
+        hold.resize(gains.ncols(), 0.0);
+        let format = Format {
+            bits: self.design.word_bits,
+            ..Format::default()
+        };
+        let rest = vec![0.0; gains.nrows()];
+        let law = synth::quantise(gains, &hold, &rest, &ranges, &format)?;
+        Ok(Box::new(FixedController::new(law, 2 * joints)))
     }
 
     /// Largest magnitude of a pole of the true robot, linearised at its balance, under these gains in floating point:
@@ -143,10 +152,7 @@ impl Case {
         b.view_mut((0, 0), (n, m)).scale_mut(supply);
         let k = gains.clone().resize(m, size, 0.0);
         let closed = a - b * k;
-        closed
-            .complex_eigenvalues()
-            .iter()
-            .map(|pole| pole.norm())
-            .reduce(f64::max)
+        let poles = synth::poles(&closed).ok()?;
+        poles.iter().map(|pole| pole.norm()).reduce(f64::max)
     }
 }

@@ -8,7 +8,7 @@ use crate::error::{Error, Place, Result};
 use fs4::fs_std::FileExt as _;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -57,7 +57,7 @@ pub struct Journal {
     path: PathBuf,
     file: File,
     /// Chunks it holds already.
-    pub done: BTreeMap<usize, String>,
+    pub done: BTreeSet<usize>,
     /// Bytes of a torn chunk that were cut off on opening.
     pub torn_bytes: u64,
 }
@@ -71,7 +71,7 @@ impl Journal {
         let refused = |error| Error::file(path, "write", error);
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(refused)?;
+        let file = options.open(path).map_err(refused)?;
         if !file.try_lock_exclusive().map_err(refused)? {
             return Err(Error::usage(
                 format!("{}: another program is writing it", path.display()),
@@ -80,35 +80,30 @@ impl Journal {
         }
         let mut journal = Journal {
             path: path.to_path_buf(),
-            done: BTreeMap::new(),
+            done: BTreeSet::new(),
             torn_bytes: 0,
             file,
         };
         let mut bytes = Vec::new();
         journal.file.read_to_end(&mut bytes).map_err(refused)?;
-        file = match content(&bytes, path) {
-            Ok(found) if found.header == *header => {
-                journal.torn_bytes = found.length - found.whole;
-                journal.done = found.rows;
-                journal.cut(found.whole).map_err(refused)?;
-                return Ok(journal);
-            }
-            Ok(_) => {
-                return Err(Error::data(
-                    Place::file(path),
-                    "this is the journal of another study, or of another version of the program",
-                    "give this study another folder, or delete the journal",
-                ));
-            }
-            // Killed before the first line was whole.
-            Err(_) if !bytes.contains(&b'\n') => journal.file,
-            Err(error) => return Err(error),
-        };
-        journal.file = file;
-        journal.cut(0).map_err(refused)?;
-        let mut line = serde_json::to_string(header).map_err(|error| refused(error.into()))?;
-        line.push('\n');
-        journal.append(&line)?;
+        if !bytes.contains(&b'\n') {
+            // New, or killed before the first line was whole.
+            journal.cut(0).map_err(refused)?;
+            let line = serde_json::to_string(header).map_err(|error| refused(error.into()))?;
+            journal.append(&(line + "\n"))?;
+            return Ok(journal);
+        }
+        let found = content(&bytes, path)?;
+        if found.header != *header {
+            return Err(Error::data(
+                Place::file(path),
+                "this is the journal of another study, or of another version of the program",
+                "give this study another folder, or delete the journal",
+            ));
+        }
+        journal.torn_bytes = found.length - found.whole;
+        journal.done = found.rows.into_keys().collect();
+        journal.cut(found.whole).map_err(refused)?;
         Ok(journal)
     }
 
@@ -121,14 +116,14 @@ impl Journal {
     ///
     /// # Errors
     /// What the system refuses.
-    pub fn add(&mut self, chunk: usize, rows: String) -> Result<()> {
+    pub fn add(&mut self, chunk: usize, rows: &str) -> Result<()> {
         let text = format!(
             "chunk {chunk} bytes {} sha256 {}\n{rows}",
             rows.len(),
-            sum(&rows)
+            sum(rows)
         );
         self.append(&text)?;
-        self.done.insert(chunk, rows);
+        self.done.insert(chunk);
         Ok(())
     }
 

@@ -133,11 +133,6 @@ fn runs(header: &Header, chunks: &[usize]) -> Vec<(usize, usize)> {
 }
 
 impl Merged {
-    /// A study from its chunks in order.
-    pub fn of(header: Header, rows: Vec<String>) -> Merged {
-        Merged { header, rows }
-    }
-
     /// The table, with a line of columns.
     pub fn csv(&self) -> String {
         let mut text = self.header.columns.join(",");

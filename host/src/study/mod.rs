@@ -5,6 +5,7 @@
 //! `summary`.
 
 mod case;
+mod fixed_controller;
 mod journal;
 mod judge;
 mod merge;

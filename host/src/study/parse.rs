@@ -6,7 +6,10 @@ use super::uncertain::{Distribution, Place, QUANTITIES, Uncertain};
 use crate::closed_loop::{Conditions, Gyro, Velocity};
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::model::reader::{Limits, Source, Table, suggest};
+use crate::model::limits::Limits;
+use crate::model::reader::Table;
+use crate::model::source::Source;
+use crate::model::suggest::suggest;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -158,7 +161,7 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
         Limits::within(0.0, 20.0),
         &mut design.delay_periods,
     )?;
-    if let Some(bits) = whole(table, "word_bits", Limits::within(0.0, 32.0))? {
+    if let Some(bits) = whole(table, "word_bits", Limits::within(8.0, 32.0))? {
         design.word_bits = bits as u32;
     }
     let period_s = &mut case.conditions.clock.period_s;

@@ -31,7 +31,7 @@ pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
     let mut survival = curve(ran, "", |f| Some(100.0 * f.survival));
     survival.intervals = ran.levels.iter().map(percent).collect();
     panels(
-        &format!("{robot}: {} against {}", "what the loop bears", card.title),
+        &format!("{robot}: sweep of the {}", card.title),
         &[
             panel("runs that stand, %, with 95 % interval", vec![survival]),
             panel(
@@ -62,56 +62,75 @@ fn curve(ran: &Ran, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
 }
 
 /// Parts into which an uncertain value's range is cut.
-const PARTS: usize = 8;
+const PARTS: usize = 6;
 
-/// A Monte Carlo study: survival over every uncertain value.
+/// A Monte Carlo study: who stands, and who is unstable in the small, over every uncertain value.
 ///
 /// # Errors
 /// As [`Merged::values`].
 pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let columns = &merged.header.columns;
     let rows = merged.values(file)?;
-    let Some(fell) = columns.iter().position(|column| column == "fell_s") else {
+    let place = |name: &str| columns.iter().position(|column| column == name);
+    let (Some(fell), Some(radius)) = (place("fell_s"), place("spectral_radius")) else {
         return Ok(panels("no runs", &[]));
     };
-    let uncertain = columns
-        .iter()
-        .enumerate()
-        .filter(|(_, name)| name.contains(':'));
-    let charts: Vec<Panel> = uncertain
-        .map(|(place, name)| survival_over(name, &rows, place, fell))
-        .collect();
-    Ok(panels("Survival over every uncertain value", &charts))
+    let stands = move |row: &[f64]| row[fell].is_nan();
+    let unstable = move |row: &[f64]| row[radius] >= 1.0;
+    let uncertain = columns.iter().enumerate();
+    let charts = uncertain
+        .filter(|(_, name)| name.contains(':'))
+        .map(|(value, name)| {
+            let parts = Parts::of(&rows, value);
+            Panel {
+                title: "share of runs, %, with 95 % interval".to_string(),
+                steps: parts.centres.iter().map(|centre| given(*centre)).collect(),
+                across: name.clone(),
+                curves: vec![
+                    parts.share("stand", &rows, stands),
+                    parts.share("unstable in the small", &rows, unstable),
+                ],
+            }
+        });
+    let charts: Vec<Panel> = charts.collect();
+    Ok(panels("Stability over every uncertain value", &charts))
 }
 
-fn survival_over(name: &str, rows: &[Vec<f64>], place: usize, fell: usize) -> Panel {
-    let values = || rows.iter().map(|row| row[place]);
-    let (low, high) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
-    );
-    let width = (high - low) / PARTS as f64;
-    let mut parts = [(0, 0); PARTS];
-    for row in rows {
-        let part = ((row[place] - low) / width) as usize;
-        let part = &mut parts[part.min(PARTS - 1)];
-        part.1 += 1;
-        part.0 += usize::from(row[fell].is_nan());
-    }
-    let share = |(stood, all): (usize, usize)| (all > 0).then(|| 100.0 * stood as f64 / all as f64);
-    Panel {
-        title: "runs that stand, %, with 95 % interval".to_string(),
-        steps: (0..PARTS)
-            .map(|part| given(low + (part as f64 + 0.5) * width))
-            .collect(),
-        across: name.to_string(),
-        curves: vec![Curve {
-            name: String::new(),
-            values: parts.iter().map(|part| share(*part)).collect(),
-            intervals: parts
-                .iter()
-                .map(|(stood, all)| share_interval(*stood, *all).map(|end| 100.0 * end))
+/// Runs sorted by one of their values.
+struct Parts {
+    centres: [f64; PARTS],
+    /// Part of each run.
+    of: Vec<usize>,
+}
+
+impl Parts {
+    fn of(rows: &[Vec<f64>], value: usize) -> Parts {
+        let values = || rows.iter().map(|row| row[value]);
+        let low = values().fold(f64::INFINITY, f64::min);
+        let width = (values().fold(f64::NEG_INFINITY, f64::max) - low) / PARTS as f64;
+        Parts {
+            centres: std::array::from_fn(|part| low + (part as f64 + 0.5) * width),
+            of: values()
+                .map(|value| (((value - low) / width) as usize).min(PARTS - 1))
                 .collect(),
-        }],
+        }
+    }
+
+    /// Percentage of each part's runs that are so.
+    fn share(&self, name: &str, rows: &[Vec<f64>], so: impl Fn(&[f64]) -> bool) -> Curve {
+        let mut counts = [(0, 0); PARTS];
+        for (part, row) in self.of.iter().zip(rows) {
+            counts[*part].0 += usize::from(so(row));
+            counts[*part].1 += 1;
+        }
+        let share =
+            |(of, all): &(usize, usize)| (*all > 0).then(|| 100.0 * *of as f64 / *all as f64);
+        let interval =
+            |(of, all): &(usize, usize)| share_interval(*of, *all).map(|end| 100.0 * end);
+        Curve {
+            name: name.to_string(),
+            values: counts.iter().map(share).collect(),
+            intervals: counts.iter().map(interval).collect(),
+        }
     }
 }

@@ -41,7 +41,7 @@ fn shard(study: &Study, shard: Shard, file: &Path) {
     let mut journal = Journal::open(file, &header(study)).unwrap();
     for chunk in (0..chunks(study)).filter(|&chunk| shard.holds(chunk)) {
         let rows = chunk_rows(study, &gains, chunk).unwrap();
-        journal.add(chunk, rows).unwrap();
+        journal.add(chunk, &rows).unwrap();
     }
 }
 
@@ -188,9 +188,9 @@ fn shard_rest(study: &Study, file: &Path) {
     let gains = study.case.gains().unwrap();
     let mut journal = Journal::open(file, &header(study)).unwrap();
     for chunk in 0..chunks(study) {
-        if !journal.done.contains_key(&chunk) {
+        if !journal.done.contains(&chunk) {
             journal
-                .add(chunk, chunk_rows(study, &gains, chunk).unwrap())
+                .add(chunk, &chunk_rows(study, &gains, chunk).unwrap())
                 .unwrap();
         }
     }
@@ -216,7 +216,7 @@ fn what_does_not_belong_together_is_not_merged() {
     // One digit changed, its sum made to fit.
     let mut journal = Journal::open(&path("c.journal"), &header(&one)).unwrap();
     let rows = chunk_rows(&one, &one.case.gains().unwrap(), 1).unwrap();
-    journal.add(1, rows.replacen("0.0", "0.1", 1)).unwrap();
+    journal.add(1, &rows.replacen("0.0", "0.1", 1)).unwrap();
     let error = merge(&[path("a.journal"), path("c.journal")]).unwrap_err();
     assert!(error.to_string().contains("chunk 1 differs"), "{error}");
     let held = Journal::open(&path("c.journal"), &header(&one)).unwrap_err();

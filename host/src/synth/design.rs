@@ -4,71 +4,17 @@ use super::eigen::poles;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
-use super::quantise::{Format, Ranges, quantise};
+use super::quantise::{Ranges, quantise};
 use super::reach::{Reach, controllability, observability};
+use super::request::{Request, Sensors, Time};
 use super::rest::{Rest, input_delay_s};
+use super::signal::{Signal, driven, input, reach, states};
 use super::system::{Continuous, Discrete};
-use super::weight::Weight;
 use super::zeros::transmission_zeros;
 use super::{linearise, zoh};
 use crate::error::{Error, Result};
-use crate::model::{Drive, Model};
+use crate::model::Model;
 use nalgebra::{Complex, DMatrix};
-
-/// What is asked for.
-#[derive(Debug, Clone)]
-pub struct Request {
-    /// Angles in the model's own convention, rad.
-    pub pose_rad: Vec<f64>,
-    /// Weight of the states.
-    pub q: Weight,
-    /// Weight of the inputs.
-    pub r: Weight,
-    /// How the gains will run.
-    pub time: Time,
-    /// Sensors and noise, for an estimator.
-    pub sensors: Option<Sensors>,
-    /// Largest departure of the states, SI; of the plant's own states.
-    pub state_range: Weight,
-    /// Largest inputs, SI; from the drives where not given.
-    pub input_range: Option<Weight>,
-    /// Words of the fixed-point law.
-    pub format: Format,
-}
-
-/// In which time the controller runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Time {
-    /// All the time.
-    Continuous,
-    /// Every `ts_s`, its inputs `delay_s` late: the model's own delay where not given.
-    Sampled {
-        /// Sampling time, s.
-        ts_s: f64,
-        /// Delay of the inputs, s.
-        delay_s: Option<f64>,
-    },
-}
-
-/// What is measured: every angle, and the first link's angular velocity by a gyro.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensors {
-    /// Step of the angles, rad.
-    pub position_step_rad: f64,
-    /// Step of the gyro, rad/s.
-    pub gyro_step_rad_s: f64,
-    /// Covariance of the process noise; without it, that of inputs that err by a hundredth of their range.
-    pub process: Option<Weight>,
-}
-
-/// A state or an input.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Signal {
-    /// `q1`, `dq1`, `u2(k-1)`; inputs by their joint: `u2`.
-    pub name: String,
-    /// SI unit.
-    pub unit: &'static str,
-}
 
 /// A finished design.
 #[derive(Debug, Clone)]
@@ -270,63 +216,6 @@ impl Design {
             compensator,
         })
     }
-}
-
-/// Driven joints from the base outwards, counted from 0.
-fn driven(model: &Model) -> Vec<usize> {
-    let joints = model.joints.iter().enumerate();
-    let driven = joints.filter(|(_, joint)| joint.drive.is_driven());
-    driven.map(|(at, _)| at).collect()
-}
-
-fn input(model: &Model, joint: usize) -> Signal {
-    Signal {
-        name: format!("u{}", joint + 1),
-        unit: match model.joints[joint].drive {
-            Drive::Passive | Drive::Duty(_) => "1",
-            Drive::Torque => "N m",
-            Drive::Position { .. } => "rad",
-            Drive::Speed { .. } => "rad/s",
-        },
-    }
-}
-
-/// The largest input that makes sense for a drive: its torque limit where the model has one, else 2 N m (the torque at which the paper's
-/// servos saturate); full duty; half a turn; the no-load speed.
-fn reach(model: &Model, joint: usize) -> f64 {
-    let limit = model
-        .effects
-        .iter()
-        .find(|e| e.joint == Some(joint) && e.effect.card().id == "torque_saturation")
-        .and_then(|e| e.values.first().copied());
-    match &model.joints[joint].drive {
-        Drive::Passive | Drive::Duty(_) => 1.0,
-        Drive::Torque => limit.unwrap_or(2.0),
-        Drive::Position { .. } => std::f64::consts::PI,
-        Drive::Speed { motor, .. } if motor.no_load_speed_rad_s.is_finite() => {
-            motor.no_load_speed_rad_s
-        }
-        Drive::Speed { .. } => 10.0,
-    }
-}
-
-fn states(joints: usize, inputs: &[Signal], delayed: usize) -> Vec<Signal> {
-    let of = |prefix: &'static str, unit: &'static str| {
-        (1..=joints).map(move |joint| Signal {
-            name: format!("{prefix}{joint}"),
-            unit,
-        })
-    };
-    let past = (1..=delayed).flat_map(|k| {
-        inputs.iter().map(move |input| Signal {
-            name: format!("{}(k-{k})", input.name),
-            unit: input.unit,
-        })
-    });
-    of("q", "rad")
-        .chain(of("dq", "rad/s"))
-        .chain(past)
-        .collect()
 }
 
 fn point(rest: &Rest, delayed: usize) -> Vec<f64> {

@@ -70,7 +70,7 @@ fn pair(h: &DMatrix<f64>, last: usize, shifted: f64) -> [Complex<f64>; 2] {
 /// Sum and product of the two shifts, as (x, y, xy - ..): the eigenvalues of the last block; now and then others, where these lead nowhere.
 fn shift(h: &mut DMatrix<f64>, last: usize, steps: usize, shifted: &mut f64) -> [f64; 3] {
     let (x, y) = (h[(last, last)], h[(last - 1, last - 1)]);
-    if steps % 10 != 0 {
+    if !steps.is_multiple_of(10) {
         return [x, y, h[(last, last - 1)] * h[(last - 1, last)]];
     }
     *shifted += x;

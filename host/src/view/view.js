@@ -118,6 +118,12 @@
     });
     if (state.com && solid) masses(pen, to, between(track, track.link_rad, state.time));
   };
+  const skeleton = (pen, to, track) => {
+    const joints = places(between(track, track.link_rad, state.time)).map(to);
+    if (!joints.every(([x, y]) => Number.isFinite(x + y))) return;
+    pen.strokeStyle = colour(toneOf(track)); pen.lineWidth = 2; pen.setLineDash([5, 4]);
+    pen.beginPath(); joints.forEach((joint) => pen.lineTo(...joint)); pen.stroke(); pen.setLineDash([]);
+  };
   const outline = (pen, tone, solid) => {
     if (solid) {
       pen.fillStyle = colour("--skin"); pen.fill();
@@ -179,6 +185,10 @@
     // What was measured stands in front.
     for (const track of tracks.filter((t) => t.kind !== "measured")) drawRobot(pen, to, scale, track, false);
     for (const track of tracks.filter((t) => t.kind === "measured")) drawRobot(pen, to, scale, track, true);
+    // Where they agree, the others' outlines would be hidden.
+    pen.globalAlpha = 0.55;
+    for (const track of tracks.filter((t) => t.kind !== "measured")) skeleton(pen, to, track);
+    pen.globalAlpha = 1;
     const r = Math.max(5, 0.017 * reach * scale);
     pen.beginPath(); pen.arc(bx, by, r, 0, 2 * Math.PI);
     pen.fillStyle = colour("--bar"); pen.fill();

@@ -7,6 +7,7 @@ mod install;
 mod peers;
 mod program;
 mod real;
+mod scatter;
 mod test;
 
 use clap::{Parser, Subcommand};

@@ -39,7 +39,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
 }
 
-fn lacking(missing: &Missing, talk: &Talk) -> Result<()> {
+/// Says what is missing.
+pub fn lacking(missing: &Missing, talk: &Talk) -> Result<()> {
     if talk.json {
         let runs = missing.runs.iter();
         let runs: Vec<_> = runs

@@ -4,11 +4,11 @@
 //! it was. The rows are the same for any number of threads and shards. A whole study ends in `runs.csv`,
 //! `summary.json` and `survival.svg`; a shard leaves its journal for `handstand study merge`.
 //!
-//! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `runs`.
+//! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
 use super::super::{Outcome, talk::Talk};
 use handstand::study::{
-    CHUNK, FORMAT, Header, Journal, Merged, Shard, Study, chunk_rows, chunks, columns,
+    CHUNK, FORMAT, Header, Journal, Shard, Study, chunk_rows, chunks, columns, merge,
 };
 use handstand::{Error, Result};
 use indicatif::ProgressBar;
@@ -77,7 +77,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let left: Vec<usize> = own
         .iter()
         .copied()
-        .filter(|chunk| !journal.done.contains_key(chunk))
+        .filter(|chunk| !journal.done.contains(chunk))
         .collect();
     if left.len() < own.len() {
         let done = own.len() - left.len();
@@ -102,11 +102,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         return Ok(Outcome::Done);
     }
-    let merged = Merged::of(
-        header,
-        std::mem::take(&mut journal.done).into_values().collect(),
-    );
-    super::write::finished(&merged, &args.output, args.force, talk)?;
+    drop(journal);
+    match merge(&[path])? {
+        Ok(merged) => super::write::finished(&merged, &args.output, args.force, talk)?,
+        // Somebody has cut the journal meanwhile.
+        Err(missing) => {
+            super::merge::lacking(&missing, talk)?;
+            return Ok(Outcome::Refused);
+        }
+    }
     Ok(Outcome::Done)
 }
 
@@ -130,7 +134,7 @@ fn fill(
         });
         // Taken by value: once this loop ends early, the computing stops.
         let written = receive.into_iter().try_for_each(|(chunk, rows)| {
-            journal.add(chunk, rows)?;
+            journal.add(chunk, &rows)?;
             bar.inc(1);
             Ok(())
         });

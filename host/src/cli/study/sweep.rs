@@ -6,8 +6,9 @@
 //! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`, `refused`); without names,
 //! of cards: `id`, `unit`, `meaning`, `levels`.
 
-use super::super::show::{number, table};
+use super::super::show::table;
 use super::super::{Outcome, input, talk::Talk};
+use handstand::number::exact;
 use handstand::study::{Level, Ran, SWEEPS, Study, Sweep, named, sweep, sweep_svg};
 use handstand::{Error, Result, output};
 use serde_json::json;
@@ -159,7 +160,7 @@ fn cells(level: &Level) -> Vec<String> {
         cells.resize(8, "–".to_string());
         return cells;
     };
-    let or = |value: Option<f64>| value.map_or("–".to_string(), number);
+    let or = |value: Option<f64>| value.map_or("–".to_string(), exact);
     let degrees = |rad: Option<f64>| or(rad.map(f64::to_degrees));
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     vec![

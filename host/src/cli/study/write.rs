@@ -1,7 +1,8 @@
 //! A finished Monte Carlo study, printed and written.
 
-use super::super::show::{number, table};
+use super::super::show::table;
 use super::super::talk::Talk;
+use handstand::number::exact;
 use handstand::study::{Merged, Summary, monte_carlo_svg};
 use handstand::{Error, Result, output};
 use serde_json::json;
@@ -55,7 +56,11 @@ fn shown(summary: &Summary) -> String {
     );
     let mut figures = table(["Of those that stand", "5 %", "median", "95 %"]);
     for figure in &summary.figures {
-        let quantile = |place: usize| figure.quantiles.map_or("–".into(), |q| number(q[place]));
+        let quantile = |place: usize| match figure.quantiles.map(|q| q[place]) {
+            Some(value) if value.is_finite() => exact(value),
+            Some(_) => "never".to_string(),
+            None => "–".to_string(),
+        };
         figures.add_row([figure.figure.clone(), quantile(0), quantile(1), quantile(2)]);
     }
     text += &format!("{figures}\n");

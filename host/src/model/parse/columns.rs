@@ -1,6 +1,7 @@
 //! The `[log]` table: what the rig's columns are called and what they are written in.
 
-use super::super::reader::{Limits, Table};
+use super::super::limits::Limits;
+use super::super::reader::Table;
 use super::super::{Column, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;

@@ -1,6 +1,7 @@
 //! The `[[effect]]` tables.
 
-use super::super::reader::{Limits, Table};
+use super::super::limits::Limits;
+use super::super::reader::Table;
 use super::super::{EffectInstance, Joint};
 use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;

@@ -5,8 +5,11 @@ mod effects;
 #[cfg(test)]
 mod tests;
 
-use super::path::{JointField, LinkField, POSITIVE, ParameterPath};
-use super::reader::{Limits, Source, Table};
+use super::field::{JointField, LinkField, POSITIVE};
+use super::limits::Limits;
+use super::path::ParameterPath;
+use super::reader::Table;
+use super::source::Source;
 use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor};
 use crate::error::Result;
 use std::path::Path;

@@ -12,7 +12,7 @@ static CARD: SweepCard = SweepCard {
     unit: "bits",
     meaning: "Word length of the fixed-point law's states, gains and torques.",
     levels: &[8.0, 9.0, 10.0, 11.0, 12.0, 14.0, 16.0, 20.0, 24.0, 32.0],
-    bounds: (4.0, 32.0),
+    bounds: (8.0, 32.0),
 };
 
 impl Sweep for WordLength {

@@ -3,7 +3,7 @@
 use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use crate::synth::design::{Design, Fixed};
+use crate::synth::{Design, Fixed};
 use std::fmt::Write as _;
 
 /// `gains.h`: C99; right shifts of negative values must be arithmetic, as they are with gcc and clang.

@@ -3,7 +3,7 @@
 use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use crate::synth::design::{Design, Fixed};
+use crate::synth::{Design, Fixed};
 use std::fmt::Write as _;
 
 /// `gains.rs`: table, fingerprint, golden vectors, the law itself, and `check`, which runs the vectors.

@@ -2,7 +2,7 @@
 
 use super::Provenance;
 use crate::synth::Discrete;
-use crate::synth::design::{Design, Estimation, Fixed, Signal};
+use crate::synth::{Design, Estimation, Fixed, Signal};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 use std::fmt::Write as _;

@@ -1,8 +1,8 @@
 //! A design for people.
 
 use crate::number::short;
-use crate::synth::design::{Design, Estimation, Fixed};
 use crate::synth::reach::Reach;
+use crate::synth::{Design, Estimation, Fixed};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 

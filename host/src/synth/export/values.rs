@@ -1,7 +1,7 @@
 //! Values that every file of gains names, in its own syntax.
 
 use super::Provenance;
-use crate::synth::design::{Design, Fixed, Signal};
+use crate::synth::{Design, Fixed, Signal};
 use std::fmt::Display;
 
 /// Comma-separated.

@@ -8,19 +8,27 @@ use nalgebra::DMatrix;
 
 /// Far starts halve their distance at each step before the iteration turns quadratic.
 const MOST_STEPS: usize = 60;
-/// K that moved by this share has, after a quadratic step, no error left that a double shows.
-const SETTLED: f64 = 1e-8;
+/// K that moved by this share has errors of its square left.
+const SETTLED: f64 = 1e-6;
+/// Rounding alone moves K by this share.
+const NOTHING: f64 = 1e-13;
 /// Corrections need few digits: what they miss, the next one finds.
-const CORRECTION: f64 = 1e-6;
+const CORRECTION: f64 = 1e-4;
 
 /// Refines `x`; `None` if its gain does not stabilise or nothing settles.
 pub(super) fn refine(problem: &Problem<'_>, x: DMatrix<f64>) -> Option<Solution> {
     let data = Data::new(problem);
     let mut x = Twofold::exact(x);
     let mut before: Option<DMatrix<f64>> = None;
+    let mut moved_before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         let (k, left) = data.gain_and_residual(&x)?;
-        let settled = before.is_some_and(|before| (&k - before).amax() <= SETTLED * k.amax());
+        let moved = before.map_or(f64::INFINITY, |before| {
+            (&k - before).amax() / k.amax().max(f64::MIN_POSITIVE)
+        });
+        // Towards a pole on the edge of stability the steps only halve: that is no settling.
+        let settled = moved <= SETTLED && moved <= 0.1 * moved_before || moved <= NOTHING;
+        moved_before = moved;
         let closed = problem.a - problem.b * &k;
         if settled {
             return Some(Solution {
@@ -75,15 +83,16 @@ impl Data<'_> {
         };
         let (k, off) = solve(&weight, &moment)?;
         // With moment = weight * K + off: K' moment + off' K, where a small off may be rounded.
-        let spent = Split::new(k.transpose()).times(&moment);
+        let spent = Split::new(k.transpose()).times_symmetric(&moment);
         let left = match kind {
             Kind::Continuous => ax.transpose().plus(1.0, &ax),
-            Kind::Discrete => self.a.times(&ax.transpose()).plus(-1.0, x),
+            Kind::Discrete => self.a.times_symmetric(&ax.transpose()).plus(-1.0, x),
         };
         let left = left.plus_exact(q).plus(-1.0, &spent).rounded() - off.transpose() * &k;
         left.iter().all(|value| value.is_finite()).then(|| {
             let mut left = left;
-            super::symmetrise(&mut left);
+            // The lower triangle is the one that was computed.
+            left.fill_upper_triangle_with_lower_triangle();
             (k, left)
         })
     }

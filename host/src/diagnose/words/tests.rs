@@ -1,0 +1,158 @@
+use super::*;
+use crate::diagnose::{Alternative, ErrorFall, FittedValue};
+
+fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
+    FittedValue {
+        path: path.to_owned(),
+        key: path.rsplit('.').next().unwrap_or(path).to_owned(),
+        unit: "N m".to_owned(),
+        value,
+        low: 0.9 * value,
+        high: 1.1 * value,
+        on_bound,
+    }
+}
+
+fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
+    FittedEffect {
+        kind: kind.to_owned(),
+        title: crate::effects::named(kind).unwrap().card().title.to_owned(),
+        joint,
+        parameters: vec![value(&format!("{kind}@1.torque_nm"), 0.05, false)],
+    }
+}
+
+fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffect>>) -> Diagnosis {
+    let alternatives = rivals.into_iter().map(|effects| Alternative {
+        effects,
+        error: 2e-3,
+    });
+    let mut diagnosis = Diagnosis {
+        verdict,
+        effects,
+        error: ErrorFall {
+            unit: "rad".to_owned(),
+            before: 40e-3,
+            after: 2e-3,
+            floor: 1.5e-3,
+            held_out: true,
+            fall_low: 0.9,
+            fall_high: 0.96,
+        },
+        alternatives: alternatives.collect(),
+        base: Vec::new(),
+        ruled_out: Vec::new(),
+        remainder: None,
+        motions: Vec::new(),
+        collinear: Vec::new(),
+        summary: Vec::new(),
+        next: Vec::new(),
+        warnings: Vec::new(),
+        horizon_s: None,
+    };
+    complete(&mut diagnosis);
+    diagnosis
+}
+
+#[test]
+fn a_named_effect_is_told_with_its_size_and_how_to_add_it() {
+    let said = said(Verdict::Named, vec![effect("coulomb", Some(1))], vec![]);
+    assert_eq!(
+        said.summary,
+        [
+            "The model lacks Coulomb friction at joint 1.",
+            "Coulomb friction at joint 1: torque_nm = 0.050 N m (0.045 to 0.055).",
+            "The error on held-out motions falls from 40.0 to 2.00 mrad; the floor is 1.50 mrad.",
+        ]
+    );
+    assert_eq!(
+        said.next[0],
+        "Add it: handstand add MODEL coulomb@1 --fit LOG... --holdout HELD_OUT... -o better.toml"
+    );
+}
+
+#[test]
+fn rivals_are_named_without_values_and_with_the_experiment_that_separates_them() {
+    let first = vec![effect("coulomb", Some(1))];
+    let second = vec![effect("dead_zone", Some(1))];
+    let said = said(Verdict::Ambiguous, first, vec![second]);
+    assert_eq!(
+        said.summary[0],
+        "Equally good explanations: Coulomb friction at joint 1, or dead zone of the drive at joint 1."
+    );
+    assert!(said.summary.iter().all(|line| !line.contains("torque_nm")));
+    assert_eq!(said.next.len(), 2, "{:?}", said.next);
+}
+
+#[test]
+fn what_is_common_to_all_rivals_needs_no_experiment() {
+    let sure = || effect("air_drag", Some(1));
+    let first = vec![sure(), effect("coulomb", Some(1))];
+    let second = vec![sure(), effect("stribeck", Some(1))];
+    let said = said(Verdict::Ambiguous, first, vec![second]);
+    assert!(
+        said.next.iter().all(|line| !line.contains("air drag")),
+        "{:?}",
+        said.next
+    );
+}
+
+#[test]
+fn a_partial_explanation_is_not_to_be_taken_for_the_cause() {
+    let partial = said(
+        Verdict::Unexplained,
+        vec![effect("coulomb", Some(1))],
+        vec![],
+    );
+    assert_eq!(
+        partial.summary[0],
+        "The model lacks more than Coulomb friction at joint 1."
+    );
+    assert!(partial.summary[1].contains("do not take it for the cause"));
+    let nothing = said(Verdict::Unexplained, vec![], vec![]);
+    assert_eq!(
+        nothing.summary[0],
+        "Something is missing, and no known effect explains it."
+    );
+}
+
+#[test]
+fn a_model_far_off_is_not_said_to_explain_the_measurement() {
+    let said = said(Verdict::Nominal, vec![], vec![]);
+    assert_eq!(
+        said.summary[0],
+        "No known effect brings the model closer to the measurement."
+    );
+    assert_eq!(said.summary.len(), 3, "{:?}", said.summary);
+}
+
+#[test]
+fn values_on_bounds_and_collinear_pairs_are_warned_of() {
+    let mut effects = vec![effect("coulomb", Some(1))];
+    effects[0].parameters[0].on_bound = true;
+    let mut said = said(Verdict::Named, effects, vec![]);
+    assert_eq!(said.warnings.len(), 1, "{:?}", said.warnings);
+    assert!(said.warnings[0].contains("lies on its bound"));
+    said.warnings.clear();
+    for k in 0..5 {
+        said.collinear
+            .push((format!("a{k}"), format!("b{k}"), 0.96));
+    }
+    complete(&mut said);
+    assert!(
+        said.warnings.contains(&"and 2 more such pairs".to_owned()),
+        "{:?}",
+        said.warnings
+    );
+}
+
+#[test]
+fn names_are_joined_as_in_a_sentence() {
+    let names = |all: &[&str]| listed(all.iter().map(ToString::to_string).collect());
+    assert_eq!(names(&[]), "nothing");
+    assert_eq!(names(&["a"]), "a");
+    assert_eq!(names(&["a", "b"]), "a and b");
+    assert_eq!(names(&["a", "b", "c"]), "a, b and c");
+    assert_eq!(address(&effect("coulomb", Some(2))), "coulomb@2");
+    assert_eq!(address(&effect("base_tilt", None)), "base_tilt");
+}

@@ -1,0 +1,74 @@
+//! Laws every effect must keep, and values of those with a corner or a memory.
+
+use super::signature::off_values;
+use super::*;
+use crate::dynamics::ChainLink;
+use std::collections::HashSet;
+
+mod cards;
+mod laws;
+mod off;
+mod sensors;
+
+/// Units and what a key of that unit ends in.
+const SUFFIXES: &[(&str, &str)] = &[
+    ("s", "_s"),
+    ("m", "_m"),
+    ("kg", "_kg"),
+    ("kg m^2", "_kg_m2"),
+    ("rad", "_rad"),
+    ("rad/s", "_rad_s"),
+    ("N m", "_nm"),
+    ("N m/rad", "_nm_rad"),
+    ("N m s/rad", "_nm_s_rad"),
+    ("N m s^2/rad^2", "_nm_s2_rad2"),
+];
+
+fn cards() -> impl Iterator<Item = &'static Card> {
+    EFFECTS.iter().map(|effect| effect.card())
+}
+
+fn parameters() -> impl Iterator<Item = (&'static str, &'static Parameter)> {
+    cards().flat_map(|card| card.parameters.iter().map(|parameter| (card.id, parameter)))
+}
+
+fn effect(id: &str) -> &'static dyn Effect {
+    named(id).unwrap()
+}
+
+fn within((low, high): (f64, f64), value: f64) -> bool {
+    (low..=high).contains(&value)
+}
+
+fn near(left: f64, right: f64) {
+    assert!((left - right).abs() < 1e-12, "{left} is not {right}");
+}
+
+fn slide(speed_rad_s: f64, direction: f64) -> Slide {
+    Slide {
+        speed_rad_s: speed_rad_s.abs(),
+        direction,
+        gear_load_nm: 0.5,
+        bearing_load_n: 4.0,
+    }
+}
+
+fn rig() -> Rig {
+    let link = ChainLink {
+        length_m: 0.15,
+        com_m: 0.12,
+        com_angle_rad: 0.05,
+        mass_kg: 0.4,
+        inertia_kg_m2: 8e-4,
+        armature_kg_m2: 2e-3,
+    };
+    let chain = Chain {
+        links: vec![link],
+        gravity_m_s2: 9.81,
+    };
+    Rig {
+        chain,
+        gravity_turn_rad: 0.0,
+        turned: false,
+    }
+}

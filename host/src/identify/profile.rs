@@ -1,0 +1,76 @@
+//! Intervals where the error is no smooth function of a value.
+//!
+//! A dead zone swallows one command more or not, an arm breaks away at one sample or the next: the squared error
+//! goes up and down in steps, and its slope at the least tells too little. So it is looked up along the way:
+//! farther values that fit as well as the interval's ends should belong to the interval (profile likelihood:
+//! Bates & Watts 1988, Nonlinear Regression Analysis, ch. 6).
+
+use super::cluster::clusters;
+use super::covariance::{Interval, inverse};
+use super::data::Data;
+use super::fit::Fit;
+use super::normal::Normal;
+use super::residual::residuals;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Where the squared error is looked up, in reaches of the interval.
+const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
+
+/// The intervals, each end moved out to the farthest value at which the squared error is no larger than a smooth
+/// one would be at the end. The other values and the start states go along as they would if all were straight.
+pub fn profiled(fit: &Fit, data: &Data, intervals: &[Interval]) -> Vec<Interval> {
+    let count = fit.free.len();
+    let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;
+    let normal = clusters(fit, data)
+        .iter()
+        .fold(DMatrix::zeros(count, count), sum);
+    let Some(inverse) = inverse(&normal) else {
+        return intervals.to_vec();
+    };
+    let steps = Normal::assemble(count, &fit.jacobian, 0.0);
+    let least = fit.residuals.cost();
+    intervals
+        .par_iter()
+        .enumerate()
+        .map(|(i, interval)| {
+            let value = fit.values()[i];
+            let (low, high) = fit.free[i].bounds(&fit.model);
+            let end = |reach: f64| {
+                let allowed = least + reach * reach / inverse[(i, i)];
+                let along = inverse.column(i) / inverse[(i, i)];
+                let farthest = REACHES.iter().rev().find(|times| {
+                    let moved = *times * reach;
+                    (low..=high).contains(&(value + moved))
+                        && cost(fit, data, &steps, &(&along * moved)) <= allowed
+                });
+                value + farthest.unwrap_or(&1.0) * reach
+            };
+            Interval {
+                standard_error: interval.standard_error,
+                low: end(interval.low - value).max(low),
+                high: end(interval.high - value).min(high),
+            }
+        })
+        .collect()
+}
+
+/// Squared weighted residuals with the values moved; infinite where one leaves its bounds.
+fn cost(fit: &Fit, data: &Data, steps: &Normal, moved: &DVector<f64>) -> f64 {
+    let mut model = fit.model.clone();
+    for (path, moved) in fit.free.iter().zip(moved.iter()) {
+        let value = path.get(&fit.model).unwrap_or(f64::NAN) + moved;
+        let (low, high) = path.bounds(&fit.model);
+        if !(low..=high).contains(&value) || !path.set(&mut model, value) {
+            return f64::INFINITY;
+        }
+    }
+    let mut nodes = fit.nodes.clone();
+    for (window, node) in nodes.iter_mut().enumerate() {
+        let step = steps.node_step(window, moved);
+        for i in 0..node.unknowns() {
+            *node.at(i) += step[i];
+        }
+    }
+    residuals(&model, data, &nodes).cost()
+}

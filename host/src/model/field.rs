@@ -1,0 +1,146 @@
+//! The numbers of links and joints: key, unit, range, and where they are kept.
+
+use super::{Drive, Link, Motor};
+
+/// Range of a quantity that must be above zero; far wider than any rig on a bench.
+pub(super) const POSITIVE: (f64, f64) = (1e-9, 1e3);
+
+/// A number of a link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LinkField {
+    /// Joint to next joint, m.
+    Length,
+    /// Joint to centre of mass, m.
+    Com,
+    /// Mass, kg.
+    Mass,
+    /// Moment of inertia about the centre of mass, kg m^2.
+    Inertia,
+}
+
+impl LinkField {
+    /// Every one, in the order of a model file.
+    pub const ALL: [LinkField; 4] = [
+        LinkField::Length,
+        LinkField::Com,
+        LinkField::Mass,
+        LinkField::Inertia,
+    ];
+
+    /// Key in model files.
+    pub fn key(self) -> &'static str {
+        match self {
+            LinkField::Length => "length_m",
+            LinkField::Com => "com_m",
+            LinkField::Mass => "mass_kg",
+            LinkField::Inertia => "inertia_kg_m2",
+        }
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            LinkField::Length | LinkField::Com => "m",
+            LinkField::Mass => "kg",
+            LinkField::Inertia => "kg m^2",
+        }
+    }
+
+    pub(super) fn bounds(self) -> (f64, f64) {
+        match self {
+            // A counterweight's centre of mass lies behind its joint.
+            LinkField::Com => (-POSITIVE.1, POSITIVE.1),
+            LinkField::Length | LinkField::Mass | LinkField::Inertia => POSITIVE,
+        }
+    }
+
+    pub(super) fn of(self, link: &mut Link) -> &mut f64 {
+        match self {
+            LinkField::Length => &mut link.length_m,
+            LinkField::Com => &mut link.com_m,
+            LinkField::Mass => &mut link.mass_kg,
+            LinkField::Inertia => &mut link.inertia_kg_m2,
+        }
+    }
+
+    pub(super) fn read(self, link: &Link) -> f64 {
+        match self {
+            LinkField::Length => link.length_m,
+            LinkField::Com => link.com_m,
+            LinkField::Mass => link.mass_kg,
+            LinkField::Inertia => link.inertia_kg_m2,
+        }
+    }
+}
+
+/// A number of a joint's drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JointField {
+    /// Position drive: duty per rad of error.
+    GainPerRad,
+    /// Speed drive: duty per rad/s of error.
+    GainSPerRad,
+    /// Torque at standstill, N m.
+    StallTorque,
+    /// Speed without load, rad/s.
+    NoLoadSpeed,
+}
+
+impl JointField {
+    /// Every one, in the order of a model file.
+    pub const ALL: [JointField; 4] = [
+        JointField::GainPerRad,
+        JointField::GainSPerRad,
+        JointField::StallTorque,
+        JointField::NoLoadSpeed,
+    ];
+
+    /// Key in model files.
+    pub fn key(self) -> &'static str {
+        match self {
+            JointField::GainPerRad => "gain_per_rad",
+            JointField::GainSPerRad => "gain_s_per_rad",
+            JointField::StallTorque => "stall_torque_nm",
+            JointField::NoLoadSpeed => "no_load_speed_rad_s",
+        }
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            JointField::GainPerRad => "1/rad",
+            JointField::GainSPerRad => "s/rad",
+            JointField::StallTorque => "N m",
+            JointField::NoLoadSpeed => "rad/s",
+        }
+    }
+
+    pub(super) fn of(self, drive: &mut Drive) -> Option<&mut f64> {
+        match (self, drive) {
+            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(gain_per_rad),
+            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(gain_s_per_rad),
+            (field, Drive::Duty(motor))
+            | (field, Drive::Position { motor, .. })
+            | (field, Drive::Speed { motor, .. }) => field.of_motor(motor),
+            _ => None,
+        }
+    }
+
+    pub(super) fn of_motor(self, motor: &mut Motor) -> Option<&mut f64> {
+        match self {
+            JointField::StallTorque => Some(&mut motor.stall_torque_nm),
+            JointField::NoLoadSpeed => Some(&mut motor.no_load_speed_rad_s),
+            JointField::GainPerRad | JointField::GainSPerRad => None,
+        }
+    }
+
+    pub(super) fn read(self, drive: &Drive) -> Option<f64> {
+        match (self, drive) {
+            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(*gain_per_rad),
+            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(*gain_s_per_rad),
+            (JointField::StallTorque, drive) => drive.motor().map(|motor| motor.stall_torque_nm),
+            (JointField::NoLoadSpeed, drive) => {
+                drive.motor().map(|motor| motor.no_load_speed_rad_s)
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! "Did you mean": names and units for keys that are none.
+
+/// Which of the known names was meant, and which there are.
+pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
+    let all = known.join(", ");
+    let slips = |known: &str| strsim::damerau_levenshtein(name, known);
+    let near = known
+        .iter()
+        .map(|known| (strsim::jaro_winkler(name, known), *known))
+        .filter(|(likeness, known)| *likeness > 0.8 || slips(known) <= known.len() / 3)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known);
+    match near {
+        Some(near) => format!("did you mean `{near}`? known here: {all}"),
+        None => format!("known here: {all}"),
+    }
+}
+
+/// Unit suffixes of keys, longest first where one ends in another.
+const SUFFIXES: &[(&str, &str)] = &[
+    ("_nm_s2_rad2", "N m s^2/rad^2"),
+    ("_nm_s_rad", "N m s/rad"),
+    ("_nm_rad", "N m/rad"),
+    ("_s_per_rad", "s/rad"),
+    ("_per_rad", "1/rad"),
+    ("_kg_m2", "kg m^2"),
+    ("_m_s2", "m/s^2"),
+    ("_rad_s", "rad/s"),
+    ("_rad", "rad"),
+    ("_ohm", "ohm"),
+    ("_kg", "kg"),
+    ("_nm", "N m"),
+    ("_m", "m"),
+    ("_s", "s"),
+    ("_v", "V"),
+];
+
+/// A key's stem and the unit its suffix names.
+pub(crate) fn split_unit(key: &str) -> Option<(&str, &'static str)> {
+    SUFFIXES
+        .iter()
+        .find_map(|(suffix, unit)| key.strip_suffix(suffix).map(|stem| (stem, *unit)))
+}
