@@ -37,6 +37,12 @@ pub const NEEDS: &[Need] = &[
         signs: &["parallel"],
         packages: &["parallel"],
     },
+    Need {
+        name: "Python 3",
+        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
+        signs: &["python3"],
+        packages: &["python3", "python3-venv"],
+    },
 ];
 
 impl Need {
@@ -60,6 +66,7 @@ pub fn all() {
             Some(why) => println!("{name}, for {wanted_for}: {why}; they are skipped."),
         }
     }
+    super::python::all();
 }
 
 fn obstacle(need: &Need) -> Option<&'static str> {
