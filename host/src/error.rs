@@ -125,6 +125,14 @@ impl Error {
         }
     }
 
+    /// A device failed or fell silent.
+    pub fn device(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Error::Device {
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
     /// The system refused `action` on `path`.
     pub fn file(path: impl AsRef<Path>, action: &'static str, reason: std::io::Error) -> Self {
         Error::File {

@@ -2,7 +2,7 @@
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
+//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing depends on it.
 
 pub mod bus_sim;
 pub mod challenge;
@@ -15,11 +15,13 @@ pub mod effects;
 pub mod error;
 pub mod extend;
 pub mod identify;
+pub mod link;
 pub mod log;
 pub mod model;
 pub mod number;
 pub mod output;
 pub mod paper;
+pub mod record;
 pub mod report;
 pub mod servo;
 pub mod sim;

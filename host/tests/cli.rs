@@ -19,6 +19,13 @@ fn help_lists_every_command() {
         "gains",
         "challenge",
         "demo",
+        "bus",
+        "record",
+        "replay",
+        "latency",
+        "deploy",
+        "flash",
+        "virtual",
     ] {
         assert!(
             help.stdout.contains(&format!("\n  {command} ")),

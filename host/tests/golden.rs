@@ -53,6 +53,26 @@ fn help() {
 }
 
 #[test]
+fn bus() {
+    golden(
+        &bench(),
+        "bus",
+        &[
+            "bus --help",
+            "bus scan --port sim:ids=1-4,dead=2 --ids 1-4",
+            "bus read 3 id return-delay-time present_position --port sim",
+            "bus write 3 led 1 --port sim",
+            "bus setup --port sim:ids=1-2 --ids 1-2",
+            "bus doctor --port sim:ids=1-4,delay=0,dead=2,hot=3 --ids 1-4",
+            "bus doctor --port sim:ids=1-4,delay=0,baud=34 --ids 1-4",
+            "latency --port sim:ids=1-18,delay=0",
+            "latency --port sim-cm5:ids=1-18,delay=0 --stream",
+            "latency --port sim-cm5:ids=1-18",
+        ],
+    );
+}
+
+#[test]
 fn effects() {
     golden(&bench(), "effects", &["effects", "effects coulomb"]);
 }

@@ -19,6 +19,8 @@ pub struct Bus {
     now_ns: u64,
     /// Broadcasts that switched torque off, and when the last one ended, ns: what a safety test looks for.
     pub torque_offs: Vec<u64>,
+    /// Speed at which the controller speaks and listens, baud; servos set to another do not understand it.
+    pub line_baud: u32,
 }
 
 impl Bus {
@@ -30,6 +32,7 @@ impl Bus {
             line: VecDeque::new(),
             now_ns: 0,
             torque_offs: Vec::new(),
+            line_baud: 1_000_000,
         }
     }
 
@@ -70,6 +73,9 @@ impl Bus {
         }
         let mut answers = Vec::new();
         for servo in &mut self.servos {
+            if !servo.understands(self.line_baud) {
+                continue;
+            }
             if let Some(answer) = servo.hear(now_ns, id, request) {
                 answers.push(answer);
             }

@@ -135,6 +135,12 @@ impl Servo {
         self.get(TORQUE_ENABLE) != 0
     }
 
+    /// Whether it runs at the line's speed; a UART bears 3 %.
+    pub(super) fn understands(&self, line_baud: u32) -> bool {
+        let own = f64::from(baud_of(self.get(BAUD) as u8));
+        (f64::from(line_baud) / own - 1.0).abs() < 0.03
+    }
+
     /// When within each millisecond its motor interrupt comes, ns: in each servo at another moment, scattered by a
     /// hash, for servos started together would all stall a regular reader alike.
     pub(super) fn stall_phase_ns(&self) -> u64 {

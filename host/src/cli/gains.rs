@@ -123,14 +123,7 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
-    for file in files.into_iter().flatten() {
-        input::vacant(file, args.force)?;
-    }
-    let mut model = Model::load(&args.model)?;
-    leave_out(&mut model, &args.without, talk)?;
-    let design = Design::of(&model, &request(args, &model, talk)?)?;
-    let made = provenance(&args.model, talk)?;
+    let (design, made) = designed(args, talk)?;
     if talk.json {
         talk.data(&export::json(&design, &made))?;
     } else {
@@ -138,6 +131,18 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
     write(args, &design, &made, talk)?;
     Ok(Outcome::Done)
+}
+
+/// The design, and where it came from.
+pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)> {
+    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
+    for file in files.into_iter().flatten() {
+        input::vacant(file, args.force)?;
+    }
+    let mut model = Model::load(&args.model)?;
+    leave_out(&mut model, &args.without, talk)?;
+    let design = Design::of(&model, &request(args, &model, talk)?)?;
+    Ok((design, provenance(&args.model, talk)?))
 }
 
 fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
@@ -225,7 +230,7 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
     })
 }
 
-fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
+pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
     let put = |file: &Path, text: &str| -> Result<()> {
         write_new(file, text, args.force)?;
         talk.say(&format!("wrote {}", file.display()));

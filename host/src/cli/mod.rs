@@ -5,30 +5,41 @@
 //! drive was stopped for safety, 101 a bug.
 
 mod add;
+mod bus;
 mod challenge;
+mod cm5;
 mod compare;
 mod controllers;
 mod delays;
 mod demo;
+mod deploy;
 mod diagnose;
 mod effects;
 mod fit;
 mod fitting;
+mod flash;
 mod gains;
 mod given;
 mod identify;
 mod input;
+mod interrupt;
+mod latency;
 mod log;
 mod map;
 mod name;
 mod page;
 mod paper;
+mod port;
+mod record;
+mod replay;
+mod robot;
 mod robust;
 mod show;
 mod signals;
 mod study;
 mod talk;
 mod view;
+mod virtual_robot;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -102,6 +113,21 @@ pub enum Command {
     Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
+    /// Speak with servos: scan, read, write, set up, watch, save, restore, find what is wrong
+    #[command(subcommand)]
+    Bus(bus::Command),
+    /// Record what servos do
+    Record(record::Args),
+    /// Let servos repeat a recording
+    Replay(replay::Args),
+    /// Measure where the time between PC and servos goes
+    Latency(latency::Args),
+    /// Bring gains for a model onto the CM-5, and read them back
+    Deploy(deploy::Args),
+    /// Write a program into the CM-5
+    Flash(flash::Args),
+    /// Offer simulated servos to any program as a serial port
+    Virtual(virtual_robot::Args),
 }
 
 impl Command {
@@ -128,6 +154,13 @@ impl Command {
             Command::Delays(args) => delays::run(args, talk),
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
+            Command::Bus(command) => bus::run(command, talk),
+            Command::Record(args) => record::run(args, talk),
+            Command::Replay(args) => replay::run(args, talk),
+            Command::Latency(args) => latency::run(args, talk),
+            Command::Deploy(args) => deploy::run(args, talk),
+            Command::Flash(args) => flash::run(args, talk),
+            Command::Virtual(args) => virtual_robot::run(args, talk),
         }
     }
 }
@@ -139,6 +172,8 @@ pub enum Outcome {
     Done,
     /// It ran, and the answer is no: the data cannot be used, the values cannot be determined.
     Refused,
+    /// It was stopped to protect the robot.
+    Stopped,
 }
 
 impl Outcome {
@@ -147,6 +182,7 @@ impl Outcome {
         match self {
             Outcome::Done => 0,
             Outcome::Refused => 1,
+            Outcome::Stopped => 5,
         }
     }
 }

@@ -1,5 +1,8 @@
 //! A folder with a model and logs, and the built program in it.
 
+#[cfg(unix)]
+pub mod boot_loader;
+
 use assert_cmd::Command;
 use std::fmt::Write as _;
 use std::path::PathBuf;

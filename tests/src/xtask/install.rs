@@ -55,6 +55,12 @@ pub const NEEDS: &[Need] = &[
         signs: &["/usr/include/simavr/sim_avr.h"],
         packages: &["libsimavr-dev", "simavr"],
     },
+    Need {
+        name: "Python 3",
+        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
+        signs: &["python3"],
+        packages: &["python3", "python3-venv"],
+    },
 ];
 
 impl Need {
@@ -78,6 +84,7 @@ pub fn all() {
             Some(why) => println!("{name}, for {wanted_for}: {why}; they are skipped."),
         }
     }
+    super::python::all();
 }
 
 fn obstacle(need: &Need) -> Option<&'static str> {

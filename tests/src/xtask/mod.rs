@@ -6,6 +6,7 @@ mod hidden;
 mod install;
 mod peers;
 mod program;
+mod python;
 mod real;
 mod scatter;
 mod test;

@@ -1,0 +1,58 @@
+//! `handstand bus ...`: servos, one by one.
+//!
+//! ```console
+//! $ handstand bus scan --port /dev/ttyUSB0
+//! $ handstand bus read 3 --port sim
+//! $ handstand bus write 3 "moving speed" 100 --port sim
+//! $ handstand bus setup --port /dev/ttyUSB0
+//! $ handstand bus doctor --port /dev/ttyUSB0
+//! ```
+//!
+//! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus (`--baud 1000000`), or
+//! simulated servos (`--port sim`). Registers are named as in the AX-12's manual; codes are the register's own.
+
+mod backup;
+mod doctor;
+mod monitor;
+mod registers;
+mod scan;
+mod setup;
+
+use super::Outcome;
+use super::talk::Talk;
+use handstand::Result;
+
+/// What to do with servos.
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Find servos
+    Scan(scan::Args),
+    /// Read registers of a servo
+    Read(registers::ReadArgs),
+    /// Write a register of a servo, and read it back
+    Write(registers::WriteArgs),
+    /// Prepare servos for 100 Hz: return delay 0, status level 1; or give one servo its id
+    Setup(setup::Args),
+    /// Watch position, load, supply and temperature
+    Monitor(monitor::Args),
+    /// Save the servos' settings to a file
+    Backup(backup::BackupArgs),
+    /// Write saved settings back to the servos
+    Restore(backup::RestoreArgs),
+    /// Find out why a servo gives no status packet
+    Doctor(doctor::Args),
+}
+
+/// Does it.
+pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+    match command {
+        Command::Scan(args) => scan::run(args, talk),
+        Command::Read(args) => registers::read(args, talk),
+        Command::Write(args) => registers::write(args, talk),
+        Command::Setup(args) => setup::run(args, talk),
+        Command::Monitor(args) => monitor::run(args, talk),
+        Command::Backup(args) => backup::backup(args, talk),
+        Command::Restore(args) => backup::restore(args, talk),
+        Command::Doctor(args) => doctor::run(args, talk),
+    }
+}

@@ -1,0 +1,155 @@
+//! `bus backup`, `bus restore`: the servos' settings as a TOML file.
+//!
+//! All registers that can be written and are kept without power are saved, with model and firmware to compare. Restoring
+//! leaves id and baud rate as they are, writes only what differs, and reads every register back.
+
+use super::super::Outcome;
+use super::super::input;
+use super::super::port::{Ids, Port, id_list};
+use super::super::show::table;
+use super::super::talk::Talk;
+use super::scan::scan;
+use handstand::link::Settings;
+use handstand::{Error, Result, output};
+use handstand_shared::control_table::{MODEL, Register};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Save settings.
+#[derive(Debug, clap::Args)]
+pub struct BackupArgs {
+    /// File to write
+    file: PathBuf,
+    #[command(flatten)]
+    port: Port,
+    /// Servos to save
+    #[arg(long, default_value = "0-253", value_parser = id_list)]
+    ids: Ids,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// Write settings back.
+#[derive(Debug, clap::Args)]
+pub struct RestoreArgs {
+    /// File that `bus backup` wrote
+    file: PathBuf,
+    #[command(flatten)]
+    port: Port,
+    /// Servos to restore; all of the file without
+    #[arg(long, value_parser = id_list)]
+    ids: Option<Ids>,
+    /// Only show what would change
+    #[arg(long)]
+    dry_run: bool,
+}
+
+/// Reads all, writes the file.
+pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
+    input::vacant(&args.file, args.force)?;
+    let mut servos = args.port.servos()?;
+    let ids: Vec<u8> = scan(&mut servos, &args.ids.0, talk)?
+        .iter()
+        .map(|servo| servo.id)
+        .collect();
+    if ids.is_empty() {
+        return Err(Error::device(
+            "no servo answers",
+            "`handstand bus doctor` finds the cause",
+        ));
+    }
+    let mut saved = Vec::new();
+    for id in &ids {
+        saved.push(Settings::read(&mut servos, *id).map_err(|failure| failure.of(*id))?);
+    }
+    output::write_new(&args.file, &Settings::to_toml(&saved), args.force)?;
+    if talk.json {
+        talk.data(&json!({ "file": args.file.display().to_string(), "ids": ids }))?;
+    }
+    talk.say(&format!(
+        "wrote {}: {} servos",
+        args.file.display(),
+        ids.len()
+    ));
+    Ok(Outcome::Done)
+}
+
+/// Compares, writes what differs, reads back.
+pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
+    let mut saved = Settings::load(&args.file)?;
+    if let Some(Ids(ids)) = &args.ids {
+        if let Some(absent) = ids
+            .iter()
+            .find(|id| saved.iter().all(|servo| servo.id != **id))
+        {
+            return Err(Error::usage(
+                format!("{} has no servo {absent}", args.file.display()),
+                "leave it out of --ids",
+            ));
+        }
+        saved.retain(|servo| ids.contains(&servo.id));
+    }
+    let mut servos = args.port.servos()?;
+    let mut changes: Vec<(u8, Register, u16, u16)> = Vec::new();
+    // All servos are read before any is written: a servo that is missing stops a half restored robot from arising.
+    for servo in &saved {
+        let now = Settings::read(&mut servos, servo.id).map_err(|failure| failure.of(servo.id))?;
+        if now.get(MODEL) != servo.get(MODEL) {
+            return Err(Error::device(
+                format!(
+                    "servo {} is of another model than the saved one: {:?}, saved {:?}",
+                    servo.id,
+                    now.get(MODEL),
+                    servo.get(MODEL)
+                ),
+                "settings of one model mean other things to another: restore it with --ids from its own file",
+            ));
+        }
+        let differing = servo
+            .restorable()
+            .filter(|(register, code)| now.get(*register) != Some(*code));
+        changes
+            .extend(differing.map(|(register, code)| {
+                (servo.id, register, now.get(register).unwrap_or(0), code)
+            }));
+    }
+    let bar = talk.bar();
+    bar.set_length(changes.len() as u64);
+    for (id, register, _, code) in changes.iter().filter(|_| !args.dry_run) {
+        servos
+            .set(*id, *register, *code)
+            .map_err(|failure| failure.of(*id))?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    show(args, &changes, talk)
+}
+
+fn show(args: &RestoreArgs, changes: &[(u8, Register, u16, u16)], talk: &Talk) -> Result<Outcome> {
+    if talk.json {
+        let change = |(id, register, before, code): &(u8, Register, u16, u16)| json!({ "id": id, "register": register.name, "before": before, "code": code });
+        let changes: Vec<_> = changes.iter().map(change).collect();
+        talk.data(&json!({ "written": !args.dry_run, "changes": changes }))?;
+        return Ok(Outcome::Done);
+    }
+    let mut shown = table(["Id", "Register", "Before", "Saved"]);
+    for (id, register, before, code) in changes {
+        shown.add_row([
+            id.to_string(),
+            register.name.to_string(),
+            before.to_string(),
+            code.to_string(),
+        ]);
+    }
+    if !changes.is_empty() {
+        talk.print(&shown.to_string())?;
+    }
+    let done = if args.dry_run {
+        "would be written"
+    } else {
+        "were written and read back"
+    };
+    talk.say(&format!("{} registers {done}", changes.len()));
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,150 @@
+//! `bus monitor`: rounds of readings, until Ctrl-C or `--rounds`. Nothing is written to the servos.
+
+use super::super::Outcome;
+use super::super::interrupt::Interrupt;
+use super::super::port::{Ids, Port, id_list};
+use super::super::show::table;
+use super::super::talk::Talk;
+use handstand::Result;
+use handstand::link::Failure;
+use handstand_shared::control_table::PRESENT_POSITION;
+use handstand_shared::raw::{Position, Signed};
+use serde::Serialize;
+use std::time::Duration;
+
+/// Watch servos.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    port: Port,
+    /// Servos to watch
+    #[arg(long, default_value = "1-18", value_parser = id_list)]
+    ids: Ids,
+    /// Rounds to watch; until Ctrl-C without
+    #[arg(long)]
+    rounds: Option<u64>,
+    /// Seconds between rounds
+    #[arg(long, default_value_t = 1.0)]
+    every: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Seen {
+    id: u8,
+    position_rad: Option<f64>,
+    speed_rad_s: Option<f64>,
+    load_share: Option<f64>,
+    supply_v: Option<f64>,
+    temperature_celsius: Option<u8>,
+    errors: Vec<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Round {
+    time_s: f64,
+    servos: Vec<Seen>,
+}
+
+/// Reads and shows round by round. With `--json` all rounds at the end.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let every = Duration::try_from_secs_f64(args.every).unwrap_or(Duration::from_secs(1));
+    let interrupt = Interrupt::listen();
+    let mut servos = args.port.servos()?;
+    let mut rounds = Vec::new();
+    for round in 0.. {
+        if interrupt.has_come() || args.rounds.is_some_and(|most| round >= most) {
+            break;
+        }
+        let time_s = servos.link().now().as_secs_f64();
+        let mut seen = Vec::new();
+        for id in &args.ids.0 {
+            // Registers 36 to 43: position, speed, load, supply, temperature.
+            seen.push(match servos.read(*id, PRESENT_POSITION.address, 8) {
+                Ok(reading) => Seen::of(*id, &reading.data, reading.error.names().collect()),
+                Err(Failure::Port(error)) => return Err(error),
+                Err(_) => Seen::silent(*id),
+            });
+        }
+        if talk.json {
+            rounds.push(Round {
+                time_s,
+                servos: seen,
+            });
+        } else {
+            talk.print(&format!("{time_s:.2} s\n{}", text(&seen)))?;
+        }
+        let next = Duration::from_secs_f64(time_s) + every;
+        while servos.link().now() < next && !interrupt.has_come() {
+            let left = next.saturating_sub(servos.link().now());
+            servos.link().pause(left.min(Duration::from_millis(100)));
+        }
+    }
+    if talk.json {
+        talk.data(&rounds)?;
+    }
+    Ok(Outcome::Done)
+}
+
+impl Seen {
+    fn of(id: u8, data: &[u8], errors: Vec<&'static str>) -> Self {
+        let word = |at: usize| {
+            data.get(at..at + 2)
+                .map(|b| u16::from_le_bytes([b[0], b[1]]))
+        };
+        let signed = |at: usize| word(at).map(|code| f64::from(Signed(code).get()));
+        Seen {
+            id,
+            position_rad: word(0).map(|code| Position(code).to_rad()),
+            speed_rad_s: signed(2).map(|value| value * Signed::SPEED_LSB_RAD_S),
+            load_share: signed(4).map(|value| value * Signed::OUTPUT_LSB),
+            supply_v: data.get(6).map(|code| f64::from(*code) * 0.1),
+            temperature_celsius: data.get(7).copied(),
+            errors,
+        }
+    }
+
+    fn silent(id: u8) -> Self {
+        Seen {
+            id,
+            position_rad: None,
+            speed_rad_s: None,
+            load_share: None,
+            supply_v: None,
+            temperature_celsius: None,
+            errors: vec!["silent"],
+        }
+    }
+}
+
+fn text(seen: &[Seen]) -> String {
+    let mut shown = table([
+        "Id",
+        "Position",
+        "Speed",
+        "Load",
+        "Supply",
+        "Temp",
+        "Complains of",
+    ]);
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_string());
+    for servo in seen {
+        shown.add_row([
+            servo.id.to_string(),
+            or_dash(
+                servo
+                    .position_rad
+                    .map(|value| format!("{:.1} deg", value.to_degrees())),
+            ),
+            or_dash(servo.speed_rad_s.map(|value| format!("{value:.2} rad/s"))),
+            or_dash(
+                servo
+                    .load_share
+                    .map(|value| format!("{:.0} %", value * 100.0)),
+            ),
+            or_dash(servo.supply_v.map(|value| format!("{value:.1} V"))),
+            or_dash(servo.temperature_celsius.map(|value| format!("{value} C"))),
+            servo.errors.join(", "),
+        ]);
+    }
+    shown.to_string()
+}

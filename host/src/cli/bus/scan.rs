@@ -1,0 +1,134 @@
+//! `bus scan`: pings every id and reads what answers.
+
+use super::super::Outcome;
+use super::super::port::{AnyLink, Ids, Port, id_list};
+use super::super::show::table;
+use super::super::talk::Talk;
+use handstand::link::{Failure, Servos};
+use handstand::{Error, Result};
+use handstand_shared::control_table as ct;
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::raw::Position;
+use serde::Serialize;
+
+/// Find servos.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    port: Port,
+    /// Ids to ask
+    #[arg(long, default_value = "0-253", value_parser = id_list)]
+    ids: Ids,
+}
+
+/// A servo that answered.
+#[derive(Debug, Serialize)]
+pub struct Found {
+    pub id: u8,
+    pub model: u16,
+    pub firmware: u16,
+    pub return_delay_us: u16,
+    pub status_level: u16,
+    pub position_rad: f64,
+    pub supply_v: f64,
+    pub temperature_celsius: u16,
+    pub errors: Vec<&'static str>,
+}
+
+/// Asks, shows.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let mut servos = args.port.servos()?;
+    let found = scan(&mut servos, &args.ids.0, talk)?;
+    if talk.json {
+        talk.data(&found)?;
+    } else {
+        let mut shown = table([
+            "Id",
+            "Model",
+            "Firmware",
+            "Return delay",
+            "Status level",
+            "Position",
+            "Supply",
+            "Temp",
+            "Complains of",
+        ]);
+        for servo in &found {
+            shown.add_row([
+                servo.id.to_string(),
+                model(servo.model),
+                servo.firmware.to_string(),
+                format!("{} us", servo.return_delay_us),
+                servo.status_level.to_string(),
+                format!("{:.1} deg", servo.position_rad.to_degrees()),
+                format!("{:.1} V", servo.supply_v),
+                format!("{} C", servo.temperature_celsius),
+                servo.errors.join(", "),
+            ]);
+        }
+        talk.print(&shown.to_string())?;
+    }
+    talk.say(&format!(
+        "{} of {} ids answer",
+        found.len(),
+        args.ids.0.len()
+    ));
+    if found.is_empty() {
+        return Err(Error::device(
+            "no servo answers",
+            "`handstand bus doctor` finds the cause",
+        ));
+    }
+    Ok(Outcome::Done)
+}
+
+/// Pings these ids and reads what answers.
+pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
+    let bar = talk.bar();
+    bar.set_length(ids.len() as u64);
+    let mut found = Vec::new();
+    for id in ids {
+        // A silent id is asked once: most are. One that says anything gets its tries.
+        servos.tries = 1;
+        let pinged = servos.ping(*id);
+        servos.tries = 3;
+        match pinged {
+            Ok(error) => found.push(read(servos, *id, error).map_err(|failure| failure.of(*id))?),
+            Err(Failure::Silent) => {}
+            Err(Failure::Port(error)) => return Err(error),
+            Err(_) => {
+                if let Ok(error) = servos.ping(*id) {
+                    found.push(read(servos, *id, error).map_err(|failure| failure.of(*id))?);
+                } else {
+                    talk.say(&format!("id {id}: bytes came, but no sound answer: two servos of this id, or a bad line"));
+                }
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(found)
+}
+
+fn read(servos: &mut Servos<AnyLink>, id: u8, error: ErrorBits) -> Result<Found, Failure> {
+    Ok(Found {
+        id,
+        model: servos.get(id, ct::MODEL)?,
+        firmware: servos.get(id, ct::FIRMWARE)?,
+        return_delay_us: 2 * servos.get(id, ct::RETURN_DELAY)?,
+        status_level: servos.get(id, ct::STATUS_LEVEL)?,
+        position_rad: Position(servos.get(id, ct::PRESENT_POSITION)?).to_rad(),
+        supply_v: f64::from(servos.get(id, ct::PRESENT_SUPPLY)?) * 0.1,
+        temperature_celsius: servos.get(id, ct::PRESENT_TEMPERATURE)?,
+        errors: error.names().collect(),
+    })
+}
+
+fn model(number: u16) -> String {
+    match number {
+        12 => "AX-12".to_string(),
+        18 => "AX-18".to_string(),
+        300 => "AX-12W".to_string(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,115 @@
+//! `bus setup`: what 100 Hz needs, and ids one servo at a time.
+//!
+//! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms; status level 1 spares
+//! the answers to writes. A new id is given only while a single servo is connected: two of one id cannot be told apart.
+
+use super::super::Outcome;
+use super::super::port::{Ids, Port, id_list};
+use super::super::show::table;
+use super::super::talk::Talk;
+use super::scan::scan;
+use handstand::{Error, Result};
+use handstand_shared::control_table::{ID, RETURN_DELAY, Register, STATUS_LEVEL};
+use serde_json::json;
+
+/// Prepare servos.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    port: Port,
+    /// Servos to prepare
+    #[arg(long, default_value = "0-253", value_parser = id_list)]
+    ids: Ids,
+    /// Code of the return delay, 2 us each
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=254))]
+    return_delay: u16,
+    /// Which requests are answered: 0 PING, 1 reading, 2 all
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=2))]
+    status_level: u16,
+    /// Give the one servo that is connected this id
+    #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u8).range(0..=253))]
+    new_id: Option<u8>,
+}
+
+/// Scans, sets what differs, reads back.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let mut servos = args.port.servos()?;
+    let found = scan(&mut servos, &args.ids.0, talk)?;
+    let mut ids: Vec<u8> = found.iter().map(|servo| servo.id).collect();
+    if ids.is_empty() {
+        return Err(Error::device(
+            "no servo answers",
+            "`handstand bus doctor` finds the cause",
+        ));
+    }
+    let mut changes = Vec::new();
+    if let Some(new) = args.new_id {
+        let [only] = ids[..] else {
+            return Err(Error::usage(
+                format!("{} servos answer: {ids:?}", ids.len()),
+                "connect the one that gets the new id, and no other",
+            ));
+        };
+        if args.ids.0.len() < 254 {
+            return Err(Error::usage(
+                "a new id needs a scan of all ids",
+                "leave --ids out: another servo might hear it too",
+            ));
+        }
+        if only != new {
+            servos
+                .set(only, ID, u16::from(new))
+                .map_err(|failure| failure.of(only))?;
+            changes.push((new, ID, u16::from(only), u16::from(new)));
+        }
+        ids = vec![new];
+    }
+    let bar = talk.bar();
+    bar.set_length(ids.len() as u64);
+    for id in &ids {
+        for (register, code) in [
+            (RETURN_DELAY, args.return_delay),
+            (STATUS_LEVEL, args.status_level),
+        ] {
+            let before = servos
+                .get(*id, register)
+                .map_err(|failure| failure.of(*id))?;
+            if before != code {
+                servos
+                    .set(*id, register, code)
+                    .map_err(|failure| failure.of(*id))?;
+                changes.push((*id, register, before, code));
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    show(&ids, &changes, talk)
+}
+
+fn show(ids: &[u8], changes: &[(u8, Register, u16, u16)], talk: &Talk) -> Result<Outcome> {
+    if talk.json {
+        let change = |(id, register, before, code): &(u8, Register, u16, u16)| json!({ "id": id, "register": register.name, "before": before, "code": code });
+        let changes: Vec<_> = changes.iter().map(change).collect();
+        talk.data(&json!({ "ids": ids, "changes": changes }))?;
+        return Ok(Outcome::Done);
+    }
+    let mut shown = table(["Id", "Register", "Before", "Now"]);
+    for (id, register, before, code) in changes {
+        shown.add_row([
+            id.to_string(),
+            register.name.to_string(),
+            before.to_string(),
+            code.to_string(),
+        ]);
+    }
+    if !changes.is_empty() {
+        talk.print(&shown.to_string())?;
+    }
+    talk.say(&format!(
+        "{} servos are ready; {} registers were changed",
+        ids.len(),
+        changes.len()
+    ));
+    Ok(Outcome::Done)
+}

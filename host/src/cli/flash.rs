@@ -1,0 +1,183 @@
+//! `handstand flash IMAGE.bin`: a program into the CM-5, through its boot loader.
+//!
+//! ```console
+//! $ cargo xtask firmware
+//! $ handstand flash handstand-firmware.bin --port /dev/ttyUSB0
+//! ```
+//!
+//! Press the CM-5's MODE button (reset) when asked. Size and checksum are compared with the boot loader's, flash is
+//! verified, and the application starts at every power-on from then on (`--no-app` leaves that out). The boot loader
+//! itself is never written. `--pace-us` slows the line down, `--dry-run` only checks the file.
+//!
+//! `--isp PROGRAMMER` goes through avrdude and the board's ISP pads instead. That erases the whole chip, the boot loader
+//! included: afterwards only a programmer can write it. It asks before, unless `--yes`.
+//!
+//! `--json` prints `bytes`, `checksum`, `verified`, `starts_at_power_on`; with `--dry-run` or `--isp` `command` or less.
+
+use super::Outcome;
+use super::interrupt::Interrupt;
+use super::port::Port;
+use super::talk::Talk;
+use handstand::link::boot_loader::{BootLoader, Image};
+use handstand::{Error, Result};
+use serde_json::json;
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+/// Write a program into the CM-5.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Raw binary; for --isp also HEX or ELF
+    image: PathBuf,
+    #[command(flatten)]
+    port: Port,
+    /// Pause after every byte, for a line that loses some
+    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000))]
+    pace_us: u64,
+    /// Seconds to wait for the reset
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]
+    wait: u64,
+    /// Do not start the application at power-on
+    #[arg(long)]
+    no_app: bool,
+    /// Start the application when all is well
+    #[arg(long)]
+    go: bool,
+    /// Only check the file
+    #[arg(long)]
+    dry_run: bool,
+    /// Go through avrdude and this programmer; erases the boot loader
+    #[arg(long, value_name = "PROGRAMMER")]
+    isp: Option<String>,
+    /// Do not ask
+    #[arg(long)]
+    yes: bool,
+}
+
+/// Checks the image, then writes it.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    if let Some(programmer) = &args.isp {
+        return isp(args, programmer, talk);
+    }
+    let image = Image::load(&args.image)?;
+    let facts = format!(
+        "{}: {} bytes, checksum {:02X}",
+        args.image.display(),
+        image.bytes().len(),
+        image.checksum()
+    );
+    if args.dry_run {
+        talk.say(&format!("{facts}; nothing was sent"));
+        return report(&image, false, false, talk);
+    }
+    talk.say(&facts);
+    let interrupt = Interrupt::listen();
+    let link = args.port.open()?;
+    talk.say("Press the MODE button (reset) of the CM-5 now.");
+    let patience = Duration::from_secs(args.wait);
+    let mut loader =
+        BootLoader::enter(link, Duration::from_micros(args.pace_us), patience, || {
+            !interrupt.has_come()
+        })?;
+    let bar = talk.bar();
+    bar.set_length(image.bytes().len() as u64);
+    bar.set_message("bytes; do not switch off");
+    let loaded = loader.load(&image, |sent| bar.set_position(sent as u64));
+    bar.finish_and_clear();
+    loaded?;
+    loader.verify()?;
+    if !args.no_app {
+        loader.start_at_power_on()?;
+    }
+    if args.go {
+        loader.go()?;
+    }
+    talk.say("Written and verified.");
+    report(&image, true, !args.no_app, talk)
+}
+
+fn report(image: &Image, verified: bool, starts: bool, talk: &Talk) -> Result<Outcome> {
+    if talk.json {
+        talk.data(&json!({
+            "bytes": image.bytes().len(),
+            "checksum": image.checksum(),
+            "verified": verified,
+            "starts_at_power_on": starts,
+        }))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// avrdude's letter for a kind of file.
+fn format_of(path: &Path) -> Result<&'static str> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("bin") => Ok("r"),
+        Some("hex") => Ok("i"),
+        Some("elf") => Ok("e"),
+        _ => Err(Error::usage(
+            format!("{}: what kind of file is this?", path.display()),
+            "give a .hex, .elf or .bin",
+        )),
+    }
+}
+
+fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
+    let kind = format_of(&args.image)?;
+    if let Err(error) = std::fs::metadata(&args.image) {
+        return Err(Error::file(&args.image, "read", error));
+    }
+    let target = format!("flash:w:{}:{kind}", args.image.display());
+    // Fuses and lock bits are never written.
+    let words = ["-p", "m128", "-c", programmer, "-U", &target];
+    let line = format!("avrdude {}", words.join(" "));
+    talk.say("This erases the whole chip, the CM-5's boot loader included: afterwards only a programmer can write it.");
+    if args.dry_run {
+        talk.say(&format!("{line}; not run"));
+    } else {
+        agreed(args.yes, "Erase the boot loader?")?;
+        let status = Command::new("avrdude")
+            .args(words)
+            .status()
+            .map_err(|error| {
+                Error::device(
+                    format!("avrdude cannot be run: {error}"),
+                    "install it: apt-get install avrdude",
+                )
+            })?;
+        if !status.success() {
+            return Err(Error::device(
+                format!("avrdude failed: {status}"),
+                "is the programmer on J5, the board powered?",
+            ));
+        }
+    }
+    if talk.json {
+        talk.data(&json!({ "command": line, "run": !args.dry_run }))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Asks on the terminal, unless it was answered beforehand.
+///
+/// # Errors
+/// [`Error::Usage`] if the answer is not yes, or nobody is there to ask.
+pub fn agreed(yes: bool, question: &str) -> Result<()> {
+    if yes {
+        return Ok(());
+    }
+    if !std::io::stdin().is_terminal() {
+        return Err(Error::usage(
+            "nobody is here to be asked",
+            "pass --yes if you mean it",
+        ));
+    }
+    eprint!("{question} Type yes: ");
+    let mut answer = String::new();
+    let read = std::io::stdin().read_line(&mut answer);
+    match read.is_ok() && answer.trim() == "yes" {
+        true => Ok(()),
+        false => Err(Error::usage("not agreed to", "nothing was done")),
+    }
+}

@@ -1,0 +1,164 @@
+//! `handstand record FILE.csv|FILE.mcap`: what the servos do, until Ctrl-C or for `--seconds`.
+//!
+//! ```console
+//! $ handstand record swing.mcap --seconds 20 --port /dev/ttyUSB0
+//! $ handstand record swing.csv --from swing.mcap
+//! ```
+//!
+//! Nothing is written to the servos. The file is brought to the disk every second: a crash, `kill -9` or a power cut costs
+//! at most the last one, and what was being written then is dropped when it is read. `--from` takes the samples from
+//! another recording: it turns one format into the other, and a torn file into a whole one. docs/record.md lists columns
+//! and topics.
+//!
+//! `--json` prints `file`, `samples`, `seconds`, `rate_hz`, `missing` (answers that did not come), `torn` (with `--from`).
+
+use super::interrupt::Interrupt;
+use super::robot::Robot;
+use super::talk::Talk;
+use super::{Outcome, input};
+use handstand::record::{Format, Recorder, Sample, read};
+use handstand::{Error, Result};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Record servos.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// File to write, .csv or .mcap
+    file: PathBuf,
+    #[command(flatten)]
+    robot: Robot,
+    /// How long; until Ctrl-C without
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// Take the samples from this recording
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// What a recording came to.
+#[derive(Debug, Default)]
+pub struct Tally {
+    samples: u64,
+    missing: u64,
+    first_s: Option<f64>,
+    last_s: f64,
+}
+
+impl Tally {
+    /// Counts a sample.
+    pub fn count(&mut self, sample: &Sample) {
+        self.samples += 1;
+        self.missing += sample
+            .joints
+            .iter()
+            .filter(|joint| joint.position_rad.is_none())
+            .count() as u64;
+        self.first_s.get_or_insert(sample.time_s);
+        self.last_s = sample.time_s;
+    }
+
+    /// Samples counted.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// From the first sample to the last, s.
+    pub fn seconds(&self) -> f64 {
+        self.last_s - self.first_s.unwrap_or(self.last_s)
+    }
+
+    /// Samples per second.
+    pub fn rate_hz(&self) -> Option<f64> {
+        (self.samples > 1 && self.seconds() > 0.0)
+            .then(|| (self.samples - 1) as f64 / self.seconds())
+    }
+}
+
+/// Samples until told to stop.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    Format::of(&args.file)?;
+    input::vacant(&args.file, args.force)?;
+    if let Some(from) = &args.from {
+        return convert(args, from, talk);
+    }
+    let interrupt = Interrupt::listen();
+    let mut source = args.robot.open()?;
+    let mut recorder = Recorder::create(&args.file, &args.robot.ids.0, args.force)?;
+    let bar = talk.bar();
+    bar.set_length(args.seconds.map_or(0, |seconds| {
+        (seconds / args.robot.period().map_or(0.01, |p| p.as_secs_f64())) as u64
+    }));
+    let mut tally = Tally::default();
+    let mut silent = 0;
+    while !interrupt.has_come()
+        && args
+            .seconds
+            .is_none_or(|seconds| tally.samples == 0 || tally.seconds() < seconds)
+    {
+        let Some(sample) = source.sample(None)? else {
+            silent += 1;
+            if silent == 20 {
+                recorder.finish()?;
+                return Err(Error::device(
+                    "the CM-5 has sent nothing for 2 s",
+                    "is it on? what was recorded is in the file",
+                ));
+            }
+            continue;
+        };
+        silent = 0;
+        recorder.write(&sample)?;
+        tally.count(&sample);
+        bar.inc(1);
+        bar.set_message(format!("samples, {} answers missing", tally.missing));
+    }
+    bar.finish_and_clear();
+    recorder.finish()?;
+    report(args, &tally, None, talk)
+}
+
+fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> {
+    let recording = read(from)?;
+    let mut recorder = Recorder::create(&args.file, &recording.ids, args.force)?;
+    let mut tally = Tally::default();
+    for sample in &recording.samples {
+        recorder.write(sample)?;
+        tally.count(sample);
+    }
+    recorder.finish()?;
+    if recording.torn {
+        talk.say(&format!(
+            "{} ends in the middle of a sample or second, which was dropped",
+            from.display()
+        ));
+    }
+    report(args, &tally, Some(recording.torn), talk)
+}
+
+fn report(args: &Args, tally: &Tally, torn: Option<bool>, talk: &Talk) -> Result<Outcome> {
+    if talk.json {
+        talk.data(&json!({
+            "file": args.file.display().to_string(),
+            "samples": tally.samples,
+            "seconds": tally.seconds(),
+            "rate_hz": tally.rate_hz(),
+            "missing": tally.missing,
+            "torn": torn,
+        }))?;
+    }
+    talk.say(&format!(
+        "wrote {}: {} samples, {:.2} s, {} per second, {} answers missing",
+        args.file.display(),
+        tally.samples,
+        tally.seconds(),
+        tally
+            .rate_hz()
+            .map_or("–".to_string(), |rate| format!("{rate:.1}")),
+        tally.missing
+    ));
+    Ok(Outcome::Done)
+}

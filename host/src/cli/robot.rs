@@ -1,0 +1,62 @@
+//! Servos to sample and move, as `record`, `replay` and `latency` take them.
+
+use super::port::{Ids, Port, id_list};
+use handstand::record::{Adapter, Source, Stream};
+use handstand::{Error, Result};
+use std::time::Duration;
+
+/// Which servos, and how they are read.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Robot {
+    #[command(flatten)]
+    pub port: Port,
+    /// Servos
+    #[arg(long, default_value = "1-18", value_parser = id_list)]
+    pub ids: Ids,
+    /// Let a CM-5 with Handstand's firmware read them: 100 times a second, whatever --hz says
+    #[arg(long)]
+    pub stream: bool,
+    /// Rounds per second, if the line is fast enough
+    #[arg(long, default_value_t = 100.0)]
+    pub hz: f64,
+}
+
+impl Robot {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// No port, no firmware, or a rate that is none.
+    pub fn open(&self) -> Result<Box<dyn Source>> {
+        if self.stream {
+            return Ok(Box::new(Stream::new(self.port.open()?, &self.ids.0)?));
+        }
+        let mut servos = self.port.servos()?;
+        let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
+        if !present {
+            return Err(Error::device(
+                "no servo answers",
+                "`handstand bus doctor` finds the cause",
+            ));
+        }
+        Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
+    }
+
+    /// Time between two samples.
+    ///
+    /// # Errors
+    /// A rate that is none.
+    pub fn period(&self) -> Result<Duration> {
+        if self.stream {
+            return Ok(Duration::from_millis(10));
+        }
+        let sensible = (0.01..=1000.0).contains(&self.hz);
+        sensible
+            .then(|| Duration::from_secs_f64(1.0 / self.hz))
+            .ok_or_else(|| {
+                Error::usage(
+                    format!("--hz {} is no rate", self.hz),
+                    "give 0.01 to 1000 rounds per second",
+                )
+            })
+    }
+}

@@ -1,0 +1,38 @@
+//! The way to servos and controller: ports, what is said over them, and who speaks it.
+//!
+//! A [`Link`] is a line of bytes with a clock. [`Serial`] is a real one, [`InProcess`] the simulated bus in simulated
+//! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
+//! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
+
+pub mod boot_loader;
+pub mod doctor;
+mod faulty;
+mod in_process;
+mod port;
+#[cfg(unix)]
+mod pty;
+mod replay;
+mod retry;
+mod serial;
+mod servos;
+mod session;
+mod settings;
+mod sim_words;
+mod tap;
+
+pub use faulty::Faulty;
+pub use in_process::InProcess;
+pub use port::{Link, read_some};
+#[cfg(unix)]
+pub use pty::Pty;
+pub use replay::Replay;
+pub use retry::Failure;
+pub use serial::{Serial, ports};
+pub use servos::{Reading, Servos};
+pub use session::{Session, condition_words, refusal_words};
+pub use settings::Settings;
+pub use sim_words::{SimWords, ids};
+pub use tap::{Exchange, Tap, Way};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,154 @@
+//! Servos read one by one, through an adapter.
+
+use super::sample::{Joint, Sample};
+use super::source::Source;
+use crate::error::Result;
+use crate::link::{Failure, Link, Servos};
+use handstand_shared::control_table::{
+    GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
+};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::raw::{Position, Signed, TorqueLimit};
+use std::time::Duration;
+
+/// Servos behind an adapter, read one by one.
+pub struct Adapter<L: Link> {
+    servos: Servos<L>,
+    ids: Vec<u8>,
+    period: Duration,
+    begun: Duration,
+    next: Duration,
+    goals: Vec<Option<Position>>,
+    armed: bool,
+    danger: Option<String>,
+}
+
+impl<L: Link> Adapter<L> {
+    /// These servos, every `period` or as often as the line allows.
+    pub fn new(mut servos: Servos<L>, ids: &[u8], period: Duration) -> Self {
+        // A second try must not cost the round more than one servo's time.
+        servos.tries = 2;
+        let begun = servos.link().now();
+        Adapter {
+            servos,
+            ids: ids.to_vec(),
+            period,
+            begun,
+            next: begun,
+            goals: vec![None; ids.len()],
+            armed: false,
+            danger: None,
+        }
+    }
+
+    fn read(&mut self, place: usize) -> Result<Joint> {
+        let id = self.ids[place];
+        let reading = match self.servos.read(id, PRESENT_POSITION.address, 8) {
+            Ok(reading) => reading,
+            Err(Failure::Port(error)) => return Err(error),
+            Err(_) => {
+                return Ok(Joint {
+                    goal_rad: self.goals[place].map(Position::to_rad),
+                    ..Joint::default()
+                });
+            }
+        };
+        let word = |at: usize| u16::from_le_bytes([reading.data[at], reading.data[at + 1]]);
+        self.danger = self.danger.take().or_else(|| danger(id, reading.error));
+        Ok(Joint {
+            position_rad: Some(Position(word(0)).to_rad()),
+            speed_rad_s: Some(f64::from(Signed(word(2)).get()) * Signed::SPEED_LSB_RAD_S),
+            load: Some(f64::from(Signed(word(4)).get()) * Signed::OUTPUT_LSB),
+            goal_rad: self.goals[place].map(Position::to_rad),
+            supply_v: Some(f64::from(reading.data[6]) * 0.1),
+            temperature_celsius: Some(f64::from(reading.data[7])),
+            error: Some(reading.error.0),
+        })
+    }
+
+    fn send_goals(&mut self, goals_rad: &[f64]) -> Result<()> {
+        let codes: Vec<(u8, u16)> = (self.ids.iter().zip(goals_rad))
+            .map(|(id, goal)| (*id, Position::from_rad(*goal).0))
+            .collect();
+        self.goals = codes
+            .iter()
+            .map(|(_, code)| Some(Position(*code)))
+            .collect();
+        self.servos
+            .sync_write(GOAL_POSITION, &codes)
+            .map_err(|failure| failure.of(0))
+    }
+
+    fn write_each(&mut self, register: Register, code: u16) -> Result<()> {
+        let codes: Vec<(u8, u16)> = self.ids.iter().map(|id| (*id, code)).collect();
+        self.servos
+            .sync_write(register, &codes)
+            .map_err(|failure| failure.of(0))
+    }
+}
+
+impl<L: Link> Source for Adapter<L> {
+    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<Sample>> {
+        let wait = self.next.saturating_sub(self.servos.link().now());
+        self.servos.link().pause(wait);
+        let now = self.servos.link().now();
+        // Late rounds are not made up for.
+        self.next = (self.next + self.period).max(now);
+        if let Some(goals) = goals_rad.filter(|_| self.armed) {
+            self.send_goals(goals)?;
+        }
+        let joints = (0..self.ids.len())
+            .map(|place| self.read(place))
+            .collect::<Result<_>>()?;
+        Ok(Some(Sample {
+            time_s: (now - self.begun).as_secs_f64(),
+            joints,
+        }))
+    }
+
+    fn arm(&mut self) -> Result<()> {
+        let mut here = Vec::new();
+        for id in self.ids.clone() {
+            let code = self
+                .servos
+                .get(id, PRESENT_POSITION)
+                .map_err(|failure| failure.of(id))?;
+            here.push(Position(code).to_rad());
+        }
+        self.armed = true;
+        self.write_each(TORQUE_LIMIT, TorqueLimit::FULL.0)?;
+        self.write_each(MOVING_SPEED, 0)?;
+        self.send_goals(&here)?;
+        self.write_each(TORQUE_ENABLE, 1)
+    }
+
+    fn disarm(&mut self) -> Result<()> {
+        self.servos.torque_off().map_err(|failure| failure.of(0))?;
+        self.armed = false;
+        Ok(())
+    }
+
+    fn danger(&self) -> Option<String> {
+        self.danger.clone().filter(|_| self.armed)
+    }
+}
+
+impl<L: Link> Drop for Adapter<L> {
+    fn drop(&mut self) {
+        if self.armed {
+            // Nobody is left who could be told that it failed.
+            let _ = self.servos.torque_off();
+        }
+    }
+}
+
+fn danger(id: u8, error: ErrorBits) -> Option<String> {
+    let grave = [ErrorBits::OVERLOAD, ErrorBits::OVERHEAT, ErrorBits::VOLTAGE];
+    let complains = grave.into_iter().any(|bits| error.has(bits));
+    complains.then(|| {
+        format!(
+            "servo {id} complains of: {}",
+            error.names().collect::<Vec<_>>().join(", ")
+        )
+    })
+}

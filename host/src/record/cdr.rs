@@ -1,0 +1,147 @@
+//! `sensor_msgs/msg/JointState` as ROS 2 serialises it: CDR, little endian (OMG DDS-XTypes 1.3, XCDR1).
+
+/// The schema's name.
+pub const NAME: &str = "sensor_msgs/msg/JointState";
+/// The schema, as ROS 2 writes it into recordings.
+pub const SCHEMA: &str = "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n\
+================================================================================\nMSG: std_msgs/Header\n\
+builtin_interfaces/Time stamp\nstring frame_id\n\
+================================================================================\nMSG: builtin_interfaces/Time\n\
+int32 sec\nuint32 nanosec\n";
+
+/// Header that says: XCDR1, little endian.
+const HEADER: [u8; 4] = [0, 1, 0, 0];
+
+/// A message's content.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct JointState {
+    /// Stamp, ns.
+    pub stamp_ns: u64,
+    /// Joints.
+    pub name: Vec<String>,
+    /// Angle of each, rad, or empty.
+    pub position: Vec<f64>,
+    /// Speed of each, rad/s, or empty.
+    pub velocity: Vec<f64>,
+    /// Effort of each, or empty.
+    pub effort: Vec<f64>,
+}
+
+impl JointState {
+    /// The bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = HEADER.to_vec();
+        // Seconds beyond 2038 do not fit the message's type.
+        let second = i32::try_from(self.stamp_ns / 1_000_000_000).unwrap_or(i32::MAX);
+        out.extend(second.to_le_bytes());
+        out.extend(((self.stamp_ns % 1_000_000_000) as u32).to_le_bytes());
+        put_text(&mut out, "");
+        put_length(&mut out, self.name.len());
+        self.name.iter().for_each(|name| put_text(&mut out, name));
+        for values in [&self.position, &self.velocity, &self.effort] {
+            put_length(&mut out, values.len());
+            for value in values {
+                align(&mut out, 8);
+                out.extend(value.to_le_bytes());
+            }
+        }
+        out
+    }
+
+    /// Reads the bytes; none if they are no such message.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let mut reader = Reader { bytes, at: 4 };
+        (bytes.get(..4)? == HEADER).then_some(())?;
+        let second = u64::try_from(i32::from_le_bytes(reader.take(4)?)).ok()?;
+        let nanosecond = u64::from(reader.length()?);
+        reader.text()?;
+        let names = reader.length()?;
+        let name = (0..names).map(|_| reader.text()).collect::<Option<_>>()?;
+        Some(JointState {
+            stamp_ns: second * 1_000_000_000 + nanosecond,
+            name,
+            position: reader.numbers()?,
+            velocity: reader.numbers()?,
+            effort: reader.numbers()?,
+        })
+    }
+}
+
+fn align(out: &mut Vec<u8>, to: usize) {
+    let after = out.len() - HEADER.len();
+    out.resize(HEADER.len() + after.next_multiple_of(to), 0);
+}
+
+fn put_length(out: &mut Vec<u8>, length: usize) {
+    align(out, 4);
+    out.extend((length as u32).to_le_bytes());
+}
+
+fn put_text(out: &mut Vec<u8>, text: &str) {
+    put_length(out, text.len() + 1);
+    out.extend(text.as_bytes());
+    out.push(0);
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self, align: usize) -> Option<[u8; N]> {
+        self.at = (self.at - HEADER.len()).next_multiple_of(align) + HEADER.len();
+        let bytes = self.bytes.get(self.at..self.at + N)?;
+        self.at += N;
+        bytes.try_into().ok()
+    }
+
+    fn length(&mut self) -> Option<u32> {
+        self.take(4).map(u32::from_le_bytes)
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let length = self.length()? as usize;
+        let end = self.at.checked_add(length)?;
+        let bytes = self.bytes.get(self.at..end)?;
+        self.at = end;
+        String::from_utf8(bytes.strip_suffix(&[0])?.to_vec()).ok()
+    }
+
+    fn numbers(&mut self) -> Option<Vec<f64>> {
+        let count = self.length()?;
+        (0..count)
+            .map(|_| self.take(8).map(f64::from_le_bytes))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_literally() {
+        let state = JointState {
+            stamp_ns: 2_000_000_003,
+            name: vec!["a".to_string()],
+            position: vec![1.0],
+            velocity: vec![],
+            effort: vec![-2.0],
+        };
+        let bytes = state.to_bytes();
+        #[rustfmt::skip]
+        let expected = [
+            0, 1, 0, 0,
+            2, 0, 0, 0, 3, 0, 0, 0,                  // stamp
+            1, 0, 0, 0, 0, 0, 0, 0,                  // frame_id "", then padding
+            1, 0, 0, 0, 2, 0, 0, 0, b'a', 0, 0, 0,   // name
+            1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f, // position: 1.0
+            0, 0, 0, 0, 1, 0, 0, 0,                  // velocity, effort
+            0, 0, 0, 0, 0, 0, 0, 0xc0,               // -2.0
+        ];
+        assert_eq!(bytes, expected);
+        assert_eq!(JointState::of(&bytes), Some(state));
+        assert!((0..bytes.len()).all(|length| JointState::of(&bytes[..length]).is_none()));
+    }
+}

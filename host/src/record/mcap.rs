@@ -1,0 +1,236 @@
+//! Recordings as MCAP: `/joint_states` and `/joint_goals` (ROS 2 `sensor_msgs/msg/JointState`; `effort` is the load as a
+//! share of full output), and `/servo_health` (JSON: supply, temperature, error bits). What a servo did not say is NaN or null.
+
+use super::cdr::{JointState, NAME, SCHEMA};
+use super::recorder::Writer;
+use super::sample::{Joint, Sample};
+use crate::error::{Error, Place, Result};
+use ::mcap::records::MessageHeader;
+use ::mcap::{McapError, MessageStream, WriteOptions, read::Options};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+const STATES: &str = "/joint_states";
+const GOALS: &str = "/joint_goals";
+const HEALTH: &str = "/servo_health";
+const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}}}}"#;
+
+/// Health of all servos, as JSON.
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
+struct Health {
+    supply_v: Vec<Option<f64>>,
+    temperature_celsius: Vec<Option<f64>>,
+    error: Vec<Option<u8>>,
+}
+
+/// Writes chunks of about a second, each with its own check.
+pub(super) struct McapWriter {
+    writer: ::mcap::Writer<BufWriter<File>>,
+    names: Vec<String>,
+    states: u16,
+    goals: u16,
+    health: u16,
+    count: u32,
+    begun_ns: u64,
+}
+
+fn broken(error: McapError) -> std::io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => std::io::Error::other(other),
+    }
+}
+
+impl McapWriter {
+    /// Writes schemas and channels.
+    pub fn new(file: File, ids: &[u8]) -> std::io::Result<Self> {
+        let options = WriteOptions::new().compression(None).library("handstand");
+        let mut writer = options.create(BufWriter::new(file)).map_err(broken)?;
+        let none = BTreeMap::new();
+        let state = writer
+            .add_schema(NAME, "ros2msg", SCHEMA.as_bytes())
+            .map_err(broken)?;
+        let health = writer
+            .add_schema(
+                "handstand.ServoHealth",
+                "jsonschema",
+                HEALTH_SCHEMA.as_bytes(),
+            )
+            .map_err(broken)?;
+        let since_epoch = std::time::SystemTime::now()
+            .duration_since(std::time::UNIX_EPOCH)
+            .unwrap_or_default();
+        let mut writer = McapWriter {
+            states: writer
+                .add_channel(state, STATES, "cdr", &none)
+                .map_err(broken)?,
+            goals: writer
+                .add_channel(state, GOALS, "cdr", &none)
+                .map_err(broken)?,
+            health: writer
+                .add_channel(health, HEALTH, "json", &none)
+                .map_err(broken)?,
+            writer,
+            names: ids.iter().map(|id| format!("servo{id}")).collect(),
+            count: 0,
+            begun_ns: u64::try_from(since_epoch.as_nanos()).unwrap_or(0),
+        };
+        writer.flush()?;
+        Ok(writer)
+    }
+
+    fn put(&mut self, channel_id: u16, time_ns: u64, bytes: &[u8]) -> std::io::Result<()> {
+        let header = MessageHeader {
+            channel_id,
+            sequence: self.count,
+            log_time: time_ns,
+            publish_time: time_ns,
+        };
+        self.writer
+            .write_to_known_channel(&header, bytes)
+            .map_err(broken)
+    }
+}
+
+impl Writer for McapWriter {
+    fn write(&mut self, sample: &Sample) -> std::io::Result<()> {
+        let time_ns = self.begun_ns + (sample.time_s * 1e9) as u64;
+        let all = |value: fn(&Joint) -> Option<f64>| {
+            sample
+                .joints
+                .iter()
+                .map(|joint| value(joint).unwrap_or(f64::NAN))
+                .collect()
+        };
+        let state = JointState {
+            stamp_ns: time_ns,
+            name: self.names.clone(),
+            position: all(|joint| joint.position_rad),
+            velocity: all(|joint| joint.speed_rad_s),
+            effort: all(|joint| joint.load),
+        };
+        self.put(self.states, time_ns, &state.to_bytes())?;
+        if sample.joints.iter().any(|joint| joint.goal_rad.is_some()) {
+            let goals = JointState {
+                position: all(|joint| joint.goal_rad),
+                velocity: Vec::new(),
+                effort: Vec::new(),
+                ..state
+            };
+            self.put(self.goals, time_ns, &goals.to_bytes())?;
+        }
+        let health = Health {
+            supply_v: sample.joints.iter().map(|joint| joint.supply_v).collect(),
+            temperature_celsius: sample
+                .joints
+                .iter()
+                .map(|joint| joint.temperature_celsius)
+                .collect(),
+            error: sample.joints.iter().map(|joint| joint.error).collect(),
+        };
+        self.put(self.health, time_ns, &serde_json::to_vec(&health)?)?;
+        self.count = self.count.wrapping_add(1);
+        Ok(())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.writer.flush().map_err(broken)
+    }
+
+    fn finish(&mut self) -> std::io::Result<()> {
+        self.writer.finish().map(|_| ()).map_err(broken)
+    }
+}
+
+/// Ids, samples, and whether a torn tail was dropped.
+pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<Sample>, bool)> {
+    let refused = |what: String| {
+        Error::data(
+            Place::file(path),
+            what,
+            "give a file that `handstand record` wrote",
+        )
+    };
+    if !bytes.starts_with(::mcap::MAGIC) {
+        return Err(refused("not an MCAP file".to_string()));
+    }
+    let messages = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into());
+    let messages = messages.map_err(|error| refused(format!("not an MCAP file: {error}")))?;
+    let (mut ids, mut samples, mut torn) = (Vec::new(), Vec::<Sample>::new(), false);
+    let mut begun_ns = None;
+    for message in messages {
+        let Ok(message) = message else {
+            // The chunk that was being written when the program died; what lies before it is whole.
+            torn = true;
+            break;
+        };
+        let begun_ns = *begun_ns.get_or_insert(message.log_time);
+        match message.channel.topic.as_str() {
+            STATES => {
+                let state = JointState::of(&message.data)
+                    .ok_or_else(|| refused(format!("{STATES}: no joint states")))?;
+                let servos: Vec<u8> = (state.name.iter())
+                    .filter_map(|name| name.strip_prefix("servo")?.parse().ok())
+                    .collect();
+                let changed = !samples.is_empty() && servos != ids;
+                if changed || servos.len() != state.name.len() {
+                    let what = format!("{STATES}: the joints are not the same servos throughout");
+                    return Err(refused(what));
+                }
+                ids = servos;
+                samples.push(sample(
+                    &state,
+                    (message.log_time - begun_ns.min(message.log_time)) as f64 * 1e-9,
+                ));
+            }
+            GOALS => {
+                let goals = JointState::of(&message.data)
+                    .ok_or_else(|| refused(format!("{GOALS}: no joint states")))?;
+                let joints = samples
+                    .last_mut()
+                    .map_or(&mut [][..], |sample| &mut sample.joints);
+                joints
+                    .iter_mut()
+                    .zip(goals.position)
+                    .for_each(|(joint, goal)| joint.goal_rad = said(goal));
+            }
+            HEALTH => {
+                let health: Health = serde_json::from_slice(&message.data)
+                    .map_err(|error| refused(format!("{HEALTH}: {error}")))?;
+                let joints = samples
+                    .last_mut()
+                    .map_or(&mut [][..], |sample| &mut sample.joints);
+                for (at, joint) in joints.iter_mut().enumerate() {
+                    joint.supply_v = health.supply_v.get(at).copied().flatten();
+                    joint.temperature_celsius =
+                        health.temperature_celsius.get(at).copied().flatten();
+                    joint.error = health.error.get(at).copied().flatten();
+                }
+            }
+            _ => {}
+        }
+    }
+    // A finished file ends in the magic it began with.
+    torn |= !bytes.ends_with(::mcap::MAGIC);
+    Ok((ids, samples, torn))
+}
+
+fn said(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn sample(state: &JointState, time_s: f64) -> Sample {
+    let at = |values: &[f64], place: usize| values.get(place).copied().and_then(said);
+    let joints = (0..state.name.len()).map(|place| Joint {
+        position_rad: at(&state.position, place),
+        speed_rad_s: at(&state.velocity, place),
+        load: at(&state.effort, place),
+        ..Joint::default()
+    });
+    Sample {
+        time_s,
+        joints: joints.collect(),
+    }
+}

@@ -1,0 +1,31 @@
+//! Reading recordings back, whole or torn.
+
+use super::recorder::Format;
+use super::sample::Sample;
+use super::{csv, mcap};
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// What was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Servos, in the order of each sample's joints.
+    pub ids: Vec<u8>,
+    /// Samples, in time.
+    pub samples: Vec<Sample>,
+    /// Whether the file ended in the middle of something, which was dropped.
+    pub torn: bool,
+}
+
+/// Reads a CSV or MCAP recording.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read, [`Error::Data`] at the place where it is no recording.
+pub fn read(path: &Path) -> Result<Recording> {
+    let refused = |error| Error::file(path, "read", error);
+    let (ids, samples, torn) = match Format::of(path)? {
+        Format::Csv => csv::read(&std::fs::read_to_string(path).map_err(refused)?, path)?,
+        Format::Mcap => mcap::read(&std::fs::read(path).map_err(refused)?, path)?,
+    };
+    Ok(Recording { ids, samples, torn })
+}

@@ -1,0 +1,77 @@
+//! What was measured at one moment.
+
+/// One servo. What it did not say is none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Joint {
+    /// Angle from the centre, rad, counter-clockwise positive.
+    pub position_rad: Option<f64>,
+    /// Speed, rad/s.
+    pub speed_rad_s: Option<f64>,
+    /// Load as the servo infers it, a share of full output, -1 to 1.
+    pub load: Option<f64>,
+    /// Goal it was last sent, rad.
+    pub goal_rad: Option<f64>,
+    /// Supply, V.
+    pub supply_v: Option<f64>,
+    /// Temperature, degrees Celsius.
+    pub temperature_celsius: Option<f64>,
+    /// Error bits of its answer.
+    pub error: Option<u8>,
+}
+
+impl Joint {
+    /// Its values in the order of [`Joint::NAMES`].
+    pub fn values(&self) -> [Option<f64>; 7] {
+        [
+            self.position_rad,
+            self.speed_rad_s,
+            self.load,
+            self.goal_rad,
+            self.supply_v,
+            self.temperature_celsius,
+            self.error.map(f64::from),
+        ]
+    }
+
+    /// The inverse of [`Joint::values`].
+    pub fn of(values: [Option<f64>; 7]) -> Self {
+        let [
+            position_rad,
+            speed_rad_s,
+            load,
+            goal_rad,
+            supply_v,
+            temperature_celsius,
+            error,
+        ] = values;
+        Joint {
+            position_rad,
+            speed_rad_s,
+            load,
+            goal_rad,
+            supply_v,
+            temperature_celsius,
+            error: error.map(|bits| bits as u8),
+        }
+    }
+
+    /// Column of each value, before and behind the servo's id: `q3_rad`.
+    pub const NAMES: [(&str, &str); 7] = [
+        ("q", "_rad"),
+        ("dq", "_rad_s"),
+        ("load", ""),
+        ("goal", "_rad"),
+        ("supply", "_v"),
+        ("temperature", "_celsius"),
+        ("error", ""),
+    ];
+}
+
+/// All servos at one moment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sample {
+    /// Since the recording began, s.
+    pub time_s: f64,
+    /// In the recording's order of ids.
+    pub joints: Vec<Joint>,
+}

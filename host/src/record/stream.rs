@@ -1,0 +1,156 @@
+//! Servos read by a CM-5 with Handstand's firmware.
+
+use super::sample::{Joint, Sample};
+use super::source::Source;
+use crate::error::{Error, Result};
+use crate::link::{Link, Session, condition_words};
+use handstand_shared::message::{Command, Condition, Mode, Report, Roster};
+use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::raw::{Position, Signed};
+use std::time::Duration;
+
+/// Servos behind a CM-5 that reads them itself and reports 100 times a second.
+pub struct Stream<L: Link> {
+    session: Session<L>,
+    count: usize,
+    begun: Duration,
+    goals: Option<Vec<Position>>,
+    slow: Vec<Joint>,
+    armed: bool,
+    condition: Condition,
+}
+
+impl<L: Link> Stream<L> {
+    /// Greets the firmware, names the servos, starts the stream.
+    ///
+    /// # Errors
+    /// No firmware, or it refuses.
+    pub fn new(link: L, ids: &[u8]) -> Result<Self> {
+        if ids.is_empty() || ids.len() > SERVOS {
+            return Err(Error::usage(
+                format!("{} servos", ids.len()),
+                format!("a stream has room for 1 to {SERVOS}"),
+            ));
+        }
+        let mut session = Session::open(link)?;
+        let mut roster = Roster {
+            count: ids.len() as u8,
+            ids: [0; SERVOS],
+        };
+        roster.ids[..ids.len()].copy_from_slice(ids);
+        session.obey(&Command::Mode(Mode::Bridge), "stop")?;
+        session.obey(&Command::Roster(roster), "take the list of servos")?;
+        session.obey(&Command::Mode(Mode::Stream), "stream")?;
+        let begun = session.link().now();
+        Ok(Stream {
+            session,
+            count: ids.len(),
+            begun,
+            goals: None,
+            slow: vec![Joint::default(); ids.len()],
+            armed: false,
+            condition: Condition::Stream,
+        })
+    }
+
+    /// The talk with the firmware.
+    pub fn session(&mut self) -> &mut Session<L> {
+        &mut self.session
+    }
+}
+
+impl<L: Link> Source for Stream<L> {
+    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<Sample>> {
+        if let Some(goals) = goals_rad.filter(|_| self.armed) {
+            let goals: Vec<Position> = goals.iter().map(|goal| Position::from_rad(*goal)).collect();
+            self.session.send(&Command::Goals(Positions::pack(
+                goals.iter().map(|goal| goal.0),
+            )))?;
+            self.goals = Some(goals);
+        } else {
+            self.session.send(&Command::KeepAlive)?;
+        }
+        let deadline = self.session.link().now() + Duration::from_millis(100);
+        loop {
+            let left = deadline.saturating_sub(self.session.link().now());
+            let Some((time, report)) = self.session.next(left)? else {
+                return Ok(None);
+            };
+            let Report::Stream(report) = report else {
+                continue;
+            };
+            self.condition = report.condition;
+            for (place, slow) in report.slow(self.count) {
+                if slow.error == 0xff {
+                    continue;
+                }
+                if let Some(joint) = self.slow.get_mut(place) {
+                    joint.speed_rad_s = Some(
+                        f64::from(Signed(u16::from_le_bytes(slow.speed)).get())
+                            * Signed::SPEED_LSB_RAD_S,
+                    );
+                    joint.load = Some(
+                        f64::from(Signed(u16::from_le_bytes(slow.load)).get()) * Signed::OUTPUT_LSB,
+                    );
+                    joint.supply_v = Some(f64::from(slow.supply) * 0.1);
+                    joint.temperature_celsius = Some(f64::from(slow.temperature));
+                    joint.error = Some(slow.error);
+                }
+            }
+            let goal = |place: usize| {
+                self.goals
+                    .as_ref()
+                    .and_then(|goals| goals.get(place))
+                    .map(|goal| goal.to_rad())
+            };
+            let joints = (0..self.count).map(|place| Joint {
+                position_rad: report.position(place).map(|code| Position(code).to_rad()),
+                goal_rad: goal(place),
+                // Each servo's turn comes every few ticks; between them nothing was measured.
+                ..std::mem::take(&mut self.slow[place])
+            });
+            let joints = joints.collect();
+            return Ok(Some(Sample {
+                time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
+                joints,
+            }));
+        }
+    }
+
+    fn arm(&mut self) -> Result<()> {
+        // The first round of supply readings must be over, or it refuses.
+        for _ in 0..40 {
+            self.sample(None)?;
+        }
+        self.session.greet()?;
+        let token = self.session.hello.token;
+        self.session
+            .obey(&Command::Arm { token }, "switch torque on")?;
+        self.armed = true;
+        Ok(())
+    }
+
+    fn disarm(&mut self) -> Result<()> {
+        self.armed = false;
+        self.session.obey(&Command::Disarm, "switch torque off")
+    }
+
+    fn danger(&self) -> Option<String> {
+        match self.condition {
+            Condition::Soft | Condition::Fault(_) if self.armed => {
+                Some(format!("the CM-5 is {}", condition_words(self.condition)))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl<L: Link> Drop for Stream<L> {
+    fn drop(&mut self) {
+        // Nobody is left who could be told that it failed; the firmware switches off by itself when the line is silent.
+        if self.armed {
+            let _ = self.disarm();
+        }
+        let _ = self.session.send(&Command::Mode(Mode::Bridge));
+    }
+}

@@ -1,0 +1,99 @@
+//! A boot loader that behaves like the CM-5's, on a pseudo terminal: ours, after its protocol.
+
+use handstand::link::Pty;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+/// What goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Trouble {
+    None,
+    /// It never answers.
+    Silence,
+    /// It falls silent after `Ready..`.
+    SilentAfterReady,
+    /// Every hundredth byte gets lost.
+    LosesBytes,
+    /// A byte arrives wrong.
+    WrongByte,
+    /// Flash does not hold what was received.
+    BadFlash,
+}
+
+/// The port it is on, and what it did: `flash`, `app`, `go`.
+pub struct Loader {
+    pub port: String,
+    pub did: Receiver<(String, Vec<u8>)>,
+}
+
+/// Starts it; it ends by itself after a few seconds of silence.
+pub fn start(trouble: Trouble) -> Loader {
+    let pty = Pty::open().unwrap();
+    let port = pty.name().to_string();
+    let (tell, did) = channel();
+    std::thread::spawn(move || {
+        let say = |text: &str| pty.send(text.as_bytes()).unwrap();
+        let hear = |ms| {
+            let mut byte = [0];
+            (pty.receive(&mut byte, Duration::from_millis(ms)).unwrap() == 1).then_some(byte[0])
+        };
+        if trouble == Trouble::Silence {
+            while hear(3000).is_some() {}
+            return;
+        }
+        let (mut knocks, mut line, mut flash) = (0, String::new(), Vec::new());
+        while let Some(byte) = hear(5000) {
+            // The reset button is pressed at the fifth knock.
+            if knocks < 5 {
+                knocks += u32::from(byte == b'#');
+                if knocks == 5 {
+                    say("\r\nSYSTEM O.K. (CM5 Boot loader V1.31)\r\n");
+                }
+                continue;
+            }
+            if byte != b'\r' {
+                line.push(char::from(byte));
+                continue;
+            }
+            match std::mem::take(&mut line).trim_matches('#') {
+                "load 0" => {
+                    say("Ready..\r\n");
+                    let mut received: Vec<u8> = Vec::new();
+                    let mut count = 0;
+                    // The first byte may take its time.
+                    while let Some(byte) = hear(if received.is_empty() { 2000 } else { 150 }) {
+                        count += 1;
+                        let lost = trouble == Trouble::LosesBytes && count % 100 == 0;
+                        let wrong = trouble == Trouble::WrongByte && count == 77;
+                        if !lost {
+                            received.push(if wrong { !byte } else { byte });
+                        }
+                    }
+                    if trouble == Trouble::SilentAfterReady {
+                        continue;
+                    }
+                    let theirs = received.pop().unwrap_or(0);
+                    let ours = received
+                        .iter()
+                        .fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+                    let word = if ours == theirs { "Success" } else { "Error" };
+                    say(&format!(
+                        "{word}\r\nSize:{}\r\nChecksum:{ours:02X}-{theirs:02X}\r\n- ",
+                        received.len()
+                    ));
+                    flash = received;
+                    tell.send(("flash".to_string(), flash.clone())).unwrap();
+                }
+                "verify" if trouble == Trouble::BadFlash => say("Error at 0100\r\n- "),
+                "verify" => say(&format!("{} bytes O.K.\r\n- ", flash.len())),
+                "go" => tell.send(("go".to_string(), Vec::new())).unwrap(),
+                "app" => {
+                    tell.send(("app".to_string(), Vec::new())).unwrap();
+                    say("\r\n- ");
+                }
+                _ => say("\r\n- "),
+            }
+        }
+    });
+    Loader { port, did }
+}
