@@ -141,6 +141,12 @@ pub trait Effect: Sync + fmt::Debug {
         angle_rad
     }
 
+    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long changed by
+    /// `speed_rad_s`; `None` where the past decides.
+    fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
+        None
+    }
+
     /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
     /// `memory` is the effect's own, [encoded angle, reading] of the call before; `None` before the first call
     /// of a motion, which reads the angle itself.
