@@ -1,3 +1,21 @@
-#![doc = "CM-5 firmware logic."]
+//! The CM-5's firmware: a bridge between the PC line and the servo bus, and a controller of its own.
+//!
+//! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC. Read downward only:
+//! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `slots`, `panel`, `balance` -> `app`.
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
+#![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt))]
+
+pub mod app;
+pub mod balance;
+pub mod board;
+pub mod bus;
+pub mod design;
+pub mod filter;
+pub mod link;
+pub mod panel;
+pub mod servos;
+pub mod slots;
+
+#[cfg(target_arch = "avr")]
+pub mod atmega128;

@@ -81,6 +81,14 @@ pub enum Error {
         /// The system's own reason. Part of the message, hence no `source`, which a chain would say again.
         reason: std::io::Error,
     },
+    /// Model, weights and timing are well formed, but no design follows from them.
+    #[error("{what}")]
+    Design {
+        /// What stands in the way.
+        what: String,
+        /// What to change.
+        remedy: String,
+    },
     /// A device (serial port, servo) failed or fell silent.
     #[error("{what}")]
     Device {
@@ -109,6 +117,14 @@ impl Error {
         }
     }
 
+    /// No design follows from what was given: `what` stands in the way.
+    pub fn design(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Error::Design {
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
     /// The system refused `action` on `path`.
     pub fn file(path: impl AsRef<Path>, action: &'static str, reason: std::io::Error) -> Self {
         Error::File {
@@ -124,7 +140,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Usage { .. } => 2,
-            Error::Data { .. } | Error::File { .. } => 3,
+            Error::Data { .. } | Error::Design { .. } | Error::File { .. } => 3,
             Error::Device { .. } => 4,
         }
     }
@@ -134,6 +150,7 @@ impl Error {
         match self {
             Error::Usage { remedy, .. }
             | Error::Data { remedy, .. }
+            | Error::Design { remedy, .. }
             | Error::Device { remedy, .. } => Some(remedy),
             Error::File { .. } => None,
         }

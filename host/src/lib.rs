@@ -1,10 +1,14 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `cli` sits on top and nothing depends on it.
+//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
+//! `synth` + `closed_loop` -> `study`; `cli` sits on top and nothing depends on it.
 
+pub mod bus_sim;
 pub mod challenge;
+pub mod closed_loop;
 pub mod compare;
+pub mod controllers;
 pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
@@ -15,8 +19,13 @@ pub mod log;
 pub mod model;
 pub mod number;
 pub mod output;
+pub mod paper;
 pub mod report;
+pub mod servo;
 pub mod sim;
+pub mod study;
+pub mod synth;
+pub mod view;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

@@ -16,6 +16,7 @@ fn help_lists_every_command() {
         "log",
         "fit",
         "add",
+        "gains",
         "challenge",
         "demo",
     ] {

@@ -58,6 +58,22 @@ fn effects() {
 }
 
 #[test]
+fn controllers() {
+    golden(
+        &bench(),
+        "controllers",
+        &[
+            "controllers",
+            "controllers arm.toml --controller pid",
+            "controllers arm.toml --condition rain",
+            "controllers arm.toml --seconds 1",
+            "controllers arm.toml",
+            "robust arm.toml --masses 100",
+        ],
+    );
+}
+
+#[test]
 fn log_check() {
     golden(
         &bench(),
@@ -86,6 +102,11 @@ fn compare() {
 }
 
 #[test]
+fn paper() {
+    golden(&bench(), "paper", &["paper"]);
+}
+
+#[test]
 fn refusals() {
     let bench = bench();
     let (model, log) = (include_str!("data/arm.toml"), include_str!("data/arm.csv"));
@@ -103,6 +124,21 @@ fn refusals() {
             "compare arm.toml backwards.csv",
             "compare arm.toml arm.csv:9-3",
             "effects colomb",
+        ],
+    );
+}
+
+#[test]
+fn gains() {
+    let bench = bench();
+    bench.put("handstand.toml", include_str!("../models/handstand.toml"));
+    golden(
+        &bench,
+        "gains",
+        &[
+            "gains handstand.toml",
+            "gains handstand.toml --continuous --q 1",
+            "gains handstand.toml --delay 0.013 --lqg --limit 2",
         ],
     );
 }

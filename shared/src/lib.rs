@@ -1,3 +1,21 @@
-#![doc = "What host and firmware agree on."]
+//! What host and firmware agree on: the servo's registers and packets, and the frames and messages of the PC line.
+//!
+//! Read downward only: `raw` -> `control_table`; `dynamixel`; `crc` -> `frame`; `packed` -> `message`; `fixed` -> `gains` -> `law`;
+//! `velocity`.
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
+#![cfg_attr(target_arch = "avr", deny(unsafe_code))]
+#![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
+
+pub mod control_table;
+pub mod crc;
+pub mod dynamixel;
+pub mod fixed;
+pub mod frame;
+pub mod gains;
+pub mod law;
+pub mod message;
+pub mod packed;
+pub mod plan;
+pub mod raw;
+pub mod velocity;

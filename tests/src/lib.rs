@@ -1,4 +1,6 @@
 //! What the benchmarks measure with; `cargo xtask` prints it and the tests sample it.
 
+pub mod bench;
+pub mod firmware;
 pub mod hidden;
 pub mod peers;

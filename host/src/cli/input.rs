@@ -19,6 +19,14 @@ pub fn horizon(text: &str) -> Result<Horizon, String> {
     }
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("give a number above 0".to_string()),
+    }
+}
+
 /// An error and its remedy in one line, as argument errors are told.
 pub fn said(error: Error) -> String {
     match error.remedy() {
@@ -32,16 +40,25 @@ pub fn said(error: Error) -> String {
 /// # Errors
 /// Logs that cannot be read, or a motion in both.
 pub fn motions(model: &Model, logs: &[LogRequest], held_out: &[LogRequest]) -> Result<Split> {
-    if let Some(both) = held_out.iter().find(|log| logs.contains(log)) {
-        return Err(Error::usage(
-            format!("{both} is fitted and held out"),
-            "name it once: a log that was learned from proves nothing",
-        ));
-    }
+    told_apart(logs, held_out)?;
     Ok(Split {
         training: read(logs, &model.log)?,
         held_out: read(held_out, &model.log)?,
     })
+}
+
+/// Refuses a log that is both learned from and judged by.
+///
+/// # Errors
+/// [`Error::Usage`] that names it.
+pub fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
+    match held_out.iter().find(|log| logs.contains(log)) {
+        Some(both) => Err(Error::usage(
+            format!("{both} is fitted and held out"),
+            "name it once: a log that was learned from proves nothing",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Name and SHA-256 of every file the motions came from, each once.

@@ -7,17 +7,28 @@
 mod add;
 mod challenge;
 mod compare;
+mod controllers;
+mod delays;
 mod demo;
 mod diagnose;
 mod effects;
 mod fit;
 mod fitting;
+mod gains;
+mod given;
+mod identify;
 mod input;
 mod log;
+mod map;
 mod name;
 mod page;
+mod paper;
+mod robust;
 mod show;
+mod signals;
+mod study;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -66,9 +77,29 @@ pub enum Command {
     Fit(fit::Args),
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
+    /// Find gains that balance a model, and write them for firmware
+    Gains(gains::Args),
+    /// See what the closed loop of robot and controller bears
+    #[command(subcommand)]
+    Study(study::Command),
+    /// Identify a servo as a black box: discrete-time models by prediction error
+    Identify(identify::Args),
+    /// Map what a servo does at rest: dead zone, saturation, supply
+    #[command(subcommand)]
+    Map(map::Command),
+    /// Play a motion on a page
+    View(view::Args),
+    /// The paper's numbers, figures and findings beside our own
+    Paper(paper::Args),
     /// Try yourself, or the program, on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
+    /// Try controllers under everything the robot does to them
+    Controllers(controllers::Args),
+    /// Find the longest delay each controller survives
+    Delays(delays::Args),
+    /// See what gains make of robots whose masses are not the model's
+    Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
 }
@@ -86,7 +117,16 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
+            Command::Gains(args) => gains::run(args, talk),
+            Command::Study(command) => study::run(command, talk),
+            Command::Identify(args) => identify::run(args, talk),
+            Command::Map(command) => map::run(command, talk),
+            Command::View(args) => view::run(args, talk),
+            Command::Paper(args) => paper::run(args, talk),
             Command::Challenge(command) => challenge::run(command, talk),
+            Command::Controllers(args) => controllers::run(args, talk),
+            Command::Delays(args) => delays::run(args, talk),
+            Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
         }
     }

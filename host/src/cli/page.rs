@@ -31,7 +31,7 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
     let mut logs = Vec::new();
     add_logs(&mut logs, &page.split.training, false);
     add_logs(&mut logs, &page.split.held_out, true);
-    let model_files: Result<Vec<ModelFile>> = page.models.iter().map(|file| model(file)).collect();
+    let model_files: Result<Vec<ModelFile>> = page.models.iter().map(|file| hashed(file)).collect();
     Ok(Report {
         title: page.title,
         comparisons: page.comparisons,
@@ -55,7 +55,11 @@ pub fn write(report: &Report, file: &Path, force: bool, talk: &Talk) -> Result<(
     Ok(())
 }
 
-fn model(file: &Path) -> Result<ModelFile> {
+/// Name and hash of a model file.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read.
+pub fn hashed(file: &Path) -> Result<ModelFile> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
     let hash = Sha256::digest(&bytes);
     Ok(ModelFile {

@@ -22,6 +22,13 @@ pub fn table<const N: usize>(header: [&str; N]) -> Table {
     table
 }
 
+/// A table of many narrow columns, as wide as it needs.
+pub fn wide_table() -> Table {
+    let mut table = table([""]);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    table
+}
+
 /// An extension for people: its values, then its errors; `before` says which model left the error before.
 pub fn extension(extension: &Extension, before: &str) -> String {
     let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);

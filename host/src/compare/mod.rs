@@ -13,6 +13,8 @@ mod text;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use residual_tests::{independence, whiteness};
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 pub use run::compare;
+pub(crate) use run::fit_percent;
 pub use text::{text, waterfall};

@@ -44,7 +44,7 @@ pub(super) fn residual_tests(
 /// Whether each residual is free of its predecessors: Ljung & Box (1978), Biometrika 65, 297-303.
 ///
 /// The mean stays in: a constant error is no chance. Chi-square quantile by Wilson & Hilferty (1931).
-pub(super) fn whiteness(residual: &[Vec<f64>]) -> ResidualTest {
+pub(crate) fn whiteness(residual: &[Vec<f64>]) -> ResidualTest {
     let samples: usize = residual.iter().map(Vec::len).sum();
     let power = product_sum(residual, residual, 0);
     let lags = LAGS.min(samples / 4);
@@ -70,7 +70,7 @@ pub(super) fn whiteness(residual: &[Vec<f64>]) -> ResidualTest {
 /// Whether the residual is free of the input, now or up to 25 samples away: Ljung (1999), System
 /// Identification, 16.6. The band is for the largest correlation of all lags and allows for both signals' memory.
 /// None where the band admits any correlation: motions so slow that their samples hardly tell more than one.
-pub(super) fn independence(
+pub(crate) fn independence(
     residual: &[Vec<f64>],
     cause: &[Vec<f64>],
     cause_name: &str,

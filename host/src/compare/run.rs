@@ -102,7 +102,7 @@ fn share_above(rms: f64, floor: f64) -> f64 {
 }
 
 /// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; 0 where nothing moves and the model is wrong.
-pub(super) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
+pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
     let values = || measured.iter().copied().flatten().filter(|y| y.is_finite());
     let mean = values().sum::<f64>() / values().count().max(1) as f64;
     let spread: f64 = values().map(|y| (y - mean).powi(2)).sum();

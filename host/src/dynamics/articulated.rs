@@ -5,7 +5,7 @@
 //! inertia on whole and reports the torque that holds it: that is how friction keeps a joint at rest exactly.
 
 use super::chain::Chain;
-use super::sin_cos::sin_cos;
+use super::lanes::Lane;
 
 /// Scratch memory of [`Chain::forward`], reused from call to call.
 #[derive(Debug, Clone)]
@@ -78,11 +78,11 @@ impl Chain {
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
             angle += angle_rad[i];
             speed += speed_rad_s[i];
-            let (sin, cos) = sin_cos(angle);
+            let (sin, cos) = Lane::sin_cos(angle);
             let (com_sin, com_cos) = if link.com_angle_rad == 0.0 {
                 (sin, cos)
             } else {
-                sin_cos(angle + link.com_angle_rad)
+                Lane::sin_cos(angle + link.com_angle_rad)
             };
             let first_moment = link.mass_kg * link.com_m;
             s.speed_squared = speed * speed;

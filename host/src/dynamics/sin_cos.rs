@@ -3,6 +3,8 @@
 //! Cody and Waite's reduction to an eighth of a turn, then the polynomials of FreeBSD's msun (k_sin.c, k_cos.c).
 //! Within 1e-15 of the truth up to a hundred thousand turns; beyond, the system's own functions.
 
+use std::array::from_fn;
+
 /// Beyond this, the reduction loses digits.
 const FAR: f64 = 6e5;
 /// Adding it rounds to an integer, which the last bits of the sum then hold.
@@ -31,31 +33,54 @@ const COS: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-#[inline]
-pub(super) fn sin_cos(angle: f64) -> (f64, f64) {
-    // Not a number comes here too.
-    if angle.abs() >= FAR || angle.is_nan() {
-        return angle.sin_cos();
+/// Sine and cosine of each angle, rad; an angle's are the same whatever stands beside it.
+#[inline(always)]
+pub(super) fn sin_cos<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
+    // Not a number is far too.
+    let far = |angle: &f64| !matches!(angle.abs(), size if size < FAR);
+    if angle.iter().any(far) {
+        return apart(angle);
     }
-    let rounded = angle * std::f64::consts::FRAC_2_PI + ROUNDER;
-    let quarter = rounded.to_bits();
-    let turns = rounded - ROUNDER;
-    let x = ((angle - turns * HALF_PI[0]) - turns * HALF_PI[1]) - turns * HALF_PI[2];
-    let z = x * x;
-    let z2 = z * z;
-    let polynomial =
-        |c: [f64; 6]| (c[0] + c[1] * z) + z2 * ((c[2] + c[3] * z) + z2 * (c[4] + c[5] * z));
-    let sin = x + x * z * polynomial(SIN);
-    let cos = 1.0 - (0.5 * z - z2 * polynomial(COS));
+    let rounded = angle.map(|angle| angle * std::f64::consts::FRAC_2_PI + ROUNDER);
+    let turns = rounded.map(|rounded| rounded - ROUNDER);
+    let x: [f64; L] = from_fn(|i| {
+        ((angle[i] - turns[i] * HALF_PI[0]) - turns[i] * HALF_PI[1]) - turns[i] * HALF_PI[2]
+    });
+    let z = x.map(|x| x * x);
+    let z2 = z.map(|z| z * z);
+    let polynomial = |c: [f64; 6]| -> [f64; L] {
+        from_fn(|i| {
+            (c[0] + c[1] * z[i]) + z2[i] * ((c[2] + c[3] * z[i]) + z2[i] * (c[4] + c[5] * z[i]))
+        })
+    };
+    let (odd, even) = (polynomial(SIN), polynomial(COS));
+    let sin: [f64; L] = from_fn(|i| x[i] + x[i] * z[i] * odd[i]);
+    let cos: [f64; L] = from_fn(|i| 1.0 - (0.5 * z[i] - z2[i] * even[i]));
     // Swapped without a branch: which quarter comes next nobody can foretell.
-    let swap = (sin.to_bits() ^ cos.to_bits()) & 0_u64.wrapping_sub(quarter & 1);
-    let swapped = |value: f64| f64::from_bits(value.to_bits() ^ swap);
-    let (sin, cos) = (swapped(sin), swapped(cos));
-    let signed = |value: f64, negative: u64| f64::from_bits(value.to_bits() ^ (negative << 63));
+    let quarter = rounded.map(f64::to_bits);
+    let swap: [u64; L] =
+        from_fn(|i| (sin[i].to_bits() ^ cos[i].to_bits()) & 0_u64.wrapping_sub(quarter[i] & 1));
+    let signed = |value: f64, swap: u64, negative: u64| {
+        f64::from_bits(value.to_bits() ^ swap ^ (negative << 63))
+    };
     (
-        signed(sin, (quarter >> 1) & 1),
-        signed(cos, ((quarter + 1) >> 1) & 1),
+        from_fn(|i| signed(sin[i], swap[i], (quarter[i] >> 1) & 1)),
+        from_fn(|i| signed(cos[i], swap[i], ((quarter[i] + 1) >> 1) & 1)),
     )
+}
+
+/// Each on its own, those far off by the system's functions.
+#[cold]
+#[inline(never)]
+fn apart<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
+    let both = angle.map(|angle| match angle.abs() < FAR {
+        true => {
+            let ([sin], [cos]) = sin_cos([angle]);
+            (sin, cos)
+        }
+        false => angle.sin_cos(),
+    });
+    (both.map(|both| both.0), both.map(|both| both.1))
 }
 
 #[cfg(test)]
@@ -67,11 +92,15 @@ mod tests {
         for k in -400_000..400_000 {
             let k = f64::from(k);
             for angle in [1e-3 * k, 1.4999 * k, k * std::f64::consts::FRAC_PI_4] {
-                let (ours, theirs) = (sin_cos(angle), angle.sin_cos());
-                let off = (ours.0 - theirs.0).abs().max((ours.1 - theirs.1).abs());
+                let (([sin], [cos]), theirs) = (sin_cos([angle]), angle.sin_cos());
+                let ours = (sin, cos);
+                let off = (sin - theirs.0).abs().max((cos - theirs.1).abs());
                 assert!(off < 4e-16, "{angle}: {ours:?} {theirs:?}");
             }
         }
-        assert!(sin_cos(f64::NAN).0.is_nan() && sin_cos(f64::INFINITY).1.is_nan());
+        let (sin, cos) = sin_cos([f64::NAN, 0.7, f64::INFINITY, 1e9]);
+        assert!(sin[0].is_nan() && cos[2].is_nan());
+        let ([alone], _) = sin_cos([0.7]);
+        assert_eq!((sin[1], sin[3]), (alone, 1e9_f64.sin()));
     }
 }

@@ -1,6 +1,6 @@
 //! Air drag: resistance in proportion to the square of speed.
 
-use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -c w |w|.
 #[derive(Debug)]
@@ -49,5 +49,10 @@ impl Effect for AirDrag {
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         -values[0] * at.speed_rad_s * at.speed_rad_s.abs()
+    }
+
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        // The square of the speed has no slope at rest.
+        Some(Slope::NONE)
     }
 }

@@ -1,6 +1,6 @@
 //! Cable spring: a cable across the joint pulls it toward a rest angle.
 
-use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -k (q - q_0).
 #[derive(Debug)]
@@ -65,5 +65,12 @@ impl Effect for CableSpring {
             return 0.0;
         };
         -stiffness_nm_rad * (at.angle_rad - rest_rad)
+    }
+
+    fn slope(&self, values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            per_rad: -values[0],
+            ..Slope::NONE
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
-use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
 use std::f64::consts::PI;
 
 /// A sin(N q + p).
@@ -77,5 +77,16 @@ impl Effect for Cogging {
             return 0.0;
         };
         amplitude_nm * (periods_per_turn * at.angle_rad + phase_rad).sin()
+    }
+
+    fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
+        let [amplitude_nm, periods_per_turn, phase_rad] = values else {
+            return None;
+        };
+        let slope = (periods_per_turn * at.angle_rad + phase_rad).cos();
+        Some(Slope {
+            per_rad: amplitude_nm * periods_per_turn * slope,
+            ..Slope::NONE
+        })
     }
 }

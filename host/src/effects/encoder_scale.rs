@@ -1,6 +1,6 @@
 //! Encoder scale: the reading stretches the angle.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// s q.
 #[derive(Debug)]
@@ -55,5 +55,12 @@ impl Effect for EncoderScale {
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         values[0] * angle_rad
+    }
+
+    fn slope(&self, values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            gain: values[0],
+            ..Slope::NONE
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Encoder zero: the reading is off by a constant.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// q + o.
 #[derive(Debug)]
@@ -54,5 +54,9 @@ impl Effect for EncoderZero {
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         angle_rad + values[0]
+    }
+
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope::NONE)
     }
 }

@@ -43,6 +43,7 @@ pub use probe::{Along, Probe};
 pub use sham::SHAM;
 
 use crate::dynamics::Chain;
+use crate::model::Model;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
@@ -147,6 +148,12 @@ pub trait Effect: Sync + fmt::Debug {
         None
     }
 
+    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has none. Bodies and
+    /// delays need none: they are taken as they are.
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        None
+    }
+
     /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
     /// `memory` is the effect's own, [encoded angle, reading] of the call before; `None` before the first call
     /// of a motion, which reads the angle itself.
@@ -167,6 +174,43 @@ impl PartialEq for dyn Effect {
     }
 }
 
+/// A joint at rest, about which an effect's law is linearised.
+#[derive(Debug, Clone, Copy)]
+pub struct AtRest {
+    /// Angle from the previous link, rad; of the first joint from the model's zero.
+    pub angle_rad: f64,
+    /// Duty, -1 to 1; of a torque drive, its torque in N m.
+    pub duty: f64,
+    /// Torque of the drive before this effect, N m.
+    pub torque_nm: f64,
+    /// Torque at full duty and standstill, N m.
+    pub full_torque_nm: f64,
+}
+
+/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as its site has
+/// it), and what it adds of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// Per unit of what passes through.
+    pub gain: f64,
+    /// Torque per duty, N m.
+    pub per_duty: f64,
+    /// Torque per joint angle, N m/rad.
+    pub per_rad: f64,
+    /// Torque per joint speed, N m s/rad.
+    pub per_rad_s: f64,
+}
+
+impl Slope {
+    /// An effect that changes nothing to first order.
+    pub const NONE: Slope = Slope {
+        gain: 1.0,
+        per_duty: 0.0,
+        per_rad: 0.0,
+        per_rad_s: 0.0,
+    };
+}
+
 /// What body effects may change.
 #[derive(Debug, Clone)]
 pub struct Rig {
@@ -176,6 +220,24 @@ pub struct Rig {
     pub gravity_turn_rad: f64,
     /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
     pub turned: bool,
+}
+
+impl Rig {
+    /// The rig of a model, its body effects applied; `turned` as in [`Rig::turned`].
+    pub fn of(model: &Model, turned: bool) -> Rig {
+        let mut rig = Rig {
+            chain: Chain::of(model),
+            gravity_turn_rad: 0.0,
+            turned,
+        };
+        for instance in &model.effects {
+            if instance.effect.card().site == Site::Body {
+                let joint = instance.joint.unwrap_or(0);
+                instance.effect.body(&instance.values, joint, &mut rig);
+            }
+        }
+        rig
+    }
 }
 
 /// The motor at an instant.

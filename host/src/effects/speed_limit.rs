@@ -1,6 +1,6 @@
 //! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
 
-use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// tau - tau_full w / w_0, with the no-load speed w_0.
 #[derive(Debug)]
@@ -55,5 +55,12 @@ impl Effect for SpeedLimit {
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm - at.full_torque_nm * at.speed_rad_s / values[0]
+    }
+
+    fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            per_rad_s: -at.full_torque_nm / values[0],
+            ..Slope::NONE
+        })
     }
 }

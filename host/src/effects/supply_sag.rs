@@ -1,6 +1,6 @@
 //! Supply sag: the source gives way under the current the drive draws.
 
-use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// tau (1 - d |u|).
 #[derive(Debug)]
@@ -56,5 +56,13 @@ impl Effect for SupplySag {
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 - values[0] * at.duty.abs())
+    }
+
+    fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            gain: 1.0 - values[0] * at.duty.abs(),
+            per_duty: -at.torque_nm * values[0] * at.duty.signum(),
+            ..Slope::NONE
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Supply sensitivity: the torque follows the volts.
 
-use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// tau (1 + s (V / V_n - 1)).
 #[derive(Debug)]
@@ -46,5 +46,10 @@ impl Effect for SupplySensitivity {
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 + values[0] * (at.supply_ratio - 1.0))
+    }
+
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        // Linear models hold at the nominal supply.
+        Some(Slope::NONE)
     }
 }

@@ -1,6 +1,6 @@
 //! Torque saturation: the drive gives no more than a limit.
 
-use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// max(-limit, min(limit, tau)).
 #[derive(Debug)]
@@ -45,5 +45,9 @@ impl Effect for TorqueSaturation {
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         torque_nm.clamp(-values[0], values[0])
+    }
+
+    fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
+        (at.torque_nm.abs() < values[0]).then_some(Slope::NONE)
     }
 }

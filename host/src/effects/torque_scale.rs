@@ -1,6 +1,6 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
-use super::{Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
 
 /// s tau.
 #[derive(Debug)]
@@ -56,5 +56,12 @@ impl Effect for TorqueScale {
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         values[0] * torque_nm
+    }
+
+    fn slope(&self, values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            gain: values[0],
+            ..Slope::NONE
+        })
     }
 }

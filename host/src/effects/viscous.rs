@@ -1,6 +1,6 @@
 //! Viscous friction: resistance in proportion to speed.
 
-use super::{Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -c w.
 #[derive(Debug)]
@@ -56,5 +56,12 @@ impl Effect for Viscous {
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         -values[0] * at.speed_rad_s
+    }
+
+    fn slope(&self, values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope {
+            per_rad_s: -values[0],
+            ..Slope::NONE
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 /// What a number may be.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     pub low: f64,
     pub high: f64,
     /// Whether `low` itself is refused, shown as "above".

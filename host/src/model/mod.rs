@@ -7,12 +7,12 @@ mod address;
 mod columns;
 pub mod edit;
 mod field;
-mod limits;
+pub(crate) mod limits;
 mod parse;
 mod path;
-mod reader;
-mod source;
-mod suggest;
+pub(crate) mod reader;
+pub(crate) mod source;
+pub(crate) mod suggest;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};

@@ -8,7 +8,7 @@ use std::ops::Range;
 use toml_edit::{Item, TableLike, Value};
 
 /// One table of the file, named for messages: `[rig]`, `[[link]] 2`.
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     source: &'a Source<'a>,
     name: String,
     items: &'a dyn TableLike,

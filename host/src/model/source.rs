@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// The text a table came from, and its name for errors.
 #[derive(Debug)]
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     pub text: &'a str,
     pub file: &'a Path,
 }

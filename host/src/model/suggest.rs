@@ -1,7 +1,7 @@
 //! "Did you mean": names and units for keys that are none.
 
 /// Which of the known names was meant, and which there are.
-pub(super) fn suggest(name: &str, known: &[&str]) -> String {
+pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
     let all = known.join(", ");
     let slips = |known: &str| strsim::damerau_levenshtein(name, known);
     let near = known
@@ -36,7 +36,7 @@ const SUFFIXES: &[(&str, &str)] = &[
 ];
 
 /// A key's stem and the unit its suffix names.
-pub(super) fn split_unit(key: &str) -> Option<(&str, &'static str)> {
+pub(crate) fn split_unit(key: &str) -> Option<(&str, &'static str)> {
     SUFFIXES
         .iter()
         .find_map(|(suffix, unit)| key.strip_suffix(suffix).map(|stem| (stem, *unit)))

@@ -5,15 +5,16 @@ mod candidates;
 mod failures;
 mod headline;
 mod json;
-mod page;
+pub(crate) mod page;
+mod panels;
 mod parameters;
 mod provenance;
 mod remains;
 #[cfg(test)]
 mod sample;
-mod scale;
+pub(crate) mod scale;
 mod signatures;
-mod svg;
+pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -24,6 +25,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
+pub use panels::{Curve, Panel, panels};
 pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};

@@ -10,15 +10,15 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("page.css");
 
 /// A part of the page that is there only if its data are.
-pub(super) struct Section {
+pub(crate) struct Section {
     /// Anchor.
-    pub(super) id: &'static str,
+    pub(crate) id: &'static str,
     /// Heading.
-    pub(super) title: &'static str,
+    pub(crate) title: &'static str,
     /// What to look for, to someone who sees such a thing for the first time.
-    pub(super) lead: &'static str,
+    pub(crate) lead: &'static str,
     /// The rest.
-    pub(super) body: Markup,
+    pub(crate) body: Markup,
 }
 
 /// A self-contained page: no scripts, no fonts, no pictures from elsewhere.
@@ -35,6 +35,11 @@ pub fn html(report: &Report) -> String {
         provenance::glossary,
     ];
     let sections: Vec<Section> = parts.iter().filter_map(|part| part(report)).collect();
+    document(&report.title, &headline::header(report), &sections)
+}
+
+/// A document in the house's style.
+pub(crate) fn document(title: &str, header: &Markup, sections: &[Section]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -42,18 +47,18 @@ pub fn html(report: &Report) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (report.title) }
+                title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 main {
-                    (headline::header(report))
+                    (header)
                     nav aria-label="Sections" {
-                        @for section in &sections {
+                        @for section in sections {
                             a href={ "#" (section.id) } { (section.title) }
                         }
                     }
-                    @for section in &sections { (drawn(section)) }
+                    @for section in sections { (drawn(section)) }
                 }
             }
         }

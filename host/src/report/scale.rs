@@ -4,12 +4,12 @@
 const LARGEST: f64 = 1e12;
 
 /// Whether a value can be drawn at all.
-pub(super) fn drawable(value: f64) -> bool {
+pub(crate) fn drawable(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
 /// Lowest and highest drawable value with a share of the span to spare; 0 to 1 if there is none.
-pub(super) fn span(values: impl IntoIterator<Item = f64>, spare: f64) -> (f64, f64) {
+pub(crate) fn span(values: impl IntoIterator<Item = f64>, spare: f64) -> (f64, f64) {
     let (low, high) = values
         .into_iter()
         .filter(|value| drawable(*value))
@@ -28,7 +28,7 @@ pub(super) fn span(values: impl IntoIterator<Item = f64>, spare: f64) -> (f64, f
 
 /// A straight scale from values to places.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     /// Lowest and highest value.
     values: (f64, f64),
     /// Their places.
@@ -37,28 +37,28 @@ pub(super) struct Scale {
 
 impl Scale {
     /// `values` must not be empty, as [`span`] sees to.
-    pub(super) fn new(values: (f64, f64), places: (f64, f64)) -> Self {
+    pub(crate) fn new(values: (f64, f64), places: (f64, f64)) -> Self {
         Self { values, places }
     }
 
     /// Place of a drawable value.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         let share = (value - self.values.0) / (self.values.1 - self.values.0);
         self.places.0 + share * (self.places.1 - self.places.0)
     }
 
     /// Place of a value, brought to the nearer end if it lies outside.
-    pub(super) fn held(&self, value: f64) -> f64 {
+    pub(crate) fn held(&self, value: f64) -> f64 {
         self.place(value.clamp(self.values.0, self.values.1))
     }
 
     /// Places of the ends.
-    pub(super) fn ends(&self) -> (f64, f64) {
+    pub(crate) fn ends(&self) -> (f64, f64) {
         self.places
     }
 
     /// Round values inside, about `wanted` of them, with their labels.
-    pub(super) fn ticks(&self, wanted: usize) -> Vec<(f64, String)> {
+    pub(crate) fn ticks(&self, wanted: usize) -> Vec<(f64, String)> {
         let (low, high) = self.values;
         let step = round_step((high - low) / wanted.max(1) as f64);
         let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 /// Whose data a mark shows; the style sheet has a colour for each, told apart by the colour-blind too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Tone {
+pub(crate) enum Tone {
     /// What was measured.
     Measured,
     /// The first model.
@@ -21,7 +21,7 @@ pub(super) enum Tone {
 
 impl Tone {
     /// Class in the style sheet.
-    pub(super) fn class(self) -> &'static str {
+    pub(crate) fn class(self) -> &'static str {
         match self {
             Self::Measured => "tone-measured",
             Self::Before => "tone-before",
@@ -33,7 +33,7 @@ impl Tone {
 }
 
 /// A coordinate, to a tenth of a pixel; numbers that are none are never written.
-pub(super) fn at(place: f64) -> String {
+pub(crate) fn at(place: f64) -> String {
     let tenths = (10.0 * place).round();
     let place = if tenths.is_finite() {
         tenths / 10.0
@@ -46,16 +46,16 @@ pub(super) fn at(place: f64) -> String {
 
 /// Two scales that span a rectangle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plot {
+pub(crate) struct Plot {
     /// Left to right.
-    pub(super) x: Scale,
+    pub(crate) x: Scale,
     /// Bottom to top: its first place is the lower edge.
-    pub(super) y: Scale,
+    pub(crate) y: Scale,
 }
 
 impl Plot {
     /// Vertical grid lines.
-    pub(super) fn columns(&self, wanted: usize) -> Markup {
+    pub(crate) fn columns(&self, wanted: usize) -> Markup {
         let (bottom, top) = self.y.ends();
         html! {
             @for (value, _) in self.x.ticks(wanted) {
@@ -66,7 +66,7 @@ impl Plot {
     }
 
     /// Labels below, and what they count.
-    pub(super) fn x_labels(&self, wanted: usize, label: &str) -> Markup {
+    pub(crate) fn x_labels(&self, wanted: usize, label: &str) -> Markup {
         let (bottom, _) = self.y.ends();
         let (left, right) = self.x.ends();
         html! {
@@ -78,7 +78,7 @@ impl Plot {
     }
 
     /// Horizontal grid lines with labels on the left, and what they count above them.
-    pub(super) fn rows(&self, wanted: usize, label: &str) -> Markup {
+    pub(crate) fn rows(&self, wanted: usize, label: &str) -> Markup {
         let (left, right) = self.x.ends();
         let (_, top) = self.y.ends();
         html! {
@@ -92,7 +92,7 @@ impl Plot {
     }
 
     /// A curve, thinned to the pixels.
-    pub(super) fn curve(&self, points: impl IntoIterator<Item = (f64, f64)>, tone: Tone) -> Markup {
+    pub(crate) fn curve(&self, points: impl IntoIterator<Item = (f64, f64)>, tone: Tone) -> Markup {
         let path = thin::path(points, &self.x, &self.y);
         html! {
             @if !path.is_empty() {
@@ -102,7 +102,7 @@ impl Plot {
     }
 
     /// A band between two heights.
-    pub(super) fn band(&self, low: f64, high: f64, tone: Tone) -> Markup {
+    pub(crate) fn band(&self, low: f64, high: f64, tone: Tone) -> Markup {
         let ((left, right), bottom, top) = (self.x.ends(), self.y.held(low), self.y.held(high));
         html! {
             rect class={ "band " (tone.class()) } x=(at(left)) width=(at(right - left)) y=(at(top))

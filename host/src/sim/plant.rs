@@ -1,6 +1,5 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
-use crate::dynamics::Chain;
 use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, Rig, SHAM, Site};
 use crate::log::Motion;
 use crate::model::{Angles, Drive, Model};
@@ -58,29 +57,15 @@ pub struct Plant {
 impl Plant {
     /// Compiles `model` for the conditions of `motion` (payload, attitude).
     pub fn new(model: &Model, motion: &Motion) -> Plant {
-        let mut chain = Chain::of(model);
         let mut joints: Vec<JointPlan> = model
             .joints
             .iter()
             .map(|j| JointPlan::ideal(&j.drive))
             .collect();
-        let mut rig = Rig {
-            chain: chain.clone(),
-            gravity_turn_rad: 0.0,
-            turned: motion.turned,
-        };
-        for instance in &model.effects {
-            if instance.effect.card().site == Site::Body {
-                instance
-                    .effect
-                    .body(&instance.values, instance.joint.unwrap_or(0), &mut rig);
-            }
-        }
-        chain.clone_from(&rig.chain);
+        let mut rig = Rig::of(model, motion.turned);
         if motion.payload_kg > 0.0 {
-            chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
+            rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
         }
-        rig.chain = chain;
         // Those of one site act in the library's order, however the file lists them.
         let mut needs = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {

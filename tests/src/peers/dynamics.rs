@@ -13,7 +13,8 @@ const PAPER_LINKS: [[f64; 4]; 3] = [
 ];
 const UNIFORM_LINK: [f64; 4] = [0.15, 0.075, 0.2, 3.75e-4];
 
-fn chain(n: usize) -> Chain {
+/// The chain that `chain.py` calls by its number of links.
+pub(super) fn chain(n: usize) -> Chain {
     let rows = match n {
         3 => PAPER_LINKS.to_vec(),
         n => vec![UNIFORM_LINK; n],

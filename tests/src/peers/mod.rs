@@ -1,10 +1,14 @@
 //! The questions of `tests/peers`, answered by the library and timed in this process.
 
 mod arm;
+mod closed_loop;
 mod dynamics;
+mod gains;
 
 pub use arm::{Arm, Starts};
+pub use closed_loop::{angles_after, runs_per_second};
 pub use dynamics::{farthest_off, forward_seconds};
+pub use gains::{chain_fixture, dlqr_off, dlqr_seconds};
 
 use std::time::Instant;
 

@@ -1,6 +1,9 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod bench_firmware;
+mod firmware;
 mod hidden;
+mod install;
 mod peers;
 mod program;
 mod real;
@@ -26,6 +29,10 @@ enum Chore {
     Hidden(hidden::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Build the CM-5's program: ELF, HEX and BIN
+    Firmware(firmware::Args),
+    /// Measure the firmware: cycles, times, losses and frames
+    BenchFirmware(bench_firmware::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -37,6 +44,8 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::Firmware(args) => firmware::run(args),
+            Chore::BenchFirmware(args) => bench_firmware::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

@@ -5,7 +5,10 @@
 
 use super::program::run as succeeds;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand_tests::peers::{Arm, farthest_off, forward_seconds};
+use handstand_tests::peers::{
+    Arm, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off, forward_seconds,
+    runs_per_second,
+};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -19,6 +22,22 @@ pub struct Args {
     /// Times the two take turns at short tasks
     #[arg(long, default_value_t = 3)]
     rounds: usize,
+    /// Only these tasks
+    #[arg(long, value_enum, value_delimiter = ',')]
+    only: Vec<Task>,
+}
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Task {
+    /// One evaluation of the forward dynamics
+    Dynamics,
+    /// Runs of the closed loop
+    ClosedLoop,
+    /// Gains from Riccati equations
+    Gains,
+    /// Fits and diagnoses of a servo arm's logs
+    Fits,
 }
 
 /// Whether every target is met.
@@ -28,7 +47,8 @@ pub fn run(args: &Args) -> bool {
         return false;
     }
     let mut table = Rows::default();
-    let well = bench.measure(args.rounds.max(1), &mut table);
+    let wanted = |task| args.only.is_empty() || args.only.contains(&task);
+    let well = bench.measure(args.rounds.max(1), &wanted, &mut table);
     println!("\n{}", table.table);
     if let Err(why) = &well {
         println!("{why}");
@@ -71,6 +91,18 @@ impl Bench {
         (venv.join("bin/python").is_file()
             || succeeds(Command::new("python3").args(["-m", "venv"]).arg(&venv)))
             && succeeds(&mut pip)
+            && self.install_drake()
+    }
+
+    /// Drake has no package for every system: its rows are left out there.
+    fn install_drake(&self) -> bool {
+        let mut pip = Command::new(self.folder.join("venv/bin/pip"));
+        pip.args(["install", "--quiet", "-r"])
+            .arg(self.scripts.join("requirements-drake.txt"));
+        if !succeeds(&mut pip) {
+            println!("Drake cannot be installed here: its rows are left out.");
+        }
+        true
     }
 
     /// Runs a script on files of the folder; its JSON.
@@ -91,8 +123,28 @@ impl Bench {
         Ok(self.folder.join(name))
     }
 
-    fn measure(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
-        self.dynamics(rounds, table)?;
+    fn measure(
+        &self,
+        rounds: usize,
+        wanted: &dyn Fn(Task) -> bool,
+        table: &mut Rows,
+    ) -> Result<(), String> {
+        if wanted(Task::Dynamics) {
+            self.dynamics(rounds, table)?;
+        }
+        if wanted(Task::ClosedLoop) {
+            self.closed_loop(rounds, table)?;
+        }
+        if wanted(Task::Gains) {
+            self.gains(rounds, table)?;
+        }
+        if wanted(Task::Fits) {
+            self.fits(rounds, table)?;
+        }
+        Ok(())
+    }
+
+    fn fits(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
         let load = |logs: &[PathBuf]| Arm::load(logs).map_err(|error| error.to_string());
         let arm = load(&[self.log("arm.csv", &[])?])?;
         let mut pairs = Vec::new();
@@ -171,6 +223,87 @@ impl Bench {
                 ["", "", &format!("{off:.1e}"), "<= 1e-9"],
                 off <= 1e-9,
             );
+        }
+        Ok(())
+    }
+}
+
+/// Threads on which closed-loop runs are timed.
+const THREADS: usize = 2;
+
+impl Bench {
+    /// Runs a second of the paper's closed loop, and whether they are the same runs.
+    fn closed_loop(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        let peers = [("mujoco_rk4", 20.0), ("numba", 1.0)];
+        let mut pairs = vec![Vec::new(); peers.len()];
+        let mut off = f64::NAN;
+        for _ in 0..rounds {
+            let before = runs_per_second(THREADS, 2000);
+            let threads = THREADS.to_string();
+            let theirs = self.script("closed_loop.py", &["--threads", &threads])?;
+            let ours = [before, runs_per_second(THREADS, 2000)];
+            for (pairs, (peer, _)) in pairs.iter_mut().zip(peers) {
+                let seconds = 1.0 / number(&theirs, &[peer]);
+                pairs.push((2.0 / (ours[0] + ours[1]), seconds));
+            }
+            let ours = angles_after(0.5);
+            let theirs = &theirs["half_second_rad"]["mujoco_rk4"];
+            off = (0..3)
+                .map(|i| (ours[i] - theirs[i].as_f64().unwrap_or(f64::NAN)).abs())
+                .fold(0.0, f64::max);
+        }
+        for (pairs, (peer, target)) in pairs.iter().zip(peers) {
+            table.faster(
+                &format!("closed-loop run of 5 s, 2 threads: {peer}"),
+                pairs,
+                target,
+            );
+        }
+        let name = "closed loop after 0.5 s: farthest off MuJoCo's RK4, rad";
+        table.add(
+            name,
+            ["", "", &format!("{off:.1e}"), "<= 1e-9"],
+            off <= 1e-9,
+        );
+        Ok(())
+    }
+}
+
+impl Bench {
+    /// DLQR syntheses: times by number of states, and how right the gains of 60 states are.
+    fn gains(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        let fixture = chain_fixture();
+        let fixture = fixture.to_string_lossy();
+        let targets = [
+            ("scipy", 6, 5.0),
+            ("drake", 6, 1.0),
+            ("scipy", 20, 1.0),
+            ("scipy", 60, 1.0),
+            ("drake", 60, 1.0),
+        ];
+        let mut pairs = vec![Vec::new(); targets.len()];
+        let mut theirs = Value::Null;
+        for _ in 0..rounds {
+            let before = targets.map(|(_, states, _)| dlqr_seconds(states / 2));
+            theirs = self.script("dlqr.py", &[&fixture])?;
+            for (at, (peer, states, _)) in targets.into_iter().enumerate() {
+                let ours = 0.5 * (before[at] + dlqr_seconds(states / 2));
+                pairs[at].push((ours, number(&theirs, &[peer, &states.to_string()])));
+            }
+        }
+        let there = |peer: &str| !theirs[peer].is_null();
+        for (pairs, (peer, states, target)) in pairs.iter().zip(targets) {
+            match there(peer) {
+                true => table.faster(&format!("DLQR, {states} states: {peer}"), pairs, target),
+                false => println!("{peer} is not installed: its rows are left out"),
+            }
+        }
+        let ours = dlqr_off().unwrap_or(f64::NAN);
+        for peer in ["scipy", "drake"].into_iter().filter(|peer| there(peer)) {
+            let off = number(&theirs, &[peer, "off"]);
+            let cells = [&format!("{ours:.1e}"), &format!("{off:.1e}"), "", "<= 1e-6"];
+            let name = format!("K of 60 states, off 60 digits: {peer}");
+            table.add(&name, cells.map(|cell: &str| cell), ours <= 1e-6);
         }
         Ok(())
     }

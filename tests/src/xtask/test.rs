@@ -1,9 +1,13 @@
 //! `cargo xtask test`: everything that must hold, and one closing line: `N passed, N failed`.
 //!
 //! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
-//! documentation count as one test each, and every test of the workspace as one.
+//! documentation count as one test each, as does the firmware's build, and every test of the workspace as one.
 
-use super::program::{self, found, is_root, overheard};
+use super::firmware;
+use super::install;
+use super::program::{self, overheard};
+use handstand_tests::firmware::Toolchain;
+use std::path::Path;
 use std::process::Command;
 
 /// Install what the tests need, then run all of them.
@@ -24,6 +28,7 @@ pub fn run(args: &Args) -> bool {
         let mut check = cargo(words);
         tally.count(program::run(check.env("RUSTDOCFLAGS", "-D warnings")));
     }
+    firmware(&mut tally);
     tests(&mut tally);
     println!("\n{} passed, {} failed", tally.passed, tally.failed);
     tally.failed == 0
@@ -41,6 +46,18 @@ const CHECKS: &[&[&str]] = &[
     ],
     &["doc", "--workspace", "--no-deps"],
 ];
+
+/// Builds the firmware, so that the tests that follow find its ELF.
+fn firmware(tally: &mut Tally) {
+    println!("\nThe firmware for the AVR:");
+    match Toolchain::find() {
+        Ok(_) => tally.count(firmware::run(&firmware::Args::default())),
+        Err(why) => println!("SKIPPED, and with it the tests of its ELF: {why}"),
+    }
+    if !handstand_simavr::AVAILABLE && !Path::new("/usr/include/simavr/sim_avr.h").exists() {
+        println!("SKIPPED: the tests of the firmware's ELF, for simavr is not installed");
+    }
+}
 
 #[derive(Debug, Default)]
 struct Tally {
@@ -66,24 +83,7 @@ fn cargo(words: &[&str]) -> Command {
 fn install() {
     println!("Needed: the crates in Cargo.lock. Fetching them where they are not here yet.");
     program::run(&mut cargo(&["fetch", "--locked"]));
-    if found(&["chromium", "chromium-browser", "google-chrome"]) {
-        println!("Chromium, for the test that renders a report: here already.");
-    } else if !found(&["apt-get"]) {
-        println!(
-            "Chromium, for the test that renders a report: no apt-get here, so that test is skipped."
-        );
-    } else if !is_root() {
-        println!(
-            "Chromium, for the test that renders a report: only root may install it, so that test is skipped."
-        );
-    } else {
-        println!("Chromium, for the test that renders a report: installing it by apt-get.");
-        let mut apt = Command::new("apt-get");
-        apt.args(["install", "--yes", "--no-install-recommends", "chromium"]);
-        if !program::run(&mut apt) {
-            println!("It could not be installed, so that test is skipped.");
-        }
-    }
+    install::all();
 }
 
 fn tests(tally: &mut Tally) {

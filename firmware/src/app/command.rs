@@ -1,0 +1,243 @@
+//! What each command of the host does.
+
+use super::{App, Drive, State, Wish};
+use crate::balance::Balance;
+use crate::board::Board;
+use crate::design::LOW_SUPPLY;
+use crate::servos::Servos;
+use crate::slots::Stored;
+use handstand_shared::message::{
+    Answer, Command, GAIN_CHUNK, Hello, Mode, Numbered, Refusal, Report, Roster, Subject,
+    Telemetry, VERSION,
+};
+
+/// What a command comes to.
+enum Outcome {
+    /// Nothing is answered.
+    Quiet,
+    /// The answer is sent now.
+    Answer(Result<(), Refusal>),
+    /// The answer follows when it is done.
+    Later,
+}
+
+impl App {
+    #[inline(never)]
+    pub(super) fn obey<B: Board>(&mut self, board: &mut B, command: Numbered<Command>) {
+        let Numbered { sequence, message } = command;
+        let outcome = self.outcome(board, sequence, message);
+        if let Outcome::Answer(outcome) = outcome {
+            let report = Report::Answer(Answer { sequence, outcome });
+            self.link.send(board, &report);
+        }
+    }
+
+    #[inline(never)]
+    fn outcome<B: Board>(&mut self, board: &mut B, sequence: u8, command: Command) -> Outcome {
+        match command {
+            Command::Hello { version } => self.greet(board, version),
+            Command::KeepAlive => Outcome::Quiet,
+            Command::Disarm => Outcome::Answer(self.stop(board)),
+            Command::Ask(Subject::Telemetry) => self.telemetry(board),
+            Command::Ask(Subject::Statistics) => {
+                self.link.send(board, &Report::Statistics(self.statistics));
+                Outcome::Quiet
+            }
+            Command::Mode(mode) => Outcome::Answer(self.change(board, mode)),
+            Command::Roster(roster) => Outcome::Answer(self.enlist(&roster)),
+            Command::Goals(goals) => self.wish_for(sequence, Wish::Positions(goals)),
+            Command::Speeds(speeds) => self.wish_for(sequence, Wish::Speeds(speeds)),
+            Command::Attitude(attitude) => {
+                self.attitude = attitude;
+                Outcome::Quiet
+            }
+            Command::Arm { token } => Outcome::Answer(self.arm(board, token)),
+            Command::GainChunk { offset, bytes } => match self.is_armed() {
+                true => Outcome::Answer(Err(Refusal::Armed)),
+                false => match self.writer.chunk(board, offset, &bytes, sequence) {
+                    true => Outcome::Later,
+                    false => Outcome::Answer(Err(Refusal::BadGains)),
+                },
+            },
+            Command::GainStore { length, check } => match self.is_armed() {
+                true => Outcome::Answer(Err(Refusal::Armed)),
+                false => match self.writer.store(board, length, check, sequence) {
+                    true => Outcome::Later,
+                    false => Outcome::Answer(Err(Refusal::BadGains)),
+                },
+            },
+            Command::GainRead { offset } => {
+                let mut bytes = [0; GAIN_CHUNK];
+                let stored = Stored::newest(board);
+                if let Some(stored) = stored {
+                    stored.read(board, offset, &mut bytes);
+                }
+                let length = stored.map_or(0, |stored| stored.length);
+                let report = Report::GainChunk {
+                    offset,
+                    length,
+                    bytes,
+                };
+                self.link.send(board, &report);
+                Outcome::Quiet
+            }
+        }
+    }
+
+    /// A host of another version is told ours, and gets no token.
+    #[inline(never)]
+    fn greet<B: Board>(&mut self, board: &mut B, version: u8) -> Outcome {
+        self.link.greet(&mut self.statistics);
+        // When a host greets is chance, to the microsecond: a good enough token.
+        let token = board.clock() ^ (self.ticks as u16).rotate_left(8);
+        self.token = (version == VERSION).then_some(token);
+        let hello = Hello {
+            version: VERSION,
+            token,
+            condition: self.condition(),
+            gains: self.fingerprint(board),
+        };
+        self.link.send(board, &Report::Hello(hello));
+        Outcome::Quiet
+    }
+
+    /// Of the gains in EEPROM; 0 if there are none that can be used.
+    fn fingerprint<B: Board>(&self, board: &mut B) -> u32 {
+        let plan = Stored::newest(board).and_then(|stored| stored.plan(board));
+        plan.map_or(0, |plan| plan.table.fingerprint())
+    }
+
+    fn stop<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
+        self.disarm(board);
+        self.state = match self.state {
+            State::Stream(_) => State::Stream(Drive::Off),
+            State::Balance(_) => State::Balance(Drive::Off),
+            State::Bridge => State::Bridge,
+            State::Fault(cause) => State::Fault(cause),
+        };
+        Ok(())
+    }
+
+    fn change<B: Board>(&mut self, board: &mut B, mode: Mode) -> Result<(), Refusal> {
+        if self.token.is_none() {
+            return Err(Refusal::Version);
+        }
+        let token = self.token;
+        self.enter(board, mode);
+        // A mode chosen while nothing was armed needs no new greeting.
+        self.token = token;
+        Ok(())
+    }
+
+    fn enlist(&mut self, roster: &Roster) -> Result<(), Refusal> {
+        if self.is_armed() {
+            Err(Refusal::Armed)
+        } else if !roster.is_sound() {
+            Err(Refusal::Roster)
+        } else {
+            self.servos = Servos::new(roster);
+            Ok(())
+        }
+    }
+
+    /// Goals count only while streaming with torque on; before that they keep the link alive and no more.
+    fn wish_for(&mut self, sequence: u8, wish: Wish) -> Outcome {
+        if self.state == State::Stream(Drive::On) {
+            self.wish = wish;
+            self.obeyed = sequence;
+        }
+        Outcome::Quiet
+    }
+
+    #[inline(never)]
+    fn arm<B: Board>(&mut self, board: &mut B, token: u16) -> Result<(), Refusal> {
+        match self.token {
+            None => return Err(Refusal::Version),
+            Some(right) if right != token => return Err(Refusal::Token),
+            Some(_) => {}
+        }
+        match self.state {
+            State::Stream(Drive::Off) => {
+                self.has_supply()?;
+                self.wish = Wish::Stay;
+                self.low = (0, self.servos.rounds);
+                self.servos.arm(board);
+                self.state = State::Stream(Drive::On);
+                Ok(())
+            }
+            State::Balance(Drive::Off) => self.arm_balance(board),
+            State::Stream(Drive::On | Drive::Soft { .. })
+            | State::Balance(Drive::On | Drive::Soft { .. }) => Err(Refusal::Armed),
+            State::Bridge | State::Fault(_) => Err(Refusal::State),
+        }
+    }
+
+    /// Balances from the next tick on, if the robot stands where its gains hold.
+    #[inline(never)]
+    fn arm_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
+        self.has_supply()?;
+        let plan = self.balance.as_ref().ok_or(Refusal::NoGains)?.plan;
+        let mut balance = Balance::new(plan);
+        if !balance.has_servos(&self.servos) {
+            return Err(Refusal::Servo);
+        }
+        balance.sense(self.attitude, board.gyro());
+        let states = balance.states(&self.servos).map_err(|_| Refusal::Pose)?;
+        let [_, x2, x3, ..] = plan.table.x0;
+        let [_, q2, q3, ..] = states;
+        // A joint further off than 10 degrees was not put there on purpose.
+        if q2.abs_diff(x2) > 34 || q3.abs_diff(x3) > 34 {
+            return Err(Refusal::Pose);
+        }
+        self.balance = Some(balance);
+        self.wish = Wish::Stay;
+        self.low = (0, self.servos.rounds);
+        self.servos.arm(board);
+        self.state = State::Balance(Drive::On);
+        Ok(())
+    }
+
+    fn has_supply(&self) -> Result<(), Refusal> {
+        match self.servos.supply {
+            Some(supply) if supply >= LOW_SUPPLY => Ok(()),
+            Some(_) | None => Err(Refusal::Supply),
+        }
+    }
+
+    #[inline(never)]
+    fn telemetry<B: Board>(&mut self, board: &mut B) -> Outcome {
+        let (stack_used, stack_size) = board.stack();
+        let telemetry = Telemetry {
+            reset: board.reset_cause(),
+            condition: self.condition(),
+            ticks: self.ticks,
+            overruns: self.overruns,
+            tick_us: self.tick_us,
+            longest_tick_us: self.longest_tick_us,
+            longest_law_us: self.longest_law_us,
+            stack_used,
+            stack_size,
+            supply: self.servos.supply.map_or(0, |supply| supply.0),
+            gyro: board.gyro(),
+        };
+        if self.link.send(board, &Report::Telemetry(telemetry)) {
+            self.longest_tick_us = 0;
+            self.longest_law_us = 0;
+        }
+        Outcome::Quiet
+    }
+
+    /// A piece of the gain table, or its header, is written.
+    pub(super) fn stored<B: Board>(&mut self, board: &mut B, sequence: u8) {
+        let outcome = Ok(());
+        let report = Report::Answer(Answer { sequence, outcome });
+        self.link.send(board, &report);
+    }
+
+    fn is_armed(&self) -> bool {
+        match self.state {
+            State::Stream(drive) | State::Balance(drive) => drive != Drive::Off,
+            State::Bridge | State::Fault(_) => false,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The CM-5's ATmega128: the only unsafe code of the project, and every register it writes.
+//!
+//! Registers are written by their bits, for the generated names of the USART's frame format are wrong in avr-device 0.9.
+#![allow(unsafe_code)]
+
+mod adc;
+mod eeprom;
+mod port;
+mod ring;
+mod stack;
+mod timer;
+mod usart;
+mod watchdog;
+
+use crate::board::Board;
+use avr_device::atmega128a::Peripherals;
+use handstand_shared::message::ResetCause;
+
+/// The board, taken over whatever state a boot loader left it in.
+pub struct Cm5 {
+    registers: Peripherals,
+    reset_cause: ResetCause,
+}
+
+impl Cm5 {
+    /// Charger off, watchdog on, then all else. Call once, first of all.
+    pub fn start() -> Self {
+        avr_device::interrupt::disable();
+        // SAFETY: called once, before any interrupt is on.
+        let registers = unsafe { Peripherals::steal() };
+        port::charger_off(&registers);
+        watchdog::start(&registers);
+        let reset_cause = watchdog::take_reset_cause(&registers);
+        stack::paint();
+        port::start(&registers);
+        timer::start(&registers);
+        usart::start(&registers);
+        adc::start(&registers);
+        // SAFETY: everything an interrupt uses is set up.
+        unsafe { avr_device::interrupt::enable() };
+        Cm5 {
+            registers,
+            reset_cause,
+        }
+    }
+}
+
+impl Board for Cm5 {
+    fn clock(&self) -> u16 {
+        timer::clock(&self.registers)
+    }
+
+    fn tick_due(&mut self) -> bool {
+        timer::tick_due(&self.registers)
+    }
+
+    fn feed_watchdog(&mut self) {
+        avr_device::asm::wdr();
+    }
+
+    fn bus_send(&mut self, bytes: &[u8]) {
+        port::bus_transmits(&self.registers);
+        usart::send(&self.registers, bytes);
+        port::bus_listens(&self.registers);
+    }
+
+    fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
+        let counts = within_us.saturating_mul(crate::design::CLOCK_PER_US);
+        let start = self.clock();
+        loop {
+            if let Some(byte) = usart::BUS_IN.pop() {
+                return Some(byte);
+            }
+            if self.clock().wrapping_sub(start) >= counts {
+                return None;
+            }
+        }
+    }
+
+    fn bus_flush(&mut self) {
+        // Bounded by the ring's size; nobody sends while the bus is ours.
+        while usart::BUS_IN.pop().is_some() {}
+    }
+
+    fn link_receive(&mut self) -> Option<u8> {
+        usart::LINK_IN.pop()
+    }
+
+    fn link_overruns(&mut self) -> u8 {
+        usart::LINK_IN.take_lost()
+    }
+
+    fn link_room(&self) -> usize {
+        usart::LINK_OUT.room()
+    }
+
+    fn link_send(&mut self, byte: u8) {
+        usart::LINK_OUT.push(byte);
+        usart::wake_link(&self.registers);
+    }
+
+    fn buttons(&self) -> u8 {
+        port::buttons(&self.registers)
+    }
+
+    fn set_leds(&mut self, leds: u8) {
+        port::set_leds(&self.registers, leds);
+    }
+
+    fn gyro(&mut self) -> u16 {
+        adc::latest(&self.registers)
+    }
+
+    fn eeprom_read(&mut self, address: u16) -> u8 {
+        eeprom::read(&self.registers, address)
+    }
+
+    fn eeprom_write(&mut self, address: u16, byte: u8) -> bool {
+        eeprom::write(&self.registers, address, byte)
+    }
+
+    fn eeprom_ready(&self) -> bool {
+        eeprom::is_ready(&self.registers)
+    }
+
+    fn reset_cause(&self) -> ResetCause {
+        self.reset_cause
+    }
+
+    fn stack(&self) -> (u16, u16) {
+        stack::used_and_size()
+    }
+}

@@ -1,0 +1,65 @@
+//! What the logic needs of its hardware.
+
+use handstand_shared::message::ResetCause;
+
+/// A CM-5, real, simulated or made of queues.
+pub trait Board {
+    /// Free-running clock, [`crate::design::CLOCK_PER_US`] counts per microsecond; wraps after 32.8 ms.
+    fn clock(&self) -> u16;
+
+    /// True once per tick.
+    fn tick_due(&mut self) -> bool;
+
+    /// Puts the watchdog off for another 30 ms.
+    fn feed_watchdog(&mut self);
+
+    /// Sends bytes to the servos, and turns the bus to listening after the last stop bit.
+    fn bus_send(&mut self, bytes: &[u8]);
+
+    /// The next byte from the servos, waiting at most this long for it, us.
+    fn bus_receive(&mut self, within_us: u16) -> Option<u8>;
+
+    /// Forgets bytes from the servos that nobody took.
+    fn bus_flush(&mut self);
+
+    /// The next byte from the PC.
+    fn link_receive(&mut self) -> Option<u8>;
+
+    /// Bytes from the PC that were lost for want of room, since the last call.
+    fn link_overruns(&mut self) -> u8;
+
+    /// How many bytes can be handed to [`Board::link_send`] now.
+    fn link_room(&self) -> usize;
+
+    /// Queues a byte for the PC; lost if there is no room.
+    fn link_send(&mut self, byte: u8);
+
+    /// Which buttons are down, see [`crate::panel`].
+    fn buttons(&self) -> u8;
+
+    /// Which LEDs are lit, see [`crate::panel`].
+    fn set_leds(&mut self, leds: u8);
+
+    /// The gyro's voltage, ADC code 0..=1023.
+    fn gyro(&mut self) -> u16;
+
+    /// A byte of EEPROM.
+    fn eeprom_read(&mut self, address: u16) -> u8;
+
+    /// Begins to write a byte of EEPROM; false if the last one is still being written (8.5 ms).
+    fn eeprom_write(&mut self, address: u16, byte: u8) -> bool;
+
+    /// Whether the last byte is written.
+    fn eeprom_ready(&self) -> bool;
+
+    /// Why the controller started.
+    fn reset_cause(&self) -> ResetCause;
+
+    /// How deep the stack has been, and how much of it there is, bytes.
+    fn stack(&self) -> (u16, u16);
+}
+
+/// Microseconds from `start` until now.
+pub fn since_us(board: &impl Board, start: u16) -> u16 {
+    board.clock().wrapping_sub(start) / crate::design::CLOCK_PER_US
+}

@@ -1,0 +1,105 @@
+//! Telling our frames from servo packets while the CM-5 is a plain adapter.
+//!
+//! A servo packet begins with `FF`, a frame of ours with the zero that ends the one before. Between packets a zero
+//! begins a frame, which ends at the next zero and goes to no servo; inside a packet every byte goes to the servos.
+
+use crate::design::TICK_US;
+
+/// Where a byte from the PC belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// To the servos, as it is.
+    Bus,
+    /// Into the decoder of frames.
+    Frame,
+}
+
+/// What the bytes so far began.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Inside {
+    #[default]
+    Nothing,
+    /// One `FF`.
+    Header,
+    /// `FF FF`.
+    Id,
+    /// `FF FF ID`.
+    Length,
+    /// So many bytes of a packet are still to come.
+    Packet(u8),
+    Frame,
+}
+
+/// Ticks of silence after which a packet or frame that was begun is given up: 50 ms, more than a USB adapter pauses.
+const GIVEN_UP: u8 = (50_000 / TICK_US as u32) as u8;
+
+/// Sorts the bytes from the PC.
+#[derive(Debug, Clone, Default)]
+pub struct Filter {
+    inside: Inside,
+    silent: u8,
+}
+
+impl Filter {
+    /// Where this byte belongs.
+    pub fn push(&mut self, byte: u8) -> Way {
+        self.silent = 0;
+        let (inside, way) = match (self.inside, byte) {
+            (Inside::Nothing, 0) => (Inside::Frame, Way::Frame),
+            (Inside::Nothing, 0xff) => (Inside::Header, Way::Bus),
+            (Inside::Nothing, _) => (Inside::Nothing, Way::Bus),
+            (Inside::Header, 0xff) => (Inside::Id, Way::Bus),
+            (Inside::Header, _) => (Inside::Nothing, Way::Bus),
+            (Inside::Id, 0xff) => (Inside::Id, Way::Bus),
+            (Inside::Id, _) => (Inside::Length, Way::Bus),
+            (Inside::Length, length) => (Inside::Packet(length), Way::Bus),
+            (Inside::Packet(0 | 1), _) => (Inside::Nothing, Way::Bus),
+            (Inside::Packet(left), _) => (Inside::Packet(left - 1), Way::Bus),
+            // Zeros before a frame are idle line; the one after its first byte ends it.
+            (Inside::Frame, _) => (Inside::Frame, Way::Frame),
+        };
+        self.inside = inside;
+        way
+    }
+
+    /// The frame has ended.
+    pub fn end_frame(&mut self) {
+        self.inside = Inside::Nothing;
+    }
+
+    /// Once per tick: gives up what was begun and not continued. True when it does.
+    pub fn tick(&mut self) -> bool {
+        self.silent = self.silent.saturating_add(1);
+        let stale = self.inside != Inside::Nothing && self.silent > GIVEN_UP;
+        if stale {
+            self.inside = Inside::Nothing;
+        }
+        stale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_packet_with_zeros_goes_to_the_servos_whole() {
+        let mut filter = Filter::default();
+        let packet = [0xff, 0xff, 0, 4, 2, 0, 1, 0xf8];
+        for byte in packet.iter().chain(&packet) {
+            assert_eq!(filter.push(*byte), Way::Bus);
+        }
+        assert_eq!(filter.push(0), Way::Frame);
+        assert_eq!(filter.push(0xff), Way::Frame);
+    }
+
+    #[test]
+    fn a_packet_cut_short_is_given_up_in_time() {
+        let mut filter = Filter::default();
+        for byte in [0xff, 0xff, 1, 200] {
+            filter.push(byte);
+        }
+        assert!((0..=GIVEN_UP).any(|_| filter.tick()));
+        assert_eq!(filter.push(0), Way::Frame);
+    }
+}

@@ -1,0 +1,203 @@
+//! The gain table in EEPROM: two slots, of which the newer sound one counts.
+//!
+//! A new table goes into the other slot, byte by byte, and its header last; the header's CRC-32 covers everything, so that
+//! a power cut at any byte leaves the old table. One byte per tick is written (a byte takes 8.5 ms). The boot
+//! loader's bytes, 0xFF6 to 0xFFF, are far away.
+
+use crate::board::Board;
+use handstand_shared::crc::extend32;
+use handstand_shared::message::GAIN_CHUNK;
+use handstand_shared::plan::Plan;
+
+/// Longest gain table, bytes.
+pub const MAX_TABLE: u16 = 500;
+const STARTS: [u16; 2] = [0x000, 0x200];
+const HEADER: u16 = 8;
+
+/// A sound table in EEPROM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stored {
+    slot: u8,
+    sequence: u16,
+    /// Bytes of the table.
+    pub length: u16,
+}
+
+impl Stored {
+    /// The newer of the sound slots.
+    pub fn newest(board: &mut impl Board) -> Option<Stored> {
+        let [first, second] = [sound(board, 0), sound(board, 1)];
+        match (first, second) {
+            // Sequence numbers wrap: the newer one is less than half the circle ahead.
+            (Some(a), Some(b)) if b.sequence.wrapping_sub(a.sequence) < 0x8000 => Some(b),
+            (Some(a), _) => Some(a),
+            (None, b) => b,
+        }
+    }
+
+    /// The plan in it, if it is one that can be used.
+    pub fn plan(&self, board: &mut impl Board) -> Option<Plan> {
+        let mut bytes = [0; Plan::LENGTH];
+        if usize::from(self.length) != bytes.len() {
+            return None;
+        }
+        self.read(board, 0, &mut bytes);
+        Plan::from_bytes(&bytes)
+    }
+
+    /// The table's bytes from `offset` on, as many as `out` holds; beyond its end zeros.
+    pub fn read(&self, board: &mut impl Board, offset: u16, out: &mut [u8]) {
+        let body = start(self.slot) + HEADER;
+        for (at, byte) in (offset..).zip(out.iter_mut()) {
+            *byte = if at < self.length {
+                board.eeprom_read(body + at)
+            } else {
+                0
+            };
+        }
+    }
+}
+
+fn start(slot: u8) -> u16 {
+    if slot == 0 { STARTS[0] } else { STARTS[1] }
+}
+
+fn sound(board: &mut impl Board, slot: u8) -> Option<Stored> {
+    let mut header = [0; HEADER as usize];
+    for (at, byte) in (start(slot)..).zip(header.iter_mut()) {
+        *byte = board.eeprom_read(at);
+    }
+    let [s0, s1, l0, l1, check @ ..] = header;
+    let sequence = u16::from_le_bytes([s0, s1]);
+    let length = u16::from_le_bytes([l0, l1]);
+    let is_sound = (1..=MAX_TABLE).contains(&length)
+        && slot_check(board, slot, sequence, length) == u32::from_le_bytes(check);
+    is_sound.then_some(Stored {
+        slot,
+        sequence,
+        length,
+    })
+}
+
+/// CRC-32 of sequence, length and table.
+fn slot_check(board: &mut impl Board, slot: u8, sequence: u16, length: u16) -> u32 {
+    let crc = extend32(u32::MAX, &sequence.to_le_bytes());
+    let crc = extend32(crc, &length.to_le_bytes());
+    !extend_body(board, slot, length, crc)
+}
+
+fn extend_body(board: &mut impl Board, slot: u8, length: u16, crc: u32) -> u32 {
+    let body = start(slot) + HEADER;
+    (body..body + length.min(MAX_TABLE))
+        .fold(crc, |crc, at| extend32(crc, &[board.eeprom_read(at)]))
+}
+
+/// Bytes on their way into the slot that does not count.
+#[derive(Debug, Clone)]
+pub struct Writer {
+    bytes: [u8; GAIN_CHUNK],
+    used: u8,
+    done: u8,
+    address: u16,
+    /// Sequence number of the command to answer when all is written.
+    answer: u8,
+    busy: bool,
+}
+
+impl Default for Writer {
+    fn default() -> Self {
+        Writer {
+            bytes: [0; GAIN_CHUNK],
+            used: 0,
+            done: 0,
+            address: 0,
+            answer: 0,
+            busy: false,
+        }
+    }
+}
+
+impl Writer {
+    /// Whether bytes are still to be written.
+    pub fn is_busy(&self) -> bool {
+        self.busy
+    }
+
+    /// Begins to write a piece of a table; false if it lies outside, or another is being written.
+    pub fn chunk(
+        &mut self,
+        board: &mut impl Board,
+        offset: u16,
+        bytes: &[u8; GAIN_CHUNK],
+        answer: u8,
+    ) -> bool {
+        if self.busy || offset >= MAX_TABLE {
+            return false;
+        }
+        let room = usize::from(MAX_TABLE - offset).min(GAIN_CHUNK);
+        let address = start(other_slot(board)) + HEADER + offset;
+        self.begin(address, bytes.get(..room).unwrap_or(bytes), answer);
+        true
+    }
+
+    /// Begins to make the table count; false if it is not what its sender says, or nothing was written.
+    pub fn store(&mut self, board: &mut impl Board, length: u16, check: u32, answer: u8) -> bool {
+        if self.busy || !(1..=MAX_TABLE).contains(&length) {
+            return false;
+        }
+        let slot = other_slot(board);
+        if !extend_body(board, slot, length, u32::MAX) != check {
+            return false;
+        }
+        let sequence = Stored::newest(board).map_or(1, |old| old.sequence.wrapping_add(1));
+        let sum = slot_check(board, slot, sequence, length);
+        let mut header = [0; HEADER as usize];
+        let bytes = (sequence.to_le_bytes().into_iter())
+            .chain(length.to_le_bytes())
+            .chain(sum.to_le_bytes());
+        header
+            .iter_mut()
+            .zip(bytes)
+            .for_each(|(slot, byte)| *slot = byte);
+        self.begin(start(slot), &header, answer);
+        true
+    }
+
+    fn begin(&mut self, address: u16, bytes: &[u8], answer: u8) {
+        self.bytes
+            .iter_mut()
+            .zip(bytes)
+            .for_each(|(slot, byte)| *slot = *byte);
+        self.used = bytes.len() as u8;
+        self.done = 0;
+        self.address = address;
+        self.answer = answer;
+        self.busy = true;
+    }
+
+    /// Once per tick: writes a byte. The command to answer, when the last one is written.
+    pub fn tick(&mut self, board: &mut impl Board) -> Option<u8> {
+        if !self.busy || !board.eeprom_ready() {
+            return None;
+        }
+        while self.done < self.used {
+            let byte = self.bytes.get(usize::from(self.done)).copied().unwrap_or(0);
+            let address = self.address + u16::from(self.done);
+            self.done += 1;
+            // A byte that is already right costs neither time nor wear.
+            if board.eeprom_read(address) != byte {
+                board.eeprom_write(address, byte);
+                return None;
+            }
+        }
+        self.busy = false;
+        Some(self.answer)
+    }
+}
+
+fn other_slot(board: &mut impl Board) -> u8 {
+    match Stored::newest(board) {
+        Some(Stored { slot: 0, .. }) => 1,
+        _ => 0,
+    }
+}

@@ -1,0 +1,71 @@
+//! What can go wrong with a servo's answers.
+
+use rand::Rng as _;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+/// Faults of one servo; probabilities are per answer. None at first.
+#[derive(Debug, Clone)]
+pub struct Faults {
+    /// It is not there at all.
+    pub dead: bool,
+    /// An answer does not come.
+    pub drop: f64,
+    /// One bit of an answer is wrong.
+    pub flip: f64,
+    /// An answer comes late ...
+    pub late: f64,
+    /// ... by this much, ns.
+    pub late_ns: u64,
+    /// An answer carries another servo's id.
+    pub wrong_id: f64,
+    /// The wiring sends the controller's own bytes back.
+    pub echo: bool,
+    rng: ChaCha8Rng,
+}
+
+impl Faults {
+    /// No faults; those switched on later happen by this seed.
+    pub fn none(seed: u64) -> Self {
+        Faults {
+            dead: false,
+            drop: 0.0,
+            flip: 0.0,
+            late: 0.0,
+            late_ns: 1_000_000,
+            wrong_id: 0.0,
+            echo: false,
+            rng: ChaCha8Rng::seed_from_u64(seed),
+        }
+    }
+
+    /// What becomes of an answer, and how much later it comes, ns.
+    pub fn pass(&mut self, mut answer: Vec<u8>) -> Option<(Vec<u8>, u64)> {
+        if self.dead || self.happens(self.drop) {
+            return None;
+        }
+        if self.happens(self.wrong_id) {
+            // Another servo's answer is a sound packet: its checksum fits.
+            answer[2] = answer[2].wrapping_add(1) % 254;
+            let last = answer.len() - 1;
+            let sum = answer[2..last]
+                .iter()
+                .fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+            answer[last] = !sum;
+        }
+        if self.happens(self.flip) {
+            let bit = self.rng.random_range(0..answer.len() * 8);
+            answer[bit / 8] ^= 1 << (bit % 8);
+        }
+        let late_ns = if self.happens(self.late) {
+            self.late_ns
+        } else {
+            0
+        };
+        Some((answer, late_ns))
+    }
+
+    fn happens(&mut self, probability: f64) -> bool {
+        probability > 0.0 && self.rng.random_bool(probability.min(1.0))
+    }
+}

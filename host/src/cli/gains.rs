@@ -1,0 +1,253 @@
+//! `handstand gains MODEL`: gains that balance a model at a pose, and the files that carry them on.
+//!
+//! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati equation, rounds the
+//! gains to fixed point with a proof against overflow. Weights are one number (times the identity), a diagonal
+//! `1,1,0.1`, or a CSV file of a matrix.
+//!
+//! ```console
+//! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
+//! ```
+//!
+//! `--json` prints everything: `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
+//! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
+//! script for MATLAB and Octave.
+
+use super::given::{Given, weight};
+use super::talk::Talk;
+use super::{Outcome, input, page};
+use handstand::model::Model;
+use handstand::output::write_new;
+use handstand::synth::export::{self, Provenance};
+use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
+use handstand::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Gains that balance a model at a pose.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Model file
+    model: PathBuf,
+    /// Weight of the states: a number, a diagonal, or a CSV file of a matrix
+    #[arg(long, value_name = "WEIGHT", default_value = "100", value_parser = weight, allow_hyphen_values = true)]
+    q: Given,
+    /// Weight of the inputs, likewise
+    #[arg(long, value_name = "WEIGHT", default_value = "1", value_parser = weight, allow_hyphen_values = true)]
+    r: Given,
+    /// Sampling time, s
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.01,
+        allow_negative_numbers = true
+    )]
+    ts: f64,
+    /// Delay of the inputs, s; the model's own without it
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    delay: Option<f64>,
+    /// Angles in rad, the model's way, or `upright`
+    #[arg(long, value_name = "ANGLES", default_value = "upright", value_parser = pose, allow_hyphen_values = true)]
+    pose: Pose,
+    /// Move the passive joints from the pose to where they balance
+    #[arg(long)]
+    balance: bool,
+    /// Design without this effect of the model
+    #[arg(long, value_name = "EFFECT")]
+    without: Vec<String>,
+    /// For continuous time: no sampling, no fixed point
+    #[arg(long, conflicts_with_all = ["ts", "delay", "lqg", "rust", "c"])]
+    continuous: bool,
+    /// Add a Kalman filter for rounded angles and a gyro on the first link
+    #[arg(long)]
+    lqg: bool,
+    /// Step of the measured angles, rad [default: 300 degrees / 1024]
+    #[arg(long, value_name = "RAD", requires = "lqg")]
+    position_step: Option<f64>,
+    /// Step of the gyro, rad/s [default: 10 degrees per second]
+    #[arg(long, value_name = "RAD_S", requires = "lqg")]
+    gyro_step: Option<f64>,
+    /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their limit]
+    #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
+    process: Option<Given>,
+    /// Largest departures of the states, SI: angles, then speeds
+    #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
+    range: Option<Given>,
+    /// Largest inputs, SI [default: the drives' own; 2 N m for a torque]
+    #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
+    limit: Option<Given>,
+    /// SI value of one step of each state, where sensors set it [default: powers of two]
+    #[arg(long, value_name = "LIST", value_parser = weight)]
+    state_step: Option<Given>,
+    /// SI value of one step of each input, where drives set it
+    #[arg(long, value_name = "LIST", value_parser = weight)]
+    input_step: Option<Given>,
+    /// Write the fixed-point law as a Rust file
+    #[arg(long, value_name = "FILE.rs")]
+    rust: Option<PathBuf>,
+    /// Write it as a C header
+    #[arg(long, value_name = "FILE.h")]
+    c: Option<PathBuf>,
+    /// Write K as CSV
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Write plant, weights and gains for other programs: .json or .m
+    #[arg(long, value_name = "FILE", value_parser = state_space)]
+    state_space: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, Clone)]
+enum Pose {
+    Upright,
+    Angles(Vec<f64>),
+}
+
+fn pose(text: &str) -> Result<Pose, String> {
+    if text == "upright" {
+        return Ok(Pose::Upright);
+    }
+    let angles: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    angles
+        .map(Pose::Angles)
+        .map_err(|_| "give angles in rad between commas, or `upright`".into())
+}
+
+fn state_space(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("json" | "m") => Ok(path),
+        _ => Err("end the name in .json (python-control and others) or .m (MATLAB, Octave)".into()),
+    }
+}
+
+/// Designs, prints, writes the files.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
+    for file in files.into_iter().flatten() {
+        input::vacant(file, args.force)?;
+    }
+    let mut model = Model::load(&args.model)?;
+    leave_out(&mut model, &args.without, talk)?;
+    let design = Design::of(&model, &request(args, &model, talk)?)?;
+    let made = provenance(&args.model, talk)?;
+    if talk.json {
+        talk.data(&export::json(&design, &made))?;
+    } else {
+        talk.print(&export::text(&design))?;
+    }
+    write(args, &design, &made, talk)?;
+    Ok(Outcome::Done)
+}
+
+fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
+    for id in without {
+        let before = model.effects.len();
+        model.effects.retain(|e| e.effect.card().id != id);
+        if model.effects.len() == before {
+            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.card().id).collect();
+            return Err(Error::usage(
+                format!("`{}` holds no effect `{id}`", model.name),
+                match held.is_empty() {
+                    true => "it holds none at all".to_string(),
+                    false => format!("it holds {}", held.join(", ")),
+                },
+            ));
+        }
+        talk.say(&format!(
+            "designed without {id}: the loop must survive it all the same"
+        ));
+    }
+    Ok(())
+}
+
+fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
+    let mut pose_rad = match &args.pose {
+        Pose::Upright => upright(model),
+        Pose::Angles(angles) => angles.clone(),
+    };
+    if args.balance {
+        pose_rad = balanced(model, &pose_rad)?;
+        let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
+        talk.say(&format!("balanced at q = [{}] rad", said.join(", ")));
+    }
+    let time = match args.continuous {
+        true => Time::Continuous,
+        false => Time::Sampled {
+            ts_s: args.ts,
+            delay_s: args.delay,
+        },
+    };
+    let joints = model.link_count();
+    let inputs = model
+        .joints
+        .iter()
+        .filter(|joint| joint.drive.is_driven())
+        .count();
+    let list = |given: &Option<Given>, name, size| {
+        given
+            .as_ref()
+            .map(|given| given.list(name, size))
+            .transpose()
+    };
+    let process = args.process.as_ref().map(Given::read).transpose()?;
+    let degree = std::f64::consts::PI / 180.0;
+    Ok(Request {
+        pose_rad,
+        q: args.q.read()?,
+        r: args.r.read()?,
+        time,
+        sensors: args.lqg.then_some(Sensors {
+            position_step_rad: args.position_step.unwrap_or(300.0 / 1024.0 * degree),
+            gyro_step_rad_s: args.gyro_step.unwrap_or(10.0 * degree),
+            process,
+        }),
+        state_range: match &args.range {
+            Some(range) => range.read()?,
+            // Half a radian, ten radians per second: more than a balancing robot ever comes back from.
+            None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
+        },
+        input_range: args.limit.as_ref().map(Given::read).transpose()?,
+        format: Format {
+            bits: 16,
+            state_step: list(&args.state_step, "--state-step", 2 * joints)?,
+            input_step: list(&args.input_step, "--input-step", inputs)?,
+        },
+    })
+}
+
+fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
+    let file = page::hashed(model)?;
+    Ok(Provenance {
+        model: file.name,
+        sha256: file.sha256,
+        command: talk.command.clone(),
+    })
+}
+
+fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
+    let put = |file: &Path, text: &str| -> Result<()> {
+        write_new(file, text, args.force)?;
+        talk.say(&format!("wrote {}", file.display()));
+        Ok(())
+    };
+    if let Some(fixed) = &design.fixed {
+        if let Some(file) = &args.rust {
+            put(file, &export::rust_file(design, fixed, made))?;
+        }
+        if let Some(file) = &args.c {
+            put(file, &export::c_header(design, fixed, made))?;
+        }
+    }
+    if let Some(file) = &args.csv {
+        put(file, &export::csv(design))?;
+    }
+    if let Some(file) = &args.state_space {
+        let text = match file.extension().is_some_and(|ending| ending == "m") {
+            true => export::matlab(design, made),
+            false => format!("{:#}\n", export::json(design, made)),
+        };
+        put(file, &text)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! `handstand map dead-zone LOG...`, `handstand map supply LOG...`: what a servo does at rest.
+//!
+//! `dead-zone` fits a dead zone, a line on either side and, where one is seen, a limit, from commanded to measured
+//! speed or torque, and turns the map round: which command makes which output. `supply` fits the relative speed
+//! error as a line over the supply voltage, and says at which supply the speed is right.
+//!
+//! ```console
+//! $ handstand map dead-zone ramp.csv --time t=s --input command=% --output angle=deg
+//! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg --supply volts=V
+//! ```
+//!
+//! Both work on means over blocks of time, so record slowly: an input that changes within a block blurs the edge.
+
+use super::signals::{self, Signals};
+use super::talk::Talk;
+use super::{Outcome, input, show};
+use handstand::log::LogRequest;
+use handstand::number::exact;
+use handstand::servo::{Block, DeadZone, Known, Side, Supply, blocks};
+use handstand::{Error, Result};
+use serde_json::{Value, json};
+
+/// What can be mapped.
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Dead zone, slope and limit from command to speed or torque, and the map turned round
+    DeadZone(Args),
+    /// Relative speed error over the supply voltage
+    Supply(Args),
+}
+
+/// What to map.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Logs
+    #[arg(required = true, value_name = "LOG", value_parser = input::log)]
+    logs: Vec<LogRequest>,
+    /// Seconds to average over
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    block: f64,
+    #[command(flatten)]
+    signals: Signals,
+}
+
+/// Fits and prints.
+pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+    match command {
+        Command::DeadZone(args) => dead_zone(args, talk),
+        Command::Supply(args) => supply(args, talk),
+    }
+}
+
+/// Means of the logs, and the units of input and output.
+fn measured(args: &Args) -> Result<(Vec<Block>, &'static str, &'static str)> {
+    if !(args.block > 0.0 && args.block.is_finite()) {
+        return Err(Error::usage(
+            format!("blocks of {} s", args.block),
+            "give a length above 0, such as --block 0.2",
+        ));
+    }
+    let chosen = args.signals.chosen()?;
+    let (motions, _) = signals::motions(&chosen, &args.logs, &[])?;
+    let blocks = blocks(&motions, chosen.joint, chosen.output, args.block);
+    Ok((blocks, chosen.input_unit, chosen.output_unit))
+}
+
+fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let (blocks, input_unit, output_unit) = measured(args)?;
+    let map = match DeadZone::fit(&blocks) {
+        Ok(map) => map,
+        Err(why) => return refused(&why.to_string(), talk),
+    };
+    let inverse = map.inverse();
+    if talk.json {
+        talk.data(&json!({
+            "input_unit": input_unit,
+            "output_unit": output_unit,
+            "up": map.up,
+            "down": map.down,
+            "inverse": inverse,
+        }))?;
+        return Ok(Outcome::Done);
+    }
+    let mut table = show::table(["", "Above zero", "Below zero", "Unit"]);
+    let mut row = |name: &str, of: &dyn Fn(&Side) -> String, unit: String| {
+        table.add_row([name.to_string(), of(&map.up), of(&map.down), unit]);
+    };
+    row("dead zone ends at", &|s| known(&s.edge), input_unit.into());
+    row(
+        "slope outside",
+        &|s| known(&s.slope),
+        format!("{output_unit} per {input_unit}"),
+    );
+    let limit = |side: &Side| {
+        side.limit
+            .map_or("none seen".to_string(), |limit| known(&limit))
+    };
+    row("limit", &limit, output_unit.into());
+    row("left over, RMS", &|s| exact(s.rms), output_unit.into());
+    row("blocks", &|s| s.blocks.to_string(), String::new());
+    let most = match inverse.limit {
+        Some(limit) => format!(", |y| up to {} {output_unit}", exact(limit)),
+        None => String::new(),
+    };
+    talk.print(&format!(
+        "{table}\n\nTurned round, the command u for an output y{most}:\n  y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
+        exact(inverse.edge_up),
+        exact(inverse.per_output_up),
+        exact(inverse.edge_down),
+        exact(inverse.per_output_down),
+    ))?;
+    Ok(Outcome::Done)
+}
+
+fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let (blocks, input_unit, output_unit) = measured(args)?;
+    if input_unit != output_unit {
+        return Err(Error::usage(
+            format!("the command is in {input_unit} and the output in {output_unit}"),
+            "a speed error needs a commanded speed: give --input as a speed and --output as an angle or a speed",
+        ));
+    }
+    let line = match Supply::fit(&blocks) {
+        Ok(line) => line,
+        Err(why) => return refused(&why.to_string(), talk),
+    };
+    if talk.json {
+        talk.data(&line)?;
+        return Ok(Outcome::Done);
+    }
+    let per_v = line.error_per_v;
+    let percent = Known {
+        value: 100.0 * per_v.value,
+        low: 100.0 * per_v.low,
+        high: 100.0 * per_v.high,
+    };
+    let seen = if per_v.holds(0.0) {
+        "No effect of the supply is seen: the interval holds 0."
+    } else {
+        "The speed error follows the supply."
+    };
+    talk.print(&format!(
+        "speed error per volt  {} % of the command\nright at              {} V\nsupply seen           {} to {} V, {} blocks\nleft over, RMS        {} % of the command\n{seen}",
+        known(&percent),
+        known(&line.right_at_v),
+        exact(line.range_v.0),
+        exact(line.range_v.1),
+        line.blocks,
+        exact(100.0 * line.rms),
+    ))?;
+    Ok(Outcome::Done)
+}
+
+fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
+    if talk.json {
+        talk.data(&json!({ "refused": why }) as &Value)?;
+    } else {
+        talk.print(&format!("refused: {why}"))?;
+    }
+    Ok(Outcome::Refused)
+}
+
+fn known(known: &Known) -> String {
+    format!(
+        "{} ({} to {})",
+        exact(known.value),
+        exact(known.low),
+        exact(known.high)
+    )
+}

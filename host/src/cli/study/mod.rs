@@ -1,0 +1,41 @@
+//! `handstand study`: what the closed loop bears.
+//!
+//! `sweep` varies one thing, `monte-carlo` everything that is uncertain, in shards if need be, which `merge` puts
+//! together. A study file says which robot, controller and circumstances; without one it is the paper's robot.
+//!
+//! ```console
+//! $ handstand study sweep delay dead-zone -o delay
+//! $ handstand study monte-carlo study.toml -o result
+//! $ handstand study monte-carlo study.toml -o shards --shard 2/8
+//! $ handstand study merge shards -o result
+//! ```
+
+mod merge;
+mod monte_carlo;
+mod sweep;
+mod write;
+
+use super::Outcome;
+use super::talk::Talk;
+use clap::Subcommand;
+use handstand::Result;
+
+/// What can be done with studies.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Vary one thing and see what the loop bears
+    Sweep(sweep::Args),
+    /// Run robots that all differ within what is uncertain
+    MonteCarlo(monte_carlo::Args),
+    /// Put a study's shards together
+    Merge(merge::Args),
+}
+
+/// Does it.
+pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+    match command {
+        Command::Sweep(args) => sweep::run(args, talk),
+        Command::MonteCarlo(args) => monte_carlo::run(args, talk),
+        Command::Merge(args) => merge::run(args, talk),
+    }
+}

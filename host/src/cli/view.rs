@@ -1,0 +1,86 @@
+//! `handstand view MODEL LOG... -o page.html`: a page that plays a motion.
+//!
+//! One file that needs nothing but itself: the chain drawn to the model's lengths, what its drives were told, the
+//! trail of its tip, the angles over time; play, pause, scrub, speed, keys. `--model OTHER.toml` adds what a model
+//! foretells for the log's inputs, `--beside LOG` another log, each drawn over the measurement.
+//!
+//! ```console
+//! $ handstand view handstand.toml run.csv --model handstand.toml -o run.html
+//! ```
+//!
+//! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in `#t=1.5` opens the
+//! page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
+
+use super::talk::Talk;
+use super::{Outcome, input};
+use handstand::compare::compare;
+use handstand::identify::Horizon;
+use handstand::log::{LogRequest, read};
+use handstand::view::{Scene, html};
+use handstand::{Error, Model, Result, output};
+use std::path::PathBuf;
+
+/// Play a motion on a page.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Model file: lengths to draw, columns of the log
+    model: PathBuf,
+    /// Logs to play
+    #[arg(required = true, value_name = "LOG", value_parser = input::log)]
+    logs: Vec<LogRequest>,
+    /// The page to write
+    #[arg(long, short, value_name = "FILE.html")]
+    output: PathBuf,
+    /// Model to run along the log's inputs and draw over it
+    #[arg(long = "model", value_name = "OTHER.toml")]
+    others: Vec<PathBuf>,
+    /// Another log to draw over it
+    #[arg(long, value_name = "LOG", value_parser = input::log)]
+    beside: Vec<LogRequest>,
+    /// Seconds the models run without correction, or `whole`; chosen by their stability without it
+    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
+    horizon: Option<Horizon>,
+    /// Replace the page if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// Reads, runs the models, writes the page.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    input::vacant(&args.output, args.force)?;
+    let model = Model::load(&args.model)?;
+    let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
+    for file in &args.others {
+        let other = Model::load(file)?;
+        if other.link_count() != model.link_count() {
+            return Err(Error::usage(
+                format!(
+                    "{} has {} links and {} has {}",
+                    file.display(),
+                    other.link_count(),
+                    args.model.display(),
+                    model.link_count()
+                ),
+                "draw models of one chain over each other",
+            ));
+        }
+        let name = file
+            .file_name()
+            .unwrap_or(file.as_os_str())
+            .to_string_lossy();
+        let motions = read(&args.logs, &other.log)?;
+        scene.add_model(&other, &compare(&other, &name, &motions, args.horizon));
+    }
+    scene.add_beside(&model, &read(&args.beside, &model.log)?);
+    let page = html(&scene, &talk.command)
+        .map_err(|error| Error::file(&args.output, "write", error.into()))?;
+    output::write_new(&args.output, &page, args.force)?;
+    talk.say(&format!("wrote {}", args.output.display()));
+    if talk.json {
+        talk.data(&serde_json::json!({
+            "page": args.output.to_string_lossy(),
+            "motions": scene.motions.iter().map(|m| &m.name).collect::<Vec<_>>(),
+        }))?;
+    }
+    Ok(Outcome::Done)
+}

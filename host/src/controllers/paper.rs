@@ -1,0 +1,112 @@
+//! The paper's sampled regulator (Q = 100 I, R = I), with and without its angle compensation.
+
+use super::{Card, Design, Known, Speeds};
+use crate::closed_loop::{Controller, Seen, StateFeedback};
+use crate::error::Result;
+use crate::synth::{dlqr, zoh};
+use nalgebra::DMatrix;
+
+/// One of the paper's set-ups.
+#[derive(Debug)]
+pub struct Paper(Card);
+
+const CARD: Card = Card {
+    id: "dlqr",
+    title: "DLQR of the paper",
+    law: "u = -K x",
+    speeds: Speeds::True,
+    told_balance: false,
+    reference: "the paper, section IV, Figure 12",
+};
+
+/// Given the true speeds, not told of eccentric masses.
+pub const PLAIN: Paper = Paper(CARD);
+
+/// With the only speeds the servos tell.
+pub const DIFFERENCED: Paper = Paper(Card {
+    id: "dlqr-differences",
+    title: "DLQR, speeds by equation 1",
+    law: "u = -K [q, (q(k) - q(k-1)) / Ts]",
+    speeds: Speeds::Differenced,
+    told_balance: true,
+    reference: "the paper, equation 1",
+});
+
+/// Told at which angles the robot balances.
+pub const COMPENSATED: Paper = Paper(Card {
+    id: "dlqr-compensated",
+    title: "DLQR with angle compensation",
+    law: "u = -K (x - x_balance)",
+    told_balance: true,
+    reference: "the paper, section IV, Figures 12 to 14",
+    ..CARD
+});
+
+impl Design for Paper {
+    fn card(&self) -> &Card {
+        &self.0
+    }
+
+    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+        let inner = StateFeedback::new(known.joints(), rows(&gain(known)?));
+        if self.0.speeds == Speeds::Differenced {
+            return Ok(Box::new(Differencing {
+                inner,
+                driven: known.driven.clone(),
+                period_s: known.period_s,
+            }));
+        }
+        Ok(Box::new(inner))
+    }
+}
+
+/// The paper's gain for this plant.
+pub(super) fn gain(known: &Known) -> Result<DMatrix<f64>> {
+    let (q, r) = known.paper_weights();
+    Ok(dlqr(&zoh(&known.plant, known.period_s, 0.0)?, &q, &r)?.k)
+}
+
+/// A matrix as its rows.
+pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
+}
+
+/// The driven joints' speeds as differences of angles; the arms' is the gyro's.
+#[derive(Debug)]
+struct Differencing {
+    inner: StateFeedback,
+    driven: Vec<usize>,
+    period_s: f64,
+}
+
+impl Controller for Differencing {
+    /// The angles before, whether there are any, and the speeds.
+    fn memory_len(&self) -> usize {
+        self.inner.hold.len() + 1
+    }
+
+    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
+        let joints = seen.angle_rad.len();
+        let (before, rest) = memory.split_at_mut(joints);
+        let (speed_rad_s, started) = rest.split_at_mut(joints);
+        speed_rad_s.copy_from_slice(seen.speed_rad_s);
+        for &joint in &self.driven {
+            let moved = seen.angle_rad[joint] - before[joint];
+            speed_rad_s[joint] = if started[0] == 0.0 {
+                0.0
+            } else {
+                moved / self.period_s
+            };
+        }
+        before.copy_from_slice(seen.angle_rad);
+        started[0] = 1.0;
+        let seen = Seen {
+            angle_rad: seen.angle_rad,
+            speed_rad_s,
+        };
+        self.inner.control(&mut [], seen, torque_nm);
+    }
+}

@@ -1,0 +1,85 @@
+//! Numbers side by side, so that one instruction serves several runs.
+//!
+//! Lane by lane the operations are those of plain numbers in the same order, so the results are the same bit for bit.
+
+use super::sin_cos::sin_cos;
+use std::ops::{Add, Mul, Sub};
+
+/// What the equations of motion ask of a number.
+pub trait Lane:
+    Copy + std::fmt::Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// The same number in every lane.
+    fn splat(value: f64) -> Self;
+    /// 1 / x.
+    fn inverse(self) -> Self;
+    /// Sine and cosine of an angle, rad.
+    fn sin_cos(self) -> (Self, Self);
+}
+
+impl Lane for f64 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        1.0 / self
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let ([sin], [cos]) = sin_cos([self]);
+        (sin, cos)
+    }
+}
+
+/// `L` numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lanes<const L: usize>(pub [f64; L]);
+
+impl<const L: usize> Lane for Lanes<L> {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Lanes([value; L])
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        Lanes(self.0.map(|x| 1.0 / x))
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = sin_cos(self.0);
+        (Lanes(sin), Lanes(cos))
+    }
+}
+
+impl<const L: usize> Add for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Lanes(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl<const L: usize> Sub for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Lanes(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl<const L: usize> Mul for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Lanes(std::array::from_fn(|i| self.0[i] * other.0[i]))
+    }
+}

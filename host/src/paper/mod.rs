@@ -1,0 +1,66 @@
+//! The paper's numbers, figures and findings beside our own.
+//!
+//! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them side by side;
+//! `robot` and `servo` run what its figures show; `findings` says of each result whether it holds.
+
+mod checked;
+mod computed;
+mod figure;
+mod findings;
+mod page;
+mod printed;
+mod robot;
+mod servo;
+mod timing;
+
+#[cfg(test)]
+mod tests;
+
+pub use checked::{Row, Verdict, check};
+pub use computed::{Computed, ServoFacts, Zeros};
+pub use figure::{Curve, Figure, Holds, Ink, Panel};
+pub use findings::{Finding, Shown, findings};
+pub use page::html;
+pub use printed::{PRINTED, Printed, Quantity};
+pub use robot::handstand;
+pub use timing::{Timing, timing};
+
+use crate::error::Result;
+
+/// Everything the page shows.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// Printed against computed.
+    pub rows: Vec<Row>,
+    /// What follows from them without being printed.
+    pub computed: Computed,
+    /// The figures, redrawn.
+    pub figures: Vec<Figure>,
+    /// What the paper found.
+    pub findings: Vec<Finding>,
+}
+
+/// Checks the numbers, draws the figures, judges the findings. `done` is called after each of [`STEPS`] steps.
+///
+/// # Errors
+/// None is known: the models are the project's own.
+pub fn study(done: &dyn Fn(&str)) -> Result<Study> {
+    let computed = Computed::new()?;
+    done("numbers");
+    let mut figures = servo::figures()?;
+    done("servo");
+    figures.extend(robot::figures(&computed)?);
+    done("handstand");
+    let rows = check(&computed);
+    let findings = findings(&computed, &figures)?;
+    done("findings");
+    Ok(Study {
+        rows,
+        computed,
+        figures,
+        findings,
+    })
+}
+
+/// Steps of [`study`].
+pub const STEPS: u64 = 4;

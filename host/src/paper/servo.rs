@@ -1,0 +1,351 @@
+//! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq. (2).
+
+use super::computed::servo_estimate;
+use super::figure::{Curve, Figure, Holds, Ink, Panel};
+use crate::error::Result;
+use crate::log::{Motion, Source};
+use crate::model::Model;
+use crate::number::interval;
+use crate::servo::generate::{PAPER_TS_S, noise};
+use crate::servo::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
+use crate::sim::{Memory, Plant, Start, predict};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Step of its encoder, rad: 300 deg / 2^10.
+pub(super) const STEP_RAD: f64 = 300.0 / 1024.0 / 360.0 * TAU;
+/// Speed of the full command, rad/s.
+const FULL_RAD_S: f64 = 11.9;
+/// Length of the blocks that are averaged, s.
+const BLOCK_S: f64 = 0.2;
+/// Mass that is lifted, kg: more than it can turn over.
+const LIFTED_KG: f64 = 1.6;
+
+/// Figures 4, 5, 7, 9, 10.
+pub(super) fn figures() -> Result<Vec<Figure>> {
+    let model = model()?;
+    let mut all = vec![dead_zone(&model), supply(&model), torque(&model)];
+    all.extend(identification());
+    Ok(all)
+}
+
+/// The servo on the bench.
+pub(super) fn model() -> Result<Model> {
+    let text = include_str!("../../models/servo.toml");
+    Model::parse(text, Path::new("servo.toml"))
+}
+
+/// A motion at 100 Hz that is told `command` and has not been run.
+pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
+    let samples = command.len();
+    Motion {
+        name: "simulated".to_string(),
+        source: Source {
+            path: "simulated".into(),
+            sha256: String::new(),
+            lines: (1, samples),
+        },
+        time_s: (0..samples).map(|k| k as f64 * PAPER_TS_S).collect(),
+        position_rad: vec![vec![0.0; samples]],
+        velocity_rad_s: vec![None],
+        input: vec![Some(command)],
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+    }
+}
+
+/// What the servo does under `command`, read by its encoder, with a little noise before the rounding.
+pub(super) fn simulated(
+    model: &Model,
+    command: Vec<f64>,
+    supply_v: Option<Vec<f64>>,
+    payload_kg: f64,
+    seed: u64,
+) -> Motion {
+    let samples = command.len();
+    let mut motion = Motion {
+        supply_v,
+        payload_kg,
+        ..empty_motion(command)
+    };
+    let plant = Plant::new(model, &motion);
+    let rest = Start {
+        angle_rad: vec![0.0],
+        speed_rad_s: vec![0.0],
+    };
+    let mut readings = vec![0.0; samples];
+    predict(
+        &plant,
+        &motion,
+        0..samples,
+        &rest,
+        &mut Memory::default(),
+        &mut readings,
+    );
+    let jitter = noise(samples, 0.1 * STEP_RAD, seed);
+    for (reading, jitter) in readings.iter_mut().zip(jitter) {
+        *reading = ((*reading + jitter) / STEP_RAD).round() * STEP_RAD;
+    }
+    motion.position_rad = vec![readings];
+    motion
+}
+
+/// From one end of the range to the other and back, slowly.
+fn ramp(samples: usize, most: f64) -> Vec<f64> {
+    let phase = |k: usize| 4.0 * k as f64 / samples as f64;
+    (0..samples)
+        .map(|k| match phase(k) {
+            p if p < 1.0 => most * p,
+            p if p < 3.0 => most * (2.0 - p),
+            p => most * (p - 4.0),
+        })
+        .collect()
+}
+
+fn points(blocks: &[Block]) -> Vec<(f64, f64)> {
+    blocks.iter().map(|b| (100.0 * b.input, b.output)).collect()
+}
+
+/// The fitted map over the blocks' range, in percent of the range.
+fn line(map: &DeadZone, most: f64) -> Vec<(f64, f64)> {
+    let place = |k: i32| most * f64::from(k) / 200.0;
+    (-200..=200)
+        .map(|k| (100.0 * place(k), map.output(place(k))))
+        .collect()
+}
+
+fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> String {
+    let text = |side: &Side| match of(side) {
+        Some(known) => within(&known, scale),
+        None => "none".to_string(),
+    };
+    format!("{} and {}", text(&map.up), text(&map.down))
+}
+
+/// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
+fn within(known: &Known, scale: f64) -> String {
+    let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
+    format!("{value} ({low} to {high})")
+}
+
+fn unfitted(number: &'static str, title: &'static str, claim: &'static str, why: &str) -> Figure {
+    Figure {
+        number,
+        title,
+        claim,
+        panels: Vec::new(),
+        holds: Holds::No,
+        sentence: format!("The simulated log gives no fit: {why}."),
+    }
+}
+
+fn dead_zone(model: &Model) -> Figure {
+    let (number, title) = ("4", "Dead zone");
+    let claim = "stiction is a dead zone of 7-10 % of the full range, without load";
+    let motion = simulated(model, ramp(8000, 0.4), None, 0.0, 4);
+    let blocks = blocks(&[motion], 0, Output::Velocity, BLOCK_S);
+    let map = match DeadZone::fit(&blocks) {
+        Ok(map) => map,
+        Err(why) => return unfitted(number, title, claim, &why.to_string()),
+    };
+    let edges = [map.up.edge, map.down.edge];
+    Figure {
+        number,
+        title,
+        claim,
+        panels: vec![Panel {
+            title: "speed against command, unloaded".to_string(),
+            x_label: "command, % of full range",
+            y_label: "speed, rad/s",
+            curves: vec![
+                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
+                Curve::line("fitted dead zone", Ink::Orange, line(&map, 0.4)),
+            ],
+        }],
+        holds: match edges.iter().all(|edge| edge.holds(0.085)) {
+            true => Holds::Yes,
+            false => Holds::InPart,
+        },
+        sentence: format!(
+            "Put into a simulated servo as 8.5 %, the dead zone comes back from its 10-bit position log as {} % (up and down).",
+            sides(&map, |side| Some(side.edge), 100.0)
+        ),
+    }
+}
+
+fn supply(model: &Model) -> Figure {
+    let (number, title) = ("5", "Supply voltage");
+    let claim = "the speed error is proportional to the supply, and none near 9.8 V";
+    let mut blocks = Vec::new();
+    for (run, volts) in [8.0, 8.8, 9.6, 10.4, 11.2].into_iter().enumerate() {
+        // What the servo would have to be told to move at the speed, past its dead zone.
+        let command: Vec<f64> = (0..1200)
+            .map(|k| if (k / 300) % 2 == 0 { 0.5 } else { -0.4 })
+            .collect();
+        let motion = simulated(
+            model,
+            command,
+            Some(vec![volts; 1200]),
+            0.0,
+            50 + run as u64,
+        );
+        blocks.extend(self::blocks(&[motion], 0, Output::Velocity, BLOCK_S));
+    }
+    // Command as the speed it stands for: that of the same command at the nominal supply.
+    for block in &mut blocks {
+        let beyond = block.input.abs() - 0.085;
+        block.input = (beyond * FULL_RAD_S).copysign(block.input);
+    }
+    let fitted = match Supply::fit(&blocks) {
+        Ok(fitted) => fitted,
+        Err(why) => return unfitted(number, title, claim, &why.to_string()),
+    };
+    let errors = supply_errors(&blocks);
+    let percent = |points: &[(f64, f64)]| points.iter().map(|(v, e)| (*v, 100.0 * e)).collect();
+    let (right, slope) = (fitted.right_at_v, fitted.error_per_v);
+    let ends = [7.8, 11.4].map(|v| (v, slope.value * (v - right.value)));
+    Figure {
+        number,
+        title,
+        claim,
+        panels: vec![Panel {
+            title: "speed error against supply".to_string(),
+            x_label: "supply, V",
+            y_label: "speed error, % of the command",
+            curves: vec![
+                Curve::dots("means over 0.2 s", Ink::Dark, percent(&errors)),
+                Curve::line("fitted line", Ink::Orange, percent(&ends)),
+            ],
+        }],
+        holds: match right.holds(9.8) && slope.low > 0.0 {
+            true => Holds::Yes,
+            false => Holds::InPart,
+        },
+        sentence: format!(
+            "The simulated servo's speed error in % of the command grows per volt by {}, and is none at {} V.",
+            within(&slope, 100.0),
+            within(&right, 1.0)
+        ),
+    }
+}
+
+/// A known mass is lifted until it hangs in balance: its weight's moment is the torque.
+fn torque(model: &Model) -> Figure {
+    let (number, title) = ("7", "Torque against commanded speed");
+    let claim = "torque is linear in the commanded speed outside the dead zone, and stops at 2 N m";
+    let motion = simulated(model, ramp(24_000, 1.0), None, LIFTED_KG, 7);
+    let (own, at) = (&model.links[0], model.log.payload_at_m);
+    let moment = model.gravity_m_s2 * (own.mass_kg * own.com_m + LIFTED_KG * at);
+    let lifted = Motion {
+        position_rad: vec![
+            motion.position_rad[0]
+                .iter()
+                .map(|q| moment * q.sin())
+                .collect(),
+        ],
+        ..motion
+    };
+    let blocks = blocks(&[lifted], 0, Output::AsMeasured, BLOCK_S);
+    let map = match DeadZone::fit(&blocks) {
+        Ok(map) => map,
+        Err(why) => return unfitted(number, title, claim, &why.to_string()),
+    };
+    let limits = [map.up.limit, map.down.limit];
+    let seen = limits
+        .iter()
+        .all(|limit| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02));
+    let inverse = map.inverse();
+    Figure {
+        number,
+        title,
+        claim,
+        panels: vec![Panel {
+            title: format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
+            x_label: "command, % of full range",
+            y_label: "torque, N m",
+            curves: vec![
+                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
+                Curve::line("fitted map", Ink::Orange, line(&map, 1.0)),
+            ],
+        }],
+        holds: if seen { Holds::Yes } else { Holds::InPart },
+        sentence: format!(
+            "In simulation the torque stops at {} N m and rises by {} N m per full command; turned round, 1 N m needs a \
+             command of {:.1} %.",
+            sides(&map, |side| side.limit, 1.0),
+            sides(&map, |side| Some(side.slope), 1.0),
+            100.0 * inverse.input(1.0)
+        ),
+    }
+}
+
+/// Figures 9 and 10: data made with eq. (2), and validation on other data.
+fn identification() -> Vec<Figure> {
+    let claim_data = "the commanded and the estimated speed, for identification";
+    let claim = "the Box-Jenkins model captures the servo's dynamics on validation data";
+    let (Some((training, found)), Some((fresh, _))) = (servo_estimate(1), servo_estimate(2)) else {
+        return vec![unfitted(
+            "10",
+            "Servo validation data",
+            claim,
+            "no model was found",
+        )];
+    };
+    let seconds = |values: &[f64]| -> Vec<(f64, f64)> {
+        let shown = values.iter().take(600).enumerate();
+        shown.map(|(k, v)| (k as f64 * PAPER_TS_S, *v)).collect()
+    };
+    let scored = score(&found.model, std::slice::from_ref(&fresh));
+    let own = score(&found.model, std::slice::from_ref(&training));
+    let simulated = found.model.simulated(&fresh.input);
+    let passed = scored.tests.iter().all(|test| test.passed);
+    let chart = |title: &str, curves: Vec<Curve>| Panel {
+        title: title.to_string(),
+        x_label: "time, s",
+        y_label: "speed, rad/s",
+        curves,
+    };
+    vec![
+        Figure {
+            number: "9",
+            title: "Servo identification data",
+            claim: claim_data,
+            panels: vec![chart(
+                "first 6 s",
+                vec![
+                    Curve::line("commanded", Ink::Quiet, seconds(&training.input)),
+                    Curve::line("estimated speed", Ink::Dark, seconds(&training.output)),
+                ],
+            )],
+            holds: Holds::Yes,
+            sentence: format!(
+                "{} samples at 100 Hz made with eq. (2), steps of +-5 rad/s by lot; the noise model is our own choice, \
+                 since the paper prints none.",
+                training.count()
+            ),
+        },
+        Figure {
+            number: "10",
+            title: "Servo validation data",
+            claim,
+            panels: vec![chart(
+                "first 6 s",
+                vec![
+                    Curve::line("estimated speed", Ink::Dark, seconds(&fresh.output)),
+                    Curve::line("simulated by the model", Ink::Orange, seconds(&simulated)),
+                ],
+            )],
+            holds: if passed { Holds::Yes } else { Holds::InPart },
+            sentence: format!(
+                "Simulated from the input alone, the model fits the validation data to {:.1} % (training {:.1} %), one \
+                 step ahead to {:.1} %; its residual {} white and independent of the input.",
+                scored.simulated_fit_percent,
+                own.simulated_fit_percent,
+                scored.predicted_fit_percent,
+                if passed { "is" } else { "is not" }
+            ),
+        },
+    ]
+}

@@ -1,0 +1,114 @@
+//! Motions in short blocks of time: what a servo was told and did on average, for maps of what it does at rest.
+
+use super::record::Output;
+use crate::log::Motion;
+
+/// Most the input may change over a block and the one before, as a share of its whole range: more is a step, and
+/// what follows one is not rest.
+const STEP: f64 = 0.05;
+
+/// Means over a stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// What the servo was told, SI of its kind.
+    pub input: f64,
+    /// What it did, SI: a mean, or the speed from the first angle to the last, rad/s.
+    pub output: f64,
+    /// Supply, V; not a number where it was not logged.
+    pub supply_v: f64,
+}
+
+/// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right after a step of
+/// the input, and the first of a motion, whose past is not known; what is left at a motion's end is dropped.
+///
+/// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a passive joint: none.
+pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) -> Vec<Block> {
+    let inputs = motions.iter().filter_map(|m| m.input[joint].as_deref());
+    let whole = inputs
+        .map(range)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| {
+            (a.0.min(b.0), a.1.max(b.1))
+        });
+    let most = STEP * (whole.1 - whole.0);
+    let mut all = Vec::new();
+    for motion in motions {
+        let Some(input) = &motion.input[joint] else {
+            continue;
+        };
+        let measured = &motion.position_rad[joint];
+        // The sample before a block is looked at too: its input may have acted into it.
+        let (mut before, mut first) = (None, 0);
+        for last in 1..motion.len() {
+            let duration_s = motion.time_s[last] - motion.time_s[first];
+            // Rounding of time stamps must not add a sample to some blocks.
+            if duration_s < block_s * (1.0 - 1e-6) {
+                continue;
+            }
+            let mean =
+                |values: &[f64]| values[first..last].iter().sum::<f64>() / (last - first) as f64;
+            let calm = |before: usize| {
+                let (low, high) = range(&input[before..=last]);
+                high - low <= most
+            };
+            if before.is_some_and(calm) {
+                all.push(Block {
+                    input: mean(input),
+                    output: match output {
+                        Output::AsMeasured => mean(measured),
+                        Output::Velocity => (measured[last] - measured[first]) / duration_s,
+                    },
+                    supply_v: motion.supply_v.as_ref().map_or(f64::NAN, |v| mean(v)),
+                });
+            }
+            (before, first) = (Some(first), last);
+        }
+    }
+    all
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(*v), high.max(*v))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Source;
+
+    #[test]
+    fn blocks_after_a_step_are_left_out() {
+        // One rad/s, then two, from sample 20 on.
+        let input: Vec<f64> = (0..41).map(|k| if k < 20 { 1.0 } else { 2.0 }).collect();
+        let mut angle = vec![0.0];
+        for u in &input[..40] {
+            angle.push(angle[angle.len() - 1] + 0.1 * u);
+        }
+        let motion = Motion {
+            name: String::new(),
+            source: Source {
+                path: "a.csv".into(),
+                sha256: String::new(),
+                lines: (1, 1),
+            },
+            time_s: (0..41).map(|k| 0.1 * k as f64).collect(),
+            position_rad: vec![angle],
+            velocity_rad_s: vec![None],
+            input: vec![Some(input)],
+            supply_v: None,
+            torque_on: None,
+            payload_kg: 0.0,
+            turned: false,
+        };
+        let blocks = blocks(&[motion], 0, Output::Velocity, 0.5);
+        let speeds: Vec<f64> = blocks
+            .iter()
+            .map(|b| (b.output * 1e9).round() / 1e9)
+            .collect();
+        assert_eq!(speeds, [1.0, 1.0, 2.0, 2.0, 2.0]);
+        assert!(blocks.iter().all(|b| (b.input - b.output).abs() < 1e-9));
+    }
+}

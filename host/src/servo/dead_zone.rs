@@ -1,0 +1,338 @@
+//! A dead zone, a line on either side of it, and saturation: the shape of the paper's Figures 4 and 7.
+
+use super::blocks::Block;
+use super::dynamics::Known;
+use crate::identify::quantile_975;
+use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
+
+/// Places tried for the zone's edge and for the onset of saturation.
+const GRID: usize = 60;
+/// Gauss-Newton steps.
+const STEPS: usize = 60;
+/// Fewest blocks on a side, and beyond the onset of saturation.
+const LEAST: usize = 4;
+
+/// One side of the map: `output = min(limit, slope * max(0, |input| - edge))`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Side {
+    /// Where the dead zone ends, in the input's unit.
+    pub edge: Known,
+    /// Output per input outside.
+    pub slope: Known,
+    /// Output at which it stays; none where no saturation is seen.
+    pub limit: Option<Known>,
+    /// Blocks on this side.
+    pub blocks: usize,
+    /// Root-mean-square of what is left, in the output's unit.
+    pub rms: f64,
+}
+
+/// Both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DeadZone {
+    /// Inputs above zero.
+    pub up: Side,
+    /// Inputs below zero, both axes turned round.
+    pub down: Side,
+}
+
+/// Which input makes which output: what a controller needs to see no dead zone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Inverse {
+    /// Least input above zero that moves anything.
+    pub edge_up: f64,
+    /// Input per output above.
+    pub per_output_up: f64,
+    /// As `edge_up`, below zero; given as a size.
+    pub edge_down: f64,
+    /// Input per output below.
+    pub per_output_down: f64,
+    /// Largest output that can be asked for on both sides; none where none was seen.
+    pub limit: Option<f64>,
+}
+
+/// Why there is no map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unmapped {
+    /// Too few blocks on one side of zero.
+    #[error("fewer than {LEAST} blocks of {0} inputs")]
+    OneSided(&'static str),
+    /// No line outside the zone.
+    #[error("the output does not grow with {0} inputs")]
+    Flat(&'static str),
+}
+
+impl DeadZone {
+    /// Fits both sides.
+    ///
+    /// # Errors
+    /// A side with too few blocks, or one that never moves.
+    pub fn fit(blocks: &[Block]) -> Result<DeadZone, Unmapped> {
+        let side = |sign: f64, name: &'static str| {
+            let points: Vec<(f64, f64)> = blocks
+                .iter()
+                .filter(|block| block.input * sign > 0.0)
+                .map(|block| (block.input * sign, block.output * sign))
+                .collect();
+            fit_side(&points, name)
+        };
+        Ok(DeadZone {
+            up: side(1.0, "positive")?,
+            down: side(-1.0, "negative")?,
+        })
+    }
+
+    /// What the map says of an input.
+    pub fn output(&self, input: f64) -> f64 {
+        let side = if input >= 0.0 { &self.up } else { &self.down };
+        let line = side.slope.value * (input.abs() - side.edge.value).max(0.0);
+        let limit = side.limit.map_or(f64::INFINITY, |limit| limit.value);
+        line.min(limit).copysign(input)
+    }
+
+    /// The map turned round.
+    pub fn inverse(&self) -> Inverse {
+        let limits = [self.up.limit, self.down.limit];
+        Inverse {
+            edge_up: self.up.edge.value,
+            per_output_up: 1.0 / self.up.slope.value,
+            edge_down: self.down.edge.value,
+            per_output_down: 1.0 / self.down.slope.value,
+            limit: limits
+                .into_iter()
+                .flatten()
+                .map(|limit| limit.value)
+                .min_by(f64::total_cmp),
+        }
+    }
+}
+
+impl Inverse {
+    /// The input that makes this output, held at the limit; 0 for 0.
+    pub fn input(&self, output: f64) -> f64 {
+        let size = output.abs().min(self.limit.unwrap_or(f64::INFINITY));
+        if size == 0.0 {
+            0.0
+        } else if output > 0.0 {
+            self.edge_up + size * self.per_output_up
+        } else {
+            -(self.edge_down + size * self.per_output_down)
+        }
+    }
+}
+
+/// Slope, edge, limit; an infinite limit is none.
+#[derive(Debug, Clone, Copy)]
+struct Curve {
+    slope: f64,
+    edge: f64,
+    limit: f64,
+}
+
+impl Curve {
+    fn output(&self, input: f64) -> f64 {
+        (self.slope * (input - self.edge).max(0.0)).min(self.limit)
+    }
+
+    fn cost(&self, points: &[(f64, f64)]) -> f64 {
+        points
+            .iter()
+            .map(|(u, y)| (y - self.output(*u)).powi(2))
+            .sum()
+    }
+
+    fn onset(&self) -> f64 {
+        self.edge + self.limit / self.slope
+    }
+
+    /// Normal matrix and gradient; rows and columns of what the points do not touch stay zero.
+    fn normal(&self, points: &[(f64, f64)]) -> (Matrix3<f64>, Vector3<f64>) {
+        let (mut matrix, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
+        for (u, y) in points {
+            let row = if *u >= self.onset() {
+                Vector3::new(0.0, 0.0, 1.0)
+            } else if *u > self.edge {
+                Vector3::new(u - self.edge, -self.slope, 0.0)
+            } else {
+                continue;
+            };
+            matrix += row * row.transpose();
+            gradient += row * (y - self.output(*u));
+        }
+        (matrix, gradient)
+    }
+
+    /// Gauss and Newton's steps, halved until the error falls.
+    fn refined(mut self, points: &[(f64, f64)]) -> Curve {
+        let mut cost = self.cost(points);
+        for _ in 0..STEPS {
+            let (mut matrix, gradient) = self.normal(points);
+            for k in 0..3 {
+                matrix[(k, k)] += if matrix[(k, k)] == 0.0 { 1.0 } else { 0.0 };
+            }
+            let Some(step) = matrix.lu().solve(&gradient) else {
+                break;
+            };
+            let better = (0..12).map(|k| 0.5f64.powi(k)).find_map(|share| {
+                let trial = Curve {
+                    slope: self.slope + share * step[0],
+                    edge: self.edge + share * step[1],
+                    limit: self.limit + share * step[2],
+                };
+                let sound = trial.slope > 0.0 && trial.edge >= 0.0 && trial.limit > 0.0;
+                (sound && trial.cost(points) < cost).then_some(trial)
+            });
+            let Some(better) = better else { break };
+            self = better;
+            let before = std::mem::replace(&mut cost, better.cost(points));
+            if before - cost <= 1e-14 * before {
+                break;
+            }
+        }
+        self
+    }
+}
+
+fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Unmapped> {
+    if points.len() < LEAST {
+        return Err(Unmapped::OneSided(name));
+    }
+    let count = points.len() as f64;
+    let criterion = |curve: &Curve, coefficients: f64| {
+        count * (curve.cost(points) / count).max(f64::MIN_POSITIVE).ln() + coefficients * count.ln()
+    };
+    let open = best(points, false).ok_or(Unmapped::Flat(name))?;
+    // Schwarz's criterion decides whether a limit is seen.
+    let curve = match best(points, true) {
+        Some(limited) if criterion(&limited, 3.0) < criterion(&open, 2.0) => limited,
+        _ => open,
+    };
+    side(&curve, points).ok_or(Unmapped::Flat(name))
+}
+
+/// The best curve over a grid of edges and onsets, refined.
+fn best(points: &[(f64, f64)], limited: bool) -> Option<Curve> {
+    let mut inputs: Vec<f64> = points.iter().map(|(u, _)| *u).collect();
+    inputs.sort_by(f64::total_cmp);
+    let places: Vec<f64> = (0..GRID)
+        .map(|k| inputs[k * (inputs.len() - 1) / (GRID - 1)])
+        .collect();
+    let beyond = |onset: f64| inputs.iter().filter(|u| **u >= onset).count();
+    let mut curves: Vec<Curve> = Vec::new();
+    for edge in std::iter::once(0.0).chain(places.iter().copied()) {
+        let onsets: Vec<f64> = match limited {
+            false => vec![f64::INFINITY],
+            true => places
+                .iter()
+                .copied()
+                .filter(|onset| *onset > edge && beyond(*onset) >= LEAST)
+                .collect(),
+        };
+        for onset in onsets {
+            let shape = |u: f64| (u - edge).clamp(0.0, onset - edge);
+            let (mut product, mut square) = (0.0, 0.0);
+            for (u, y) in points {
+                product += shape(*u) * y;
+                square += shape(*u).powi(2);
+            }
+            let slope = product / square;
+            if slope > 0.0 && slope.is_finite() {
+                let limit = slope * (onset - edge);
+                curves.push(Curve { slope, edge, limit });
+            }
+        }
+    }
+    curves
+        .into_iter()
+        .min_by(|a, b| a.cost(points).total_cmp(&b.cost(points)))
+        .map(|curve| curve.refined(points))
+}
+
+/// Intervals from the normal matrix of what the points do touch.
+fn side(curve: &Curve, points: &[(f64, f64)]) -> Option<Side> {
+    let (mut matrix, _) = curve.normal(points);
+    let limited = curve.limit.is_finite();
+    let coefficients = if limited { 3 } else { 2 };
+    if !limited {
+        matrix[(2, 2)] = 1.0;
+    }
+    let freedom = points.len().saturating_sub(coefficients).max(1) as f64;
+    let (variance, reach) = (curve.cost(points) / freedom, quantile_975(freedom));
+    let inverse = matrix.try_inverse()?;
+    let known = |value: f64, k: usize| {
+        Known::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
+    };
+    Some(Side {
+        slope: known(curve.slope, 0),
+        edge: known(curve.edge, 1),
+        limit: limited.then(|| known(curve.limit, 2)),
+        blocks: points.len(),
+        rms: (curve.cost(points) / points.len() as f64).sqrt(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::servo::generate::noise;
+
+    fn measured(edge: f64, slope: f64, limit: f64, deviation: f64, seed: u64) -> Vec<Block> {
+        let noise = noise(201, deviation, seed);
+        (0..201)
+            .map(|k| {
+                let input = (k as f64 - 100.0) / 100.0;
+                let size = (slope * (input.abs() - edge).max(0.0)).min(limit);
+                Block {
+                    input,
+                    output: size.copysign(input) + noise[k],
+                    supply_v: f64::NAN,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn intervals_hold_the_truth() {
+        let mut held = [0; 3];
+        for seed in 0..100 {
+            let map = DeadZone::fit(&measured(0.085, 3.0, 2.0, 0.05, seed)).unwrap();
+            held[0] += usize::from(map.up.edge.holds(0.085));
+            held[1] += usize::from(map.up.slope.holds(3.0));
+            held[2] += usize::from(map.up.limit.is_some_and(|limit| limit.holds(2.0)));
+        }
+        assert!(held.iter().all(|count| *count >= 90), "{held:?}");
+    }
+
+    #[test]
+    fn no_limit_is_seen_where_there_is_none() {
+        let map = DeadZone::fit(&measured(0.1, 2.0, f64::INFINITY, 0.02, 1)).unwrap();
+        assert_eq!((map.up.limit, map.down.limit), (None, None));
+        assert!((map.down.edge.value - 0.1).abs() < 0.02);
+    }
+
+    #[test]
+    fn the_inverse_undoes_the_map() {
+        let map = DeadZone::fit(&measured(0.085, 3.0, 2.0, 0.01, 4)).unwrap();
+        let inverse = map.inverse();
+        for output in [-1.9, -0.3, 0.2, 1.5] {
+            assert!((map.output(inverse.input(output)) - output).abs() < 1e-9);
+        }
+        assert_eq!(inverse.input(0.0), 0.0);
+        assert_eq!(inverse.input(9.0), inverse.input(inverse.limit.unwrap()));
+    }
+
+    #[test]
+    fn what_never_moves_is_no_map() {
+        let still: Vec<Block> = measured(2.0, 1.0, 1.0, 0.0, 1);
+        assert_eq!(DeadZone::fit(&still), Err(Unmapped::Flat("positive")));
+        let one_sided: Vec<Block> = measured(0.1, 1.0, 1.0, 0.01, 1)
+            .into_iter()
+            .filter(|block| block.input > 0.0)
+            .collect();
+        assert_eq!(
+            DeadZone::fit(&one_sided),
+            Err(Unmapped::OneSided("negative"))
+        );
+    }
+}

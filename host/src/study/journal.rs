@@ -1,0 +1,204 @@
+//! Finished chunks on disk, so that a killed study goes on where it was.
+//!
+//! A line of JSON that says which study it is, then chunks: a line with the chunk's number, the length of its rows in
+//! bytes and their SHA-256, then the rows. Each is appended and synced whole; what does not match its sum at the end
+//! was torn by a crash and is cut off.
+
+use crate::error::{Error, Place, Result};
+use fs4::fs_std::FileExt as _;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Which study a journal belongs to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// Version of the format.
+    pub handstand_study: u32,
+    /// SHA-256 of all that decides the rows.
+    pub fingerprint: String,
+    /// Runs of the whole study.
+    pub runs: usize,
+    /// Runs in a chunk.
+    pub chunk: usize,
+    /// Columns of the rows.
+    pub columns: Vec<String>,
+}
+
+/// Version of the format.
+pub const FORMAT: u32 = 1;
+
+impl Header {
+    /// Number of chunks of the whole study.
+    pub fn chunks(&self) -> usize {
+        self.runs.div_ceil(self.chunk.max(1))
+    }
+}
+
+/// What a journal's file holds.
+#[derive(Debug, Clone)]
+pub(super) struct Content {
+    pub header: Header,
+    /// Rows by chunk.
+    pub rows: BTreeMap<usize, String>,
+    /// Bytes up to the end of the last whole chunk.
+    pub whole: u64,
+    /// Bytes of the file.
+    pub length: u64,
+}
+
+/// An open journal.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    /// Chunks it holds already.
+    pub done: BTreeSet<usize>,
+    /// Bytes of a torn chunk that were cut off on opening.
+    pub torn_bytes: u64,
+}
+
+impl Journal {
+    /// Opens a study's journal or begins it; other programs are kept out until it is dropped.
+    ///
+    /// # Errors
+    /// A journal of another study, one that another program is writing, or what the system refuses.
+    pub fn open(path: &Path, header: &Header) -> Result<Journal> {
+        let refused = |error| Error::file(path, "write", error);
+        let mut options = File::options();
+        options.read(true).write(true).create(true).truncate(false);
+        let file = options.open(path).map_err(refused)?;
+        if !file.try_lock_exclusive().map_err(refused)? {
+            return Err(Error::usage(
+                format!("{}: another program is writing it", path.display()),
+                "wait for it, or give this one another folder",
+            ));
+        }
+        let mut journal = Journal {
+            path: path.to_path_buf(),
+            done: BTreeSet::new(),
+            torn_bytes: 0,
+            file,
+        };
+        let mut bytes = Vec::new();
+        journal.file.read_to_end(&mut bytes).map_err(refused)?;
+        if !bytes.contains(&b'\n') {
+            // New, or killed before the first line was whole.
+            journal.cut(0).map_err(refused)?;
+            let line = serde_json::to_string(header).map_err(|error| refused(error.into()))?;
+            journal.append(&(line + "\n"))?;
+            return Ok(journal);
+        }
+        let found = content(&bytes, path)?;
+        if found.header != *header {
+            return Err(Error::data(
+                Place::file(path),
+                "this is the journal of another study, or of another version of the program",
+                "give this study another folder, or delete the journal",
+            ));
+        }
+        journal.torn_bytes = found.length - found.whole;
+        journal.done = found.rows.into_keys().collect();
+        journal.cut(found.whole).map_err(refused)?;
+        Ok(journal)
+    }
+
+    fn cut(&mut self, length: u64) -> std::io::Result<()> {
+        self.file.set_len(length)?;
+        self.file.seek(SeekFrom::End(0)).map(|_| ())
+    }
+
+    /// Adds a finished chunk, safe on disk when this returns.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn add(&mut self, chunk: usize, rows: &str) -> Result<()> {
+        let text = format!(
+            "chunk {chunk} bytes {} sha256 {}\n{rows}",
+            rows.len(),
+            sum(rows)
+        );
+        self.append(&text)?;
+        self.done.insert(chunk);
+        Ok(())
+    }
+
+    fn append(&mut self, text: &str) -> Result<()> {
+        self.file
+            .write_all(text.as_bytes())
+            .and_then(|()| self.file.sync_data())
+            .map_err(|error| Error::file(&self.path, "write", error))
+    }
+}
+
+/// Reads a journal.
+///
+/// # Errors
+/// A file that is no journal, or what the system refuses.
+pub(super) fn read(path: &Path) -> Result<Content> {
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
+    content(&bytes, path)
+}
+
+fn content(bytes: &[u8], path: &Path) -> Result<Content> {
+    let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or(bytes);
+    let header: Header = serde_json::from_slice(line)
+        .ok()
+        .filter(|header: &Header| header.handstand_study == FORMAT && header.chunk > 0)
+        .filter(|_| line.len() < bytes.len())
+        .ok_or_else(|| {
+            Error::data(
+                Place::at(path, 1, 1),
+                "this is no journal of a study",
+                "name a .journal file that `handstand study monte-carlo` wrote, or its folder",
+            )
+        })?;
+    let mut place = line.len() + 1;
+    let mut rows = BTreeMap::new();
+    while let Some((chunk, text, end)) = chunk_at(bytes, place) {
+        rows.insert(chunk, text);
+        place = end;
+    }
+    Ok(Content {
+        header,
+        rows,
+        whole: place as u64,
+        length: bytes.len() as u64,
+    })
+}
+
+/// The chunk that begins at a place, and where it ends; none if it is not whole.
+fn chunk_at(bytes: &[u8], place: usize) -> Option<(usize, String, usize)> {
+    let rest = bytes.get(place..)?;
+    let end = rest.iter().position(|byte| *byte == b'\n')?;
+    let line = std::str::from_utf8(&rest[..end]).ok()?;
+    let words: Vec<&str> = line.split(' ').collect();
+    let ["chunk", chunk, "bytes", length, "sha256", sha256] = words[..] else {
+        return None;
+    };
+    let length: usize = length.parse().ok()?;
+    let rows = rest.get(end + 1..)?.get(..length)?;
+    let rows = std::str::from_utf8(rows).ok()?;
+    (sum(rows) == sha256).then_some(())?;
+    Some((
+        chunk.parse().ok()?,
+        rows.to_string(),
+        place + end + 1 + length,
+    ))
+}
+
+fn sum(rows: &str) -> String {
+    hex(Sha256::digest(rows.as_bytes()).as_slice())
+}
+
+/// Bytes in hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

@@ -1,0 +1,228 @@
+//! Everything that follows from a model and weights, as one value; `export` writes it in many ways.
+
+use super::eigen::poles;
+use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
+use super::fixed_law::{FixedLaw, Loss};
+use super::gains::{Gains, dlqr, lqr};
+use super::quantise::{Ranges, quantise};
+use super::reach::{Reach, controllability, observability};
+use super::request::{Request, Sensors, Time};
+use super::rest::{Rest, input_delay_s};
+use super::signal::{Signal, driven, input, reach, states};
+use super::system::{Continuous, Discrete};
+use super::zeros::transmission_zeros;
+use super::{linearise, zoh};
+use crate::error::{Error, Result};
+use crate::model::Model;
+use nalgebra::{Complex, DMatrix};
+
+/// A finished design.
+#[derive(Debug, Clone)]
+pub struct Design {
+    /// The model's name.
+    pub model: String,
+    /// The states that K multiplies.
+    pub states: Vec<Signal>,
+    /// The inputs it makes.
+    pub inputs: Vec<Signal>,
+    /// The operating point of the states, SI.
+    pub x0: Vec<f64>,
+    /// The inputs that hold it, SI.
+    pub u0: Vec<f64>,
+    /// The plant in continuous time.
+    pub plant: Continuous,
+    /// The sampled plant, and the delay it holds, s.
+    pub sampled: Option<(Discrete, f64)>,
+    /// Q and R.
+    pub weights: [DMatrix<f64>; 2],
+    /// K and what goes with it.
+    pub gains: Gains,
+    /// Poles of the plant, 1/s.
+    pub poles: Vec<Complex<f64>>,
+    /// Zeros from the inputs to the angles of the driven joints, 1/s.
+    pub zeros: Vec<Complex<f64>>,
+    /// Which modes the inputs reach.
+    pub controllability: Reach,
+    /// Which modes the measured angles show.
+    pub observability: Reach,
+    /// The estimator.
+    pub estimator: Option<Estimation>,
+    /// The fixed-point law.
+    pub fixed: Option<Fixed>,
+}
+
+/// An estimator and the controller it makes with the gains.
+#[derive(Debug, Clone)]
+pub struct Estimation {
+    /// What is measured.
+    pub outputs: Vec<Signal>,
+    /// The plant with those outputs.
+    pub plant: Discrete,
+    /// The Kalman filter.
+    pub estimator: Estimator,
+    /// Gains and filter as one.
+    pub compensator: Compensator,
+}
+
+/// A law in fixed point.
+#[derive(Debug, Clone)]
+pub struct Fixed {
+    /// What it covers.
+    pub ranges: Ranges,
+    /// The table.
+    pub law: FixedLaw,
+    /// What rounding costs.
+    pub loss: Loss,
+}
+
+impl Design {
+    /// Everything that follows from `model` and `request`.
+    ///
+    /// # Errors
+    /// Whatever stands in the way, with what to change.
+    pub fn of(model: &Model, request: &Request) -> Result<Design> {
+        let rest = Rest::of(model, &request.pose_rad)?;
+        let plant = linearise(model, &request.pose_rad)?;
+        let (n, m) = plant.b.shape();
+        let r = request.r.matrix("R", m, "inputs")?;
+        let (gains, sampled, q) = match request.time {
+            Time::Continuous => {
+                let q = request.q.matrix("Q", n, "states")?;
+                (lqr(&plant, &q, &r)?, None, q)
+            }
+            Time::Sampled { ts_s, delay_s } => {
+                let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
+                let sampled = zoh(&plant, ts_s, delay_s)?;
+                let all = sampled.a.nrows();
+                let size = if request.q.size() == Some(all) {
+                    all
+                } else {
+                    n
+                };
+                let q = request.q.matrix("Q", size, "states")?;
+                (dlqr(&sampled, &q, &r)?, Some((sampled, delay_s)), q)
+            }
+        };
+        let driven = driven(model);
+        let outputs = driven.iter().map(|joint| plant.c.row(*joint).into_owned());
+        let outputs = DMatrix::from_rows(&outputs.collect::<Vec<_>>());
+        let angles = plant.c.rows(0, model.link_count()).into_owned();
+        let inputs: Vec<Signal> = driven.iter().map(|joint| input(model, *joint)).collect();
+        let delayed = sampled
+            .as_ref()
+            .map_or(0, |(sampled, _)| sampled.delayed_inputs);
+        let mut design = Design {
+            model: model.name.clone(),
+            states: states(model.link_count(), &inputs, delayed),
+            x0: point(&rest, delayed),
+            u0: rest.inputs.clone(),
+            poles: poles(&plant.a)?,
+            zeros: transmission_zeros(&plant.a, &plant.b, &outputs)?,
+            controllability: controllability(&plant.a, &plant.b)?,
+            observability: observability(&plant.a, &angles)?,
+            weights: [q, r],
+            inputs,
+            plant,
+            sampled,
+            gains,
+            estimator: None,
+            fixed: None,
+        };
+        if let Some((sampled, _)) = design.sampled.clone() {
+            let input_range = match &request.input_range {
+                Some(range) => range.diagonal("the range of inputs", m)?,
+                None => driven.iter().map(|joint| reach(model, *joint)).collect(),
+            };
+            design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
+            if let Some(sensors) = &request.sensors {
+                design.estimator = Some(design.estimator(sensors, sampled, &input_range)?);
+            }
+        }
+        Ok(design)
+    }
+
+    fn fixed(&self, request: &Request, plant: &Discrete, input: Vec<f64>) -> Result<Fixed> {
+        let mut state = request
+            .state_range
+            .diagonal("the range of states", plant.plant_states())?;
+        let mut format = request.format.clone();
+        if plant.delayed_inputs > 0 {
+            // Past inputs come back in the steps in which they went out.
+            let word = 2f64.powi(format.bits as i32 - 1) - 1.0;
+            let step = |range: &f64| 2f64.powi((range / word).log2().ceil() as i32);
+            let input_step = format
+                .input_step
+                .get_or_insert_with(|| input.iter().map(step).collect())
+                .clone();
+            let own = state
+                .iter()
+                .zip(&self.x0)
+                .map(|(range, x)| step(&(range + x.abs())));
+            let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
+            for _ in 0..plant.delayed_inputs {
+                steps.extend(&input_step);
+                state.extend(&input);
+            }
+            format.state_step = Some(steps);
+        }
+        let ranges = Ranges { state, input };
+        let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
+        let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
+        if loss.radius_fixed >= 1.0 {
+            return Err(Error::design(
+                format!(
+                    "rounded to {} bits the gains no longer stabilise: the spectral radius is {:.6}",
+                    law.bits, loss.radius_fixed
+                ),
+                "declare smaller ranges: steps and gains are rounded to what they need",
+            ));
+        }
+        Ok(Fixed { ranges, law, loss })
+    }
+
+    fn estimator(
+        &self,
+        sensors: &Sensors,
+        plant: Discrete,
+        input_range: &[f64],
+    ) -> Result<Estimation> {
+        let (own, joints) = (plant.plant_states(), plant.plant_states() / 2);
+        let rows: Vec<usize> = (0..=joints).collect();
+        let plant = Discrete {
+            c: plant.c.select_rows(&rows),
+            ..plant
+        };
+        let mut variance = vec![rounding_variance(sensors.position_step_rad); joints];
+        variance.push(rounding_variance(sensors.gyro_step_rad_s));
+        let process = match &sensors.process {
+            Some(process) => process.matrix("W", own, "states")?,
+            None => {
+                let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
+                let sd = input_range
+                    .iter()
+                    .map(|range| 0.01 * range)
+                    .collect::<Vec<_>>();
+                let noisy = held * DMatrix::from_diagonal(&sd.into());
+                &noisy * noisy.transpose()
+            }
+        };
+        let measurement = DMatrix::from_diagonal(&variance.into());
+        let estimator = kalman(&plant, &process, &measurement)?;
+        let compensator = lqg(&plant, &self.gains, &estimator)?;
+        Ok(Estimation {
+            outputs: self.states[..=joints].to_vec(),
+            plant,
+            estimator,
+            compensator,
+        })
+    }
+}
+
+fn point(rest: &Rest, delayed: usize) -> Vec<f64> {
+    let mut point = rest.pose_rad.clone();
+    point.resize(2 * rest.pose_rad.len(), 0.0);
+    for _ in 0..delayed {
+        point.extend(&rest.inputs);
+    }
+    point
+}

@@ -1,0 +1,157 @@
+//! Sampling with inputs held between samples, and arriving late.
+//!
+//! Van Loan, IEEE Trans. Automatic Control 23 (1978) 395: exp([A B; 0 0] t) = [e^{At} int_0^t e^{As} ds B; 0 I].
+//! With a delay of `whole` samples and `late` seconds, the input of sample k - whole - 1 still acts for `late`:
+//! x(k+1) = e^{A Ts} x(k) + e^{A (Ts - late)} S(late) B u(k-whole-1) + S(Ts - late) B u(k-whole), S(t) the integral
+//! (Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 2.3).
+
+use super::system::{Continuous, Discrete};
+use crate::error::{Error, Result};
+use nalgebra::DMatrix;
+
+/// A delay that differs from whole samples by less than this share of one is whole.
+const WHOLE: f64 = 1e-9;
+
+/// Most past inputs kept.
+const MOST_DELAYED: usize = 100;
+
+/// The plant sampled every `ts_s`, its inputs held between samples and `delay_s` late.
+///
+/// # Errors
+/// A sampling time that is not positive, a delay that is negative or longer than 100 samples, a plant that grows beyond
+/// all numbers within a sample.
+pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete> {
+    check(ts_s, delay_s)?;
+    let (n, m) = (plant.a.nrows(), plant.b.ncols());
+    let samples = delay_s / ts_s;
+    let mut whole = samples.floor();
+    let mut late_s = delay_s - whole * ts_s;
+    if samples - whole > 1.0 - WHOLE {
+        whole += 1.0;
+        late_s = 0.0;
+    } else if samples - whole < WHOLE {
+        late_s = 0.0;
+    }
+    let whole = whole as usize;
+    let (state, newer) = held(plant, ts_s - late_s);
+    let delayed_inputs = whole + usize::from(late_s > 0.0);
+    let size = n + m * delayed_inputs;
+    let (mut a, mut b) = (DMatrix::zeros(size, size), DMatrix::zeros(size, m));
+    if late_s > 0.0 {
+        let (late_state, older) = held(plant, late_s);
+        a.view_mut((0, n + m * whole), (n, m))
+            .copy_from(&(&state * older));
+        a.view_mut((0, 0), (n, n)).copy_from(&(&state * late_state));
+    } else {
+        a.view_mut((0, 0), (n, n)).copy_from(&state);
+    }
+    match whole {
+        0 => b.view_mut((0, 0), (n, m)).copy_from(&newer),
+        _ => a
+            .view_mut((0, n + m * (whole - 1)), (n, m))
+            .copy_from(&newer),
+    }
+    if delayed_inputs > 0 {
+        b.view_mut((n, 0), (m, m)).fill_with_identity();
+        let later = m * (delayed_inputs - 1);
+        a.view_mut((n + m, n), (later, later)).fill_with_identity();
+    }
+    let mut c = DMatrix::zeros(plant.c.nrows(), size);
+    c.view_mut((0, 0), plant.c.shape()).copy_from(&plant.c);
+    if a.iter().chain(b.iter()).any(|value| !value.is_finite()) {
+        return Err(Error::design(
+            format!("the plant grows beyond all numbers within one sample of {ts_s} s"),
+            "sample faster",
+        ));
+    }
+    Ok(Discrete {
+        a,
+        b,
+        c,
+        ts_s,
+        delayed_inputs,
+    })
+}
+
+fn check(ts_s: f64, delay_s: f64) -> Result<()> {
+    if !(ts_s > 0.0 && ts_s.is_finite()) {
+        return Err(Error::design(
+            format!("a sampling time of {ts_s} s"),
+            "give seconds above 0",
+        ));
+    }
+    if !(delay_s >= 0.0 && delay_s <= MOST_DELAYED as f64 * ts_s) {
+        return Err(Error::design(
+            format!("a delay of {delay_s} s at a sampling time of {ts_s} s"),
+            format!("give a delay from 0 to {MOST_DELAYED} samples"),
+        ));
+    }
+    Ok(())
+}
+
+/// e^{At} and int_0^t e^{As} ds B.
+fn held(plant: &Continuous, t_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+    let (n, m) = (plant.a.nrows(), plant.b.ncols());
+    let mut block = DMatrix::zeros(n + m, n + m);
+    block.view_mut((0, 0), (n, n)).copy_from(&(&plant.a * t_s));
+    block.view_mut((0, n), (n, m)).copy_from(&(&plant.b * t_s));
+    let exponential = block.exp();
+    (
+        exponential.view((0, 0), (n, n)).into_owned(),
+        exponential.view((0, n), (n, m)).into_owned(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn plant(values: &[f64]) -> Continuous {
+        Continuous {
+            a: DMatrix::from_row_slice(2, 2, &values[..4]),
+            b: DMatrix::from_row_slice(2, 1, &values[4..6]),
+            c: DMatrix::identity(2, 2),
+        }
+    }
+
+    proptest! {
+        /// Against 100 short samples, each with the input that then acts.
+        #[test]
+        fn a_late_input_acts_late(
+            values in prop::collection::vec(-3.0f64..3.0, 6),
+            inputs in prop::collection::vec(-1.0f64..1.0, 6),
+            late in 0u32..250,
+        ) {
+            let plant = plant(&values);
+            let fine = zoh(&plant, 0.001, 0.0).unwrap();
+            let coarse = zoh(&plant, 0.1, 0.001 * f64::from(late)).unwrap();
+            prop_assert_eq!(coarse.delayed_inputs as u32, late.div_ceil(100));
+            let mut x = DMatrix::from_row_slice(2, 1, &[0.3, -0.2]);
+            let mut z = x.clone().resize_vertically(coarse.a.nrows(), 0.0);
+            for k in 0..600_i64 {
+                if k % 100 == 0 {
+                    z = &coarse.a * &z + &coarse.b * inputs[k as usize / 100];
+                }
+                let asked = (k - i64::from(late)).div_euclid(100);
+                let u = usize::try_from(asked).map_or(0.0, |asked| inputs[asked]);
+                x = &fine.a * &x + &fine.b * u;
+            }
+            let off = (z.rows(0, 2) - &x).amax();
+            prop_assert!(off < 1e-10 * x.amax().max(1.0), "{off:e}");
+        }
+    }
+
+    #[test]
+    fn a_whole_delay_is_whole() {
+        let plant = plant(&[0.0, 1.0, 2.0, -1.0, 0.0, 1.0]);
+        for (delay_s, delayed) in [(0.0, 0), (0.01, 1), (0.03, 3), (0.1 + 0.2, 30), (0.0301, 4)] {
+            let sampled = zoh(&plant, 0.01, delay_s).unwrap();
+            assert_eq!(sampled.delayed_inputs, delayed, "{delay_s}");
+            assert_eq!(sampled.plant_states(), 2);
+        }
+        for (ts_s, delay_s) in [(0.0, 0.0), (f64::NAN, 0.0), (0.01, -0.01), (0.01, 1.1)] {
+            assert_eq!(zoh(&plant, ts_s, delay_s).unwrap_err().exit_code(), 3);
+        }
+    }
+}

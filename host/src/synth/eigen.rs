@@ -1,0 +1,66 @@
+//! Eigenvalues of a general matrix, and the distance of modes from those that an input or output can reach.
+
+use super::qr::eigenvalues;
+use crate::error::{Error, Result};
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Eigenvalues, those with the largest real part first.
+///
+/// # Errors
+/// Entries that are no numbers.
+pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
+    if a.iter().all(|value| value.is_finite()) {
+        let mut balanced = a.clone();
+        balance_parlett_reinsch(&mut balanced);
+        if let Some(mut poles) = eigenvalues(balanced) {
+            poles.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+            return Ok(poles);
+        }
+    }
+    Err(Error::design(
+        "the eigenvalues of the system matrix cannot be found",
+        "look for entries that are not numbers or of very different size",
+    ))
+}
+
+/// How far a mode is from being out of reach.
+#[derive(Debug, Clone)]
+pub struct Mode {
+    /// Its eigenvalue, 1/s or per sample.
+    pub pole: Complex<f64>,
+    /// Least singular value of [A - pole I, B] (or of that over C), over the largest of A or B (or C): 0 where out of reach.
+    pub measure: f64,
+    /// The state in which it shows most, counted from 0.
+    pub state: usize,
+}
+
+/// The modes of A with how far each is from being uncontrollable through B (Popov, Belevitch, Hautus).
+///
+/// # Errors
+/// As [`poles`].
+pub fn modes(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Vec<Mode>> {
+    let poles = poles(a)?;
+    let complex = |m: &DMatrix<f64>| m.map(|value| Complex::new(value, 0.0));
+    let (n, size) = (a.nrows(), a.norm().max(b.norm()).max(f64::MIN_POSITIVE));
+    let (a, b) = (complex(a), complex(b));
+    let mode = |pole: Complex<f64>| {
+        let mut pencil = DMatrix::zeros(n, n + b.ncols());
+        pencil.view_mut((0, 0), (n, n)).copy_from(&a);
+        pencil.view_mut((0, n), b.shape()).copy_from(&b);
+        for i in 0..n {
+            pencil[(i, i)] -= pole;
+        }
+        let svd = pencil.svd(true, false);
+        let least = svd.singular_values.imin();
+        let left = svd
+            .u
+            .map(|u| DVector::from_column_slice(u.column(least).as_slice()));
+        Mode {
+            pole,
+            measure: svd.singular_values[least] / size,
+            state: left.map_or(0, |left| left.map(|z| z.norm()).imax()),
+        }
+    };
+    Ok(poles.into_iter().map(mode).collect())
+}

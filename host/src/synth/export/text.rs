@@ -1,0 +1,310 @@
+//! A design for people.
+
+use crate::number::short;
+use crate::synth::{Design, Estimation, Fixed, Mode, Reach};
+use comfy_table::{CellAlignment, Table, TableComponent, presets};
+use nalgebra::{Complex, DMatrix};
+
+/// Wider matrices are left to `--csv` and `--json`.
+const WIDEST: usize = 12;
+
+/// Gains, poles, zeros, what fixed point costs.
+pub fn text(design: &Design) -> String {
+    let joints = design.plant.a.nrows() / 2;
+    let joined = |values: &[f64]| {
+        values
+            .iter()
+            .map(|v| plain(*v))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let mut parts = vec![format!(
+        "`{}` at q = [{}] rad, held by u = [{}]",
+        design.model,
+        joined(&design.x0[..joints]),
+        joined(&design.u0)
+    )];
+    parts.push(match &design.sampled {
+        None => "Continuous time: u = u0 - K (x - x0)".to_string(),
+        Some((plant, delay_s)) => format!(
+            "Sampled every {} s, inputs {} s late ({} past inputs kept): u = u0 - K (x - x0)",
+            plain(plant.ts_s),
+            plain(*delay_s),
+            plant.delayed_inputs * design.inputs.len()
+        ),
+    });
+    parts.push(String::new());
+    parts.push(gain_table(design));
+    parts.push(String::new());
+    parts.extend(plant_lines(design));
+    parts.extend(loop_lines(design));
+    if let Some(estimation) = &design.estimator {
+        parts.push(String::new());
+        parts.extend(estimator_lines(design, estimation));
+    }
+    if let Some(fixed) = &design.fixed {
+        parts.push(String::new());
+        parts.extend(fixed_lines(design, fixed));
+    }
+    parts.join("\n")
+}
+
+fn gain_table(design: &Design) -> String {
+    if design.states.len() > WIDEST {
+        return format!(
+            "K is {} x {}: too wide for a page; --csv and --json give every digit",
+            design.inputs.len(),
+            design.states.len()
+        );
+    }
+    let names = |signals: &[crate::synth::Signal]| -> Vec<String> {
+        signals.iter().map(|signal| signal.name.clone()).collect()
+    };
+    matrix(
+        "K",
+        &names(&design.inputs),
+        &names(&design.states),
+        &design.gains.k,
+    )
+}
+
+fn matrix(corner: &str, rows: &[String], columns: &[String], values: &DMatrix<f64>) -> String {
+    let header = std::iter::once(corner.to_string()).chain(columns.iter().cloned());
+    let mut table = frame(header);
+    for (i, name) in rows.iter().enumerate() {
+        let row = values.row(i);
+        let cells = row.iter().map(|value| digits(*value));
+        table.add_row(std::iter::once(name.clone()).chain(cells));
+    }
+    right(&mut table);
+    table.to_string()
+}
+
+fn frame(header: impl IntoIterator<Item = String>) -> Table {
+    let mut table = Table::new();
+    table
+        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
+        .set_header(header.into_iter().collect::<Vec<_>>())
+        .remove_style(TableComponent::HorizontalLines)
+        .remove_style(TableComponent::MiddleIntersections);
+    table
+}
+
+fn right(table: &mut Table) {
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+}
+
+fn plant_lines(design: &Design) -> Vec<String> {
+    let unstable = design.poles.iter().filter(|pole| pole.re > 0.0).count();
+    let minimum = design.zeros.iter().all(|zero| zero.re <= 0.0);
+    let kind = match (design.zeros.is_empty(), minimum) {
+        (true, _) => "none: minimum phase".to_string(),
+        (false, true) => format!("{} 1/s: minimum phase", several(&design.zeros)),
+        (false, false) => format!("{} 1/s: NOT minimum phase", several(&design.zeros)),
+    };
+    vec![
+        format!(
+            "Poles of the plant    {} 1/s: {unstable} unstable",
+            several(&design.poles)
+        ),
+        format!("Zeros to driven q     {kind}"),
+        format!(
+            "Inputs reach          {}",
+            reach(&design.controllability, design)
+        ),
+        format!(
+            "Angles show           {}",
+            reach(&design.observability, design)
+        ),
+    ]
+}
+
+fn reach(reach: &Reach, design: &Design) -> String {
+    let n = design.plant.a.nrows();
+    // Mirrored modes are equally hard: rounded, the growing one is named, which comes first.
+    let size = |mode: &Mode| (1e6 * mode.measure.max(f64::MIN_POSITIVE).ln()).round();
+    let weakest = reach
+        .modes
+        .iter()
+        .min_by(|a, b| size(a).total_cmp(&size(b)));
+    let all = match reach.is_full() {
+        true => "every mode".to_string(),
+        false => format!("NOT every mode: rank {} of {n}", reach.rank),
+    };
+    match weakest {
+        None => all,
+        Some(mode) => format!(
+            "{all}; hardest {} 1/s, {} from lost",
+            several(&[mode.pole]),
+            short(mode.measure)
+        ),
+    }
+}
+
+fn loop_lines(design: &Design) -> Vec<String> {
+    let unit = if design.sampled.is_some() { "" } else { " 1/s" };
+    let mut lines = vec![format!(
+        "Poles of the loop     {}{unit}",
+        several(&design.gains.poles)
+    )];
+    if design.sampled.is_some() {
+        let radius = design
+            .gains
+            .poles
+            .iter()
+            .fold(0.0, |r: f64, pole| r.max(pole.norm()));
+        lines.push(format!("Spectral radius       {radius:.6}"));
+    }
+    let residual = match design.gains.residual {
+        // Smaller ones differ from machine to machine.
+        left if left < 1e-16 => "below 1e-16".to_string(),
+        left => format!("{left:.0e}"),
+    };
+    lines.push(format!(
+        "Riccati residual      {residual} of the largest entry"
+    ));
+    lines
+}
+
+fn estimator_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
+    let own = estimation.plant.plant_states();
+    let names = estimation.outputs.iter().map(|output| output.name.clone());
+    let states: Vec<String> = design.states[..own]
+        .iter()
+        .map(|s| s.name.clone())
+        .collect();
+    let names: Vec<String> = names.collect();
+    let mut lines = Vec::new();
+    if names.len() <= WIDEST {
+        let gain = estimation.estimator.gain.rows(0, own).into_owned();
+        lines.push(matrix("L", &states, &names, &gain));
+        lines.push(String::new());
+    }
+    let radius = |poles: &[Complex<f64>]| poles.iter().fold(0.0, |r: f64, p| r.max(p.norm()));
+    lines.push(format!(
+        "Poles of the filter   {}",
+        several(&estimation.estimator.poles)
+    ));
+    lines.push(format!(
+        "With filter and gains the loop's spectral radius is {:.6}",
+        radius(&estimation.compensator.loop_poles)
+    ));
+    lines
+}
+
+fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
+    let (law, loss) = (&fixed.law, &fixed.loss);
+    let header = [
+        "Fixed point",
+        "step",
+        "limit",
+        "shift",
+        "margin, bits",
+        "error: gains",
+        "states",
+        "input",
+    ];
+    let mut table = frame(header.map(str::to_string));
+    for (i, input) in design.inputs.iter().enumerate() {
+        table.add_row([
+            format!("{} [{}]", input.name, input.unit),
+            short(law.input_step[i]),
+            plain(fixed.ranges.input[i]),
+            law.shift[i].to_string(),
+            format!("{:.2}", loss.margin_bits[i]),
+            short(loss.gain_error[i]),
+            short(loss.state_error[i]),
+            short(loss.input_error[i]),
+        ]);
+    }
+    right(&mut table);
+    let ranges = fixed
+        .ranges
+        .state
+        .iter()
+        .zip(&law.state_step)
+        .zip(&design.states);
+    let ranges = ranges.map(|((range, step), state)| {
+        format!(
+            "{} ±{} in steps of {}",
+            state.name,
+            plain(*range),
+            short(*step)
+        )
+    });
+    let ranges: Vec<String> = ranges.collect();
+    vec![
+        table.to_string(),
+        String::new(),
+        match ranges.len() <= WIDEST {
+            true => format!("Ranges: {}", ranges.join("; ")),
+            false => format!("Ranges: of {} states, see --json", ranges.len()),
+        },
+        "No states whatever overflow the sum; errors are the most that is possible within the ranges.".to_string(),
+        format!(
+            "Spectral radius with these gains {:.6}; fingerprint {:08X}",
+            loss.radius_fixed,
+            law.fingerprint()
+        ),
+    ]
+}
+
+/// Numbers, real or complex, conjugates together; many are counted.
+fn several(values: &[Complex<f64>]) -> String {
+    const MOST: usize = 8;
+    const NOTHING: f64 = 1e-6;
+    let largest = values.iter().fold(0.0, |most: f64, z| most.max(z.norm()));
+    let mut said = Vec::new();
+    for value in values {
+        // Past inputs bring poles at 0, which rounding scatters.
+        if value.norm() < NOTHING * largest {
+            said.push("0".to_string());
+            continue;
+        }
+        let real = value.im.abs() <= 1e-9 * value.norm();
+        match real {
+            true => said.push(number(value.re)),
+            false if value.im > 0.0 => {
+                said.push(format!("{}±{}i", number(value.re), number(value.im)));
+            }
+            false => {}
+        }
+    }
+    let more = said.len().saturating_sub(MOST);
+    said.truncate(MOST);
+    match more {
+        0 => said.join(", "),
+        more => format!("{}, and {more} more", said.join(", ")),
+    }
+}
+
+fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_string(),
+        size if (1e-4..1e6).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// Eight significant digits.
+fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let power = value.abs().log10().floor() as i32;
+    match (-4..7).contains(&power) {
+        true => format!("{value:.*}", (7 - power).clamp(0, 11) as usize),
+        false => format!("{value:.7e}"),
+    }
+}
+
+/// A given number, to six digits at most.
+fn plain(value: f64) -> String {
+    let text = format!("{value:.6}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    }
+}

@@ -1,0 +1,52 @@
+//! Values that every file of gains names, in its own syntax.
+
+use super::Provenance;
+use crate::synth::{Design, Fixed, Signal};
+use std::fmt::Display;
+
+/// Comma-separated.
+pub(super) fn list<T: Display>(values: impl IntoIterator<Item = T>) -> String {
+    let values: Vec<String> = values.into_iter().map(|value| value.to_string()).collect();
+    values.join(", ")
+}
+
+/// What the head of a file says, a line each.
+pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<String> {
+    let law = &fixed.law;
+    let names =
+        |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));
+    let plain = |values: &[f64]| list(values.iter());
+    vec![
+        format!(
+            "Gains of `{}`: u = sat(u0 - K (x - x0)) in fixed point.",
+            design.model
+        ),
+        format!(
+            "Made by handstand {} from {}",
+            env!("CARGO_PKG_VERSION"),
+            made.model
+        ),
+        format!("  sha256 {}", made.sha256),
+        format!("  $ {}", made.command),
+        format!("States x: {}", names(&design.states)),
+        format!("  SI value of one step: {}", plain(&law.state_step)),
+        format!("  ranges about x0: {}", plain(&fixed.ranges.state)),
+        format!("Inputs u: {}", names(&design.inputs)),
+        format!("  SI value of one step: {}", plain(&law.input_step)),
+        format!("  limits: {}", plain(&fixed.ranges.input)),
+        format!(
+            "No states whatever overflow the 32-bit sum: {} bits of margin.",
+            list(
+                fixed
+                    .loss
+                    .margin_bits
+                    .iter()
+                    .map(|bits| format!("{bits:.2}"))
+            )
+        ),
+        format!(
+            "Spectral radius of the loop: {:.6} as designed, {:.6} with these gains.",
+            fixed.loss.radius, fixed.loss.radius_fixed
+        ),
+    ]
+}

@@ -1,0 +1,117 @@
+//! Poses in a model's own convention of angles, and the equilibrium next to one.
+
+use super::equations::Equations;
+use super::rest::At;
+use crate::effects::Rig;
+use crate::error::{Error, Result};
+use crate::model::{Angles, Model};
+use nalgebra::DVector;
+
+/// Of Newton's iteration.
+const MOST_STEPS: usize = 100;
+const LONGEST_STEP_RAD: f64 = 0.2;
+/// The step after one so small is lost in rounding.
+const SETTLED_RAD: f64 = 1e-9;
+
+/// All links straight up, in the model's own convention.
+pub fn upright(model: &Model) -> Vec<f64> {
+    let up = std::f64::consts::PI - model.angle_zero.from_hanging_rad();
+    let later = match model.angles {
+        Angles::Absolute => up,
+        Angles::Relative => 0.0,
+    };
+    (0..model.link_count())
+        .map(|joint| if joint == 0 { up } else { later })
+        .collect()
+}
+
+/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they balance.
+///
+/// This is the angle compensation that links with eccentric centres of mass need.
+///
+/// # Errors
+/// No equilibrium within reach of Newton's iteration, or an effect without a slope.
+pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
+    check_size(model, pose_rad)?;
+    let passive: Vec<usize> = (0..model.link_count())
+        .filter(|&joint| !model.joints[joint].drive.is_driven())
+        .collect();
+    let equations = Equations::of(&Rig::of(model, false));
+    let mut angle_rad = relative(model, pose_rad);
+    for _ in 0..MOST_STEPS {
+        let pose_rad = convention(model, &angle_rad);
+        if passive.is_empty() {
+            return Ok(pose_rad);
+        }
+        let gravity_nm = equations.gravity(&angle_rad);
+        let slope = equations.gravity_slope(&angle_rad);
+        let mut left = DVector::zeros(passive.len());
+        let mut slope = slope.select_rows(&passive).select_columns(&passive);
+        for (i, &joint) in passive.iter().enumerate() {
+            let own = At::new(model, joint, &angle_rad, &pose_rad).own()?;
+            left[i] = gravity_nm[joint] - own.torque_nm;
+            slope[(i, i)] -= own.per_rad;
+        }
+        let Some(step) = slope.lu().solve(&left) else {
+            break;
+        };
+        for (&joint, step) in passive.iter().zip(step.iter()) {
+            angle_rad[joint] -= step.clamp(-LONGEST_STEP_RAD, LONGEST_STEP_RAD);
+        }
+        if step.amax() < SETTLED_RAD {
+            return Ok(convention(model, &angle_rad));
+        }
+    }
+    Err(Error::design(
+        "no equilibrium was found near this pose",
+        "start from a pose nearer to balance",
+    ))
+}
+
+/// Relative angles, the first from hanging, in the model's own convention.
+fn convention(model: &Model, relative_rad: &[f64]) -> Vec<f64> {
+    let zero = model.angle_zero.from_hanging_rad();
+    let mut sum = -zero;
+    let angle = |(joint, &angle): (usize, &f64)| {
+        sum += angle;
+        match model.angles {
+            Angles::Relative if joint == 0 => angle - zero,
+            Angles::Relative => angle,
+            Angles::Absolute => sum,
+        }
+    };
+    relative_rad.iter().enumerate().map(angle).collect()
+}
+
+/// Relative angles, the first from hanging.
+pub(super) fn relative(model: &Model, pose_rad: &[f64]) -> Vec<f64> {
+    let zero = model.angle_zero.from_hanging_rad();
+    let mut before = -zero;
+    let angle = |(joint, &angle): (usize, &f64)| match model.angles {
+        Angles::Relative if joint == 0 => angle + zero,
+        Angles::Relative => angle,
+        Angles::Absolute => angle - std::mem::replace(&mut before, angle),
+    };
+    pose_rad.iter().enumerate().map(angle).collect()
+}
+
+/// One angle per joint, all of them numbers.
+pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<()> {
+    let n = model.link_count();
+    if pose_rad.len() != n {
+        return Err(Error::design(
+            format!(
+                "the pose has {} angles, the model {n} joints",
+                pose_rad.len()
+            ),
+            "give one angle per joint, from the base outwards",
+        ));
+    }
+    match pose_rad.iter().find(|angle| !angle.is_finite()) {
+        None => Ok(()),
+        Some(angle) => Err(Error::design(
+            format!("the pose has an angle of {angle}"),
+            "give angles in rad",
+        )),
+    }
+}

@@ -1,0 +1,327 @@
+//! Choosing the steps of a fixed-point law: powers of two, from declared ranges.
+//!
+//! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift / (input step). It is
+//! made as large as gains and sum allow: every gain fits a word, and sum |k| 2^(bits-1) + |bias| < 2^(2 bits-1), so that no
+//! states whatever overflow the sum. The shift is then as many whole bytes as the input's range needs: an 8-bit machine
+//! shifts by bytes for nothing.
+
+use super::fixed_law::FixedLaw;
+use crate::error::{Error, Result};
+use nalgebra::DMatrix;
+
+/// What a fixed-point law must cover, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranges {
+    /// Largest departure of each state from the operating point.
+    pub state: Vec<f64>,
+    /// Largest magnitude of each input: also its limit.
+    pub input: Vec<f64>,
+}
+
+/// The words of a fixed-point law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Format {
+    /// Word length, 8 to 32; 16 is what ships.
+    pub bits: u32,
+    /// SI value of one step of each state, where a sensor sets it; powers of two otherwise.
+    pub state_step: Option<Vec<f64>>,
+    /// SI value of one step of each input, where a drive sets it.
+    pub input_step: Option<Vec<f64>>,
+}
+
+impl Default for Format {
+    fn default() -> Self {
+        Format {
+            bits: 16,
+            state_step: None,
+            input_step: None,
+        }
+    }
+}
+
+/// The gains `k` (m x n) about the operating point `x0`, `u0` (SI) in fixed point.
+///
+/// # Errors
+/// Ranges that are no positive numbers or do not fit the words.
+pub fn quantise(
+    k: &DMatrix<f64>,
+    x0: &[f64],
+    u0: &[f64],
+    ranges: &Ranges,
+    format: &Format,
+) -> Result<FixedLaw> {
+    let bits = format.bits;
+    if !(8..=32).contains(&bits) {
+        return Err(Error::design(
+            format!("a word of {bits} bits"),
+            "choose 8 to 32 bits",
+        ));
+    }
+    positive("range", "state", &ranges.state, k.ncols())?;
+    positive("range", "input", &ranges.input, k.nrows())?;
+    let word = 2f64.powi(bits as i32 - 1) - 1.0;
+    let reach: Vec<f64> = x0
+        .iter()
+        .zip(&ranges.state)
+        .map(|(x, range)| x.abs() + range)
+        .collect();
+    let state_step = steps("state", format.state_step.as_deref(), &reach, word)?;
+    let mut law = FixedLaw {
+        bits,
+        k: DMatrix::zeros(k.nrows(), k.ncols()),
+        bias: Vec::new(),
+        shift: Vec::new(),
+        limits: Vec::new(),
+        x0: x0
+            .iter()
+            .zip(&state_step)
+            .map(|(x, step)| (x / step).round() as i64)
+            .collect(),
+        state_step,
+        input_step: Vec::new(),
+    };
+    if let Some(given) = &format.input_step {
+        steps("input", Some(given), &ranges.input, word)?;
+    }
+    for i in 0..k.nrows() {
+        let row = Row {
+            weights: (0..k.ncols())
+                .map(|j| k[(i, j)] * law.state_step[j])
+                .collect(),
+            u0: u0[i],
+            range: ranges.input[i],
+            bits,
+        };
+        let (shift, step) = match &format.input_step {
+            Some(given) => row.shift_for(given[i], i)?,
+            None => row.shift_and_step(),
+        };
+        let scale = 2f64.powi(shift as i32) / step;
+        for (j, weight) in row.weights.iter().enumerate() {
+            law.k[(i, j)] = (weight * scale).round() as i64;
+        }
+        let half = if shift == 0 { 0 } else { 1_i64 << (shift - 1) };
+        // The operating point is kept to the fraction that the sum has.
+        law.bias.push((u0[i] * scale).round() as i64 + half);
+        law.shift.push(shift);
+        let limit = (ranges.input[i] / step).round().min(word) as i64;
+        law.limits.push([-limit, limit]);
+        law.input_step.push(step);
+    }
+    Ok(law)
+}
+
+/// One input's gains times the states' steps.
+struct Row {
+    weights: Vec<f64>,
+    u0: f64,
+    range: f64,
+    bits: u32,
+}
+
+impl Row {
+    /// Whether gains and sum fit at this scale.
+    fn fits(&self, scale: f64, shift: u32) -> bool {
+        let word = 2f64.powi(self.bits as i32 - 1);
+        let sum: f64 = self.weights.iter().map(|w| (w * scale).abs().round()).sum();
+        let most = self
+            .weights
+            .iter()
+            .fold(0.0, |most: f64, w| most.max((w * scale).abs().round()));
+        let bias = (self.u0 * scale).abs().round() + 2f64.powi(shift as i32);
+        most < word && sum * word + bias < 2.0 * word * word - 1.0
+    }
+
+    /// The largest scale that fits, and its split into bytes of shift and a step that the range needs.
+    fn shift_and_step(&self) -> (u32, f64) {
+        let word = 2f64.powi(self.bits as i32 - 1) - 1.0;
+        let most_shift = self.bits.next_multiple_of(8);
+        // The step must let the range fit, so 2^shift / step has a largest value for the longest shift.
+        let least_step = power_of_two_above(self.range.max(self.u0.abs()) / word);
+        let mut scale = 2f64.powi(most_shift as i32) / least_step;
+        while !self.fits(scale, most_shift) {
+            scale /= 2.0;
+        }
+        let step = |shift: u32| 2f64.powi(shift as i32) / scale;
+        let enough = |shift: &u32| step(*shift) >= least_step;
+        let shift = (0..=most_shift)
+            .step_by(8)
+            .find(enough)
+            .unwrap_or(most_shift);
+        (shift, step(shift))
+    }
+
+    /// The longest shift that fits with a given step.
+    fn shift_for(&self, step: f64, input: usize) -> Result<(u32, f64)> {
+        let fits = |shift: &u32| self.fits(2f64.powi(*shift as i32) / step, *shift);
+        let shift = (0..2 * self.bits - 1).rev().find(fits).ok_or_else(|| {
+            Error::design(
+                format!(
+                    "the gains of input {} overflow {} bits: the sum over the declared ranges is too large for its step of {step}",
+                    input + 1,
+                    self.bits
+                ),
+                "declare smaller ranges, take a coarser input step, or more bits",
+            )
+        })?;
+        Ok((shift, step))
+    }
+}
+
+fn positive(what: &str, of: &str, values: &[f64], count: usize) -> Result<()> {
+    if values.len() != count {
+        return Err(Error::design(
+            format!(
+                "{} values of {of} {what}, but there are {count} {of}s",
+                values.len()
+            ),
+            format!("give one per {of}, or one for all"),
+        ));
+    }
+    match values
+        .iter()
+        .position(|value| !(*value > 0.0 && value.is_finite()))
+    {
+        None => Ok(()),
+        Some(at) => Err(Error::design(
+            format!("the {what} of {of} {} is {}", at + 1, values[at]),
+            "give a number above 0",
+        )),
+    }
+}
+
+/// Steps that let `reach` fit a word: the given ones, checked, or powers of two.
+fn steps(of: &str, given: Option<&[f64]>, reach: &[f64], word: f64) -> Result<Vec<f64>> {
+    let Some(given) = given else {
+        return Ok(reach
+            .iter()
+            .map(|reach| power_of_two_above(reach / word))
+            .collect());
+    };
+    positive("step", of, given, reach.len())?;
+    let beyond = given
+        .iter()
+        .zip(reach)
+        .position(|(step, reach)| reach / step > word);
+    match beyond {
+        None => Ok(given.to_vec()),
+        Some(at) => Err(Error::design(
+            format!(
+                "{of} {} reaches {:.0} steps of {}, but a word holds {word}",
+                at + 1,
+                reach[at] / given[at],
+                given[at]
+            ),
+            "declare a smaller range, a coarser step, or more bits",
+        )),
+    }
+}
+
+fn power_of_two_above(value: f64) -> f64 {
+    2f64.powi(value.log2().ceil() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use handstand_shared::gains::GainTable;
+    use handstand_shared::law::control;
+    use proptest::prelude::*;
+
+    fn table(law: &FixedLaw) -> GainTable<2, 6> {
+        GainTable::from_bytes(&law.bytes()).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn sixteen_bits_are_the_shared_law_bit_for_bit(
+            gains in prop::collection::vec(-200.0f64..200.0, 12),
+            x0 in prop::collection::vec(-2.0f64..2.0, 6),
+            u0 in prop::collection::vec(-1.0f64..1.0, 2),
+            range in prop::collection::vec(0.01f64..10.0, 8),
+            x in prop::collection::vec(any::<i16>(), 6),
+        ) {
+            let k = DMatrix::from_row_slice(2, 6, &gains);
+            let ranges = Ranges { state: range[..6].to_vec(), input: range[6..].to_vec() };
+            let law = quantise(&k, &x0, &u0, &ranges, &Format::default()).unwrap();
+            let table = table(&law);
+            prop_assert!(table.is_safe());
+            prop_assert_eq!(table.fingerprint(), law.fingerprint());
+            let wide: Vec<i64> = x.iter().map(|x| i64::from(*x)).collect();
+            let x: [i16; 6] = x.try_into().unwrap();
+            let u: Vec<i64> = control(&table, &x).iter().map(|u| i64::from(*u)).collect();
+            prop_assert_eq!(u, law.raw(&wide));
+        }
+
+        /// Every word length stays within the bound it states, for all states within the ranges.
+        #[test]
+        fn the_error_stays_within_its_bound(
+            bits in 8u32..=32,
+            gains in prop::collection::vec(-200.0f64..200.0, 4),
+            x0 in prop::collection::vec(-2.0f64..2.0, 2),
+            u0 in prop::collection::vec(-1.0f64..1.0, 2),
+            range in prop::collection::vec(0.01f64..10.0, 2),
+            share in prop::collection::vec(-1.0f64..1.0, 2),
+        ) {
+            let k = DMatrix::from_row_slice(2, 2, &gains);
+            let ranges = Ranges { state: range.clone(), input: vec![1e4; 2] };
+            let format = Format { bits, ..Format::default() };
+            let law = quantise(&k, &x0, &u0, &ranges, &format).unwrap();
+            for peak in law.peaks() {
+                prop_assert!(peak < 1 << (2 * bits - 1));
+            }
+            let plant = crate::synth::Discrete {
+                a: DMatrix::identity(2, 2),
+                b: DMatrix::identity(2, 2),
+                c: DMatrix::identity(2, 2),
+                ts_s: 0.01,
+                delayed_inputs: 0,
+            };
+            let exact = crate::synth::Gains { k: k.clone(), riccati: k.clone(), residual: 0.0, poles: Vec::new() };
+            let loss = law.loss(&plant, &exact, &x0, &u0, &range).unwrap();
+            let off: Vec<f64> = (0..2).map(|j| share[j] * range[j]).collect();
+            let x: Vec<f64> = (0..2).map(|j| x0[j] + off[j]).collect();
+            let u = law.control(&x);
+            for i in 0..2 {
+                let real = u0[i] - k[(i, 0)] * off[0] - k[(i, 1)] * off[1];
+                let bound = loss.gain_error[i] + loss.state_error[i] + loss.input_error[i];
+                let slack = 1e-9 * (1.0 + real.abs());
+                prop_assert!((u[i] - real).abs() <= bound + slack, "{} {real} {bound}", u[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_sensor_s_steps_are_kept_or_refused() {
+        let k = DMatrix::from_row_slice(1, 2, &[30.0, 4.0]);
+        let ranges = Ranges {
+            state: vec![1.0, 10.0],
+            input: vec![2.0],
+        };
+        let mut format = Format {
+            state_step: Some(vec![0.005, 0.5]),
+            input_step: Some(vec![0.002]),
+            ..Format::default()
+        };
+        let law = quantise(&k, &[0.0; 2], &[0.0], &ranges, &format).unwrap();
+        assert_eq!((law.input_step[0], law.limits[0]), (0.002, [-1000, 1000]));
+        assert!((law.gain() - &k).amax() < 1e-3);
+        format.state_step = Some(vec![1e-6, 0.5]);
+        let error = quantise(&k, &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();
+        assert!(error.to_string().contains("1000000 steps"), "{error}");
+        assert_eq!(error.exit_code(), 3);
+        format.state_step = Some(vec![0.005, 0.5]);
+        format.input_step = Some(vec![1e-4]);
+        let error = quantise(&(1000.0 * &k), &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();
+        assert!(error.to_string().contains("overflow 16 bits"), "{error}");
+        let empty = Ranges {
+            state: vec![1.0, 0.0],
+            input: vec![2.0],
+        };
+        let error = quantise(&k, &[0.0; 2], &[0.0], &empty, &Format::default()).unwrap_err();
+        assert!(
+            error.to_string().contains("range of state 2 is 0"),
+            "{error}"
+        );
+    }
+}

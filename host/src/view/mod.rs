@@ -1,0 +1,7 @@
+//! A motion as a page that plays it: one file, nothing loaded from elsewhere.
+
+mod page;
+mod scene;
+
+pub use page::html;
+pub use scene::{DrawnLink, DrawnMotion, Input, Kind, Scene, Track};

@@ -1,0 +1,209 @@
+//! Frames of the PC line: `COBS(body)`, three check bytes, `00`.
+//!
+//! COBS (Cheshire & Baker 1999) leaves no zero inside, so a zero always ends a frame and one frame's damage stays in it.
+//! The CRC-16 runs over the *stuffed* bytes as they lie on the line: over the body alone, one flipped COBS byte would
+//! move bytes about and the code's Hamming distance would be lost. Its 16 bits are sent as `1ccccccc 1ccccccc 100000cc`,
+//! which are never zero; the fixed bits are checked too.
+
+use crate::crc::{START_16, crc16};
+
+/// Longest body, bytes. With stuffing and check it stays below 64, where the CRC keeps Hamming distance 4.
+pub const MAX_BODY: usize = 59;
+/// Longest frame, the final zero included.
+pub const MAX_FRAME: usize = wire_length(MAX_BODY);
+const CHECK: usize = 3;
+
+/// Bytes on the line of a frame with this body.
+pub const fn wire_length(body: usize) -> usize {
+    body + 1 + CHECK + 1
+}
+
+/// Why bytes between two zeros are no frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrameError {
+    /// Fewer or more bytes than a frame has.
+    Length,
+    /// The check does not fit.
+    Check,
+    /// The check fits, but the stuffing is none.
+    Stuffing,
+}
+
+/// Writes the frame of `body` into `out`; its length, or nothing if the body is too long.
+pub fn encode(body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    if body.len() > MAX_BODY {
+        return None;
+    }
+    let stuffed = body.len() + 1;
+    // From the back: how far the next zero is, is then known.
+    let mut distance = 1;
+    for (at, byte) in body.iter().enumerate().rev() {
+        let zero = *byte == 0;
+        *out.get_mut(at + 1)? = if zero { distance } else { *byte };
+        distance = if zero { 1 } else { distance + 1 };
+    }
+    *out.first_mut()? = distance;
+    let check = check_bytes(out.get(..stuffed)?);
+    let tail = out.get_mut(stuffed..stuffed + CHECK + 1)?;
+    let ending = check.iter().chain(&[0]);
+    tail.iter_mut()
+        .zip(ending)
+        .for_each(|(slot, byte)| *slot = *byte);
+    Some(stuffed + CHECK + 1)
+}
+
+/// The body of a frame given without its final zero; it is unstuffed in place.
+pub fn decode(frame: &mut [u8]) -> Result<&[u8], FrameError> {
+    let Some(stuffed) = frame
+        .len()
+        .checked_sub(CHECK)
+        .filter(|n| (1..=MAX_BODY + 1).contains(n))
+    else {
+        return Err(FrameError::Length);
+    };
+    let (stuffed, check) = frame
+        .split_at_mut_checked(stuffed)
+        .ok_or(FrameError::Length)?;
+    if check_bytes(stuffed) != check {
+        return Err(FrameError::Check);
+    }
+    let (&mut first, body) = stuffed.split_first_mut().ok_or(FrameError::Length)?;
+    let mut until_zero = first;
+    for byte in body.iter_mut() {
+        until_zero = until_zero.wrapping_sub(1);
+        match (until_zero, *byte) {
+            (_, 0) => return Err(FrameError::Stuffing),
+            (0, next) => {
+                until_zero = next;
+                *byte = 0;
+            }
+            _ => {}
+        }
+    }
+    match until_zero {
+        1 => Ok(body),
+        _ => Err(FrameError::Stuffing),
+    }
+}
+
+fn check_bytes(stuffed: &[u8]) -> [u8; CHECK] {
+    let crc = crc16(START_16, stuffed);
+    [
+        0x80 | (crc >> 9) as u8,
+        0x80 | (crc >> 2) as u8,
+        0x80 | (crc & 3) as u8,
+    ]
+}
+
+/// Finds frames in a stream of bytes.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    bytes: [u8; MAX_FRAME],
+    /// Bytes since the last zero; more than fit means that they can be no frame.
+    used: u8,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Decoder {
+            bytes: [0; MAX_FRAME],
+            used: 0,
+        }
+    }
+}
+
+impl Decoder {
+    /// Takes the next byte; the body, or what is wrong, when it ends a frame. Repeated zeros are idle line.
+    pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], FrameError>> {
+        if byte != 0 {
+            if let Some(slot) = self.bytes.get_mut(usize::from(self.used)) {
+                *slot = byte;
+                self.used += 1;
+            }
+            return None;
+        }
+        let used = usize::from(core::mem::take(&mut self.used));
+        match self.bytes.get_mut(..used) {
+            None | Some([]) => None,
+            Some(frame) => Some(decode(frame)),
+        }
+    }
+
+    /// Forgets what was collected.
+    pub fn reset(&mut self) {
+        self.used = 0;
+    }
+
+    /// Whether the line is between two frames.
+    pub fn is_idle(&self) -> bool {
+        self.used == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn framed(body: &[u8]) -> ([u8; MAX_FRAME], usize) {
+        let mut out = [0; MAX_FRAME];
+        let length = encode(body, &mut out).unwrap();
+        assert_eq!(length, wire_length(body.len()));
+        (out, length)
+    }
+
+    #[test]
+    fn a_frame_literally() {
+        let (out, length) = framed(&[0x11, 0x00, 0x22]);
+        let crc = crc16(START_16, &[2, 0x11, 2, 0x22]);
+        let check = [
+            0x80 | (crc >> 9) as u8,
+            0x80 | (crc >> 2) as u8 & 0x7f,
+            0x80 | crc as u8 & 3,
+        ];
+        assert_eq!(&out[..4], [2, 0x11, 2, 0x22]);
+        assert_eq!(&out[4..length], [check[0], check[1], check[2], 0]);
+    }
+
+    #[test]
+    fn too_long_a_body_is_not_framed_and_too_long_a_frame_not_accepted() {
+        assert_eq!(encode(&[1; MAX_BODY + 1], &mut [0; MAX_FRAME]), None);
+        let mut decoder = Decoder::default();
+        for _ in 0..1000 {
+            assert_eq!(decoder.push(7), None);
+        }
+        assert_eq!(decoder.push(0), Some(Err(FrameError::Length)));
+        let (out, length) = framed(&[1; MAX_BODY]);
+        let bodies = out[..length]
+            .iter()
+            .filter_map(|b| decoder.push(*b).map(|r| r.map(<[u8]>::len)));
+        assert!(bodies.eq([Ok(MAX_BODY)]));
+    }
+
+    proptest! {
+        #[test]
+        fn every_body_survives(body in proptest::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..=MAX_BODY)) {
+            let (out, length) = framed(&body);
+            prop_assert!(!out[..length - 1].contains(&0));
+            let mut decoder = Decoder::default();
+            for byte in &out[..length - 1] {
+                prop_assert_eq!(decoder.push(*byte), None);
+            }
+            prop_assert_eq!(decoder.push(0), Some(Ok(&body[..])));
+        }
+
+        #[test]
+        fn any_bytes_are_taken_and_the_second_frame_after_them_is_found(garbage in proptest::collection::vec(any::<u8>(), 0..300), body in proptest::collection::vec(any::<u8>(), 1..=MAX_BODY)) {
+            let mut decoder = Decoder::default();
+            for byte in garbage {
+                decoder.push(byte);
+            }
+            let (out, length) = framed(&body);
+            for byte in &out[..length] {
+                decoder.push(*byte);
+            }
+            let last = out[..length].iter().filter_map(|b| decoder.push(*b).map(|r| r == Ok(&body[..]))).last();
+            prop_assert_eq!(last, Some(true));
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The control law: u = sat(u0 - K (x - x0)), with one rounding and one saturation.
+
+use crate::fixed::{mac, saturate, shift_right};
+use crate::gains::{GainTable, Row};
+
+#[cfg(target_arch = "avr")]
+mod avr;
+
+/// The inputs for the states `x`, both in the table's steps.
+///
+/// Exact up to its one rounding for every `x`, if the table is safe ([`GainTable::is_safe`]).
+#[inline]
+pub fn control<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i16; M] {
+    let mut u = [0; M];
+    let sums = sums(table, x);
+    for ((u, row), sum) in u.iter_mut().zip(&table.rows).zip(sums) {
+        *u = finish(sum, row);
+    }
+    u
+}
+
+/// The one rounding and the one saturation.
+#[inline]
+fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
+    match row.shift {
+        // What is left has 16 bits, and an 8-bit machine compares it in half the time.
+        16 => ((sum >> 16) as i16).min(row.high).max(row.low),
+        shift => saturate(shift_right(sum, shift), row.low, row.high),
+    }
+}
+
+/// bias - K (x - x0), wrapping.
+#[inline]
+fn sums<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i32; M] {
+    #[cfg(target_arch = "avr")]
+    if let Some(sums) = avr::fast(table, x) {
+        return sums;
+    }
+    let mut departure = [0; N];
+    for ((departure, x), x0) in departure.iter_mut().zip(x).zip(&table.x0) {
+        *departure = x.saturating_sub(*x0);
+    }
+    let mut sums = [0; M];
+    for (sum, row) in sums.iter_mut().zip(&table.rows) {
+        *sum = row.bias.wrapping_sub(mac(&row.k, &departure));
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against integers too wide to overflow.
+        #[test]
+        fn it_is_the_law(
+            k in prop::array::uniform2(prop::array::uniform6(-10_000i16..10_000)),
+            u0 in prop::array::uniform2(-1000i16..1000),
+            shift in prop::array::uniform2(0u8..17),
+            limit in prop::array::uniform2(0i16..i16::MAX),
+            x0 in prop::array::uniform6(any::<i16>()),
+            x in prop::array::uniform6(any::<i16>()),
+        ) {
+            let bias = [0, 1].map(|i| (i32::from(u0[i]) << shift[i]) + crate::fixed::half(shift[i]));
+            let limits = limit.map(|limit| [-limit, limit]);
+            let table = GainTable::new(k, bias, shift, limits, x0);
+            prop_assume!(table.is_safe());
+            let u = control(&table, &x);
+            for i in 0..2 {
+                let departure = |j: usize| (i64::from(x[j]) - i64::from(x0[j])).clamp(-32_768, 32_767);
+                let sum: i64 = (0..6).map(|j| i64::from(k[i][j]) * departure(j)).sum();
+                let exact = f64::from(u0[i]) - sum as f64 / 2f64.powi(i32::from(shift[i]));
+                let rounded = (exact + 0.5).floor().clamp(-f64::from(limit[i]), f64::from(limit[i]));
+                prop_assert_eq!(f64::from(u[i]), rounded);
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The law of two inputs and six states in the AVR's own words: the sums `bias - K (x - x0)`.
+//!
+//! The compiler's product of two 16-bit values takes 110 cycles; here it takes 25: four 8-bit products and their sum.
+#![allow(unsafe_code)]
+
+use crate::gains::{GainTable, Row};
+use core::arch::asm;
+use core::mem::{offset_of, size_of};
+
+/// The sums, if the table is of two inputs and six states.
+#[inline(always)]
+pub fn fast<const M: usize, const N: usize>(
+    table: &GainTable<M, N>,
+    x: &[i16; N],
+) -> Option<[i32; M]> {
+    if M != 2 || N != 6 {
+        return None;
+    }
+    // SAFETY: with M = 2 and N = 6 these are the same types.
+    let (table, x) = unsafe {
+        let table = (&raw const *table).cast::<GainTable<2, 6>>();
+        (&*table, &*(&raw const *x).cast::<[i16; 6]>())
+    };
+    let sums = sums(table, x);
+    let mut out = [0; M];
+    out.iter_mut().zip(sums).for_each(|(out, sum)| *out = sum);
+    Some(out)
+}
+
+/// Both sums, wrapping, for the states `x`.
+#[inline(always)]
+fn sums(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i32; 2] {
+    const ROWS: usize = offset_of!(GainTable<2, 6>, rows);
+    const ROW: usize = size_of::<Row<6>>();
+    const K: usize = ROWS + offset_of!(Row<6>, k);
+    const X0: usize = offset_of!(GainTable<2, 6>, x0);
+    // Every field is reached by a displacement from one pointer, of which the AVR has six bits.
+    const { assert!(K + ROW + 12 <= 64 && X0 + 12 <= 64) };
+    let [first, second] = &table.rows;
+    let (mut low0, mut high0) = (first.bias as u16, (first.bias >> 16) as u16);
+    let (mut low1, mut high1) = (second.bias as u16, (second.bias >> 16) as u16);
+    // SAFETY: reads 12 bytes from X and within the table from Z; r1 is zero again at the end.
+    unsafe {
+        asm!(
+            ".macro handstand_mac a0, a1, a2, a3",
+            "muls r21, r23",        // high x high
+            "movw r18, r0",
+            "mul r20, r22",         // low x low
+            "sub \\a0, r0",
+            "sbc \\a1, r1",
+            "sbc \\a2, r18",
+            "sbc \\a3, r19",
+            "mulsu r21, r22",       // high x low, in the middle; the carry is its sign
+            "adc \\a3, r24",
+            "sub \\a1, r0",
+            "sbc \\a2, r1",
+            "sbc \\a3, r24",
+            "mulsu r23, r20",       // low x high
+            "adc \\a3, r24",
+            "sub \\a1, r0",
+            "sbc \\a2, r1",
+            "sbc \\a3, r24",
+            ".endm",
+            "clr r24",
+            ".irp j, 0, 2, 4, 6, 8, 10",
+            "ld r20, X+",
+            "ld r21, X+",
+            "ldd r22, Z+{x0}+\\j",
+            "ldd r23, Z+{x0}+\\j+1",
+            "sub r20, r22",
+            "sbc r21, r23",
+            "brvc 2f",
+            // Beyond 16 bits: the largest of the sign the exact difference has.
+            "ldi r20, 0xff",
+            "ldi r22, 0x7f",
+            "brmi 1f",
+            "ldi r20, 0x00",
+            "ldi r22, 0x80",
+            "1: mov r21, r22",
+            "2: ldd r22, Z+{k}+\\j",
+            "ldd r23, Z+{k}+\\j+1",
+            "handstand_mac {low0:l}, {low0:h}, {high0:l}, {high0:h}",
+            "ldd r22, Z+{k1}+\\j",
+            "ldd r23, Z+{k1}+\\j+1",
+            "handstand_mac {low1:l}, {low1:h}, {high1:l}, {high1:h}",
+            ".endr",
+            "clr r1",
+            ".purgem handstand_mac",
+            x0 = const X0,
+            k = const K,
+            k1 = const K + ROW,
+            low0 = inout(reg_pair) low0,
+            high0 = inout(reg_pair) high0,
+            low1 = inout(reg_pair) low1,
+            high1 = inout(reg_pair) high1,
+            inout("X") x.as_ptr() => _,
+            in("Z") table,
+            out("r18") _,
+            out("r19") _,
+            out("r20") _,
+            out("r21") _,
+            out("r22") _,
+            out("r23") _,
+            out("r24") _,
+            options(nostack, readonly),
+        );
+    }
+    let join = |low: u16, high: u16| (u32::from(high) << 16 | u32::from(low)) as i32;
+    [join(low0, high0), join(low1, high1)]
+}

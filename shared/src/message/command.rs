@@ -1,0 +1,130 @@
+//! From the host to the CM-5.
+
+use crate::packed::{Positions, SERVOS, Speeds};
+use serde::{Deserialize, Serialize};
+
+/// Bytes of gain table in one message.
+pub const GAIN_CHUNK: usize = 32;
+
+/// What the host may say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Command {
+    /// Opens the talk; answered by [`super::Report::Hello`]. Its form never changes.
+    Hello {
+        /// [`super::VERSION`] of the host.
+        version: u8,
+    },
+    /// Changes the state; torque goes off on the way.
+    Mode(Mode),
+    /// Says which servos there are.
+    Roster(Roster),
+    /// Goal positions, in the roster's order. Obeyed from the next tick on, if armed.
+    Goals(Positions),
+    /// Speed commands for wheel mode, as [`crate::raw::Signed`], in the roster's order.
+    Speeds(Speeds),
+    /// The first link's attitude, where the host measures it.
+    Attitude(Attitude),
+    /// The host is there and has nothing to say.
+    KeepAlive,
+    /// Torque off, now.
+    Disarm,
+    /// Asks for a report.
+    Ask(Subject),
+    /// Asks for a piece of the stored gain table.
+    GainRead {
+        /// Its first byte.
+        offset: u16,
+    },
+    /// Torque on. Critical.
+    Arm {
+        /// The token of the last [`super::Hello`]: a new one after every boot and every fault, so that an old frame arms nothing.
+        token: u16,
+    },
+    /// A piece of a new gain table. Critical; refused while armed.
+    GainChunk {
+        /// Its first byte, a multiple of [`GAIN_CHUNK`].
+        offset: u16,
+        /// The piece; what lies behind the table's end is ignored.
+        bytes: [u8; GAIN_CHUNK],
+    },
+    /// The table is complete: check it, then keep it. Critical; answered when it is in EEPROM.
+    GainStore {
+        /// Bytes of the table.
+        length: u16,
+        /// CRC-32 of them.
+        check: u32,
+    },
+}
+
+/// What the firmware does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mode {
+    /// A plain adapter: bytes go through.
+    Bridge,
+    /// Group reads and goals at 100 Hz.
+    Stream,
+    /// Balance on board.
+    Balance,
+}
+
+/// What a report can be asked about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Subject {
+    /// [`super::Telemetry`].
+    Telemetry,
+    /// [`super::Statistics`].
+    Statistics,
+}
+
+/// The servos, in the order of goals and positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Roster {
+    /// How many of `ids` count, at most [`SERVOS`].
+    pub count: u8,
+    /// Their ids.
+    pub ids: [u8; SERVOS],
+}
+
+impl Roster {
+    /// The first `count` ids, at most [`SERVOS`] of them.
+    pub fn ids(&self) -> &[u8] {
+        let count = usize::from(self.count).min(SERVOS);
+        self.ids.get(..count).unwrap_or(&self.ids)
+    }
+
+    /// Whether it can be used: 1 to [`SERVOS`] different ids below 254.
+    pub fn is_sound(&self) -> bool {
+        let ids = self.ids();
+        let differs = |at: usize, id: u8| ids.iter().skip(at + 1).all(|other| *other != id);
+        (1..=SERVOS as u8).contains(&self.count)
+            && (ids.iter().enumerate()).all(|(at, id)| *id < 254 && differs(at, *id))
+    }
+}
+
+impl Default for Roster {
+    /// The Bioloid humanoid: 1 to 18.
+    fn default() -> Self {
+        let mut ids = [0; SERVOS];
+        (ids.iter_mut().zip(1..)).for_each(|(slot, id)| *slot = id);
+        Roster {
+            count: SERVOS as u8,
+            ids,
+        }
+    }
+}
+
+/// The first link against upright.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Attitude {
+    /// Angle from upright, [`Attitude::ANGLE_LSB_RAD`] each.
+    pub angle: i16,
+    /// Angular velocity, [`Attitude::RATE_LSB_RAD_S`] each.
+    pub rate: i16,
+}
+
+impl Attitude {
+    /// One unit of `angle`, rad; the range is +-3.27 rad.
+    pub const ANGLE_LSB_RAD: f64 = 1e-4;
+    /// One unit of `rate`, rad/s; the range is +-32.7 rad/s.
+    pub const RATE_LSB_RAD_S: f64 = 1e-3;
+}

@@ -1,0 +1,149 @@
+use super::*;
+use crate::frame::{Decoder, wire_length};
+use crate::packed::{Positions, SERVOS, Speeds};
+use proptest::prelude::*;
+
+fn round_trip<M: Message + PartialEq + core::fmt::Debug>(sequence: u8, message: M) -> usize {
+    let mut out = [0; MAX_FRAME];
+    let length = encode(sequence, &message, &mut out).expect("it fits");
+    let mut decoder = Decoder::default();
+    let (last, before) = out[..length].split_last().unwrap();
+    assert!(before.iter().all(|byte| decoder.push(*byte).is_none()));
+    let body = decoder.push(*last).unwrap().unwrap();
+    assert_eq!(decode(body), Ok(Numbered { sequence, message }));
+    length
+}
+
+fn stream_report() -> StreamReport {
+    StreamReport {
+        tick: u16::MAX,
+        condition: Condition::Fault(Cause::LinkLost),
+        obeyed: 255,
+        positions: Positions::pack([1023; SERVOS]),
+        missing: [0; 3],
+        slow_from: 17,
+        slow: [Slow::default(); 2],
+    }
+}
+
+/// 57600 baud carries 57 bytes per 10 ms each way.
+#[test]
+fn what_goes_every_tick_fits_the_line() {
+    assert_eq!(round_trip(255, Report::Stream(stream_report())), 53);
+    assert_eq!(
+        round_trip(255, Command::Goals(Positions::pack([1023; SERVOS]))),
+        30
+    );
+    assert_eq!(
+        round_trip(255, Command::Speeds(Speeds::pack([2047; SERVOS]))),
+        32
+    );
+}
+
+#[test]
+fn the_largest_messages_fit_a_frame() {
+    let full = Statistics {
+        frames: u16::MAX,
+        bad_frames: u16::MAX,
+        lost_frames: u16::MAX,
+        overruns: u16::MAX,
+        answers: u16::MAX,
+        timeouts: u16::MAX,
+        garbled: u16::MAX,
+        strangers: u16::MAX,
+        retries: u16::MAX,
+        missed: [u8::MAX; SERVOS],
+    };
+    round_trip(1, Report::Statistics(full));
+    let bytes = [0xff; GAIN_CHUNK];
+    let (offset, length) = (u16::MAX, u16::MAX);
+    round_trip(
+        2,
+        Report::GainChunk {
+            offset,
+            length,
+            bytes,
+        },
+    );
+    round_trip(3, Command::GainChunk { offset, bytes });
+}
+
+#[test]
+fn a_critical_message_without_its_own_check_is_refused() {
+    let arm = [9, 10, 0x34];
+    assert_eq!(decode::<Command>(&arm), Err(MessageError::Check));
+    let mut checked = [9, 10, 0x34, 0, 0, 0, 0];
+    checked[3..].copy_from_slice(&crc32(&arm).to_le_bytes());
+    let message = Command::Arm { token: 0x34 };
+    assert_eq!(
+        decode(&checked),
+        Ok(Numbered {
+            sequence: 9,
+            message
+        })
+    );
+    for bit in 0..checked.len() * 8 {
+        let mut flipped = checked;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(Numbered { message, .. }) = decode::<Command>(&flipped) {
+            assert!(!message.is_critical(), "{message:?}");
+        }
+    }
+}
+
+#[test]
+fn hello_keeps_its_form_for_ever() {
+    assert_eq!(
+        decode(&[7, 0, 1]),
+        Ok(Numbered {
+            sequence: 7,
+            message: Command::Hello { version: 1 }
+        })
+    );
+}
+
+#[test]
+fn a_message_with_something_behind_it_is_refused() {
+    assert_eq!(decode::<Command>(&[7, 0, 1, 0]), Err(MessageError::Content));
+    assert_eq!(decode::<Command>(&[]), Err(MessageError::Content));
+}
+
+#[test]
+fn the_slow_channels_go_around() {
+    let report = stream_report();
+    assert!(report.slow(18).map(|(place, _)| place).eq([17, 0]));
+    assert!(report.is_present(17) && !report.is_present(24));
+    assert_eq!(report.position(17), Some(1023));
+}
+
+#[test]
+fn a_roster_with_an_id_twice_is_not_sound() {
+    let mut roster = Roster::default();
+    assert!(roster.is_sound());
+    roster.ids[3] = roster.ids[9];
+    assert!(!roster.is_sound());
+    roster.count = 5;
+    assert!(roster.is_sound());
+    roster.count = 0;
+    assert!(!roster.is_sound());
+}
+
+proptest! {
+    #[test]
+    fn commands_survive(sequence: u8, codes: [u16; SERVOS], token: u16, length: u16, check: u32, bytes: [u8; GAIN_CHUNK], angle: i16, rate: i16, ids: [u8; SERVOS], count: u8) {
+        for command in [
+            Command::Goals(Positions::pack(codes)), Command::Speeds(Speeds::pack(codes)), Command::Arm { token },
+            Command::GainChunk { offset: length, bytes }, Command::GainStore { length, check }, Command::Disarm, Command::KeepAlive,
+            Command::Attitude(Attitude { angle, rate }), Command::Roster(Roster { count, ids }),
+            Command::Mode(Mode::Balance), Command::Ask(Subject::Statistics), Command::GainRead { offset: length },
+        ] {
+            let length = round_trip(sequence, command);
+            prop_assert!(length <= wire_length(MAX_BODY));
+        }
+    }
+
+    #[test]
+    fn any_body_is_read_without_a_panic(body in proptest::collection::vec(any::<u8>(), 0..MAX_BODY)) {
+        let _ = (decode::<Command>(&body), decode::<Report>(&body));
+    }
+}

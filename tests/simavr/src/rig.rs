@@ -1,0 +1,228 @@
+//! The controller, its servos and its PC, in one time: cycles of the controller.
+
+use crate::core::{CPU_HZ, Core, Event};
+use handstand::bus_sim::Bus;
+use handstand_shared::frame::{Decoder, MAX_FRAME};
+use handstand_shared::message::{Command, Report, decode, encode};
+use std::collections::VecDeque;
+use std::path::Path;
+
+/// 62.5 ns.
+fn to_ns(cycle: u64) -> u64 {
+    cycle * 1_000_000_000 / CPU_HZ
+}
+
+fn to_cycle(ns: u64) -> u64 {
+    (ns * CPU_HZ).div_ceil(1_000_000_000)
+}
+
+const TRANSMIT: u8 = 1 << 2;
+const RECEIVE: u8 = 1 << 3;
+
+/// What was noticed while running.
+#[derive(Debug, Clone, Default)]
+pub struct Seen {
+    /// Reports that arrived whole, each with the cycle of its last stop bit.
+    pub reports: Vec<(u64, Report)>,
+    /// Frames that arrived damaged.
+    pub bad_frames: usize,
+    /// Cycles in which the controller was reset.
+    pub resets: Vec<u64>,
+    /// Direction changes before the last stop bit, and bytes sent while not transmitting: always a fault.
+    pub direction_faults: usize,
+    /// The most bytes that ever waited unread at the bus's receiver; the hardware holds two.
+    pub most_waiting: usize,
+    /// Bytes on the bus in either direction.
+    pub bus_bytes: u64,
+    /// Bytes to the PC.
+    pub link_bytes: u64,
+    /// Port B's charger pin was driven low.
+    pub charged: bool,
+    /// Raw bytes to the PC, for the transparent adapter.
+    pub raw: Vec<u8>,
+    /// Marks on port A.
+    pub marks: Vec<(u64, u8)>,
+}
+
+/// The bench.
+pub struct Rig {
+    /// The controller.
+    pub core: Core,
+    /// The servos.
+    pub bus: Bus,
+    /// What was noticed.
+    pub seen: Seen,
+    port_e: u8,
+    /// When the bus byte in the transmitter will be out.
+    bus_free: u64,
+    link_free: u64,
+    /// Bytes from the PC, each with the cycle its start bit begins.
+    to_link: VecDeque<(u64, u8)>,
+    decoder: Decoder,
+    sequence: u8,
+}
+
+impl Rig {
+    /// A controller that just got power, with 18 servos.
+    ///
+    /// # Errors
+    /// The ELF cannot be loaded.
+    pub fn new(elf: &Path) -> Result<Rig, String> {
+        let mut core = Core::load(elf)?;
+        // Buttons up, link plugged in, gyro at rest.
+        (4..8).for_each(|pin| core.pin('E', pin, true));
+        core.pin('D', 0, true);
+        core.pin('D', 7, true);
+        core.adc(3, 2500);
+        // Erased, not zero.
+        core.eeprom().fill(0xff);
+        Ok(Rig {
+            core,
+            bus: Bus::new(1..=18),
+            seen: Seen::default(),
+            port_e: 0,
+            bus_free: 0,
+            link_free: 0,
+            to_link: VecDeque::new(),
+            decoder: Decoder::default(),
+            sequence: 0,
+        })
+    }
+
+    /// Milliseconds since power-on.
+    pub fn now_ms(&self) -> f64 {
+        self.core.cycle() as f64 / (CPU_HZ as f64 / 1000.0)
+    }
+
+    /// Runs on for this long, ms.
+    pub fn run_ms(&mut self, ms: f64) {
+        let until = self.core.cycle() + (ms * CPU_HZ as f64 / 1000.0) as u64;
+        self.run_until(until);
+    }
+
+    /// Runs until this cycle.
+    pub fn run_until(&mut self, until: u64) {
+        while self.core.cycle() < until {
+            self.feed();
+            let next = self.next_event().min(until).max(self.core.cycle() + 1);
+            for event in self.core.run(next) {
+                self.notice(event);
+            }
+            self.seen.most_waiting = self.seen.most_waiting.max(self.core.waiting(0));
+        }
+    }
+
+    /// When the next byte for the controller begins; at most a short step away, for servos answer within 18 us.
+    fn next_event(&self) -> u64 {
+        let bus = self.bus.next_ns().map(begin_of_bus_byte);
+        let link = self.to_link.front().map(|(begin, _)| *begin);
+        let step = self.core.cycle() + 4000;
+        bus.into_iter().chain(link).fold(step, u64::min)
+    }
+
+    fn feed(&mut self) {
+        let now = self.core.cycle();
+        while let Some(ns) = self.bus.next_ns()
+            && begin_of_bus_byte(ns) <= now
+        {
+            let Some((_, byte)) = self.bus.take(ns) else {
+                break;
+            };
+            self.seen.bus_bytes += 1;
+            // Only a bus that listens hears.
+            if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE {
+                self.core.uart_in(0, byte);
+            }
+        }
+        while let Some((begin, byte)) = self.to_link.front().copied()
+            && begin <= now
+        {
+            self.to_link.pop_front();
+            self.core.uart_in(1, byte);
+        }
+    }
+
+    fn notice(&mut self, event: Event) {
+        match event {
+            Event::Bus(cycle, byte) => {
+                let begin = cycle.max(self.bus_free);
+                self.bus_free = begin + self.core.byte_cycles(0);
+                self.seen.bus_bytes += 1;
+                if self.port_e & (TRANSMIT | RECEIVE) == TRANSMIT {
+                    self.bus.hear(to_ns(self.bus_free), byte);
+                } else {
+                    self.seen.direction_faults += 1;
+                }
+            }
+            Event::Link(cycle, byte) => {
+                let begin = cycle.max(self.link_free);
+                self.link_free = begin + self.core.byte_cycles(1);
+                self.seen.link_bytes += 1;
+                self.seen.raw.push(byte);
+                match self
+                    .decoder
+                    .push(byte)
+                    .map(|body| body.map(decode::<Report>))
+                {
+                    Some(Ok(Ok(report))) => {
+                        self.seen.reports.push((self.link_free, report.message))
+                    }
+                    Some(_) => self.seen.bad_frames += 1,
+                    None => {}
+                }
+            }
+            Event::PortE(cycle, value) => {
+                let turned = (self.port_e ^ value) & TRANSMIT != 0;
+                // A few cycles of slack: the flag that says "sent" comes with the stop bit's end.
+                if turned && cycle + 8 < self.bus_free {
+                    self.seen.direction_faults += 1;
+                }
+                self.port_e = value;
+            }
+            Event::PortB(_, value) => self.seen.charged |= value & 1 << 5 == 0,
+            Event::PortC(..) => {}
+            Event::Mark(cycle, value) => self.seen.marks.push((cycle, value)),
+            Event::Reset(cycle) => {
+                self.seen.resets.push(cycle);
+                self.port_e = 0;
+                self.bus_free = 0;
+                self.link_free = 0;
+            }
+        }
+    }
+
+    /// Queues raw bytes from the PC, at the line's own pace; when the last will have arrived, cycles.
+    pub fn type_bytes(&mut self, bytes: &[u8]) -> u64 {
+        const BYTE: u64 = CPU_HZ * 10 / 57_600;
+        let mut begin = self.core.cycle();
+        if let Some((last, _)) = self.to_link.back() {
+            begin = begin.max(last + BYTE);
+        }
+        for byte in bytes {
+            self.to_link.push_back((begin, *byte));
+            begin += BYTE;
+        }
+        begin
+    }
+
+    /// Queues a command in its frame; when its last byte will have arrived, cycles.
+    pub fn say(&mut self, command: &Command) -> u64 {
+        let mut frame = [0; MAX_FRAME + 1];
+        let body: &mut [u8; MAX_FRAME] = (&mut frame[1..]).try_into().expect("its length");
+        let length = encode(self.sequence, command, body).expect("every command fits");
+        self.sequence = self.sequence.wrapping_add(1);
+        // The zero in front ends whatever noise came before, and tells a frame from a servo's packet.
+        let from = usize::from(!matches!(command, Command::Hello { .. } | Command::Mode(_)));
+        self.type_bytes(&frame[from..=length])
+    }
+
+    /// Sequence number of the command said last.
+    pub fn last_sequence(&self) -> u8 {
+        self.sequence.wrapping_sub(1)
+    }
+}
+
+/// The cycle in which a servo's byte begins that has arrived at this moment.
+fn begin_of_bus_byte(end_ns: u64) -> u64 {
+    to_cycle(end_ns - handstand::bus_sim::BYTE_NS)
+}

@@ -1,0 +1,159 @@
+// A small face of simavr: run until something happens, and say what.
+//
+// Corrected here: simavr lets a byte of 8N1 take 11 bits; cycles_per_byte is set to 10 whenever it changes. Polling a
+// USART never sleeps on the host. The ADC gets its voltages.
+
+#include <stdlib.h>
+#include <string.h>
+#include "sim_avr.h"
+#include "sim_elf.h"
+#include "sim_io.h"
+#include "avr_uart.h"
+#include "avr_ioport.h"
+#include "avr_eeprom.h"
+#include "avr_adc.h"
+
+enum { EVENT_BUS = 1, EVENT_LINK = 2, EVENT_PORT_E = 3, EVENT_PORT_B = 4, EVENT_RESET = 5, EVENT_PORT_C = 6, EVENT_MARK = 7 };
+
+struct event { uint64_t cycle; uint32_t kind; uint32_t value; };
+#define EVENTS 256
+
+struct rig {
+	avr_t *avr;
+	avr_uart_t *uart[2];
+	uint64_t corrected[2];
+	struct event events[EVENTS];
+	uint32_t used;
+	void (*core_reset)(avr_t *);
+};
+
+static struct rig *the_resetting;
+
+static void note(struct rig *rig, uint32_t kind, uint32_t value) {
+	if (rig->used < EVENTS) {
+		struct event e = { rig->avr->cycle, kind, value };
+		rig->events[rig->used++] = e;
+	}
+}
+
+static void on_bus(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_BUS, value & 0xff); }
+static void on_link(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_LINK, value & 0xff); }
+static void on_port_e(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_E, value & 0xff); }
+static void on_port_b(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_B, value & 0xff); }
+static void on_port_c(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_C, value & 0xff); }
+static void on_port_a(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_MARK, value & 0xff); }
+
+// Each rig is used by one thread, and a reset happens within its rig_run.
+static __thread struct rig *running;
+
+static void on_reset(avr_t *avr) {
+	if (running && running->avr == avr) {
+		note(running, EVENT_RESET, 0);
+		if (running->core_reset) running->core_reset(avr);
+	}
+}
+
+static void no_sleep(avr_t *avr, avr_cycle_count_t cycles) {}
+static void no_log(avr_t *avr, const int level, const char *format, va_list ap) {}
+
+static avr_uart_t *find_uart(avr_t *avr, char name) {
+	for (avr_io_t *io = avr->io_port; io; io = io->next)
+		if (io->kind && !strcmp(io->kind, "uart") && ((avr_uart_t *)io)->name == name)
+			return (avr_uart_t *)io;
+	return NULL;
+}
+
+struct rig *rig_new(const char *elf) {
+	elf_firmware_t firmware;
+	memset(&firmware, 0, sizeof firmware);
+	avr_global_logger_set(no_log);
+	if (elf_read_firmware(elf, &firmware)) return NULL;
+	struct rig *rig = calloc(1, sizeof *rig);
+	avr_t *avr = rig->avr = avr_make_mcu_by_name("atmega128");
+	if (!avr) { free(rig); return NULL; }
+	avr_init(avr);
+	avr->log = LOG_NONE;
+	avr->frequency = 16000000;
+	firmware.frequency = 16000000;
+	avr_load_firmware(avr, &firmware);
+	avr->vcc = avr->avcc = avr->aref = 5000;
+	avr->sleep = no_sleep;
+	avr->run_cycle_limit = 40;
+	rig->core_reset = avr->reset;
+	avr->reset = on_reset;
+	for (int i = 0; i < 2; i++) {
+		uint32_t flags = 0;
+		rig->uart[i] = find_uart(avr, '0' + i);
+		avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0' + i), &flags);
+		flags &= ~(AVR_UART_FLAG_POLL_SLEEP | AVR_UART_FLAG_STDIO);
+		avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0' + i), &flags);
+	}
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_bus, rig);
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('1'), UART_IRQ_OUTPUT), on_link, rig);
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('E'), IOPORT_IRQ_REG_PORT), on_port_e, rig);
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), IOPORT_IRQ_REG_PORT), on_port_b, rig);
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_REG_PORT), on_port_c, rig);
+	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('A'), IOPORT_IRQ_REG_PORT), on_port_a, rig);
+	return rig;
+}
+
+void rig_free(struct rig *rig) {
+	avr_terminate(rig->avr);
+	free(rig);
+}
+
+// Runs until the cycle is reached or something happened. 0: time is up, 1: events, -1: the core crashed.
+int rig_run(struct rig *rig, uint64_t until) {
+	avr_t *avr = rig->avr;
+	running = rig;
+	while (avr->cycle < until && rig->used == 0) {
+		int state = avr_run(avr);
+		for (int i = 0; i < 2; i++) {
+			avr_uart_t *uart = rig->uart[i];
+			if (uart->cycles_per_byte != rig->corrected[i])
+				rig->corrected[i] = uart->cycles_per_byte = uart->cycles_per_byte * 10 / 11;
+		}
+		if (state == cpu_Done || state == cpu_Crashed) return -1;
+	}
+	return rig->used != 0;
+}
+
+uint32_t rig_events(struct rig *rig, struct event *out, uint32_t room) {
+	uint32_t count = rig->used < room ? rig->used : room;
+	memcpy(out, rig->events, count * sizeof *out);
+	rig->used = 0;
+	return count;
+}
+
+uint64_t rig_cycle(struct rig *rig) { return rig->avr->cycle; }
+uint8_t *rig_data(struct rig *rig) { return rig->avr->data; }
+uint8_t *rig_flash(struct rig *rig) { return rig->avr->flash; }
+uint32_t rig_pc(struct rig *rig) { return rig->avr->pc; }
+uint64_t rig_byte_cycles(struct rig *rig, int uart) { return rig->uart[uart]->cycles_per_byte; }
+// Bytes received and not yet read by the firmware.
+int rig_waiting(struct rig *rig, int uart) { return (rig->uart[uart]->input.write - rig->uart[uart]->input.read) & 63; }
+
+void rig_uart_in(struct rig *rig, int uart, uint8_t byte) {
+	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_UART_GETIRQ('0' + uart), UART_IRQ_INPUT), byte);
+}
+
+void rig_pin(struct rig *rig, char port, int pin, int level) {
+	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_IOPORT_GETIRQ(port), IOPORT_IRQ_PIN0 + pin), level);
+}
+
+void rig_adc(struct rig *rig, int channel, uint32_t millivolts) {
+	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel), millivolts);
+}
+
+// The pending EEPROM byte, if one is being written, is left to the caller to spoil.
+uint8_t *rig_eeprom(struct rig *rig) {
+	avr_eeprom_desc_t all = { .ee = NULL, .offset = 0, .size = 0 };
+	avr_ioctl(rig->avr, AVR_IOCTL_EEPROM_GET, &all);
+	return all.ee;
+}
+
+// Power off and on again: as a reset with the power-on flag.
+void rig_power_cycle(struct rig *rig) {
+	running = rig;
+	avr_reset(rig->avr);
+}

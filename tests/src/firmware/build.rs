@@ -1,0 +1,81 @@
+//! Building the program: ELF, Intel HEX and the raw bytes a boot loader takes.
+
+use super::toolchain::Toolchain;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The files of one build, beside each other.
+#[derive(Debug, Clone)]
+pub struct Built {
+    /// With symbols, for simavr and debuggers.
+    pub elf: PathBuf,
+    /// For avrdude.
+    pub hex: PathBuf,
+    /// For the CM-5's boot loader.
+    pub bin: PathBuf,
+    /// The control law alone, for the bench.
+    pub law: PathBuf,
+}
+
+impl Built {
+    fn at(folder: &Path) -> Self {
+        let file = |ending| folder.join("handstand-firmware").with_extension(ending);
+        Built {
+            elf: file("elf"),
+            hex: file("hex"),
+            bin: file("bin"),
+            law: folder.join("law.elf"),
+        }
+    }
+}
+
+/// Where builds go: a folder of their own, for another compiler would spoil the host's.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/avr")
+}
+
+/// The last build, if there is one.
+pub fn find_built() -> Option<Built> {
+    let built = Built::at(&folder().join("avr-none/avr"));
+    built.elf.exists().then_some(built)
+}
+
+/// Builds it. The first time the register definitions are generated too, which takes minutes.
+///
+/// # Errors
+/// What failed; the compiler's own messages go to stderr.
+pub fn build(toolchain: &Toolchain) -> Result<Built, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut cargo = toolchain.cargo();
+    cargo.current_dir(root).args([
+        "build",
+        "--locked",
+        "--package",
+        "handstand-firmware",
+        "--bins",
+        "--profile",
+        "avr",
+        "--target",
+        "avr-none",
+        "-Zbuild-std=core",
+        "--target-dir",
+    ]);
+    let status = cargo.arg(folder()).status();
+    if !status.is_ok_and(|status| status.success()) {
+        return Err(format!("{} could not build the firmware", toolchain.name));
+    }
+    let built = Built::at(&folder().join("avr-none/avr"));
+    objcopy(&built.elf, &built.hex, "ihex")?;
+    objcopy(&built.elf, &built.bin, "binary")?;
+    Ok(built)
+}
+
+fn objcopy(elf: &Path, to: &Path, format: &str) -> Result<(), String> {
+    let mut objcopy = Command::new("avr-objcopy");
+    // The EEPROM, if the ELF ever has any, is no part of the flash.
+    objcopy.args(["-O", format, "-R", ".eeprom", "-R", ".fuse", "-R", ".lock"]);
+    match objcopy.arg(elf).arg(to).status() {
+        Ok(status) if status.success() => Ok(()),
+        _ => Err("avr-objcopy (Debian: binutils-avr) failed".into()),
+    }
+}

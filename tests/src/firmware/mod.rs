@@ -1,0 +1,9 @@
+//! Building the CM-5's program, and what the built image is like.
+
+mod build;
+mod image;
+mod toolchain;
+
+pub use build::{Built, build, find_built};
+pub use image::{FLASH_LIMIT, Image, RAM_SIZE};
+pub use toolchain::Toolchain;

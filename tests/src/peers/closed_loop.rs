@@ -1,0 +1,54 @@
+//! Closed-loop runs of the paper's robot, as `closed_loop.py` has them.
+
+use super::dynamics::chain;
+use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use std::time::Instant;
+
+/// Sampled regulator for Q = 100 I, R = I, 10 ms.
+const GAINS: [[f64; 6]; 2] = [
+    [
+        -75.758443, -32.187228, -11.454290, -13.004784, -6.2134254, -2.3441985,
+    ],
+    [
+        -62.056988, -26.928273, -9.0350845, -10.653945, -5.1619377, -1.8225471,
+    ],
+];
+const START_RAD: [f64; 3] = [0.01, -0.02, 0.02];
+const RUN_S: f64 = 5.0;
+
+fn task() -> (ClosedLoop, StateFeedback) {
+    let pose = vec![std::f64::consts::PI, 0.0, 0.0];
+    let plant = Plant::of(chain(3), 0.0, vec![1, 2], pose, 1e-3);
+    let closed = ClosedLoop::ideal(plant.expect("three links, two drives"), 0.01);
+    (
+        closed,
+        StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec()),
+    )
+}
+
+/// 5-s runs per second on that many threads.
+pub fn runs_per_second(threads: usize, runs: usize) -> f64 {
+    let (closed, controller) = task();
+    let starts: Vec<Start> = (0..runs)
+        .map(|i| Start::at(START_RAD.map(|angle| angle + 1e-6 * i as f64)))
+        .collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads can be started").install(|| {
+        let begun = Instant::now();
+        let outcomes = closed.run_all(&controller, &starts, RUN_S, 1);
+        let seconds = begun.elapsed().as_secs_f64();
+        assert!(outcomes.iter().all(|outcome| outcome.survived()));
+        runs as f64 / seconds
+    })
+}
+
+/// Relative angles after `seconds` of one run, deviations from upright, rad.
+pub fn angles_after(seconds: f64) -> Vec<f64> {
+    let (closed, controller) = task();
+    let mut last = Vec::new();
+    let start = Start::at(START_RAD);
+    closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {
+        last = sample.angle_rad.to_vec();
+    });
+    last
+}

@@ -1,0 +1,434 @@
+//! `cargo xtask bench-firmware`: the firmware's promises, measured, one row each.
+//!
+//! Runs the very ELF in simavr against simulated servos; without simavr or an ELF it measures the same logic in process
+//! and says so. simavr lets a byte of 8N1 take 11 bits; the bench sets it to 10, so no time here needs correcting.
+
+use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use handstand_shared::message::Refusal;
+use handstand_shared::velocity::Velocity;
+use handstand_tests::bench::{
+    Balanced, Bench, Conditions, FrameTally, PcRig, StreamRun, Worst, balance, bit_flips,
+    link_loss, patterns, power_cuts, random_bytes, resynchronised, stream,
+};
+use handstand_tests::firmware::{Built, find_built};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+
+/// Measure the firmware: cycles, times, losses and frames.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Only the rows whose name holds this
+    #[arg(long)]
+    only: Option<String>,
+    /// Seconds of streaming
+    #[arg(long, default_value_t = 60.0)]
+    seconds: f64,
+    /// Link losses and hangs
+    #[arg(long, default_value_t = 1000)]
+    losses: usize,
+    /// States on which the two laws are compared
+    #[arg(long, default_value_t = 1_000_000)]
+    states: usize,
+    /// Random bytes fed to the decoder
+    #[arg(long, default_value_t = 1_000_000_000)]
+    bytes: u64,
+    /// Seed of all chance
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Small figures everywhere: a minute instead of many
+    #[arg(long)]
+    quick: bool,
+    /// Print the rows as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A promise, what was measured, and whether it holds.
+struct Row {
+    name: &'static str,
+    measured: String,
+    limit: &'static str,
+    holds: bool,
+    values: Value,
+}
+
+/// Whether every promise holds.
+pub fn run(args: &Args) -> bool {
+    let built = find_built();
+    let on = match (&built, handstand_simavr::AVAILABLE) {
+        (Some(_), true) => "the ELF in simavr",
+        (None, true) => "the logic in process: there is no ELF, `cargo xtask firmware` builds it",
+        (_, false) => "the logic in process: simavr is not installed (Debian: libsimavr-dev)",
+    };
+    eprintln!("Measured on {on}.");
+    let mut rows = Vec::new();
+    for (name, measure) in ROWS {
+        if args
+            .only
+            .as_ref()
+            .is_none_or(|part| name.contains(part.as_str()))
+        {
+            eprintln!("{name} ...");
+            rows.extend(measure(args, built.as_ref()));
+        }
+    }
+    if args.json {
+        let rows: Vec<_> = (rows.iter())
+            .map(|row| json!({"row": row.name, "measured": row.measured, "limit": row.limit, "holds": row.holds, "values": row.values}))
+            .collect();
+        println!("{}", json!({"on": on, "rows": rows}));
+    } else {
+        println!("{}", table(&rows));
+    }
+    rows.iter().all(|row| row.holds)
+}
+
+type Measure = fn(&Args, Option<&Built>) -> Vec<Row>;
+const ROWS: &[(&str, Measure)] = &[
+    ("stream", streams),
+    ("link loss", losses),
+    ("hang", hangs),
+    ("law", laws),
+    ("closed loop", loops),
+    ("power cut", cuts),
+    ("frames", frames),
+];
+
+fn table(rows: &[Row]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_preset(UTF8_HORIZONTAL_ONLY)
+        .set_header(["", "Measured", "Limit", "Holds"]);
+    for row in rows {
+        let holds = if row.holds { "yes" } else { "NO" };
+        table.add_row([row.name, &row.measured, row.limit, holds]);
+    }
+    table
+}
+
+impl Args {
+    fn reduced(&self, full: usize, quick: usize) -> usize {
+        if self.quick { full.min(quick) } else { full }
+    }
+}
+
+fn streams(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    let seconds = if args.quick {
+        args.seconds.min(3.0)
+    } else {
+        args.seconds
+    };
+    #[cfg(simavr)]
+    if let Some(built) = built {
+        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let run = stream(&mut rig, seconds);
+        let mut rows = stream_rows(&run);
+        rows.extend(elf_rows(&run, &rig));
+        return rows;
+    }
+    let _ = built;
+    stream_rows(&stream(&mut PcRig::new(), seconds))
+}
+
+fn stream_rows(run: &StreamRun) -> Vec<Row> {
+    let at = |share| StreamRun::quantile(&run.cycles_ms, share);
+    let trip = |share| StreamRun::quantile(&run.round_trip_ms, share);
+    let jitter = (at(1.0) - 10.0).max(10.0 - at(0.0));
+    let line = 57.6;
+    vec![
+        Row {
+            name: "cycle, 18 servos at 57600 baud",
+            measured: format!(
+                "{:.3} / {:.3} / {:.3} ms over {} reports, jitter {jitter:.3} ms",
+                at(0.0),
+                at(0.5),
+                at(1.0),
+                run.reports.len()
+            ),
+            limit: "10 ms, min / median / max",
+            holds: (at(0.5) - 10.0).abs() < 0.1 && jitter < 2.0,
+            values: json!({"min_ms": at(0.0), "median_ms": at(0.5), "max_ms": at(1.0), "reports": run.reports.len()}),
+        },
+        Row {
+            name: "lost reports, missing positions, bad frames",
+            measured: format!("{}, {}, {}", run.lost, run.missing, run.bad_frames),
+            limit: "0, 0, 0",
+            holds: run.lost + run.missing + run.bad_frames == 0,
+            values: json!({"lost": run.lost, "missing": run.missing, "bad": run.bad_frames}),
+        },
+        Row {
+            name: "bytes per report",
+            measured: format!(
+                "{:.1}, {:.0} % of the line",
+                run.bytes_per_frame,
+                100.0 * run.bytes_per_frame / line
+            ),
+            limit: "57.6 per 10 ms",
+            holds: run.bytes_per_frame <= line,
+            values: json!({"bytes": run.bytes_per_frame}),
+        },
+        Row {
+            name: "goals said to report of obeying heard",
+            measured: format!("{:.1} / {:.1} / {:.1} ms", trip(0.0), trip(0.5), trip(1.0)),
+            limit: "min / median / max",
+            holds: true,
+            values: json!({"min_ms": trip(0.0), "median_ms": trip(0.5), "max_ms": trip(1.0)}),
+        },
+    ]
+}
+
+#[cfg(simavr)]
+fn elf_rows(run: &StreamRun, rig: &handstand_simavr::Rig) -> Vec<Row> {
+    let Some(telemetry) = run.telemetry else {
+        return Vec::new();
+    };
+    let tick = f64::from(telemetry.longest_tick_us) / 10_000.0;
+    let depth = f64::from(telemetry.stack_used);
+    // Of all RAM: what the static data takes is not the stack's.
+    let used = 4096.0 - f64::from(telemetry.stack_size) + depth;
+    vec![
+        Row {
+            name: "longest tick",
+            measured: format!(
+                "{} us, {:.1} % of the period, {} overruns",
+                telemetry.longest_tick_us,
+                100.0 * tick,
+                telemetry.overruns
+            ),
+            limit: "60 %",
+            holds: tick <= 0.6 && telemetry.overruns == 0,
+            values: json!({"longest_tick_us": telemetry.longest_tick_us, "overruns": telemetry.overruns}),
+        },
+        Row {
+            name: "deepest stack, and RAM with static data",
+            measured: format!(
+                "{depth} of {} bytes; {used} of 4096, {:.0} %",
+                telemetry.stack_size,
+                100.0 * used / 4096.0
+            ),
+            limit: "80 % of 4096",
+            holds: used <= 0.8 * 4096.0,
+            values: json!({"stack_bytes": depth, "stack_size_bytes": telemetry.stack_size, "ram_bytes": used}),
+        },
+        Row {
+            name: "bus turned early, receiver's bytes waiting, charger on",
+            measured: format!(
+                "{}, {}, {}",
+                rig.seen.direction_faults, rig.seen.most_waiting, rig.seen.charged
+            ),
+            limit: "0, 2, false",
+            holds: rig.seen.direction_faults == 0
+                && rig.seen.most_waiting <= 2
+                && !rig.seen.charged,
+            values: json!({"direction_faults": rig.seen.direction_faults, "most_waiting": rig.seen.most_waiting, "charged": rig.seen.charged}),
+        },
+    ]
+}
+
+fn losses(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    fn many(bench: &mut impl Bench, count: usize, seed: u64) -> Worst {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut worst = Worst::default();
+        (0..count).for_each(|_| worst.add(link_loss(bench, &mut rng)));
+        worst
+    }
+    let count = args.reduced(args.losses, 10);
+    #[cfg(simavr)]
+    if let Some(built) = built {
+        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        return loss_row(many(&mut rig, count, args.seed));
+    }
+    let _ = built;
+    loss_row(many(&mut PcRig::new(), count, args.seed))
+}
+
+fn loss_row(worst: Worst) -> Vec<Row> {
+    let Worst {
+        tried,
+        failed,
+        soft_ms,
+        off_ms,
+    } = worst;
+    vec![Row {
+        name: "link loss: soft, torque off",
+        measured: format!("{tried} tried, {failed} failed, worst {soft_ms:.0} and {off_ms:.0} ms"),
+        limit: "100 and 300 ms",
+        holds: failed == 0 && soft_ms <= 100.0 && off_ms <= 300.0,
+        values: json!({"tried": tried, "failed": failed, "soft_ms": soft_ms, "off_ms": off_ms}),
+    }]
+}
+
+#[cfg(simavr)]
+fn hangs(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    let Some(built) = built else {
+        return Vec::new();
+    };
+    let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+    let mut rng = ChaCha8Rng::seed_from_u64(args.seed);
+    let mut worst = Worst::default();
+    let count = args.reduced(args.losses, 10);
+    (0..count).for_each(|_| worst.add(handstand_tests::bench::hang(&mut rig, &mut rng)));
+    let Worst {
+        tried,
+        failed,
+        off_ms,
+        ..
+    } = worst;
+    vec![Row {
+        name: "hang: torque off on the wire",
+        measured: format!("{tried} tried, {failed} failed, worst {off_ms:.0} ms"),
+        limit: "150 ms",
+        holds: failed == 0 && off_ms <= 150.0,
+        values: json!({"tried": tried, "failed": failed, "off_ms": off_ms}),
+    }]
+}
+
+#[cfg(not(simavr))]
+fn hangs(_: &Args, _: Option<&Built>) -> Vec<Row> {
+    eprintln!("Left out: only the ELF can hang, and simavr is not installed");
+    Vec::new()
+}
+
+#[cfg(simavr)]
+fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    use handstand_tests::bench::{LawRun, law};
+    let Some(built) = built else {
+        return Vec::new();
+    };
+    let count = args.reduced(args.states, 5000);
+    let LawRun {
+        states,
+        different,
+        least,
+        most,
+        most_other,
+    } = law(&built.law, count, args.seed);
+    vec![
+        Row {
+            name: "law 2 x 6 on the AVR against the host's",
+            measured: format!("{states} states, {different} different"),
+            limit: "0",
+            holds: different == 0,
+            values: json!({"states": states, "different": different}),
+        },
+        Row {
+            name: "law 2 x 6, cycles",
+            measured: format!("{least} to {most} at a shift of 16; to {most_other} at others"),
+            limit: "500 at a shift of 16",
+            holds: most <= 500,
+            values: json!({"least": least, "most": most, "most_other_shift": most_other}),
+        },
+    ]
+}
+
+#[cfg(not(simavr))]
+fn laws(_: &Args, _: Option<&Built>) -> Vec<Row> {
+    eprintln!("Left out: the law's cycles are the AVR's, and simavr is not installed");
+    Vec::new()
+}
+
+fn loops(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    let conditions = Conditions {
+        weight: 10.0,
+        dead_zone: 0.08,
+        velocity: Velocity {
+            fraction: 4,
+            share: 128,
+        },
+        start_rad: 0.0,
+    };
+    let seconds = if args.quick { 2.0 } else { 5.0 };
+    #[cfg(simavr)]
+    if let Some(built) = built {
+        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        return loop_row(balance(&mut rig, &conditions, seconds), seconds);
+    }
+    let _ = built;
+    loop_row(balance(&mut PcRig::new(), &conditions, seconds), seconds)
+}
+
+fn loop_row(outcome: Result<Balanced, Option<Refusal>>, seconds: f64) -> Vec<Row> {
+    let stood_s = outcome.as_ref().map_or(0.0, |balanced| balanced.stood_s);
+    let measured = match outcome {
+        Ok(Balanced {
+            stood_s, rms_rad, ..
+        }) => format!(
+            "stood {stood_s:.2} of {seconds} s, {:.1} mrad rms after the first",
+            1e3 * rms_rad
+        ),
+        Err(refusal) => format!("refused: {refusal:?}"),
+    };
+    vec![Row {
+        name: "three links balanced on board: DLQR 10 I, 10-bit positions, dead zone 8 %, 2 N m",
+        measured,
+        limit: "stands",
+        holds: stood_s >= seconds,
+        values: json!({"stood_s": stood_s, "of_s": seconds}),
+    }]
+}
+
+fn cuts(args: &Args, _: Option<&Built>) -> Vec<Row> {
+    let torn: Vec<u8> = (0..=255).step_by(if args.quick { 85 } else { 5 }).collect();
+    let tally = power_cuts(&torn);
+    vec![Row {
+        name: "power cut at every EEPROM byte (logic in process)",
+        measured: format!(
+            "{} cuts: old {}, new {}, neither {}",
+            tally.cuts, tally.old, tally.new, tally.neither
+        ),
+        limit: "neither 0",
+        holds: tally.neither == 0,
+        values: json!({"cuts": tally.cuts, "old": tally.old, "new": tally.new, "neither": tally.neither}),
+    }]
+}
+
+fn frames(args: &Args, _: Option<&Built>) -> Vec<Row> {
+    let row = |name, tally: FrameTally, count: u64| Row {
+        name,
+        measured: format!("{} tried, {} accepted", tally.tried, count),
+        limit: "0",
+        holds: count == 0,
+        values: json!({"tried": tally.tried, "accepted": tally.wrong, "critical": tally.critical}),
+    };
+    let five = patterns(if args.quick { 4 } else { 5 }, args.seed);
+    let short = bit_flips(12, args.reduced(100, 10), args.seed);
+    let mut rows = vec![
+        row("1 to 5 wrong bits of a 12-byte frame", five, five.wrong),
+        row(
+            "1 to 3 wrong bits of 12-byte frames, 100 payloads",
+            short,
+            short.wrong,
+        ),
+    ];
+    if !args.quick {
+        let long = bit_flips(52, 20, args.seed);
+        rows.push(row(
+            "1 to 3 wrong bits of reports of 52 bytes, 20 payloads",
+            long,
+            long.wrong,
+        ));
+    }
+    let bytes = if args.quick {
+        args.bytes.min(10_000_000)
+    } else {
+        args.bytes
+    };
+    let random = random_bytes(bytes, args.seed);
+    rows.push(Row {
+        measured: format!(
+            "{bytes} bytes: {} arm, torque or gain frames; {} other bodies passed the CRC-16",
+            random.critical, random.wrong
+        ),
+        ..row("random bytes", random, random.critical)
+    });
+    let lost = resynchronised(args.reduced(100_000, 1000), args.seed);
+    rows.push(Row {
+        name: "frames lost after garbage",
+        measured: format!("at most {lost}"),
+        limit: "2",
+        holds: lost <= 2,
+        values: json!({"lost": lost}),
+    });
+    rows
+}

@@ -1,0 +1,80 @@
+//! `cargo xtask firmware`: builds the CM-5's program, says what it takes, and refuses what must not be in it.
+
+use handstand_tests::firmware::{self, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolchain};
+use serde_json::json;
+
+/// Build the CM-5's program: ELF, HEX and BIN.
+#[derive(Debug, Default, clap::Args)]
+pub struct Args {
+    /// Print sizes and files as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Whether it was built and may be flashed.
+pub fn run(args: &Args) -> bool {
+    match made() {
+        Ok((toolchain, built, image)) => {
+            show(args, toolchain.name, &built, &image);
+            is_fit(&image)
+        }
+        Err(why) => {
+            eprintln!("{why}");
+            false
+        }
+    }
+}
+
+fn made() -> Result<(Toolchain, Built, Image), String> {
+    let toolchain = Toolchain::find()?;
+    eprintln!(
+        "Building with {}; the first time takes minutes.",
+        toolchain.name
+    );
+    let built = firmware::build(&toolchain)?;
+    let image = Image::of(&built)?;
+    Ok((toolchain, built, image))
+}
+
+fn show(args: &Args, toolchain: &str, built: &Built, image: &Image) {
+    let Image {
+        flash,
+        ram,
+        forbidden,
+    } = image;
+    if args.json {
+        println!(
+            "{}",
+            json!({
+                "toolchain": toolchain, "elf": built.elf, "hex": built.hex, "bin": built.bin,
+                "flash_bytes": flash, "flash_limit_bytes": FLASH_LIMIT, "ram_bytes": ram, "ram_size_bytes": RAM_SIZE,
+                "forbidden_symbols": forbidden,
+            })
+        );
+        return;
+    }
+    let share = |part: usize, whole: usize| 100.0 * part as f64 / whole as f64;
+    println!(
+        "Flash  {flash:6} of {FLASH_LIMIT} bytes, {:.1} %",
+        share(*flash, FLASH_LIMIT)
+    );
+    println!(
+        "RAM    {ram:6} of   {RAM_SIZE} bytes static, {:.1} %; {} are left for the stack",
+        share(*ram, RAM_SIZE),
+        RAM_SIZE - ram
+    );
+    println!("Stack  how deep it gets is measured by `cargo xtask bench-firmware`");
+    println!("ELF    {}", built.elf.display());
+    println!("HEX    {}", built.hex.display());
+    println!("BIN    {}", built.bin.display());
+}
+
+fn is_fit(image: &Image) -> bool {
+    for symbol in &image.forbidden {
+        eprintln!("Not fit to be flashed: it links {symbol}");
+    }
+    if image.flash >= FLASH_LIMIT {
+        eprintln!("Not fit to be flashed: it would overwrite the boot loader");
+    }
+    image.forbidden.is_empty() && image.flash < FLASH_LIMIT
+}

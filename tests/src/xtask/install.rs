@@ -1,0 +1,120 @@
+//! What the tests need beside cargo: said, and installed where it can be.
+
+use super::program::{self, found, is_root};
+use std::path::Path;
+use std::process::Command;
+
+/// Programs or files that some tests need, and the Debian packages that bring them.
+#[derive(Debug)]
+pub struct Need {
+    /// What it is called.
+    pub name: &'static str,
+    /// Which tests need it, as in "for the test that renders a report".
+    pub wanted_for: &'static str,
+    /// It is here if one of these is a program on the path or an absolute path that exists.
+    pub signs: &'static [&'static str],
+    /// Debian's packages.
+    pub packages: &'static [&'static str],
+}
+
+/// Every need; a new one is one entry.
+pub const NEEDS: &[Need] = &[
+    Need {
+        name: "Chromium",
+        wanted_for: "the tests that render pages",
+        signs: &["chromium", "chromium-browser", "google-chrome"],
+        packages: &["chromium"],
+    },
+    Need {
+        name: "Slurm",
+        wanted_for: "the test of the recipe for job arrays",
+        signs: &["slurmctld", "/usr/sbin/slurmctld"],
+        packages: &["slurm-wlm"],
+    },
+    Need {
+        name: "GNU parallel",
+        wanted_for: "the test of the recipe for several processes",
+        signs: &["parallel"],
+        packages: &["parallel"],
+    },
+    Need {
+        name: "The AVR's linker",
+        wanted_for: "the build and the tests of the firmware's ELF",
+        signs: &["avr-gcc"],
+        packages: &["gcc-avr", "binutils-avr", "avr-libc"],
+    },
+    Need {
+        name: "A Rust compiler with its sources",
+        wanted_for: "the build and the tests of the firmware's ELF",
+        signs: &["/usr/lib/rustlib/src/rust/library/core/Cargo.toml"],
+        packages: &["rustc-web", "rust-web-src", "cargo-web"],
+    },
+    Need {
+        name: "simavr",
+        wanted_for: "the tests of the firmware's ELF",
+        signs: &["/usr/include/simavr/sim_avr.h"],
+        packages: &["libsimavr-dev", "simavr"],
+    },
+];
+
+impl Need {
+    /// Whether it is here.
+    pub fn is_met(&self) -> bool {
+        let (paths, programs): (Vec<&str>, Vec<&str>) =
+            self.signs.iter().partition(|sign| sign.starts_with('/'));
+        paths.iter().any(|path| Path::new(path).exists()) || found(&programs)
+    }
+}
+
+/// Says what is needed and installs what is not here; what cannot be installed is said, and its tests skipped.
+pub fn all() {
+    for need in NEEDS {
+        let Need {
+            name, wanted_for, ..
+        } = need;
+        match obstacle(need) {
+            None if need.is_met() => println!("{name}, for {wanted_for}: here already."),
+            None => bring(need),
+            Some(why) => println!("{name}, for {wanted_for}: {why}; they are skipped."),
+        }
+    }
+}
+
+fn obstacle(need: &Need) -> Option<&'static str> {
+    if need.is_met() {
+        None
+    } else if !found(&["apt-get"]) {
+        Some("no apt-get here")
+    } else if !is_root() {
+        Some("only root may install it")
+    } else {
+        None
+    }
+}
+
+fn bring(need: &Need) {
+    println!(
+        "{}, for {}: installing {} by apt-get.",
+        need.name,
+        need.wanted_for,
+        need.packages.join(" ")
+    );
+    // The lists of packages may be missing or stale; they are renewed only when they did not serve.
+    let well = install(need) || (apt(&["update"]) && install(need));
+    if !well || !need.is_met() {
+        println!(
+            "{} could not be installed; {} are skipped.",
+            need.name, need.wanted_for
+        );
+    }
+}
+
+fn install(need: &Need) -> bool {
+    let words = ["install", "--yes", "--no-install-recommends"];
+    apt(&[&words, need.packages].concat())
+}
+
+fn apt(words: &[&str]) -> bool {
+    let mut apt = Command::new("apt-get");
+    program::run(apt.args(words).env("DEBIAN_FRONTEND", "noninteractive"))
+}
