@@ -142,6 +142,12 @@ pub trait Effect: Sync + fmt::Debug {
         angle_rad
     }
 
+    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long changed by
+    /// `speed_rad_s`; `None` where the past decides.
+    fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
+        None
+    }
+
     /// Derivative of the law with the rig at rest, for linear models; `None` where the law has none. Bodies and
     /// delays need none: they are taken as they are.
     fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {

@@ -49,6 +49,10 @@ impl Effect for SensorLag {
         &CARD
     }
 
+    fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
+        Some(values[0] * speed_rad_s)
+    }
+
     fn sense(
         &self,
         values: &[f64],

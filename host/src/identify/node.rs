@@ -110,7 +110,7 @@ impl Node {
             }
         }
         Start {
-            angle_rad: plant.decode_rad(&self.reading_rad),
+            angle_rad: plant.decode_rad(&plant.ahead_rad(&self.reading_rad, &self.speed_rad_s)),
             speed_rad_s: speed,
         }
     }

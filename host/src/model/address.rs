@@ -10,7 +10,7 @@ use std::str::FromStr;
 impl FromStr for ParameterPath {
     type Err = Error;
 
-    /// Reads a path as [`Display`](fmt::Display) writes it.
+    /// Reads a path as [`Display`](std::fmt::Display) writes it.
     ///
     /// # Errors
     /// [`Error::Usage`] with the nearest known name.

@@ -123,6 +123,32 @@ impl Plant {
             .fold(true_angle, |angle, e| e.effect.encode(e.values(), angle))
     }
 
+    /// How fast those readings change, rad/s, at these relative speeds.
+    pub(super) fn encoded_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
+        let true_speed = match self.absolute {
+            true => speed_rad_s[..=joint].iter().sum::<f64>(),
+            false => speed_rad_s[joint],
+        };
+        let encode = |x: f64| {
+            let effects = self.joints[joint].encode.iter();
+            effects.fold(x, |angle, e| e.effect.encode(e.values(), angle))
+        };
+        // Encoders are straight lines.
+        (encode(1.0) - encode(0.0)) * true_speed
+    }
+
+    /// What the encoders would read without the sensors that trail, where these read `reading_rad` and the readings
+    /// change by `speed_rad_s`.
+    pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
+        let joints = self.joints.iter().zip(reading_rad).zip(speed_rad_s);
+        joints
+            .map(|((joint, reading), speed)| {
+                let trail = |e: &Active| e.effect.trail_rad(e.values(), *speed);
+                reading + joint.sense.iter().filter_map(trail).sum::<f64>()
+            })
+            .collect()
+    }
+
     /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes `encoded_rad`.
     pub fn decode_rad(&self, reading_rad: &[f64]) -> Vec<f64> {
         let mut angles = Vec::with_capacity(reading_rad.len());

@@ -50,6 +50,7 @@ pub fn predict(
         n
     ];
     let mut cursors = vec![0; n];
+    recorder.begin(plant, start);
     recorder.step(plant, &stepper.angle, 0.0);
     recorder.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
@@ -136,6 +137,21 @@ impl<'a> Recorder<'a> {
         Recorder {
             memory,
             reading: vec![0.0; plant.len()],
+        }
+    }
+
+    /// Sensors that trail begin as far behind as they are in steady motion: a stretch may begin at speed.
+    fn begin(&mut self, plant: &Plant, start: &Start) {
+        let mut cells = self.memory.cells.iter_mut();
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            let mut reading = plant.encoded_rad(joint, &start.angle_rad);
+            let speed = plant.encoded_rad_s(joint, &start.speed_rad_s);
+            for (active, cell) in plan.sense.iter().zip(&mut cells) {
+                if let Some(trail) = active.effect.trail_rad(active.values(), speed) {
+                    *cell = Some([reading, reading - trail]);
+                    reading -= trail;
+                }
+            }
         }
     }
 
