@@ -67,7 +67,7 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
     let rows: [(&str, &str, (String, Shown)); 16] = [
         (
             "Are the delays of serial line, CM-5 and RS485 compatible with the sampling time?",
-            "handstand paper",
+            "handstand delays",
             delays(computed)?,
         ),
         (
@@ -148,8 +148,11 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
         ),
         (
             "Future work: sliding-mode control; the servo's transfer function in the controller's model",
-            "handstand study",
-            ("Not part of this command.".to_string(), Shown::Not),
+            "handstand controllers",
+            there(
+                "Both are among the controllers there: a sliding mode, alone and with an observer, and an LQR whose model has \
+                 the servo's transfer function; each is tried under every trouble, alone and together.",
+            ),
         ),
     ];
     let numbered = rows.into_iter().enumerate();
