@@ -70,13 +70,11 @@ fn sums(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i32; 2] {
             "sub r20, r22",
             "sbc r21, r23",
             "brvc 2f",
-            // Beyond 16 bits: the largest of the sign the exact difference has.
-            "ldi r20, 0xff",
-            "ldi r22, 0x7f",
-            "brmi 1f",
-            "ldi r20, 0x00",
-            "ldi r22, 0x80",
-            "1: mov r21, r22",
+            // Beyond 16 bits: 7fff or 8000, the larger one where the wrapped difference is negative.
+            "lsl r21",
+            "sbc r20, r20",
+            "mov r21, r20",
+            "subi r21, 0x80",
             "2: ldd r22, Z+{k}+\\j",
             "ldd r23, Z+{k}+\\j+1",
             "handstand_mac {low0:l}, {low0:h}, {high0:l}, {high0:h}",

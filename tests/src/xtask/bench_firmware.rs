@@ -394,9 +394,13 @@ fn frames(args: &Args, _: Option<&Built>) -> Vec<Row> {
     let five = patterns(if args.quick { 4 } else { 5 }, args.seed);
     let short = bit_flips(12, args.reduced(100, 10), args.seed);
     let mut rows = vec![
-        row("1 to 5 wrong bits of a 12-byte frame", five, five.wrong),
         row(
-            "1 to 3 wrong bits of 12-byte frames, 100 payloads",
+            "1 to 5 wrong bits of a 12-byte frame (--quick: 4)",
+            five,
+            five.wrong,
+        ),
+        row(
+            "1 to 3 wrong bits of 12-byte frames, 100 payloads (--quick: 10)",
             short,
             short.wrong,
         ),
