@@ -10,7 +10,7 @@ const HIGH: usize = 26;
 /// An SVG page: `fields[i][j]` is the share that controller `rows[i]` holds under `columns[j]`.
 pub fn picture(title: &str, rows: &[&str], columns: &[&str], fields: &[Vec<f64>]) -> String {
     let (width, height) = (
-        LEFT + WIDE * columns.len() + 40,
+        LEFT + WIDE * columns.len() + 100,
         TOP + HIGH * rows.len() + 20,
     );
     let svg = html! {
