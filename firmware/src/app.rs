@@ -1,15 +1,19 @@
 //! What the firmware does: its states, one tick, and the commands.
 
+use crate::balance::{Balance, Stop};
 use crate::board::{Board, since_us};
 use crate::bus;
 use crate::design::{FADE_TICKS, LOW_ROUNDS, LOW_SUPPLY, SILENT_TICKS, TICK_US};
 use crate::filter::{Filter, Way};
 use crate::link::Link;
-use crate::panel::{Buttons, leds};
+use crate::panel::{Buttons, button, leds};
 use crate::servos::Servos;
-use crate::slots::Writer;
+use crate::slots::{Stored, Writer};
 use handstand_shared::control_table::TORQUE_LIMIT;
-use handstand_shared::message::{Cause, Condition, Mode, Report, Roster, Statistics, StreamReport};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::message::{
+    Attitude, Cause, Condition, Mode, Report, Roster, Statistics, StreamReport,
+};
 use handstand_shared::packed::{Positions, SERVOS, Speeds};
 use handstand_shared::raw::{Signed, TorqueLimit};
 
@@ -64,6 +68,8 @@ pub struct App {
     buttons: Buttons,
     writer: Writer,
     wish: Wish,
+    balance: Option<Balance>,
+    attitude: Attitude,
     /// Sequence number of the frame `wish` came in.
     obeyed: u8,
     /// What arming must bring; none before a greeting and after every fault.
@@ -97,6 +103,8 @@ impl App {
             buttons: Buttons::default(),
             writer: Writer::default(),
             wish: Wish::Stay,
+            balance: None,
+            attitude: Attitude::default(),
             obeyed: 0,
             token: None,
             ticks: 0,
@@ -173,6 +181,8 @@ impl App {
     }
 
     /// Everything that happens once per period.
+    // One function of everything would be too long for the AVR's relative jumps: its parts stay apart.
+    #[inline(never)]
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();
         self.ticks = self.ticks.wrapping_add(1);
@@ -202,6 +212,7 @@ impl App {
     }
 
     /// Torque off: reads and reports.
+    #[inline(never)]
     fn watch<B: Board>(&mut self, board: &mut B, started: u16) -> State {
         self.servos.read(board, &mut self.statistics, started);
         self.report(board);
@@ -217,6 +228,7 @@ impl App {
     }
 
     /// Goals first, for their delay counts most; then reads and reports.
+    #[inline(never)]
     fn stream<B: Board>(&mut self, board: &mut B, started: u16) -> State {
         if let Some(cause) = self.must_stop() {
             return self.soften(board, started, cause, State::Stream);
@@ -235,9 +247,41 @@ impl App {
         self.watch(board, started)
     }
 
-    /// Not yet: nothing can arm in this state.
+    /// Reads, then the law at once, then the report.
+    #[inline(never)]
     fn balance<B: Board>(&mut self, board: &mut B, started: u16) -> State {
-        self.soften(board, started, Cause::Fallen, State::Balance)
+        if let Some(cause) = self.must_stop() {
+            return self.soften(board, started, cause, State::Balance);
+        }
+        self.servos.read(board, &mut self.statistics, started);
+        let law_started = board.clock();
+        let gyro = board.gyro();
+        let Some(balance) = &mut self.balance else {
+            return self.give_up(board, Cause::Fallen);
+        };
+        balance.sense(self.attitude, gyro);
+        let states = match balance.states(&self.servos) {
+            Ok(states) => states,
+            Err(Stop::Fallen) => return self.give_up(board, Cause::Fallen),
+            Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
+        };
+        // A servo that went limp leaves the other ones to throw the robot.
+        let limp = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
+        if self.servos.errors.0 & limp != 0 {
+            return self.give_up(board, Cause::ServoError);
+        }
+        let commands = balance.commands(&states);
+        let law_us = since_us(board, law_started);
+        self.longest_law_us = self.longest_law_us.max(law_us);
+        self.servos.turn(board, commands);
+        self.report(board);
+        self.state
+    }
+
+    /// Torque off at once: there is nothing left to hold.
+    fn give_up<B: Board>(&mut self, board: &mut B, cause: Cause) -> State {
+        self.disarm(board);
+        State::Fault(cause)
     }
 
     /// Whether an armed robot must be let down.
@@ -260,6 +304,7 @@ impl App {
     }
 
     /// Holds the positions and begins to fade.
+    #[inline(never)]
     fn soften<B: Board>(
         &mut self,
         board: &mut B,
@@ -268,7 +313,8 @@ impl App {
         within: fn(Drive) -> State,
     ) -> State {
         // A servo in wheel mode has no position to hold: it stops.
-        if matches!(self.wish, Wish::Speeds(_)) {
+        let balanced = matches!(self.state, State::Balance(_));
+        if balanced || matches!(self.wish, Wish::Speeds(_)) {
             let mut ids = [0; SERVOS];
             let all = self.servos.all();
             (ids.iter_mut().zip(all)).for_each(|(id, servo)| *id = servo.id);
@@ -281,6 +327,7 @@ impl App {
     }
 
     /// Lowers every servo's torque limit in equal steps; at none, torque goes off.
+    #[inline(never)]
     fn fade<B: Board>(
         &mut self,
         board: &mut B,
@@ -307,6 +354,7 @@ impl App {
         self.wish = Wish::Stay;
     }
 
+    #[inline(never)]
     fn report<B: Board>(&mut self, board: &mut B) {
         let all = self.servos.all();
         // A bit that moves on: shifting by a variable costs the AVR a loop.
@@ -329,6 +377,7 @@ impl App {
     }
 
     /// Buttons and LEDs.
+    #[inline(never)]
     fn panel<B: Board>(&mut self, board: &mut B) {
         let pressed = self.buttons.pressed(board.buttons());
         if pressed != 0 {
@@ -344,8 +393,8 @@ impl App {
         board.set_leds(lit);
     }
 
-    /// Any button stops a robot that is armed.
-    fn press<B: Board>(&mut self, board: &mut B, _pressed: u8) {
+    /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the host arms.
+    fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
             State::Stream(Drive::On | Drive::Soft { .. }) => {
                 self.disarm(board);
@@ -355,8 +404,12 @@ impl App {
                 self.disarm(board);
                 self.state = State::Balance(Drive::Off);
             }
-            State::Bridge | State::Stream(Drive::Off) | State::Balance(Drive::Off) => {}
-            State::Fault(_) => {}
+            State::Bridge | State::Stream(Drive::Off) => {
+                if pressed & button::START != 0 {
+                    self.enter(board, Mode::Balance);
+                }
+            }
+            State::Balance(Drive::Off) | State::Fault(_) => {}
         }
     }
 
@@ -371,6 +424,7 @@ impl App {
     }
 
     /// Changes the mode; torque is off on the way.
+    #[inline(never)]
     fn enter<B: Board>(&mut self, board: &mut B, mode: Mode) {
         self.disarm(board);
         self.state = match mode {
@@ -378,5 +432,9 @@ impl App {
             Mode::Stream => State::Stream(Drive::Off),
             Mode::Balance => State::Balance(Drive::Off),
         };
+        if mode == Mode::Balance {
+            let plan = Stored::newest(board).and_then(|stored| stored.plan(board));
+            self.balance = plan.map(Balance::new);
+        }
     }
 }

@@ -100,6 +100,7 @@ impl Servos {
     }
 
     /// Reads all positions, and the slow channels of two servos in turn. A silent servo costs its own time only.
+    #[inline(never)]
     pub fn read<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics, started: u16) {
         self.begin_round();
         let slow_next = self.after(self.slow_from);

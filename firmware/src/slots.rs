@@ -7,6 +7,7 @@
 use crate::board::Board;
 use handstand_shared::crc::extend32;
 use handstand_shared::message::GAIN_CHUNK;
+use handstand_shared::plan::Plan;
 
 /// Longest gain table, bytes.
 pub const MAX_TABLE: u16 = 500;
@@ -32,6 +33,16 @@ impl Stored {
             (Some(a), _) => Some(a),
             (None, b) => b,
         }
+    }
+
+    /// The plan in it, if it is one that can be used.
+    pub fn plan(&self, board: &mut impl Board) -> Option<Plan> {
+        let mut bytes = [0; Plan::LENGTH];
+        if usize::from(self.length) != bytes.len() {
+            return None;
+        }
+        self.read(board, 0, &mut bytes);
+        Plan::from_bytes(&bytes)
     }
 
     /// The table's bytes from `offset` on, as many as `out` holds; beyond its end zeros.

@@ -18,13 +18,13 @@ fn log(samples: usize, size: f64, resolution_rad: f64, seed: u64) -> String {
     let speed = paper_noise_model().respond(&goal, 0.02, seed);
     let mut text = String::from("t,goal,angle\n");
     let mut angle = 0.0;
-    for t in 0..samples {
-        angle += 0.01 * speed[t];
+    for (t, (speed, goal)) in speed.iter().zip(&goal).enumerate() {
+        angle += 0.01 * speed;
         let seen = match resolution_rad {
             0.0 => angle,
             step => (angle / step).round() * step,
         };
-        let _ = writeln!(text, "{:.2},{},{seen}", 0.01 * t as f64, goal[t]);
+        let _ = writeln!(text, "{:.2},{goal},{seen}", 0.01 * t as f64);
     }
     text
 }
@@ -118,9 +118,9 @@ fn map_finds_the_dead_zone_of_a_ramp() {
     let jitter = noise(8000, 0.0005, 5);
     let mut text = String::from("t,command,angle\n");
     let mut angle: f64 = 0.0;
-    for k in 0..8000 {
+    for (k, jitter) in jitter.iter().enumerate() {
         let command = 60.0 * (0.00157 * k as f64).sin();
-        let seen = ((angle + jitter[k]) / 0.00511).round() * 0.00511;
+        let seen = ((angle + jitter) / 0.00511).round() * 0.00511;
         let _ = writeln!(text, "{:.2},{command},{seen}", 0.01 * k as f64);
         let beyond = f64::max(command.abs() - 8.5, 0.0) / 91.5;
         angle += 0.01 * (11.9 * beyond).copysign(command);
@@ -146,11 +146,11 @@ fn map_finds_the_supply_at_which_the_speed_is_right() {
     let scatter = noise(6000, 0.05, 8);
     let mut text = String::from("t,goal,angle,volts\n");
     let mut angle: f64 = 0.0;
-    for k in 0..6000 {
+    for (k, scatter) in scatter.iter().enumerate() {
         let volts = 8.0 + 3.5 * k as f64 / 6000.0;
         let goal = [4.0, -4.0, 5.0, -5.0][(k / 300) % 4];
         let _ = writeln!(text, "{:.2},{goal},{angle},{volts}", 0.01 * k as f64);
-        angle += 0.01 * goal * (1.0 + 0.1 * (volts - 9.8) + scatter[k]);
+        angle += 0.01 * goal * (1.0 + 0.1 * (volts - 9.8) + scatter);
     }
     bench.put("volts.csv", text);
     let line = format!("map supply volts.csv {COLUMNS} --supply volts=V --json");

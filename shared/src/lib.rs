@@ -16,5 +16,6 @@ pub mod gains;
 pub mod law;
 pub mod message;
 pub mod packed;
+pub mod plan;
 pub mod raw;
 pub mod velocity;

@@ -1,8 +1,12 @@
 //! The firmware: its logic in process, and the real ELF in simavr where both are there.
 
+use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::dynamixel::{ErrorBits, Packet};
+use handstand_shared::law::control;
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::raw::Signed;
+use handstand_shared::velocity::Velocity;
 use handstand_tests::bench::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -223,6 +227,60 @@ fn the_adapter_is_transparent() {
     is_a_plain_adapter(&mut PcRig::new());
 }
 
+const CONDITIONS: Conditions = Conditions {
+    weight: 10.0,
+    dead_zone: 0.08,
+    velocity: Velocity {
+        fraction: 4,
+        share: 128,
+    },
+    start_rad: 0.0,
+};
+
+/// The commands that reach the servos are the host's law on the same states, through the plan.
+fn commands_are_the_laws(bench: &mut impl Bench) {
+    let plan = arm_balance(bench, &CONDITIONS).expect("armed");
+    for (angle, rate) in [(0, 0), (37, -150), (-400, 20), (1200, 900)] {
+        for _ in 0..4 {
+            bench.say(&Command::Attitude(Attitude { angle, rate }));
+            bench.run_ms(10.0);
+        }
+        // The shafts stand still at their centres, so only the first link departs.
+        let u = control(&plan.table, &[angle, 0, 0, rate, 0, 0]);
+        for (joint, u) in plan.joints.iter().zip(u) {
+            let command = joint.command(u);
+            let servo = |bench: &mut dyn FnMut(u8) -> u16, id| Signed(bench(id)).get();
+            let mut read = |id| bench.bus().servo(id).expect("18 servos").get(MOVING_SPEED);
+            assert_eq!(servo(&mut read, joint.id), command, "{angle} {rate}");
+            assert_eq!(servo(&mut read, joint.mirror), -command, "{angle} {rate}");
+        }
+    }
+    // Beyond the plan's range it has fallen, and torque is off.
+    bench.say(&Command::Attitude(Attitude {
+        angle: 6000,
+        rate: 0,
+    }));
+    bench.run_ms(30.0);
+    assert!(!bench.bus().any_torque());
+}
+
+#[test]
+fn on_board_the_servos_get_what_the_law_says() {
+    commands_are_the_laws(&mut PcRig::new());
+}
+
+#[test]
+fn balancing_without_gains_is_refused() {
+    let mut rig = PcRig::new();
+    let token = greet(&mut rig).token;
+    assert_eq!(refused(&mut rig, Command::Mode(Mode::Balance)), None);
+    rig.run_ms(300.0);
+    assert_eq!(
+        refused(&mut rig, Command::Arm { token }),
+        Some(Refusal::NoGains)
+    );
+}
+
 #[test]
 fn a_power_cut_leaves_the_old_or_the_new_gains() {
     let tally = power_cuts(&[0x00, 0xff, 0x5a]);
@@ -244,7 +302,6 @@ fn damaged_frames_are_refused() {
 mod elf {
     use super::*;
     use handstand_shared::gains::GainTable;
-    use handstand_shared::law::control;
     use handstand_simavr::{Law, Rig};
     use handstand_tests::firmware::{Built, find_built};
     use rand::Rng as _;
@@ -270,6 +327,12 @@ mod elf {
             rig.seen.most_waiting
         );
         assert!(!rig.seen.charged, "the charger must stay off");
+    }
+
+    #[test]
+    fn the_elf_commands_what_the_law_says() {
+        let Some(built) = built() else { return };
+        commands_are_the_laws(&mut Rig::new(&built.elf).unwrap());
     }
 
     #[test]

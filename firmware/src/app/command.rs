@@ -1,6 +1,7 @@
 //! What each command of the host does.
 
 use super::{App, Drive, State, Wish};
+use crate::balance::Balance;
 use crate::board::Board;
 use crate::design::LOW_SUPPLY;
 use crate::servos::Servos;
@@ -21,6 +22,7 @@ enum Outcome {
 }
 
 impl App {
+    #[inline(never)]
     pub(super) fn obey<B: Board>(&mut self, board: &mut B, command: Numbered<Command>) {
         let Numbered { sequence, message } = command;
         let outcome = self.outcome(board, sequence, message);
@@ -30,6 +32,7 @@ impl App {
         }
     }
 
+    #[inline(never)]
     fn outcome<B: Board>(&mut self, board: &mut B, sequence: u8, command: Command) -> Outcome {
         match command {
             Command::Hello { version } => self.greet(board, version),
@@ -44,7 +47,10 @@ impl App {
             Command::Roster(roster) => Outcome::Answer(self.enlist(&roster)),
             Command::Goals(goals) => self.wish_for(sequence, Wish::Positions(goals)),
             Command::Speeds(speeds) => self.wish_for(sequence, Wish::Speeds(speeds)),
-            Command::Attitude(_) => Outcome::Quiet,
+            Command::Attitude(attitude) => {
+                self.attitude = attitude;
+                Outcome::Quiet
+            }
             Command::Arm { token } => Outcome::Answer(self.arm(board, token)),
             Command::GainChunk { offset, bytes } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
@@ -79,6 +85,7 @@ impl App {
     }
 
     /// A host of another version is told ours, and gets no token.
+    #[inline(never)]
     fn greet<B: Board>(&mut self, board: &mut B, version: u8) -> Outcome {
         self.link.greet(&mut self.statistics);
         // When a host greets is chance, to the microsecond: a good enough token.
@@ -88,10 +95,16 @@ impl App {
             version: VERSION,
             token,
             condition: self.condition(),
-            gains: 0,
+            gains: self.fingerprint(board),
         };
         self.link.send(board, &Report::Hello(hello));
         Outcome::Quiet
+    }
+
+    /// Of the gains in EEPROM; 0 if there are none that can be used.
+    fn fingerprint<B: Board>(&self, board: &mut B) -> u32 {
+        let plan = Stored::newest(board).and_then(|stored| stored.plan(board));
+        plan.map_or(0, |plan| plan.table.fingerprint())
     }
 
     fn stop<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
@@ -136,6 +149,7 @@ impl App {
         Outcome::Quiet
     }
 
+    #[inline(never)]
     fn arm<B: Board>(&mut self, board: &mut B, token: u16) -> Result<(), Refusal> {
         match self.token {
             None => return Err(Refusal::Version),
@@ -151,11 +165,36 @@ impl App {
                 self.state = State::Stream(Drive::On);
                 Ok(())
             }
-            State::Balance(Drive::Off) => Err(Refusal::NoGains),
+            State::Balance(Drive::Off) => self.arm_balance(board),
             State::Stream(Drive::On | Drive::Soft { .. })
             | State::Balance(Drive::On | Drive::Soft { .. }) => Err(Refusal::Armed),
             State::Bridge | State::Fault(_) => Err(Refusal::State),
         }
+    }
+
+    /// Balances from the next tick on, if the robot stands where its gains hold.
+    #[inline(never)]
+    fn arm_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
+        self.has_supply()?;
+        let plan = self.balance.as_ref().ok_or(Refusal::NoGains)?.plan;
+        let mut balance = Balance::new(plan);
+        if !balance.has_servos(&self.servos) {
+            return Err(Refusal::Servo);
+        }
+        balance.sense(self.attitude, board.gyro());
+        let states = balance.states(&self.servos).map_err(|_| Refusal::Pose)?;
+        let [_, x2, x3, ..] = plan.table.x0;
+        let [_, q2, q3, ..] = states;
+        // A joint further off than 10 degrees was not put there on purpose.
+        if q2.abs_diff(x2) > 34 || q3.abs_diff(x3) > 34 {
+            return Err(Refusal::Pose);
+        }
+        self.balance = Some(balance);
+        self.wish = Wish::Stay;
+        self.low = (0, self.servos.rounds);
+        self.servos.arm(board);
+        self.state = State::Balance(Drive::On);
+        Ok(())
     }
 
     fn has_supply(&self) -> Result<(), Refusal> {
@@ -165,6 +204,7 @@ impl App {
         }
     }
 
+    #[inline(never)]
     fn telemetry<B: Board>(&mut self, board: &mut B) -> Outcome {
         let (stack_used, stack_size) = board.stack();
         let telemetry = Telemetry {

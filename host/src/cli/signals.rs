@@ -60,7 +60,7 @@ impl Signals {
                 let joint = self.driven(&model)?;
                 (model.log, joint)
             }
-            None => (self.from_flags()?, 0),
+            None => (self.declared()?, 0),
         };
         let own = &columns.joints[joint];
         let measured = own.position.unit.dimension;
@@ -106,7 +106,7 @@ impl Signals {
         }
     }
 
-    fn from_flags(&self) -> Result<LogColumns> {
+    fn declared(&self) -> Result<LogColumns> {
         let (Some(time), Some(input), Some(output)) = (&self.time, &self.input, &self.output)
         else {
             return Err(Error::usage(

@@ -27,3 +27,4 @@ pub use profile::profiled;
 pub use projector::Projector;
 pub use residual::{Residuals, residuals};
 pub use staged::{approach, fit_staged};
+pub(crate) use student::quantile_975;

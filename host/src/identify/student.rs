@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// The value that 97.5 % of draws stay below: half the width of a 95 % interval, in standard errors.
 ///
 /// For `freedom` >= 1, not only whole numbers. Hill (1970), CACM algorithm 396; relative error below 1e-3.
-pub(super) fn quantile_975(freedom: f64) -> f64 {
+pub(crate) fn quantile_975(freedom: f64) -> f64 {
     const TAILS: f64 = 0.05;
     /// Normal quantile of 97.5 %.
     const NORMAL: f64 = 1.959964;

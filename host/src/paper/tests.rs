@@ -90,7 +90,7 @@ fn inverse_dynamics_are_lagrange_s_for_any_n() {
         let ahead = |x: &[f64], v: &[f64], by: f64| -> Vec<f64> {
             x.iter().zip(v).map(|(x, v)| x + by * v).collect()
         };
-        for i in 0..n {
+        for (i, torque) in torque.iter().enumerate() {
             let momentum = |q: &[f64], w: &[f64]| {
                 (lagrangian(q, &with(w, i, h)) - lagrangian(q, &with(w, i, -h))) / (2.0 * h)
             };
@@ -99,7 +99,7 @@ fn inverse_dynamics_are_lagrange_s_for_any_n() {
                 / (2.0 * h);
             let force =
                 (lagrangian(&with(&q, i, h), &w) - lagrangian(&with(&q, i, -h), &w)) / (2.0 * h);
-            let off = (torque[i] - (rate - force)).abs();
+            let off = (torque - (rate - force)).abs();
             assert!(off < 1e-6, "n = {n}, joint {i}: {off}");
         }
     }

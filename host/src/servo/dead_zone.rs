@@ -2,6 +2,7 @@
 
 use super::blocks::Block;
 use super::dynamics::Known;
+use crate::identify::quantile_975;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
@@ -256,10 +257,11 @@ fn side(curve: &Curve, points: &[(f64, f64)]) -> Option<Side> {
     if !limited {
         matrix[(2, 2)] = 1.0;
     }
-    let variance = curve.cost(points) / points.len().saturating_sub(coefficients).max(1) as f64;
+    let freedom = points.len().saturating_sub(coefficients).max(1) as f64;
+    let (variance, reach) = (curve.cost(points) / freedom, quantile_975(freedom));
     let inverse = matrix.try_inverse()?;
     let known = |value: f64, k: usize| {
-        Known::around(value, 1.96 * (variance * inverse[(k, k)]).max(0.0).sqrt())
+        Known::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
     };
     Some(Side {
         slope: known(curve.slope, 0),

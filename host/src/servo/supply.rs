@@ -2,6 +2,7 @@
 
 use super::blocks::Block;
 use super::dynamics::Known;
+use crate::identify::quantile_975;
 use serde::Serialize;
 
 /// Share of the largest command below which a block does not count: there the dead zone speaks.
@@ -73,10 +74,16 @@ impl Supply {
             .map(|p| (p.1 - mean - slope * (p.0 - mean_v)).powi(2))
             .sum();
         let variance = cost / (count - 2.0);
+        let reach = quantile_975(count - 2.0);
         let volts = || points.iter().map(|p| p.0);
         Ok(Supply {
-            error_per_v: Known::around(slope, 1.96 * (variance / square).sqrt()),
-            right_at_v: zero(mean_v, mean, slope, variance / count, variance / square),
+            error_per_v: Known::around(slope, reach * (variance / square).sqrt()),
+            right_at_v: zero(
+                (mean_v, mean),
+                slope,
+                [variance / count, variance / square],
+                reach,
+            ),
             range_v: (
                 volts().fold(f64::INFINITY, f64::min),
                 volts().fold(f64::NEG_INFINITY, f64::max),
@@ -87,9 +94,14 @@ impl Supply {
     }
 }
 
-/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within 1.96 standard errors of it.
-fn zero(mean_v: f64, mean: f64, slope: f64, mean_variance: f64, slope_variance: f64) -> Known {
-    let z = 1.96 * 1.96;
+/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within `reach` standard errors of it.
+fn zero(
+    (mean_v, mean): (f64, f64),
+    slope: f64,
+    [mean_variance, slope_variance]: [f64; 2],
+    reach: f64,
+) -> Known {
+    let z = reach * reach;
     let value = mean_v - mean / slope;
     // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v - mean_v.
     let a = slope * slope - z * slope_variance;
@@ -132,12 +144,16 @@ mod tests {
 
     #[test]
     fn intervals_hold_the_truth() {
-        let held = (0..100).map(|seed| {
+        let held = (0..1000).map(|seed| {
             let line = Supply::fit(&measured(0.1, 9.8, seed)).unwrap();
             [line.error_per_v.holds(0.1), line.right_at_v.holds(9.8)].map(usize::from)
         });
         let held = held.fold([0, 0], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-        assert!(held.iter().all(|count| *count >= 90), "{held:?}");
+        // 950 expected, give or take 7.
+        assert!(
+            held.iter().all(|count| (929..=971).contains(count)),
+            "{held:?}"
+        );
     }
 
     #[test]

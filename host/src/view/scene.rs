@@ -301,9 +301,9 @@ mod tests {
     /// A name must not end the page's data.
     #[test]
     fn names_cannot_break_out() {
-        let scene = scene(&MODEL.replace("\"handstand\"", "\"</script><b>\""));
+        let scene = scene(&MODEL.replace("\"handstand\"", "\"</script><u>\""));
         let page = super::super::html(&scene, "handstand view <x>").unwrap();
         assert_eq!(page.matches("</script>").count(), 2, "its own two");
-        assert!(!page.contains("<b>") && !page.contains("<x>"));
+        assert!(!page.contains("<u>") && !page.contains("<x>"));
     }
 }

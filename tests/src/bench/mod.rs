@@ -1,5 +1,6 @@
 //! The bench of the firmware: the same scenarios on the logic in process and on the real ELF in simavr.
 
+mod balance;
 mod frames;
 #[cfg(simavr)]
 mod law;
@@ -8,6 +9,7 @@ mod pc;
 mod power;
 mod stream;
 
+pub use balance::{Balanced, Conditions, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
 pub use law::{LawRun, law};

@@ -4,7 +4,7 @@ use handstand_tests::firmware::{self, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolc
 use serde_json::json;
 
 /// Build the CM-5's program: ELF, HEX and BIN.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub struct Args {
     /// Print sizes and files as JSON
     #[arg(long)]

@@ -43,6 +43,24 @@ pub const NEEDS: &[Need] = &[
         signs: &["python3"],
         packages: &["python3", "python3-venv"],
     },
+    Need {
+        name: "The AVR's linker",
+        wanted_for: "the build and the tests of the firmware's ELF",
+        signs: &["avr-gcc"],
+        packages: &["gcc-avr", "binutils-avr", "avr-libc"],
+    },
+    Need {
+        name: "A Rust compiler with its sources",
+        wanted_for: "the build and the tests of the firmware's ELF",
+        signs: &["/usr/lib/rustlib/src/rust/library/core/Cargo.toml"],
+        packages: &["rustc-web", "rust-web-src", "cargo-web"],
+    },
+    Need {
+        name: "simavr",
+        wanted_for: "the tests of the firmware's ELF",
+        signs: &["/usr/include/simavr/sim_avr.h"],
+        packages: &["libsimavr-dev", "simavr"],
+    },
 ];
 
 impl Need {

@@ -1,10 +1,13 @@
 //! `cargo xtask test`: everything that must hold, and one closing line: `N passed, N failed`.
 //!
 //! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
-//! documentation count as one test each, and every test of the workspace as one.
+//! documentation count as one test each, as does the firmware's build, and every test of the workspace as one.
 
+use super::firmware;
 use super::install;
 use super::program::{self, overheard};
+use handstand_tests::firmware::Toolchain;
+use std::path::Path;
 use std::process::Command;
 
 /// Install what the tests need, then run all of them.
@@ -25,6 +28,7 @@ pub fn run(args: &Args) -> bool {
         let mut check = cargo(words);
         tally.count(program::run(check.env("RUSTDOCFLAGS", "-D warnings")));
     }
+    firmware(&mut tally);
     tests(&mut tally);
     println!("\n{} passed, {} failed", tally.passed, tally.failed);
     tally.failed == 0
@@ -42,6 +46,18 @@ const CHECKS: &[&[&str]] = &[
     ],
     &["doc", "--workspace", "--no-deps"],
 ];
+
+/// Builds the firmware, so that the tests that follow find its ELF.
+fn firmware(tally: &mut Tally) {
+    println!("\nThe firmware for the AVR:");
+    match Toolchain::find() {
+        Ok(_) => tally.count(firmware::run(&firmware::Args::default())),
+        Err(why) => println!("SKIPPED, and with it the tests of its ELF: {why}"),
+    }
+    if !handstand_simavr::AVAILABLE && !Path::new("/usr/include/simavr/sim_avr.h").exists() {
+        println!("SKIPPED: the tests of the firmware's ELF, for simavr is not installed");
+    }
+}
 
 #[derive(Debug, Default)]
 struct Tally {

@@ -1,8 +1,7 @@
 //! A design for people.
 
 use crate::number::short;
-use crate::synth::reach::Reach;
-use crate::synth::{Design, Estimation, Fixed};
+use crate::synth::{Design, Estimation, Fixed, Mode, Reach};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 
@@ -124,10 +123,12 @@ fn plant_lines(design: &Design) -> Vec<String> {
 
 fn reach(reach: &Reach, design: &Design) -> String {
     let n = design.plant.a.nrows();
+    // Mirrored modes are equally hard: rounded, the growing one is named, which comes first.
+    let size = |mode: &Mode| (1e6 * mode.measure.max(f64::MIN_POSITIVE).ln()).round();
     let weakest = reach
         .modes
         .iter()
-        .min_by(|a, b| a.measure.total_cmp(&b.measure));
+        .min_by(|a, b| size(a).total_cmp(&size(b)));
     let all = match reach.is_full() {
         true => "every mode".to_string(),
         false => format!("NOT every mode: rank {} of {n}", reach.rank),
