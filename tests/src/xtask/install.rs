@@ -38,6 +38,12 @@ pub const NEEDS: &[Need] = &[
         packages: &["parallel"],
     },
     Need {
+        name: "Python 3",
+        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
+        signs: &["python3"],
+        packages: &["python3", "python3-venv"],
+    },
+    Need {
         name: "The AVR's linker",
         wanted_for: "the build and the tests of the firmware's ELF",
         signs: &["avr-gcc"],
@@ -54,12 +60,6 @@ pub const NEEDS: &[Need] = &[
         wanted_for: "the tests of the firmware's ELF",
         signs: &["/usr/include/simavr/sim_avr.h"],
         packages: &["libsimavr-dev", "simavr"],
-    },
-    Need {
-        name: "Python 3",
-        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
-        signs: &["python3"],
-        packages: &["python3", "python3-venv"],
     },
 ];
 
