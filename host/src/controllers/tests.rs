@@ -166,7 +166,12 @@ fn figures_are_the_same_on_any_number_of_threads() {
 fn other_drives_are_refused() {
     let text = include_str!("../../models/handstand.toml").replacen(
         "drive = \"torque\"",
-        "drive = \"duty\"\nstall_torque_nm = 1.5\nno_load_speed_rad_s = 6.0",
+        "drive = \"duty\"\nstall_torque_nm = 1.5\nnominal_supply_v = 9.8",
+        1,
+    );
+    let text = text.replacen(
+        "\"torque2_nm\", unit = \"N m\"",
+        "\"duty2\", unit = \"1\"",
         1,
     );
     let model = Model::parse(&text, Path::new("handstand.toml")).unwrap();
