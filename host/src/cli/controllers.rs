@@ -17,15 +17,17 @@
 //! `condition`, `robots`, `held`, `fell`, `rms_angle_rad`, `swing_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{Outcome, input};
 use handstand::controllers::{
-    CONDITIONS, Condition, DESIGNS, Design, Known, REGION_RUNS, Region, Robots, Speeds, Tried,
-    condition, design, picture, region, try_out,
+    CONDITIONS, Condition, DESIGNS, Design, Known, REGION_RUNS, Region, Robots, Tried, condition,
+    design, region, try_out,
 };
 use handstand::synth::upright;
 use handstand::{Error, Model, Result, output};
-use serde_json::{Value, json};
 use std::path::PathBuf;
+
+mod list;
+mod result;
 
 /// Try controllers under everything the robot does to them.
 #[derive(Debug, clap::Args)]
@@ -78,7 +80,7 @@ struct Row {
 /// Lists or tries.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let Some(file) = &args.model else {
-        return list(talk);
+        return list::run(talk);
     };
     let (designs, conditions) = (
         chosen_designs(&args.controllers)?,
@@ -99,15 +101,19 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let model = Model::load(file)?;
     let rows = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
-        output::write_new(file, &csv(&rows), args.force)?;
+        output::write_new(file, &result::csv(&rows), args.force)?;
     }
     if let Some(file) = &args.plot {
-        output::write_new(file, &plot(&rows, &designs, &conditions), args.force)?;
+        output::write_new(
+            file,
+            &result::plot(&rows, &designs, &conditions),
+            args.force,
+        )?;
     }
     if talk.json {
-        talk.data(&rows.iter().map(data).collect::<Vec<_>>())?;
+        talk.data(&rows.iter().map(result::data).collect::<Vec<_>>())?;
     } else {
-        talk.print(&text(&rows, &designs, &conditions))?;
+        talk.print(&result::text(&rows, &designs, &conditions))?;
     }
     let answered = |condition: &&Condition| {
         rows.iter()
@@ -164,185 +170,6 @@ fn trials(
     }
     bar.finish_and_clear();
     Ok(rows)
-}
-
-/// Three tables: who is held, from how far, and how well under the last condition.
-fn text(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
-) -> String {
-    let mut parts = vec![format!(
-        "Robots held, % of {}:\n{}",
-        rows.first().map_or(0, |row| row.tried.robots),
-        matrix(rows, designs, conditions, |row| percent(row.tried.held))
-    )];
-    if rows.iter().any(|row| row.region.is_some()) {
-        parts.push(format!(
-            "Region: largest spread of starts of which 95 % are held, deg:\n{}",
-            matrix(rows, designs, conditions, |row| row
-                .region
-                .map_or(String::new(), degrees))
-        ));
-    }
-    for condition in conditions
-        .iter()
-        .filter(|c| conditions.len() <= 2 || c.id.starts_with("all"))
-    {
-        let mut table = show::table([
-            "Controller",
-            "held %",
-            "fell %",
-            "rms deg",
-            "swing deg",
-            "rms N m",
-        ]);
-        for row in rows.iter().filter(|row| row.condition.id == condition.id) {
-            table.add_row([
-                row.design.card().id.to_string(),
-                percent(row.tried.held),
-                percent(row.tried.fell),
-                known(row.tried.rms_angle_rad.map(f64::to_degrees)),
-                known(row.tried.swing_rad.map(f64::to_degrees)),
-                known(row.tried.rms_torque_nm),
-            ]);
-        }
-        parts.push(format!("{}, of those held:\n{table}", condition.title));
-    }
-    parts.join("\n\n")
-}
-
-fn matrix(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
-    cell: impl Fn(&Row) -> String,
-) -> String {
-    let mut table = show::wide_table();
-    let header = std::iter::once("").chain(conditions.iter().map(|condition| condition.id));
-    table.set_header(header);
-    for design in designs {
-        let own = rows
-            .iter()
-            .filter(|row| row.design.card().id == design.card().id);
-        table.add_row(std::iter::once(design.card().id.to_string()).chain(own.map(&cell)));
-    }
-    table.to_string()
-}
-
-fn plot(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
-) -> String {
-    let ids: Vec<&str> = designs.iter().map(|design| design.card().id).collect();
-    let titles: Vec<&str> = conditions.iter().map(|condition| condition.title).collect();
-    let fields: Vec<Vec<f64>> = ids
-        .iter()
-        .map(|id| {
-            let own = rows.iter().filter(|row| row.design.card().id == *id);
-            own.map(|row| row.tried.held).collect()
-        })
-        .collect();
-    picture(
-        "Robots held by each controller under each condition",
-        &ids,
-        &titles,
-        &fields,
-    )
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1}", 100.0 * share)
-}
-
-fn known(value: Option<f64>) -> String {
-    value.map_or("-".into(), |value| format!("{value:.2}"))
-}
-
-fn degrees(region: Region) -> String {
-    let sign = if region.open { ">" } else { "" };
-    format!("{sign}{:.1}", region.spread_rad.to_degrees())
-}
-
-fn csv(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "controller,condition,robots,held,fell,rms_angle_rad,swing_rad,rms_torque_nm,region_rad,region_open\n",
-    );
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for row in rows {
-        let fields = [
-            row.design.card().id.to_string(),
-            row.condition.id.to_string(),
-            row.tried.robots.to_string(),
-            row.tried.held.to_string(),
-            row.tried.fell.to_string(),
-            number(row.tried.rms_angle_rad),
-            number(row.tried.swing_rad),
-            number(row.tried.rms_torque_nm),
-            number(row.region.map(|region| region.spread_rad)),
-            row.region
-                .map_or(String::new(), |region| region.open.to_string()),
-        ];
-        text += &fields.join(",");
-        text.push('\n');
-    }
-    text
-}
-
-fn data(row: &Row) -> Value {
-    json!({
-        "controller": row.design.card().id,
-        "condition": row.condition.id,
-        "robots": row.tried.robots,
-        "held": row.tried.held,
-        "fell": row.tried.fell,
-        "rms_angle_rad": row.tried.rms_angle_rad,
-        "swing_rad": row.tried.swing_rad,
-        "rms_torque_nm": row.tried.rms_torque_nm,
-        "region_rad": row.region.map(|region| region.spread_rad),
-        "region_open": row.region.map(|region| region.open),
-    })
-}
-
-fn list(talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        let cards = DESIGNS.iter().map(|design| {
-            let card = design.card();
-            json!({
-                "controller": card.id,
-                "title": card.title,
-                "law": card.law,
-                "speeds": speeds(card.speeds),
-                "told_balance": card.told_balance,
-                "reference": card.reference,
-            })
-        });
-        talk.data(&cards.collect::<Vec<_>>())?;
-        return Ok(Outcome::Done);
-    }
-    let mut table = show::table(["Controller", "What it is", "Speeds", "Told balance"]);
-    for design in DESIGNS {
-        let card = design.card();
-        let told = if card.told_balance { "yes" } else { "" };
-        let what = format!("{}\n{}", card.title, card.law);
-        table.add_row([card.id, &what, speeds(card.speeds), told]);
-    }
-    let mut conditions = show::table(["Condition", "What it is"]);
-    for condition in CONDITIONS {
-        conditions.add_row([condition.id, condition.title]);
-    }
-    talk.print(&format!("{table}\n\n{conditions}"))?;
-    talk.say("`handstand controllers MODEL` tries them");
-    Ok(Outcome::Done)
-}
-
-fn speeds(speeds: Speeds) -> &'static str {
-    match speeds {
-        Speeds::True => "true",
-        Speeds::Differenced => "differences",
-        Speeds::Estimated => "estimated",
-    }
 }
 
 /// The controllers of these names, all without any.

@@ -1,7 +1,7 @@
 //! The same numbers from Table 1: linearised, sampled, solved; and the servo's model found again in data made with it.
 
+use super::case::{TS_S, handstand};
 use super::printed::Quantity;
-use super::robot::{TS_S, handstand};
 use crate::error::Result;
 use crate::model::Model;
 use crate::servo::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};

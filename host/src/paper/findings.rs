@@ -1,8 +1,9 @@
 //! The sixteen things the paper measured, simulated or left open: our command for each, and what it says.
 
+use super::case::{Case, TS_S, sampled};
 use super::computed::Computed;
 use super::figure::{Figure, Holds};
-use super::robot::{Case, TS_S, edge, sampled};
+use super::robot::edge;
 use super::servo;
 use super::timing::timing;
 use crate::error::Result;

@@ -1,8 +1,9 @@
 //! The paper's numbers, figures and findings beside our own.
 //!
 //! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them side by side;
-//! `robot` and `servo` run what its figures show; `findings` says of each result whether it holds.
+//! `case` is a run of the robot, `robot` and `servo` draw what its figures show; `findings` says of each result whether it holds.
 
+mod case;
 mod checked;
 mod computed;
 mod figure;
@@ -16,13 +17,13 @@ mod timing;
 #[cfg(test)]
 mod tests;
 
+pub use case::handstand;
 pub use checked::{Row, Verdict, check};
 pub use computed::{Computed, ServoFacts, Zeros};
 pub use figure::{Curve, Figure, Holds, Ink, Panel};
 pub use findings::{Finding, Shown, findings};
 pub use page::html;
 pub use printed::{PRINTED, Printed, Quantity};
-pub use robot::handstand;
 pub use timing::{Timing, timing};
 
 use crate::error::Result;

@@ -1,172 +1,20 @@
 //! The handstand's figures: 12, 13 and 14, from our own closed loop.
 
+use super::case::{
+    Case, ECCENTRIC_RAD, SECONDS, STARTS, Seen, sampled, stepped, with_dead_zone, with_gyro,
+};
 use super::computed::Computed;
 use super::figure::{Curve, Figure, Holds, Ink, Panel};
-use crate::closed_loop::{
-    ClosedLoop, Conditions, Gyro, Outcome, Plant, Start, StateFeedback, Velocity, stream,
-};
-use crate::effects;
+use crate::closed_loop::{Outcome, Velocity};
 use crate::error::Result;
-use crate::model::{EffectInstance, Model};
 use crate::number::short;
-use crate::synth::upright;
-use nalgebra::DMatrix;
-use std::path::Path;
 
-/// Sampling time of the discrete gains, s.
-pub const TS_S: f64 = 0.01;
 /// Sampling time that stands for the continuous gains, s.
 const CONTINUOUS_S: f64 = 0.001;
-/// Length of a run, s.
-const SECONDS: f64 = 10.0;
-/// Random starts behind a share.
-const STARTS: u64 = 100;
 /// Constant torque that disturbs the arms, N m.
 const DISTURBANCE_NM: f64 = 0.01;
 /// Lean of the arms a run begins with, rad.
 const LEAN_RAD: f64 = 1.0 * std::f64::consts::PI / 180.0;
-/// How far each link's centre of mass lies off its line, rad: forward, as the robot's servos and batteries do.
-const ECCENTRIC_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
-
-/// The paper's robot: the model file with its Table 1.
-///
-/// # Errors
-/// None is known: the file is the project's own.
-pub fn handstand() -> Result<Model> {
-    let text = include_str!("../../models/handstand.toml");
-    Model::parse(text, Path::new("handstand.toml"))
-}
-
-/// The robot with every centre of mass turned off its link's line by `angle_rad`.
-pub(super) fn eccentric(angle_rad: f64) -> Result<Model> {
-    let mut model = handstand()?;
-    if let Some(effect) = effects::named("com_angle") {
-        let of = |joint| EffectInstance {
-            effect,
-            joint: Some(joint),
-            values: vec![angle_rad],
-        };
-        model.effects = (0..model.link_count()).map(of).collect();
-    }
-    Ok(model)
-}
-
-/// A run of the loop.
-#[derive(Debug, Clone)]
-pub(super) struct Case {
-    /// How far the masses lie off, rad.
-    pub eccentric_rad: f64,
-    /// Whether the controller knows.
-    pub compensated: bool,
-    /// Sensor, drives, clock.
-    pub conditions: Conditions,
-    /// Constant torque on the arms, N m.
-    pub disturbance_nm: f64,
-    /// Gains, m x n.
-    pub gains: DMatrix<f64>,
-}
-
-/// A run in curves.
-pub(super) struct Seen {
-    pub outcome: Outcome,
-    angles: [Vec<(f64, f64)>; 3],
-    torques: [Vec<(f64, f64)>; 2],
-}
-
-impl Seen {
-    /// Largest torque of any drive, N m.
-    fn peak_nm(&self) -> f64 {
-        let torques = self.torques.iter().flatten();
-        torques.fold(0.0, |most: f64, (_, torque)| most.max(torque.abs()))
-    }
-}
-
-impl Case {
-    /// Under ideal circumstances, centred masses.
-    pub(super) fn ideal(gains: &DMatrix<f64>, period_s: f64) -> Case {
-        Case {
-            eccentric_rad: 0.0,
-            compensated: true,
-            conditions: Conditions::ideal(period_s),
-            disturbance_nm: 0.0,
-            gains: gains.clone(),
-        }
-    }
-
-    fn loop_and_controller(&self) -> Result<(ClosedLoop, StateFeedback, Vec<f64>)> {
-        let model = eccentric(self.eccentric_rad)?;
-        let mut plant = Plant::new(&model, &upright(&model))?;
-        plant.disturbance_nm[0] = self.disturbance_nm;
-        let balance = plant.balanced_rad();
-        let rows = self.gains.row_iter();
-        let rows = rows.map(|r| r.iter().copied().collect()).collect();
-        let mut controller = StateFeedback::new(plant.joints(), rows);
-        if self.compensated {
-            controller = controller.holding(&balance);
-        }
-        let mut closed = ClosedLoop::ideal(plant, self.conditions.clock.period_s);
-        closed.conditions = self.conditions;
-        Ok((closed, controller, balance))
-    }
-
-    /// From rest, the arms leaning by `lean_rad` from the balance.
-    pub(super) fn run(&self, lean_rad: f64) -> Result<Seen> {
-        self.run_from(|balance| balance[0] += lean_rad)
-    }
-
-    /// From rest in the upright pose, all links in a line.
-    pub(super) fn run_upright(&self) -> Result<Seen> {
-        self.run_from(|balance| balance.fill(0.0))
-    }
-
-    fn run_from(&self, start_at: impl Fn(&mut Vec<f64>)) -> Result<Seen> {
-        let (closed, controller, mut start) = self.loop_and_controller()?;
-        start_at(&mut start);
-        let mut seen = Seen {
-            outcome: Outcome {
-                fell_s: None,
-                rms_angle_rad: 0.0,
-                rms_torque_nm: 0.0,
-                largest_rad: 0.0,
-                limit_cycle_rad: None,
-                settle_s: None,
-            },
-            angles: Default::default(),
-            torques: Default::default(),
-        };
-        let (angles, torques) = (&mut seen.angles, &mut seen.torques);
-        seen.outcome = closed.watch(
-            &controller,
-            &Start::at(start),
-            SECONDS,
-            stream(1, 0),
-            |sample| {
-                for (curve, angle) in angles.iter_mut().zip(sample.angle_rad) {
-                    curve.push((sample.time_s, angle.to_degrees()));
-                }
-                for (curve, torque) in torques.iter_mut().zip(sample.torque_nm) {
-                    curve.push((sample.time_s, *torque));
-                }
-            },
-        );
-        Ok(seen)
-    }
-
-    /// Outcomes from random starts around the balance, each joint within `spread_rad`.
-    pub(super) fn share(&self, spread_rad: f64) -> Result<Vec<Outcome>> {
-        let (closed, controller, balance) = self.loop_and_controller()?;
-        let starts: Vec<Start> = (0..STARTS)
-            .map(|index| {
-                let mut start = Start::random(balance.len(), spread_rad, &mut stream(2, index));
-                for (angle, balance) in start.angle_rad.iter_mut().zip(&balance) {
-                    *angle += balance;
-                }
-                start
-            })
-            .collect();
-        Ok(closed.run_all(&controller, &starts, SECONDS, 3))
-    }
-}
 
 /// Figures 12, 13, 14.
 pub(super) fn figures(computed: &Computed) -> Result<Vec<Figure>> {
@@ -263,39 +111,6 @@ pub(super) fn edge(
         }
     }
     Ok(high)
-}
-
-/// The sampled loop with compensation, masses slightly eccentric.
-pub(super) fn sampled(computed: &Computed) -> Case {
-    Case {
-        eccentric_rad: 0.1 * ECCENTRIC_RAD,
-        ..Case::ideal(&computed.dlqr.k, TS_S)
-    }
-}
-
-/// As [`sampled`], angles in the servo's steps.
-pub(super) fn stepped(computed: &Computed) -> Case {
-    let mut case = sampled(computed);
-    case.conditions.sensor.position_resolution_rad = super::servo::STEP_RAD;
-    case
-}
-
-/// As [`stepped`], the arms' speed in the gyro's steps.
-pub(super) fn with_gyro(computed: &Computed) -> Case {
-    let mut case = stepped(computed);
-    case.conditions.sensor.gyro = Some(Gyro {
-        resolution_rad_s: 10f64.to_radians(),
-        noise_rad_s: 0.0,
-    });
-    case
-}
-
-/// As [`with_gyro`], with the drives' dead zone and limit.
-pub(super) fn with_dead_zone(computed: &Computed) -> Case {
-    let mut case = with_gyro(computed);
-    case.conditions.actuator.dead_zone = 0.1;
-    case.conditions.actuator.saturates = true;
-    case
 }
 
 fn resolution(computed: &Computed) -> Result<Figure> {

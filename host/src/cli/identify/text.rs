@@ -1,0 +1,171 @@
+//! What was identified, in words and tables.
+
+use super::super::show;
+use super::Data;
+use handstand::number::exact;
+use handstand::servo::{Estimate, Fitted, Known, Pole, Record, Trial, dynamics, transfer_function};
+
+/// Rows of the table of orders.
+const SHOWN: usize = 12;
+
+/// The whole answer in words.
+pub fn text(data: &Data, trials: &[Trial], chosen: Option<usize>) -> String {
+    let count = |records: &[Record]| records.iter().map(Record::count).sum::<usize>();
+    let head = format!(
+        "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
+        count(&data.training),
+        count(&data.validation),
+        exact(1e3 * data.ts_s),
+        unit(data.chosen.input_unit),
+        unit(data.chosen.output_unit),
+    );
+    let mut parts = vec![head, table(trials, chosen)];
+    match chosen.map(|index| &trials[index]) {
+        Some(Trial {
+            outcome: Ok(fitted),
+            ..
+        }) => parts.push(model(data, fitted)),
+        _ => {
+            let mut why: Vec<String> = trials
+                .iter()
+                .filter_map(|trial| trial.outcome.as_ref().err().map(ToString::to_string))
+                .collect();
+            why.sort();
+            why.dedup();
+            parts.push(format!("No model could be fitted: {}.", why.join("; ")));
+        }
+    }
+    parts.join("\n\n")
+}
+
+fn unit(unit: &str) -> &str {
+    if unit == "1" { "a share" } else { unit }
+}
+
+/// Best first; the chosen one marked.
+fn table(trials: &[Trial], chosen: Option<usize>) -> String {
+    let mut rows: Vec<(usize, &Trial, &Fitted)> = trials
+        .iter()
+        .enumerate()
+        .filter_map(|(k, trial)| Some((k, trial, trial.outcome.as_ref().ok()?)))
+        .collect();
+    rows.sort_by(|a, b| {
+        let error = |fitted: &Fitted| fitted.validation.error_rms;
+        error(a.2).total_cmp(&error(b.2))
+    });
+    let least = |of: fn(&Estimate) -> f64| {
+        let values = rows.iter().map(|(.., fitted)| of(&fitted.estimate));
+        values.fold(f64::INFINITY, f64::min)
+    };
+    let (least_aic, least_bic) = (least(Estimate::aic), least(Estimate::bic));
+    let place = rows.iter().position(|(k, ..)| Some(*k) == chosen);
+    let left_out = rows.len().saturating_sub(SHOWN);
+    if left_out > 0 {
+        if let Some(place) = place.filter(|place| *place >= SHOWN) {
+            rows.swap(SHOWN - 1, place);
+        }
+        rows.truncate(SHOWN);
+    }
+    let mut table = show::table([
+        "Orders", "p", "Error", "Fit", "Free fit", "+AIC", "+BIC", "White", "Indep.", "",
+    ]);
+    for (k, trial, fitted) in rows {
+        let score = &fitted.validation;
+        let passed = |index: usize| match score.tests.get(index) {
+            Some(test) if test.passed => "yes",
+            Some(_) => "no",
+            None => "-",
+        };
+        table.add_row([
+            trial.structure.to_string(),
+            trial.structure.count().to_string(),
+            exact(score.error_rms),
+            format!("{:.2} %", score.predicted_fit_percent),
+            format!("{:.2} %", score.simulated_fit_percent),
+            format!("{:.1}", fitted.estimate.aic() - least_aic),
+            format!("{:.1}", fitted.estimate.bic() - least_bic),
+            passed(0).to_string(),
+            passed(1).to_string(),
+            if Some(k) == chosen { "kept" } else { "" }.to_string(),
+        ]);
+    }
+    let mut text = format!(
+        "{table}\nOn what was held out: RMS error and fit one step ahead, fit from the input alone, residual tests. AIC \
+         and BIC\nof the fit, above the least."
+    );
+    let failed = trials.iter().filter(|trial| trial.outcome.is_err()).count();
+    if left_out > 0 || failed > 0 {
+        text += &format!(" {left_out} worse ones are left out; {failed} could not be fitted.");
+    }
+    text
+}
+
+fn model(data: &Data, fitted: &Fitted) -> String {
+    let estimate = &fitted.estimate;
+    let (model, structure) = (&estimate.model, &estimate.structure);
+    let mut coefficients = show::table(["Coefficient", "Value", "95 % interval"]);
+    let values = model.values(structure);
+    for ((name, value), half) in structure
+        .names()
+        .into_iter()
+        .zip(values)
+        .zip(estimate.half_widths())
+    {
+        coefficients.add_row([name, exact(value), ends(&Known::around(value, half))]);
+    }
+    let dynamics = dynamics(estimate, data.ts_s);
+    let mut lines = vec![
+        format!("{structure} has the transfer function"),
+        format!("  {}", transfer_function(&model.b, &model.denominator(), 4)),
+        coefficients.to_string(),
+        format!(
+            "static gain {} ({})",
+            exact(dynamics.gain.value),
+            ends(&dynamics.gain)
+        ),
+    ];
+    for pole in dynamics.poles.iter().filter(|pole| pole.im.value >= 0.0) {
+        lines.push(format!("pole {}", pole_text(pole)));
+    }
+    lines.push(match dynamics.settling_s {
+        Some(settling) => format!("settles to 2 % in {} s", exact(settling)),
+        None => "does not settle".to_string(),
+    });
+    lines.extend(fitted.validation.tests.iter().map(|test| {
+        let verdict = if test.passed { "passed" } else { "failed" };
+        format!("{}: {verdict}; {}", test.name, test.meaning)
+    }));
+    if !estimate.converged {
+        lines.push("warning: the search had not come to rest when its steps ran out".to_string());
+    }
+    lines.join("\n")
+}
+
+fn pole_text(pole: &Pole) -> String {
+    let place = match pole.im.value == 0.0 {
+        true => format!("z = {} ({})", exact(pole.re.value), ends(&pole.re)),
+        false => format!(
+            "z = {} ({}) +- {} j ({})",
+            exact(pole.re.value),
+            ends(&pole.re),
+            exact(pole.im.value),
+            ends(&pole.im)
+        ),
+    };
+    format!(
+        "{place}, |z| = {}: {} rad/s",
+        exact(pole.radius.value),
+        match pole.im.value == 0.0 {
+            true => exact(pole.decay_rad_s),
+            false => format!(
+                "{} +- {} j",
+                exact(pole.decay_rad_s),
+                exact(pole.turn_rad_s)
+            ),
+        }
+    )
+}
+
+fn ends(known: &Known) -> String {
+    format!("{} to {}", exact(known.low), exact(known.high))
+}
