@@ -207,6 +207,15 @@ fn every_model_that_comes_along_is_read() {
     assert!(count >= 10, "only {count} models");
 }
 
+/// Keys without a name that take up a value without an end once brought a parser down.
+#[test]
+fn nameless_keys_of_unfinished_values_are_refused() {
+    for text in ["==}1\n[.", "==1''\n.=],'\n", " ==1}\n [1a\n."] {
+        let error = parse(text).unwrap_err().to_string();
+        assert!(error.starts_with("rig.toml:1:"), "{error}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
