@@ -5,12 +5,14 @@
 
 use super::bench::{Bench, FINISH};
 use super::candidate::Candidate;
+use super::conclusion::conclude;
 use super::consistency::own_values_share;
 use super::findings::Diagnosis;
+use super::opening::{Opening, openings};
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, REMAINS};
-use super::trial::{Opening, Trial, openings};
-use super::verdict::{Case, conclude};
+use super::trial::Trial;
+use super::verdict::Case;
 use crate::identify::Projector;
 use crate::log::Motion;
 use crate::model::Model;
