@@ -79,6 +79,7 @@ impl Trial {
         set.push(candidate);
         let options = FitOptions {
             iterations,
+            rough: true,
             ..FitOptions::default()
         };
         Trial::new(
@@ -88,21 +89,24 @@ impl Trial {
     }
 
     /// Goes on fitting where an earlier, short fit stopped.
+    pub fn look_again(&mut self, data: &Data, iterations: usize) {
+        self.resume(data, iterations, true);
+    }
+
+    /// The same, and takes the derivatives there.
     pub fn finish(&mut self, data: &Data, iterations: usize) {
-        if !self.search.converged {
-            let options = FitOptions {
-                iterations,
-                ..FitOptions::default()
-            };
-            let search = fit(
-                &self.search.model,
-                &self.search.free,
-                data,
-                Some(&self.search.nodes),
-                options,
-            );
-            *self = Trial::new(std::mem::take(&mut self.set), search);
-        }
+        self.resume(data, iterations, false);
+    }
+
+    fn resume(&mut self, data: &Data, iterations: usize, rough: bool) {
+        let options = FitOptions {
+            iterations,
+            rough,
+            ..FitOptions::default()
+        };
+        let search = self.search.resume(data, options);
+        self.search_mean = search.residuals.cost() / search.residuals.count().max(1) as f64;
+        self.search = search;
     }
 
     /// This trial less one of its effects, at the values it has; not refitted.
@@ -124,8 +128,13 @@ impl Trial {
 
     /// Fits again from the present values.
     pub fn refit(&mut self, data: &Data, iterations: usize) {
-        self.search.converged = false;
-        self.finish(data, iterations);
+        let options = FitOptions {
+            iterations,
+            ..FitOptions::default()
+        };
+        let (model, free, nodes) = (&self.search.model, &self.search.free, &self.search.nodes);
+        let search = fit(model, free, data, Some(nodes), options);
+        *self = Trial::new(std::mem::take(&mut self.set), search);
     }
 
     /// Refits over the judging horizon from the values found, and judges them on held-out motions.

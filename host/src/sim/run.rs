@@ -23,6 +23,9 @@ pub struct Memory {
     cells: Vec<Option<[f64; 2]>>,
 }
 
+/// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out over the period.
+const SPARED: f64 = 0.1;
+
 /// Predicted readings, rad in the log's convention, at samples `stretch` of the motion.
 ///
 /// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are the recorded
@@ -55,7 +58,7 @@ pub fn predict(
     recorder.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
-        let steps = ((to - from) / plant.step_s - 1e-6).ceil().max(1.0) as usize;
+        let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
         let h = (to - from) / steps as f64;
         for step in 0..steps {
             let begin = from + step as f64 * h;
