@@ -96,11 +96,18 @@ impl<'a> Search<'a> {
                 self.derive();
                 continue;
             };
-            let small = step.fall < options.tolerance * before;
+            let least = options.tolerance * before;
+            let small = step.fall < least;
             quiet = if small { quiet + 1 } else { 0 };
-            // Only fresh derivatives tell that there is no way down.
-            if quiet >= 2 && was_fresh {
+            // Only fresh derivatives tell that there is no way down; after so small a step they still hold.
+            if was_fresh && small && (quiet >= 2 || step.foretold < least) {
+                self.correct(&step);
+                self.fresh = true;
                 converged = true;
+                break;
+            }
+            if small && options.rough {
+                self.correct(&step);
                 break;
             }
             if small || !TRUSTED.contains(&(step.fall / step.foretold)) || self.is_cheap() {

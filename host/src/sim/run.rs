@@ -3,6 +3,7 @@
 use super::drive::Told;
 use super::input::held_mean;
 use super::plant::Plant;
+use super::rows::{Many, One, Rows};
 use super::stepper::Stepper;
 use crate::log::Motion;
 use crate::model::Drive;
@@ -39,9 +40,23 @@ pub fn predict(
     memory: &mut Memory,
     readings: &mut [f64],
 ) -> Start {
+    match plant.len() {
+        1 => predicted::<One>(plant, motion, stretch, start, memory, readings),
+        _ => predicted::<Many>(plant, motion, stretch, start, memory, readings),
+    }
+}
+
+fn predicted<R: Rows>(
+    plant: &Plant,
+    motion: &Motion,
+    stretch: Range<usize>,
+    start: &Start,
+    memory: &mut Memory,
+    readings: &mut [f64],
+) -> Start {
     let n = plant.len();
     let samples = stretch.len();
-    let mut stepper = Stepper::new(plant, &start.angle_rad, &start.speed_rad_s);
+    let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
     let mut recorder = Recorder::new(plant, memory);
     let mut told = vec![
         Told {
@@ -54,7 +69,7 @@ pub fn predict(
     ];
     let mut cursors = vec![0; n];
     recorder.begin(plant, start);
-    recorder.step(plant, &stepper.angle, 0.0);
+    recorder.step(plant, stepper.angle.as_ref(), 0.0);
     recorder.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
@@ -65,13 +80,13 @@ pub fn predict(
             tell(plant, motion, k, begin, begin + h, &mut cursors, &mut told);
             stepper.advance(plant, &told, h);
             if plant.senses {
-                recorder.step(plant, &stepper.angle, h);
+                recorder.step(plant, stepper.angle.as_ref(), h);
             }
         }
         if !plant.senses {
-            recorder.step(plant, &stepper.angle, to - from);
+            recorder.step(plant, stepper.angle.as_ref(), to - from);
         }
-        if !stepper.angle.iter().all(|a| a.abs() < 1e6) {
+        if !stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6) {
             for joint in 0..n {
                 readings[joint * samples + k + 1 - stretch.start..(joint + 1) * samples]
                     .fill(f64::NAN);
@@ -81,8 +96,8 @@ pub fn predict(
         recorder.record(readings, k + 1 - stretch.start, samples);
     }
     Start {
-        angle_rad: stepper.angle,
-        speed_rad_s: stepper.speed,
+        angle_rad: stepper.angle.as_ref().to_vec(),
+        speed_rad_s: stepper.speed.as_ref().to_vec(),
     }
 }
 
