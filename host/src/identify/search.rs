@@ -38,7 +38,7 @@ const TRUSTED: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// Tries with growing damping: with fresh derivatives, and with corrected ones.
 const TRIES: (usize, usize) = (9, 2);
 /// Up to as many unknowns, fresh derivatives cost no more than a poor step.
-const CHEAP: usize = 2;
+const CHEAP: usize = 3;
 
 impl<'a> Search<'a> {
     pub fn new(

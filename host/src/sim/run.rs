@@ -16,6 +16,8 @@ pub struct Start {
     pub angle_rad: Vec<f64>,
     /// Per joint, rad/s.
     pub speed_rad_s: Vec<f64>,
+    /// How fast the readings change, rad/s in the log's convention, where sensors trail; as fast as the joints without.
+    pub reading_rad_s: Option<Vec<f64>>,
 }
 
 /// What sensor effects remember from one stretch to the next.
@@ -98,6 +100,7 @@ fn predicted<R: Rows>(
     Start {
         angle_rad: stepper.angle.as_ref().to_vec(),
         speed_rad_s: stepper.speed.as_ref().to_vec(),
+        reading_rad_s: None,
     }
 }
 
@@ -158,12 +161,15 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Sensors that trail begin as far behind as they are in steady motion: a stretch may begin at speed.
+    /// Sensors that trail begin as far behind as their readings' speed says: a stretch may begin at speed.
     fn begin(&mut self, plant: &Plant, start: &Start) {
         let mut cells = self.memory.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
             let mut reading = plant.encoded_rad(joint, &start.angle_rad);
-            let speed = plant.encoded_rad_s(joint, &start.speed_rad_s);
+            let speed = match &start.reading_rad_s {
+                Some(speed) => speed[joint],
+                None => plant.encoded_rad_s(joint, &start.speed_rad_s),
+            };
             for (active, cell) in plan.sense.iter().zip(&mut cells) {
                 if let Some(trail) = active.effect.trail_rad(active.values(), speed) {
                     *cell = Some([reading, reading - trail]);
