@@ -4,6 +4,7 @@
 use super::candidate::{Candidate, candidates};
 use super::findings::Remainder;
 use super::horizon::{longest_useful, search_horizon};
+use super::opening::{Change, changes};
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, Steps};
 use super::remainder::remainder;
@@ -15,6 +16,7 @@ use crate::effects::{CONTROLS, SHAM};
 use crate::identify::{Data, Horizon, longest_stable};
 use crate::log::Motion;
 use crate::model::Model;
+use rayon::prelude::*;
 
 /// Iterations of a finalist.
 pub(super) const FINISH: usize = 25;
@@ -35,6 +37,8 @@ pub(super) struct Bench<'a> {
     pub search_horizon: Horizon,
     pub shams: Vec<Trial>,
     pub candidates: Vec<Candidate>,
+    /// What each start of each candidate changes in the base model's prediction.
+    pub changes: Vec<Vec<Change>>,
     /// The model as it came.
     pub start: Model,
     pub seed: u64,
@@ -78,6 +82,7 @@ impl<'a> Bench<'a> {
             ..Data::new(model, held_out, horizon)
         });
         base.judge(&training, held_out.as_ref(), FINISH);
+        let changes = every_change(&base, &candidates, &search);
         let mut bench = Bench {
             search,
             training,
@@ -87,6 +92,7 @@ impl<'a> Bench<'a> {
             search_horizon,
             shams: Vec::new(),
             candidates,
+            changes,
             start: model.clone(),
             seed: options.seed,
             most_effects,
@@ -141,7 +147,8 @@ impl<'a> Bench<'a> {
                 })
             })
             .collect();
-        self.first_look(&self.base, &shams, 1)
+        let changes = every_change(&self.base, &shams, &self.search);
+        self.first_look(&self.base, &changes, 1)
             .into_iter()
             .map(|mut trial| {
                 self.judge(&mut trial);
@@ -149,4 +156,12 @@ impl<'a> Bench<'a> {
             })
             .collect()
     }
+}
+
+/// What the starts of each candidate change in the base model's prediction.
+fn every_change(base: &Trial, candidates: &[Candidate], data: &Data) -> Vec<Vec<Change>> {
+    candidates
+        .par_iter()
+        .map(|&candidate| changes(&base.search, candidate, data))
+        .collect()
 }

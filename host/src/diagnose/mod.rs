@@ -2,16 +2,19 @@
 
 mod bench;
 mod candidate;
+mod conclusion;
 mod consistency;
 mod evidence;
 mod findings;
 mod horizon;
+mod opening;
 mod options;
 mod progress;
 mod remainder;
 mod restart;
 mod score;
 mod search;
+mod terms;
 mod trial;
 mod verdict;
 pub mod words;

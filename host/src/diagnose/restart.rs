@@ -1,7 +1,8 @@
 //! Few samples: simulations are cheap and false valleys many, so fits start from many random values.
 
 use super::bench::Bench;
-use super::trial::{Opening, Trial};
+use super::opening::Opening;
+use super::trial::Trial;
 use crate::identify::{Data, Fit, FitOptions, fit};
 use crate::model::{EffectInstance, Model, ParameterPath};
 use rand::{Rng, SeedableRng};

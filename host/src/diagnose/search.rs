@@ -5,19 +5,22 @@
 
 use super::bench::{Bench, FINISH};
 use super::candidate::Candidate;
+use super::conclusion::conclude;
 use super::consistency::own_values_share;
 use super::findings::Diagnosis;
+use super::opening::{Change, Lead, Opening, changes_like};
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, REMAINS};
-use super::trial::{Opening, Trial, openings};
-use super::verdict::{Case, conclude};
-use crate::identify::Projector;
+use super::trial::Trial;
+use super::verdict::Case;
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
 
 /// Iterations of a first look at a candidate.
-const LOOK: usize = 3;
+const LOOK: usize = 4;
+/// An opening that promises less than this share of what the candidate's best one does is not tried.
+const WORTH: f64 = 0.05;
 /// Finalists of each size.
 const FINALISTS: usize = 6;
 /// Trials that get a second look.
@@ -83,7 +86,8 @@ impl Bench<'_> {
         let mut sizes = vec![self.singles()];
         let mut best = self.accepted(&self.base, &sizes[0]).cloned();
         for size in 2..=self.most_effects {
-            if best.as_ref().is_some_and(|b| self.at_floor(b)) {
+            // Where nothing but noise is left, there is nothing for more effects to explain.
+            if self.at_floor(best.as_ref().unwrap_or(&self.base)) {
                 break;
             }
             self.steps.begin(
@@ -109,20 +113,25 @@ impl Bench<'_> {
 
     fn singles(&self) -> Vec<Trial> {
         let starts = if self.small() { 6 } else { 2 };
-        let trials = self.first_look(&self.base, &self.candidates, starts);
+        let trials = self.first_look(&self.base, &self.changes, starts);
         self.finals(trials)
     }
 
-    /// Short fits of candidates on top of a trial, each from its `openings` best starts; the better one counts.
-    pub fn first_look(&self, from: &Trial, candidates: &[Candidate], starts: usize) -> Vec<Trial> {
-        let off = Projector::new(&from.search);
-        candidates
+    /// Short fits of candidates on top of a trial, each from its best openings, at most `starts`; the better one
+    /// counts. `changes` are those of each candidate.
+    pub fn first_look(&self, from: &Trial, changes: &[Vec<Change>], starts: usize) -> Vec<Trial> {
+        let lead = Lead::new(&from.search);
+        changes
             .par_iter()
-            .filter(|candidate| !from.set.contains(candidate))
-            .filter_map(|&candidate| {
-                let found = openings(&from.search, &off, candidate, &self.search);
+            .filter_map(|changes| {
+                let mut found = lead.openings(changes);
+                let best = found.first().map_or(0.0, |o| o.gain);
+                found.truncate(starts);
+                if !self.small() {
+                    found.retain(|o| o.gain >= WORTH * best);
+                }
                 self.steps.step(1);
-                self.best_of(from, &found[..starts.min(found.len())])
+                self.best_of(from, &found)
             })
             .collect()
     }
@@ -147,11 +156,14 @@ impl Bench<'_> {
         let by_error = |a: &Trial, b: &Trial| a.search_mean.total_cmp(&b.search_mean);
         trials.sort_by(by_error);
         // Halving: many get a second look, few go to the end.
-        let heats = [(SECOND_LOOKS, LOOK), (FINALISTS, FINISH)];
-        for (places, iterations) in heats {
+        let heats = [(SECOND_LOOKS, LOOK, false), (FINALISTS, FINISH, true)];
+        for (places, iterations, last) in heats {
             let places = places.min(trials.len());
             trials[..places].par_iter_mut().for_each(|trial| {
-                trial.finish(&self.search, iterations);
+                match last {
+                    false => trial.look_again(&self.search, iterations),
+                    true => trial.finish(&self.search, iterations),
+                }
                 self.steps.step(1);
             });
             trials.sort_by(by_error);
@@ -183,21 +195,33 @@ impl Bench<'_> {
     }
 
     /// The most promising openings on top of a trial that make a set not yet tried.
-    fn partners(&self, lead: &Trial, tried: &[Trial]) -> Vec<Opening> {
-        let off = Projector::new(&lead.search);
-        let mut openings: Vec<Opening> = self
-            .candidates
+    ///
+    /// Which candidates promise most is told by what they change in the base model's prediction; only those are
+    /// simulated on top of the trial.
+    fn partners(&self, from: &Trial, tried: &[Trial]) -> Vec<Opening> {
+        let lead = Lead::new(&from.search);
+        let mut promising: Vec<(&Change, f64)> = self
+            .changes
             .par_iter()
-            .filter(|candidate| !lead.set.contains(candidate))
-            .filter(|candidate| {
-                let mut set = lead.set.clone();
-                set.push(**candidate);
-                !tried.iter().any(|trial| trial.adds(&set))
+            .filter(|changes| {
+                changes.first().is_some_and(|c| {
+                    let mut set = from.set.clone();
+                    set.push(c.candidate);
+                    !from.set.contains(&c.candidate) && !tried.iter().any(|t| t.adds(&set))
+                })
             })
-            .filter_map(|&candidate| {
-                openings(&lead.search, &off, candidate, &self.search)
-                    .into_iter()
-                    .next()
+            .filter_map(|changes| {
+                let gains = changes.iter().map(|c| (c, lead.opening(c).gain));
+                gains.max_by(|a, b| a.1.total_cmp(&b.1))
+            })
+            .collect();
+        promising.sort_by(|a, b| b.1.total_cmp(&a.1));
+        promising.truncate(2 * PARTNERS);
+        let mut openings: Vec<Opening> = promising
+            .par_iter()
+            .filter_map(|(like, _)| {
+                let changes = changes_like(&from.search, like, &self.search);
+                lead.openings(&changes).into_iter().next()
             })
             .collect();
         openings.sort_by(|a, b| b.gain.total_cmp(&a.gain));

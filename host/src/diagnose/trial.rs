@@ -2,8 +2,7 @@
 
 use super::candidate::Candidate;
 use super::score::Score;
-use crate::identify::{Data, Fit, FitOptions, Node, Projector, fit, intervals, residuals, settle};
-use crate::model::Model;
+use crate::identify::{Data, Fit, FitOptions, fit, intervals, settle};
 
 /// A fitted set of effects.
 ///
@@ -80,6 +79,7 @@ impl Trial {
         set.push(candidate);
         let options = FitOptions {
             iterations,
+            rough: true,
             ..FitOptions::default()
         };
         Trial::new(
@@ -89,21 +89,24 @@ impl Trial {
     }
 
     /// Goes on fitting where an earlier, short fit stopped.
+    pub fn look_again(&mut self, data: &Data, iterations: usize) {
+        self.resume(data, iterations, true);
+    }
+
+    /// The same, and takes the derivatives there.
     pub fn finish(&mut self, data: &Data, iterations: usize) {
-        if !self.search.converged {
-            let options = FitOptions {
-                iterations,
-                ..FitOptions::default()
-            };
-            let search = fit(
-                &self.search.model,
-                &self.search.free,
-                data,
-                Some(&self.search.nodes),
-                options,
-            );
-            *self = Trial::new(std::mem::take(&mut self.set), search);
-        }
+        self.resume(data, iterations, false);
+    }
+
+    fn resume(&mut self, data: &Data, iterations: usize, rough: bool) {
+        let options = FitOptions {
+            iterations,
+            rough,
+            ..FitOptions::default()
+        };
+        let search = self.search.resume(data, options);
+        self.search_mean = search.residuals.cost() / search.residuals.count().max(1) as f64;
+        self.search = search;
     }
 
     /// This trial less one of its effects, at the values it has; not refitted.
@@ -125,8 +128,13 @@ impl Trial {
 
     /// Fits again from the present values.
     pub fn refit(&mut self, data: &Data, iterations: usize) {
-        self.search.converged = false;
-        self.finish(data, iterations);
+        let options = FitOptions {
+            iterations,
+            ..FitOptions::default()
+        };
+        let (model, free, nodes) = (&self.search.model, &self.search.free, &self.search.nodes);
+        let search = fit(model, free, data, Some(nodes), options);
+        *self = Trial::new(std::mem::take(&mut self.set), search);
     }
 
     /// Refits over the judging horizon from the values found, and judges them on held-out motions.
@@ -225,143 +233,4 @@ fn significant(set: &[Candidate], fit: &Fit, data: &Data) -> bool {
         all &= present.count() > 0;
     }
     all
-}
-
-/// A promising start for a candidate: values, and how much of the squared residual they could remove.
-#[derive(Debug, Clone)]
-pub(super) struct Opening {
-    pub candidate: Candidate,
-    pub values: Vec<f64>,
-    pub gain: f64,
-}
-
-/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have smaller effects.
-fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.card().parameters;
-    parameters
-        .iter()
-        .zip(start)
-        .map(|(parameter, value)| match parameter.off {
-            Some(off) if off.is_finite() => off + 0.05 * (value - off),
-            _ => *value,
-        })
-        .collect()
-}
-
-/// The best starts of a candidate on top of a fitted model, best first.
-///
-/// Each start costs one simulation. What it changes in the prediction is projected off what the fitted values
-/// could imitate; the rest is scaled to fit the residual, and the squared error it would remove is its gain.
-pub(super) fn openings(
-    from: &Fit,
-    off: &Projector,
-    candidate: Candidate,
-    data: &Data,
-) -> Vec<Opening> {
-    let residual = off.off(&from.residuals.windows);
-    let mut found: Vec<Opening> = candidate
-        .starts()
-        .into_iter()
-        .flat_map(|start| [start.clone(), small(candidate, &start)])
-        .map(|start| opening(from, off, &residual, candidate, start, data))
-        .collect();
-    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut shapes: Vec<Vec<f64>> = Vec::new();
-    found.retain(|opening| {
-        let shape = shape(candidate, &opening.values);
-        let fresh = !shapes.contains(&shape);
-        if fresh {
-            shapes.push(shape);
-        }
-        fresh
-    });
-    found
-}
-
-/// The values that shape an effect without switching it on or off: openings are kept one for each.
-fn shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.card().parameters;
-    let mut shape: Vec<f64> = parameters
-        .iter()
-        .zip(values)
-        .filter(|(parameter, _)| !parameter.off.is_some_and(f64::is_finite))
-        .map(|(_, value)| *value)
-        .collect();
-    // The side of off counts as a shape too: a mass may be missing or be too much.
-    shape.extend(
-        parameters
-            .iter()
-            .zip(values)
-            .filter_map(|(parameter, value)| {
-                Some((value - parameter.off.filter(|o| o.is_finite())?).signum())
-            }),
-    );
-    shape
-}
-
-fn opening(
-    from: &Fit,
-    off: &Projector,
-    residual: &[Vec<f64>],
-    candidate: Candidate,
-    start: Vec<f64>,
-    data: &Data,
-) -> Opening {
-    let change = change(
-        &from.model,
-        candidate,
-        &start,
-        data,
-        &from.nodes,
-        &from.residuals.windows,
-    );
-    let change = off.off(&change);
-    let (mut along, mut size) = (0.0, 1e-12);
-    for (change, residual) in change.iter().flatten().zip(residual.iter().flatten()) {
-        along += change * residual;
-        size += change * change;
-    }
-    let scale = along / size;
-    let values = candidate
-        .effect
-        .card()
-        .parameters
-        .iter()
-        .zip(&start)
-        .map(|(parameter, value)| match parameter.off {
-            Some(off) if off.is_finite() => {
-                let moved = off + (value - off) * scale.clamp(0.02, 20.0);
-                moved.clamp(parameter.bounds.0, parameter.bounds.1)
-            }
-            _ => *value,
-        })
-        .collect();
-    Opening {
-        candidate,
-        values,
-        gain: if scale > 0.0 {
-            along * along / size
-        } else {
-            0.0
-        },
-    }
-}
-
-/// How the prediction changes, weighted, when an effect is added: residual before minus residual after.
-pub(super) fn change(
-    model: &Model,
-    candidate: Candidate,
-    values: &[f64],
-    data: &Data,
-    nodes: &[Node],
-    before: &[Vec<f64>],
-) -> Vec<Vec<f64>> {
-    let mut model = model.clone();
-    model.effects.push(candidate.instance(values));
-    let after = residuals(&model, data, nodes);
-    before
-        .iter()
-        .zip(&after.windows)
-        .map(|(before, after)| before.iter().zip(after).map(|(b, a)| b - a).collect())
-        .collect()
 }

@@ -1,6 +1,7 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
 use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
+use crate::dynamics::Lane;
 use std::f64::consts::PI;
 
 /// A sin(N q + p).
@@ -76,7 +77,7 @@ impl Effect for Cogging {
         let [amplitude_nm, periods_per_turn, phase_rad] = values else {
             return 0.0;
         };
-        amplitude_nm * (periods_per_turn * at.angle_rad + phase_rad).sin()
+        amplitude_nm * Lane::sin_cos(periods_per_turn * at.angle_rad + phase_rad).0
     }
 
     fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {

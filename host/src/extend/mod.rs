@@ -16,6 +16,7 @@ use std::fmt;
 
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: FitOptions = FitOptions {
+    rough: true,
     iterations: 8,
     tolerance: 1e-3,
 };

@@ -60,6 +60,7 @@ fn swing(model: &Model, angle: f64) -> Motion {
     let start = Start {
         angle_rad: vec![angle],
         speed_rad_s: vec![0.0],
+        ..Start::default()
     };
     let mut readings = vec![0.0; motion.len()];
     let plant = Plant::new(model, &motion);

@@ -62,7 +62,8 @@ pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)
 
 /// Squared weighted residual for each sample beyond those that the unknowns take up.
 fn residual_variance(fit: &Fit) -> f64 {
-    let start_states: usize = fit.nodes.iter().map(super::node::Node::unknowns).sum();
+    let columns = fit.jacobian.iter().flat_map(|w| w.node.column_iter());
+    let start_states = columns.filter(|column| column.amax() > 0.0).count();
     let unknowns = fit.free.len() + start_states;
     let freedom = fit.residuals.count().saturating_sub(unknowns).max(1);
     fit.residuals.cost() / freedom as f64

@@ -14,6 +14,8 @@ pub struct FitOptions {
     pub iterations: usize,
     /// Stop when the cost falls by less than this share.
     pub tolerance: f64,
+    /// Whether to leave out the derivatives at the end: for a fit that is only compared, or [resumed](Fit::resume).
+    pub rough: bool,
 }
 
 impl Default for FitOptions {
@@ -21,6 +23,7 @@ impl Default for FitOptions {
         FitOptions {
             iterations: 30,
             tolerance: 1e-5,
+            rough: false,
         }
     }
 }
@@ -41,9 +44,31 @@ pub struct Fit {
     /// Simulations of the whole data that it took.
     pub simulations: usize,
     pub(super) jacobian: Vec<WindowJacobian>,
+    /// Whether the derivatives are those at the fitted values.
+    pub(super) fresh: bool,
 }
 
 impl Fit {
+    /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it lacks.
+    pub fn resume(&self, data: &Data, options: FitOptions) -> Fit {
+        if self.converged && (self.fresh || options.rough) {
+            return self.clone();
+        }
+        let iterations = if self.converged {
+            0
+        } else {
+            options.iterations
+        };
+        let options = FitOptions {
+            iterations,
+            ..options
+        };
+        let mut fit = Search::resume(self, data, guesses(data)).run(options);
+        fit.converged |= self.converged;
+        fit.simulations += self.simulations;
+        fit
+    }
+
     /// Fitted values in the order of `free`.
     pub fn values(&self) -> Vec<f64> {
         self.free
@@ -74,7 +99,7 @@ pub fn fit(
     nodes: Option<&[Node]>,
     options: FitOptions,
 ) -> Fit {
-    let guesses: Vec<Guess> = data.windows.iter().map(|w| Guess::of(data, w)).collect();
+    let guesses = guesses(data);
     let nodes = nodes.map_or_else(
         || guesses.iter().map(|g| g.node.clone()).collect(),
         <[Node]>::to_vec,
@@ -91,7 +116,11 @@ pub fn settle(model: &Model, data: &Data) -> Fit {
         None,
         FitOptions {
             iterations: 8,
-            tolerance: 1e-5,
+            ..FitOptions::default()
         },
     )
+}
+
+fn guesses(data: &Data) -> Vec<Guess> {
+    data.windows.iter().map(|w| Guess::of(data, w)).collect()
 }

@@ -14,14 +14,20 @@ impl Search<'_> {
     pub fn jacobian(&mut self) -> Vec<WindowJacobian> {
         let parameters = self.free.len();
         let unknowns = self.nodes.first().map_or(0, Node::unknowns);
-        let tasks: Vec<(usize, usize)> = (0..parameters + unknowns)
+        // Without a sensor that trails, a start's acceleration changes nothing.
+        let joints = self.data.sigma_rad.len();
+        let moving = match self.model.trails() {
+            true => 3 * joints,
+            false => 2 * joints,
+        };
+        let tasks: Vec<(usize, usize)> = (0..parameters + moving)
             .flat_map(|column| (0..self.data.motions.len()).map(move |motion| (column, motion)))
             .collect();
         let columns: Vec<(f64, Vec<Vec<f64>>)> = tasks
             .par_iter()
             .map(|&(column, motion)| self.column(column, motion))
             .collect();
-        self.simulations += parameters + unknowns;
+        self.simulations += parameters + moving;
         let motions = self.data.motions.len();
         let mut index_in_motion = vec![0; motions];
         self.data
@@ -33,7 +39,10 @@ impl Search<'_> {
                 index_in_motion[window.motion] += 1;
                 let base = &self.residuals.windows[w];
                 let derivative = |row: usize, column: usize| {
-                    let (delta, shifted) = &columns[column * motions + window.motion];
+                    let Some((delta, shifted)) = columns.get(column * motions + window.motion)
+                    else {
+                        return 0.0;
+                    };
                     // Residual is measured minus predicted, so the prediction's derivative has the other sign.
                     (base[row] - shifted[at][row]) / delta
                 };
@@ -72,7 +81,7 @@ impl Search<'_> {
         let unknown = column - self.free.len();
         let joints = self.data.sigma_rad.len();
         let sigma = self.data.sigma_rad[unknown % joints];
-        let delta = if unknown < joints { 0.1 * sigma } else { sigma };
+        let delta = sigma * DIFFERENCES[unknown / joints];
         let mut nodes = self.nodes.clone();
         for node in &mut nodes {
             *node.at(unknown) += delta;
@@ -83,6 +92,10 @@ impl Search<'_> {
         )
     }
 }
+
+/// Steps of the differences in a start's angle, speed and acceleration, in standard deviations of a reading (per
+/// second, per second squared).
+const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 
 /// A value's natural size, for the step of a finite difference where the value itself is zero.
 fn scale(path: &ParameterPath) -> f64 {

@@ -1,5 +1,6 @@
 //! Fitting a model's free parameters to measured motions by multiple shooting.
 
+mod broyden;
 mod cluster;
 mod covariance;
 mod data;

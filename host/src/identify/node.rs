@@ -3,20 +3,23 @@
 use super::data::{Data, Window};
 use crate::sim::{Plant, Start};
 
-/// Start of a window: readings and speeds, per joint.
+/// Start of a window: readings, and how they change, per joint. Where a sensor trails, the angle is found from the
+/// readings' speed and the joint's speed from their acceleration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// What the encoders read, rad in the log's convention.
     pub reading_rad: Vec<f64>,
     /// Joint speeds as the log's angles change, rad/s (absolute where the log's angles are).
     pub speed_rad_s: Vec<f64>,
+    /// How these speeds change, rad/s^2; tells nothing where no sensor trails.
+    pub acceleration_rad_s2: Vec<f64>,
 }
 
 /// What the samples around a window's start say of it, and how surely.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Guess {
     pub node: Node,
-    /// Standard deviations of the node's unknowns: angles, then speeds.
+    /// Standard deviations of the node's unknowns: angles, speeds, then accelerations.
     pub deviation: Vec<f64>,
 }
 
@@ -27,6 +30,8 @@ const REACH_DEVIATIONS: f64 = 6.0;
 const LEAST_RAD: f64 = 2e-4;
 /// The same for a start speed.
 const LEAST_RAD_S: f64 = 4e-3;
+/// The same for a start acceleration.
+const LEAST_RAD_S2: f64 = 0.1;
 /// Half the span of the samples that tell a window's start.
 const REACH_S: f64 = 0.06;
 
@@ -39,8 +44,9 @@ impl Guess {
             node: Node {
                 reading_rad: vec![0.0; joints],
                 speed_rad_s: vec![0.0; joints],
+                acceleration_rad_s2: vec![0.0; joints],
             },
-            deviation: vec![0.0; 2 * joints],
+            deviation: vec![0.0; 3 * joints],
         };
         for joint in 0..joints {
             let (time, position) = (&motion.time_s, &motion.position_rad[joint]);
@@ -49,11 +55,14 @@ impl Guess {
             let sigma = data.sigma_rad[joint];
             guess.node.reading_rad[joint] = line.value;
             guess.node.speed_rad_s[joint] = line.slope;
+            guess.node.acceleration_rad_s2[joint] = line.bend;
             // Where a shorter parabola says otherwise, the motion is no parabola.
             guess.deviation[joint] =
                 LEAST_RAD + sigma * line.value_gain + (line.value - near.value).abs();
             guess.deviation[joints + joint] =
                 LEAST_RAD_S + sigma * line.slope_gain + (line.slope - near.slope).abs();
+            guess.deviation[2 * joints + joint] =
+                LEAST_RAD_S2 + sigma * line.bend_gain + (line.bend - near.bend).abs();
             let logged = motion.velocity_rad_s[joint]
                 .as_ref()
                 .map(|v| v[window.samples.start]);
@@ -103,40 +112,38 @@ impl Node {
 
     /// The simulator's start state.
     pub fn start(&self, plant: &Plant) -> Start {
-        let mut speed = self.speed_rad_s.clone();
-        if plant.is_absolute() {
-            for joint in (1..speed.len()).rev() {
-                speed[joint] -= speed[joint - 1];
-            }
-        }
+        let (reading, speed) = (&self.reading_rad, &self.speed_rad_s);
         Start {
-            angle_rad: plant.decode_rad(&plant.ahead_rad(&self.reading_rad, &self.speed_rad_s)),
-            speed_rad_s: speed,
+            angle_rad: plant.decode_rad(&plant.ahead_rad(reading, speed)),
+            speed_rad_s: plant.decode_rad_s(&plant.ahead_rad(speed, &self.acceleration_rad_s2)),
+            reading_rad_s: Some(speed.clone()),
         }
     }
 
-    /// Number of unknowns: an angle and a speed per joint.
+    /// Number of unknowns: an angle, a speed and an acceleration per joint.
     pub fn unknowns(&self) -> usize {
-        2 * self.reading_rad.len()
+        3 * self.reading_rad.len()
     }
 
-    /// Unknown `i`: the angles first, then the speeds.
+    /// Unknown `i`: the angles first, then the speeds, then the accelerations.
     pub fn at(&mut self, i: usize) -> &mut f64 {
         let joints = self.reading_rad.len();
-        if i < joints {
-            &mut self.reading_rad[i]
-        } else {
-            &mut self.speed_rad_s[i - joints]
+        match i / joints {
+            0 => &mut self.reading_rad[i],
+            1 => &mut self.speed_rad_s[i - joints],
+            _ => &mut self.acceleration_rad_s2[i - 2 * joints],
         }
     }
 }
 
-/// Value and slope of a local parabola, and their standard deviations per unit of measurement noise.
+/// Value, slope and second derivative of a local parabola, and their standard deviations per unit of measurement noise.
 struct LocalLine {
     value: f64,
     slope: f64,
     value_gain: f64,
     slope_gain: f64,
+    bend: f64,
+    bend_gain: f64,
 }
 
 /// Fits a parabola around sample `at` to its neighbours within `reach` seconds (at least 5 samples).
@@ -171,6 +178,8 @@ fn local_line(time_s: &[f64], values: &[f64], at: usize, reach: f64) -> LocalLin
                 slope: c[1] / reach,
                 value_gain: inverse[(0, 0)].sqrt(),
                 slope_gain: inverse[(1, 1)].sqrt() / reach,
+                bend: 2.0 * c[2] / reach.powi(2),
+                bend_gain: 2.0 * inverse[(2, 2)].sqrt() / reach.powi(2),
             }
         }
         None => LocalLine {
@@ -178,6 +187,8 @@ fn local_line(time_s: &[f64], values: &[f64], at: usize, reach: f64) -> LocalLin
             slope: 0.0,
             value_gain: 1.0,
             slope_gain: 1.0 / reach,
+            bend: 0.0,
+            bend_gain: 1.0 / reach.powi(2),
         },
     }
 }

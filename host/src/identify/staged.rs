@@ -15,6 +15,7 @@ const STAGES_S: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
 const STAGE: FitOptions = FitOptions {
     iterations: 15,
     tolerance: 1e-3,
+    rough: true,
 };
 
 /// Root-mean-square weighted residual that leaves nothing to look for.

@@ -198,6 +198,12 @@ impl Model {
         self.links.len()
     }
 
+    /// Whether a sensor's reading trails the motion.
+    pub fn trails(&self) -> bool {
+        let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);
+        self.effects.iter().any(|e| trail(e).is_some())
+    }
+
     /// Whether the model already holds this effect at this joint.
     pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
         self.effects

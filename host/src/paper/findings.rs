@@ -276,6 +276,7 @@ fn shift_rad(base: &Model, drive: Drive, input: &[f64]) -> f64 {
     let level = Start {
         angle_rad: vec![std::f64::consts::FRAC_PI_2],
         speed_rad_s: vec![0.0],
+        ..Start::default()
     };
     let payload_kg = 0.3 / (model.gravity_m_s2 * model.log.payload_at_m);
     let (free, loaded) = (with(0.0), with(payload_kg));

@@ -74,6 +74,7 @@ pub(super) fn simulated(
     let rest = Start {
         angle_rad: vec![0.0],
         speed_rad_s: vec![0.0],
+        ..Start::default()
     };
     let mut readings = vec![0.0; samples];
     predict(

@@ -3,6 +3,7 @@
 mod drive;
 mod input;
 mod plant;
+mod rows;
 mod run;
 mod stepper;
 

@@ -129,12 +129,8 @@ impl Plant {
             true => speed_rad_s[..=joint].iter().sum::<f64>(),
             false => speed_rad_s[joint],
         };
-        let encode = |x: f64| {
-            let effects = self.joints[joint].encode.iter();
-            effects.fold(x, |angle, e| e.effect.encode(e.values(), angle))
-        };
-        // Encoders are straight lines.
-        (encode(1.0) - encode(0.0)) * true_speed
+        let joint = &self.joints[joint];
+        (joint.line(1.0) - joint.line(0.0)) * true_speed
     }
 
     /// What the encoders would read without the sensors that trail, where these read `reading_rad` and the readings
@@ -149,19 +145,25 @@ impl Plant {
             .collect()
     }
 
+    /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
+    pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
+        let slope = |joint: &JointPlan| joint.line(1.0) - joint.line(0.0);
+        let joints = self.joints.iter().zip(rate_rad_s);
+        let mut speeds: Vec<f64> = joints.map(|(joint, rate)| rate / slope(joint)).collect();
+        if self.absolute {
+            for joint in (1..speeds.len()).rev() {
+                speeds[joint] -= speeds[joint - 1];
+            }
+        }
+        speeds
+    }
+
     /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes `encoded_rad`.
     pub fn decode_rad(&self, reading_rad: &[f64]) -> Vec<f64> {
         let mut angles = Vec::with_capacity(reading_rad.len());
         let mut before = self.zero_rad;
         for (joint, &reading) in self.joints.iter().zip(reading_rad) {
-            // Encoders are straight lines: two points give the inverse.
-            let line = |x: f64| {
-                joint
-                    .encode
-                    .iter()
-                    .fold(x, |a, e| e.effect.encode(e.values(), a))
-            };
-            let (at_zero, at_one) = (line(0.0), line(1.0));
+            let (at_zero, at_one) = (joint.line(0.0), joint.line(1.0));
             let angle = (reading - at_zero) / (at_one - at_zero);
             if self.absolute {
                 angles.push(angle + self.zero_rad - if angles.is_empty() { 0.0 } else { before });
@@ -189,6 +191,12 @@ impl JointPlan {
             encode: Vec::new(),
             sense: Vec::new(),
         }
+    }
+
+    /// What the encoder reads at an angle: a straight line, so that two points tell all of it.
+    fn line(&self, angle_rad: f64) -> f64 {
+        let effects = self.encode.iter();
+        effects.fold(angle_rad, |angle, e| e.effect.encode(e.values(), angle))
     }
 
     fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {

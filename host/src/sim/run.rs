@@ -3,6 +3,7 @@
 use super::drive::Told;
 use super::input::held_mean;
 use super::plant::Plant;
+use super::rows::{Many, One, Rows};
 use super::stepper::Stepper;
 use crate::log::Motion;
 use crate::model::Drive;
@@ -15,6 +16,8 @@ pub struct Start {
     pub angle_rad: Vec<f64>,
     /// Per joint, rad/s.
     pub speed_rad_s: Vec<f64>,
+    /// How fast the readings change, rad/s in the log's convention, where sensors trail; as fast as the joints without.
+    pub reading_rad_s: Option<Vec<f64>>,
 }
 
 /// What sensor effects remember from one stretch to the next.
@@ -22,6 +25,9 @@ pub struct Start {
 pub struct Memory {
     cells: Vec<Option<[f64; 2]>>,
 }
+
+/// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out over the period.
+const SPARED: f64 = 0.1;
 
 /// Predicted readings, rad in the log's convention, at samples `stretch` of the motion.
 ///
@@ -36,9 +42,23 @@ pub fn predict(
     memory: &mut Memory,
     readings: &mut [f64],
 ) -> Start {
+    match plant.len() {
+        1 => predicted::<One>(plant, motion, stretch, start, memory, readings),
+        _ => predicted::<Many>(plant, motion, stretch, start, memory, readings),
+    }
+}
+
+fn predicted<R: Rows>(
+    plant: &Plant,
+    motion: &Motion,
+    stretch: Range<usize>,
+    start: &Start,
+    memory: &mut Memory,
+    readings: &mut [f64],
+) -> Start {
     let n = plant.len();
     let samples = stretch.len();
-    let mut stepper = Stepper::new(plant, &start.angle_rad, &start.speed_rad_s);
+    let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
     let mut recorder = Recorder::new(plant, memory);
     let mut told = vec![
         Told {
@@ -51,24 +71,24 @@ pub fn predict(
     ];
     let mut cursors = vec![0; n];
     recorder.begin(plant, start);
-    recorder.step(plant, &stepper.angle, 0.0);
+    recorder.step(plant, stepper.angle.as_ref(), 0.0);
     recorder.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
-        let steps = ((to - from) / plant.step_s - 1e-6).ceil().max(1.0) as usize;
+        let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
         let h = (to - from) / steps as f64;
         for step in 0..steps {
             let begin = from + step as f64 * h;
             tell(plant, motion, k, begin, begin + h, &mut cursors, &mut told);
             stepper.advance(plant, &told, h);
             if plant.senses {
-                recorder.step(plant, &stepper.angle, h);
+                recorder.step(plant, stepper.angle.as_ref(), h);
             }
         }
         if !plant.senses {
-            recorder.step(plant, &stepper.angle, to - from);
+            recorder.step(plant, stepper.angle.as_ref(), to - from);
         }
-        if !stepper.angle.iter().all(|a| a.abs() < 1e6) {
+        if !stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6) {
             for joint in 0..n {
                 readings[joint * samples + k + 1 - stretch.start..(joint + 1) * samples]
                     .fill(f64::NAN);
@@ -78,8 +98,9 @@ pub fn predict(
         recorder.record(readings, k + 1 - stretch.start, samples);
     }
     Start {
-        angle_rad: stepper.angle,
-        speed_rad_s: stepper.speed,
+        angle_rad: stepper.angle.as_ref().to_vec(),
+        speed_rad_s: stepper.speed.as_ref().to_vec(),
+        reading_rad_s: None,
     }
 }
 
@@ -140,12 +161,15 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Sensors that trail begin as far behind as they are in steady motion: a stretch may begin at speed.
+    /// Sensors that trail begin as far behind as their readings' speed says: a stretch may begin at speed.
     fn begin(&mut self, plant: &Plant, start: &Start) {
         let mut cells = self.memory.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
             let mut reading = plant.encoded_rad(joint, &start.angle_rad);
-            let speed = plant.encoded_rad_s(joint, &start.speed_rad_s);
+            let speed = match &start.reading_rad_s {
+                Some(speed) => speed[joint],
+                None => plant.encoded_rad_s(joint, &start.speed_rad_s),
+            };
             for (active, cell) in plan.sense.iter().zip(&mut cells) {
                 if let Some(trail) = active.effect.trail_rad(active.values(), speed) {
                     *cell = Some([reading, reading - trail]);

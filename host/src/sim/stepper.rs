@@ -6,6 +6,7 @@
 
 use super::drive::Told;
 use super::plant::Plant;
+use super::rows::Rows;
 use crate::dynamics::Workspace;
 use crate::effects::{JointState, Slide};
 use crate::model::Drive;
@@ -21,48 +22,38 @@ pub(super) enum Contact {
     Held,
 }
 
-/// State and scratch of a simulation.
-#[derive(Debug, Clone)]
-pub(super) struct Stepper {
-    pub angle: Vec<f64>,
-    pub speed: Vec<f64>,
-    pub contact: Vec<Contact>,
+/// State and scratch of a simulation; `R` says how its rows of one number per joint are kept.
+#[derive(Debug)]
+pub(super) struct Stepper<R: Rows> {
+    pub angle: R::Of<f64>,
+    pub speed: R::Of<f64>,
+    contact: R::Of<Contact>,
     work: Workspace,
-    held: Vec<bool>,
-    torque: Vec<f64>,
-    drive_torque: Vec<f64>,
-    loads: Vec<f64>,
-    bearing: Vec<f64>,
-    zeros: Vec<f64>,
-    stage_angle: Vec<f64>,
-    stage_speed: Vec<f64>,
-    slope: [Vec<f64>; 4],
-    speeds: [Vec<f64>; 3],
-    start_angle: Vec<f64>,
-    start_speed: Vec<f64>,
+    held: R::Of<bool>,
+    torque: R::Of<f64>,
+    drive_torque: R::Of<f64>,
+    loads: R::Of<f64>,
+    bearing: R::Of<f64>,
+    zeros: R::Of<f64>,
+    stage_angle: R::Of<f64>,
+    stage_speed: R::Of<f64>,
+    slope: [R::Of<f64>; 4],
+    speeds: [R::Of<f64>; 3],
+    start_angle: R::Of<f64>,
+    start_speed: R::Of<f64>,
 }
 
-impl Stepper {
+impl<R: Rows> Stepper<R> {
     /// At these relative angles and speeds; joints at speed 0 begin held if anything holds them.
-    pub fn new(plant: &Plant, angle: &[f64], speed: &[f64]) -> Stepper {
+    pub fn new(plant: &Plant, angle: &[f64], speed: &[f64]) -> Self {
         let n = plant.len();
-        let zeros = || vec![0.0; n];
-        let contact = plant
-            .joints
-            .iter()
-            .zip(speed)
-            .map(|(joint, &speed)| match (joint.friction.is_empty(), speed) {
-                (true, _) => Contact::Free,
-                (false, 0.0) => Contact::Held,
-                (false, speed) => Contact::Sliding(speed.signum()),
-            })
-            .collect();
-        Stepper {
-            angle: angle.to_vec(),
-            speed: speed.to_vec(),
-            contact,
+        let zeros = || R::filled(0.0, n);
+        let mut stepper: Self = Stepper {
+            angle: zeros(),
+            speed: zeros(),
+            contact: R::filled(Contact::Free, n),
             work: Workspace::new(n),
-            held: vec![false; n],
+            held: R::filled(false, n),
             torque: zeros(),
             drive_torque: zeros(),
             loads: zeros(),
@@ -74,7 +65,23 @@ impl Stepper {
             speeds: [zeros(), zeros(), zeros()],
             start_angle: zeros(),
             start_speed: zeros(),
+        };
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            stepper.angle[joint] = angle[joint];
+            stepper.speed[joint] = speed[joint];
+            stepper.contact[joint] = match (plan.friction.is_empty(), speed[joint]) {
+                (true, _) => Contact::Free,
+                (false, 0.0) => Contact::Held,
+                (false, speed) => Contact::Sliding(speed.signum()),
+            };
         }
+        stepper
+    }
+
+    /// Number of joints.
+    #[inline]
+    fn len(&self) -> usize {
+        self.angle.as_ref().len()
     }
 
     /// Advances by `step_s` under constant inputs.
@@ -83,14 +90,14 @@ impl Stepper {
         // Chatter between contacts can't go on for ever: after this many events the step is taken as it comes.
         for _ in 0..8 {
             self.release(plant, told);
-            self.start_angle.copy_from_slice(&self.angle);
-            self.start_speed.copy_from_slice(&self.speed);
+            self.start_angle.clone_from(&self.angle);
+            self.start_speed.clone_from(&self.speed);
             self.runge_kutta(plant, told, left);
             let Some((joint, share)) = self.first_stop() else {
                 return;
             };
-            self.angle.copy_from_slice(&self.start_angle);
-            self.speed.copy_from_slice(&self.start_speed);
+            self.angle.clone_from(&self.start_angle);
+            self.speed.clone_from(&self.start_speed);
             self.runge_kutta(plant, told, share * left);
             self.speed[joint] = 0.0;
             self.contact[joint] = Contact::Held;
@@ -101,7 +108,7 @@ impl Stepper {
         }
         self.release(plant, told);
         self.runge_kutta(plant, told, left);
-        for joint in 0..self.speed.len() {
+        for joint in 0..self.len() {
             if self.stopped(joint) {
                 self.speed[joint] = 0.0;
                 self.contact[joint] = Contact::Held;
@@ -115,7 +122,7 @@ impl Stepper {
 
     /// The joint whose speed first crosses zero in the step just taken, and at which share of it.
     fn first_stop(&self) -> Option<(usize, f64)> {
-        (0..self.speed.len())
+        (0..self.len())
             .filter(|&joint| self.stopped(joint))
             .map(|joint| {
                 let before = self.start_speed[joint];
@@ -126,11 +133,11 @@ impl Stepper {
 
     /// Lets go of held joints that are pushed beyond their breakaway torque, the most pushed first.
     fn release(&mut self, plant: &Plant, told: &[Told]) {
-        while self.contact.contains(&Contact::Held) {
-            self.stage_angle.copy_from_slice(&self.angle);
-            self.stage_speed.copy_from_slice(&self.speed);
+        while self.contact.as_ref().contains(&Contact::Held) {
+            self.stage_angle.clone_from(&self.angle);
+            self.stage_speed.clone_from(&self.speed);
             self.accelerate(plant, told, 0);
-            let pushed = (0..plant.len())
+            let pushed = (0..self.len())
                 .filter(|&joint| self.contact[joint] == Contact::Held)
                 .map(|joint| {
                     let push = -self.slope[0][joint];
@@ -148,9 +155,9 @@ impl Stepper {
     }
 
     fn runge_kutta(&mut self, plant: &Plant, told: &[Told], h: f64) {
-        let n = plant.len();
-        self.stage_angle.copy_from_slice(&self.angle);
-        self.stage_speed.copy_from_slice(&self.speed);
+        let n = self.len();
+        self.stage_angle.clone_from(&self.angle);
+        self.stage_speed.clone_from(&self.speed);
         for stage in 0..4 {
             self.accelerate(plant, told, stage);
             for joint in 0..n {
@@ -177,13 +184,14 @@ impl Stepper {
 
     /// Accelerations at the stage state into `slope[stage]`; for held joints the holding torque.
     fn accelerate(&mut self, plant: &Plant, told: &[Told], stage: usize) {
-        for (joint, plan) in plant.joints.iter().enumerate() {
+        for joint in 0..self.len() {
+            let plan = &plant.joints[joint];
             let speed = self.stage_speed[joint];
             self.held[joint] = self.contact[joint] == Contact::Held;
             let drive = match plan.drive {
                 Drive::Passive => 0.0,
                 Drive::Position { .. } => {
-                    let reading = plant.encoded_rad(joint, &self.stage_angle);
+                    let reading = plant.encoded_rad(joint, self.stage_angle.as_ref());
                     plan.drive_torque_nm(told[joint], reading, speed)
                 }
                 _ => plan.drive_torque_nm(told[joint], 0.0, speed),
@@ -206,7 +214,7 @@ impl Stepper {
         if plant.needs_bearing_load {
             self.find_bearing_loads(plant, stage);
         }
-        for joint in 0..plant.len() {
+        for joint in 0..self.len() {
             if let Contact::Sliding(direction) = self.contact[joint] {
                 let speed = (direction * self.stage_speed[joint]).max(0.0);
                 self.torque[joint] -= direction * self.friction_nm(plant, joint, speed, direction);
@@ -219,11 +227,11 @@ impl Stepper {
         plant.rig.chain.forward(
             &mut self.work,
             plant.base_m_s2,
-            &self.stage_angle,
-            &self.stage_speed,
-            &self.torque,
-            &self.held,
-            &mut self.slope[stage],
+            self.stage_angle.as_ref(),
+            self.stage_speed.as_ref(),
+            self.torque.as_ref(),
+            self.held.as_ref(),
+            self.slope[stage].as_mut(),
         );
     }
 
@@ -246,32 +254,30 @@ impl Stepper {
     fn find_gear_loads(&mut self, plant: &Plant) {
         plant.rig.chain.inverse(
             plant.rig.gravity_turn_rad,
-            &self.stage_angle,
-            &self.stage_speed,
-            &self.zeros,
-            &mut self.loads,
+            self.stage_angle.as_ref(),
+            self.stage_speed.as_ref(),
+            self.zeros.as_ref(),
+            self.loads.as_mut(),
         );
-        for (load, drive) in self.loads.iter_mut().zip(&self.drive_torque) {
-            *load = (*load + drive).abs();
+        for joint in 0..self.len() {
+            self.loads[joint] = (self.loads[joint] + self.drive_torque[joint]).abs();
         }
     }
 
     /// Force in the bearings at the accelerations the chain has without friction.
     fn find_bearing_loads(&mut self, plant: &Plant, stage: usize) {
         self.solve(plant, stage);
-        for joint in 0..plant.len() {
+        for joint in 0..self.len() {
             if self.held[joint] {
                 self.slope[stage][joint] = 0.0;
             }
         }
-        let mut forces = std::mem::take(&mut self.bearing);
         plant.rig.chain.bearing_forces(
             plant.rig.gravity_turn_rad,
-            &self.stage_angle,
-            &self.stage_speed,
-            &self.slope[stage],
-            &mut forces,
+            self.stage_angle.as_ref(),
+            self.stage_speed.as_ref(),
+            self.slope[stage].as_ref(),
+            self.bearing.as_mut(),
         );
-        self.bearing = forces;
     }
 }

@@ -1,0 +1,134 @@
+//! The probes of which a free form is made: bumps, sines and shifts, each scaled to what the motions cover.
+
+use super::candidate::Candidate;
+use crate::effects::Along;
+use crate::identify::Data;
+use crate::model::{Drive, Model};
+
+/// A probe with the amplitude at which its effect is measured.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term {
+    pub along: Along,
+    pub candidate: Candidate,
+    pub values: [f64; 4],
+}
+
+/// The probes of every joint, scaled to the range its motions cover.
+pub(super) fn terms(model: &Model, data: &Data) -> Vec<Term> {
+    let mut terms = Vec::new();
+    for joint in 0..model.link_count() {
+        let range = Range::of(model, data, joint);
+        let mut add = |along: Along, amplitude: f64, centre: f64, width: f64| {
+            terms.push(Term {
+                along,
+                candidate: Candidate {
+                    effect: along.probe(),
+                    joint: Some(joint),
+                },
+                values: [amplitude, along.index(), centre, width],
+            });
+        };
+        let torque = 0.01 * range.torque_nm;
+        for share in [-1.0, -0.6, -0.3, -0.12, 0.0, 0.12, 0.3, 0.6, 1.0] {
+            add(
+                Along::Speed,
+                torque,
+                share * range.speed_rad_s,
+                0.35 * range.speed_rad_s,
+            );
+        }
+        let span = (range.high_rad - range.low_rad) / 6.0;
+        for step in 0..7 {
+            let centre = range.low_rad + f64::from(step) * span;
+            add(Along::Angle, torque, centre, span);
+            add(Along::SlideAtAngle, torque, centre, span);
+            add(Along::Reading, 1e-3, centre, span);
+        }
+        for periods in [
+            4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0,
+        ] {
+            add(Along::SineOfAngle, 0.3 * torque, periods, 1.0);
+            add(Along::CosineOfAngle, 0.3 * torque, periods, 1.0);
+        }
+        let moment = model.links[joint].inertia_kg_m2
+            + model.links[joint].mass_kg * model.links[joint].com_m.powi(2);
+        add(Along::Inertia, 0.02 * moment, 0.0, 1.0);
+        add(Along::Mass, 0.02 * model.links[joint].mass_kg, 0.0, 1.0);
+        add(Along::Tilt, 3e-3, 0.0, 1.0);
+        add(Along::ReadingLag, 1e-3, 0.0, 1.0);
+        add(Along::ReadingPlay, 1e-3, 0.0, 1.0);
+        if model.joints[joint].drive != Drive::Passive {
+            for share in [-1.0, -0.5, -0.25, -0.1, 0.0, 0.1, 0.25, 0.5, 1.0] {
+                add(
+                    Along::DriveTorque,
+                    torque,
+                    share * range.drive_nm,
+                    0.3 * range.drive_nm,
+                );
+            }
+            add(Along::SlideUnderDrive, 0.02, 0.0, 1.0);
+            add(Along::Supply, 0.02, 0.0, 1.0);
+            add(Along::BackEmf, 0.01 / range.speed_rad_s, 0.0, 1.0);
+            add(Along::Late, 1e-3, 0.0, 1.0);
+        }
+    }
+    terms
+}
+
+/// What a joint's motions cover.
+struct Range {
+    low_rad: f64,
+    high_rad: f64,
+    speed_rad_s: f64,
+    drive_nm: f64,
+    torque_nm: f64,
+}
+
+impl Range {
+    fn of(model: &Model, data: &Data, joint: usize) -> Range {
+        let positions = || {
+            data.motions
+                .iter()
+                .flat_map(|m| m.position_rad[joint].iter().copied())
+        };
+        let mut speeds: Vec<f64> = data
+            .motions
+            .iter()
+            .flat_map(|m| {
+                let (time, position) = (&m.time_s, &m.position_rad[joint]);
+                (3..position.len().saturating_sub(3)).map(move |k| {
+                    ((position[k + 3] - position[k - 3]) / (time[k + 3] - time[k - 3])).abs()
+                })
+            })
+            .filter(|w| w.is_finite())
+            .collect();
+        speeds.sort_by(f64::total_cmp);
+        let fast = speeds.get(speeds.len() * 97 / 100).copied().unwrap_or(1.0);
+        let full = match &model.joints[joint].drive {
+            Drive::Passive => 0.0,
+            Drive::Torque => 1.0,
+            drive => drive.motor().map_or(0.0, |m| m.stall_torque_nm),
+        };
+        let largest = data
+            .motions
+            .iter()
+            .filter_map(|m| m.input[joint].as_ref())
+            .flatten()
+            .fold(0.0, |most: f64, u| most.max(u.abs()));
+        let drive = match &model.joints[joint].drive {
+            Drive::Torque | Drive::Duty(_) => full * largest,
+            _ => full,
+        };
+        let outer: f64 = model.links[joint..]
+            .iter()
+            .map(|l| l.mass_kg * (l.com_m.abs() + 0.3 * l.length_m))
+            .sum();
+        Range {
+            low_rad: positions().fold(f64::INFINITY, f64::min),
+            high_rad: positions().fold(f64::NEG_INFINITY, f64::max),
+            speed_rad_s: fast.max(1e-3),
+            drive_nm: drive.max(1e-6),
+            torque_nm: (outer * model.gravity_m_s2).max(1e-6),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Derivatives corrected by what a step brought, instead of taken anew at one simulation per unknown.
+//!
+//! The least change that makes them explain the step (Broyden 1965, Mathematics of Computation 19, 577), window by
+//! window: a window's residual depends on the shared values and on its own start state alone (Schubert 1970).
+
+use super::normal::WindowJacobian;
+use nalgebra::{DMatrix, DVector};
+
+impl WindowJacobian {
+    /// The residual after a step, were it straight.
+    pub fn straight(&self, values: &DVector<f64>, node: &DVector<f64>) -> DVector<f64> {
+        let mut residual = self.residual.clone();
+        residual.gemv(-1.0, &self.parameters, values, 1.0);
+        residual.gemv(-1.0, &self.node, node, 1.0);
+        residual
+    }
+
+    /// Corrects the derivatives by a step that led to `residual`. How much each unknown gets of the correction goes
+    /// by how much of the step it was to make.
+    pub fn correct(&mut self, values: &DVector<f64>, node: &DVector<f64>, residual: &[f64]) {
+        let missed = self.straight(values, node) - DVector::from_column_slice(residual);
+        let (of_values, of_node) = (weights(&self.parameters, values), weights(&self.node, node));
+        let all = of_values.dot(values) + of_node.dot(node);
+        if all > 0.0 {
+            self.parameters.ger(1.0 / all, &missed, &of_values, 1.0);
+            self.node.ger(1.0 / all, &missed, &of_node, 1.0);
+        }
+        self.residual.copy_from_slice(residual);
+    }
+}
+
+/// Steps times the squared lengths of their columns.
+fn weights(columns: &DMatrix<f64>, step: &DVector<f64>) -> DVector<f64> {
+    DVector::from_fn(step.len(), |i, _| {
+        step[i] * columns.column(i).norm_squared()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corrected_jacobian_explains_the_step() {
+        let mut window = WindowJacobian {
+            residual: DVector::from_column_slice(&[1.0, -2.0, 0.5]),
+            parameters: DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.3, -1.0, 2.0, 0.1]),
+            node: DMatrix::from_row_slice(3, 1, &[0.5, 0.5, 0.0]),
+            node_precision: DVector::from_element(1, 1.0),
+            node_pull: DVector::zeros(1),
+            node_edge: vec![0.0],
+        };
+        let before = window.clone();
+        let (values, node) = (
+            DVector::from_vec(vec![0.3, -0.1]),
+            DVector::from_element(1, 0.2),
+        );
+        let after = [0.4, -2.5, 0.1];
+        window.correct(&values, &node, &after);
+        assert_eq!(window.residual.as_slice(), after);
+        window.residual.copy_from(&before.residual);
+        for (straight, after) in window.straight(&values, &node).iter().zip(after) {
+            assert!((straight - after).abs() < 1e-12, "{straight} {after}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+use super::*;
+use crate::effects;
+
+const MODEL: &str = include_str!("../testdata/full.toml");
+
+fn path() -> &'static Path {
+    Path::new("full.toml")
+}
+
+fn effect(id: &str, joint: usize, value: f64) -> EffectInstance {
+    EffectInstance {
+        effect: effects::named(id).unwrap(),
+        joint: Some(joint),
+        values: vec![value],
+    }
+}
+
+fn fitted() -> Fitted {
+    Fitted {
+        intervals: vec![("torque_nm".into(), 0.018, 0.022)],
+        logs: vec![("drop \"1\".csv".into(), "ab12".into())],
+        error_before: 0.012_345_678,
+        error_after: 0.0021,
+        error_unit: "rad".into(),
+    }
+}
+
+#[test]
+fn an_added_effect_is_there_and_every_old_line_too() {
+    let added = effect("coulomb", 1, 0.019_876_543_2);
+    let text = add_effect(MODEL, path(), &added, Some(&fitted())).unwrap();
+    let model = Model::parse(&text, path()).unwrap();
+    let last = model.effects.last().unwrap();
+    assert_eq!(last.effect.card().id, "coulomb");
+    assert_eq!((last.joint, last.values[0]), (Some(1), 0.019_876_5));
+    let mut lines = text.lines();
+    for old in MODEL.lines().filter(|line| !line.starts_with("free")) {
+        assert!(lines.any(|line| line == old), "kept in order: {old}");
+    }
+    assert!(text.contains(
+        "[[effect]]\nkind = \"coulomb\"\njoint = 2\ntorque_nm = 0.0198765\n\n[effect.fitted]\n"
+    ));
+    assert!(text.contains("error_before = 0.0123457\n"), "{text}");
+    assert!(
+        text.contains("intervals = { torque_nm = [0.018, 0.022] }\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_added_effect_is_free_where_the_model_lists_what_is() {
+    let old = r#"["link1.inertia_kg_m2", "joint2.gain_per_rad", "coulomb@1.torque_nm"]"#;
+    let one = "[\n  \"link1.com_m\", # of the bob\n]";
+    for (list, said) in [
+        (old, r#"torque_nm", "coulomb@2.torque_nm"]"#),
+        ("[]", r#"free = ["coulomb@2.torque_nm"]"#),
+        (
+            one,
+            "\"link1.com_m\", # of the bob\n  \"coulomb@2.torque_nm\",\n]\n",
+        ),
+        (
+            "[\n  \"link1.com_m\" # of the bob\n]",
+            "\"link1.com_m\", # of the bob\n  \"coulomb@2.torque_nm\"\n]\n",
+        ),
+        (
+            "[\n  # none yet\n]",
+            "# none yet\n\"coulomb@2.torque_nm\"\n]\n",
+        ),
+    ] {
+        let bare = MODEL.replace(old, list);
+        let text = add_effect(&bare, path(), &effect("coulomb", 1, 0.02), None).unwrap();
+        assert!(text.contains(said), "{text}");
+        let model = Model::parse(&text, path()).unwrap();
+        let last = model.free.last().map(ToString::to_string);
+        assert_eq!(last.as_deref(), Some("coulomb@2.torque_nm"), "{text}");
+    }
+}
+
+#[test]
+fn the_first_effect_of_a_file_gets_its_heading() {
+    let start = MODEL.find("[[effect]]").unwrap();
+    let end = MODEL.find("[fit]").unwrap();
+    let log = MODEL.find("[log]").unwrap();
+    assert!(end < log);
+    let bare = format!("{}{}", &MODEL[..start], &MODEL[log..]);
+    let text = add_effect(&bare, path(), &effect("delay", 1, 0.03), None).unwrap();
+    assert!(text.starts_with(&bare), "{text}");
+    assert_eq!(Model::parse(&text, path()).unwrap().effects.len(), 1);
+}
+
+#[test]
+fn effects_that_do_not_suit_the_model_are_refused() {
+    for (effect, what) in [
+        (effect("coulomb", 0, 0.1), "there twice"),
+        (effect("delay", 0, 0.1), "driven joints only"),
+        (effect("coulomb", 5, 0.1), "no joint 6"),
+        (effect("coulomb", 1, -0.1), "impossible"),
+        (effect("coulomb", 1, f64::NAN), "NaN"),
+    ] {
+        let error = add_effect(MODEL, path(), &effect, None).unwrap_err();
+        assert!(error.to_string().contains(what), "{error}");
+    }
+}
+
+#[test]
+fn set_values_change_only_their_numbers() {
+    let values: Vec<(ParameterPath, f64)> = [
+        ("link1.com_m", 0.101_234_567),
+        ("joint2.gain_per_rad", 9.5),
+        ("coulomb@1.torque_nm", 1.234_567_89e-7),
+        ("link2.length_m", 0.2),
+    ]
+    .map(|(text, value)| (text.parse().unwrap(), value))
+    .to_vec();
+    let text = set_values(MODEL, path(), &values).unwrap();
+    assert!(text.contains("com_m = 0.101235 # weighed on a knife edge\n"));
+    assert!(text.contains("torque_nm = 1.23457e-7 # felt by hand\n"));
+    let model = Model::parse(&text, path()).unwrap();
+    for (path, value) in &values {
+        let found = path.get(&model).unwrap();
+        assert!((found / value - 1.0).abs() < 1e-5, "{path}: {found}");
+    }
+    assert_eq!(text.lines().count(), MODEL.lines().count() + 1);
+    assert_eq!(set_values(MODEL, path(), &[]).unwrap(), MODEL);
+}
+
+#[test]
+fn values_with_no_place_or_impossible_are_refused() {
+    for (parameter, value, what) in [
+        ("coulomb@2.torque_nm", 0.1, "no `coulomb@2.torque_nm`"),
+        ("link3.mass_kg", 0.1, "no `link3.mass_kg`"),
+        ("joint1.stall_torque_nm", 0.1, "no `joint1"),
+        ("link1.mass_kg", -0.1, "impossible"),
+        ("link1.mass_kg", f64::INFINITY, "inf"),
+    ] {
+        let values = [(parameter.parse().unwrap(), value)];
+        let error = set_values(MODEL, path(), &values).unwrap_err();
+        assert!(error.to_string().contains(what), "{error}");
+    }
+}
