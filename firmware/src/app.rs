@@ -15,7 +15,7 @@ use handstand_shared::message::{
     Attitude, Cause, Condition, Mode, Report, Roster, Statistics, StreamReport,
 };
 use handstand_shared::packed::{Positions, SERVOS, Speeds};
-use handstand_shared::raw::{Signed, TorqueLimit};
+use handstand_shared::raw::TorqueLimit;
 
 mod command;
 
@@ -166,6 +166,7 @@ impl App {
         }
     }
 
+    #[inline(never)]
     fn take<B: Board>(&mut self, board: &mut B, byte: u8) {
         if self.state == State::Bridge && self.filter.push(byte) == Way::Bus {
             board.bus_send(&[byte]);
@@ -235,14 +236,8 @@ impl App {
         }
         match self.wish {
             Wish::Stay => {}
-            Wish::Positions(goals) => self.servos.go_to(board, goals.codes()),
-            Wish::Speeds(speeds) => {
-                let mut ids = [0; SERVOS];
-                let all = self.servos.all();
-                (ids.iter_mut().zip(all)).for_each(|(id, servo)| *id = servo.id);
-                let commands = ids.into_iter().zip(speeds.codes().map(Signed));
-                self.servos.turn(board, commands.take(all.len()));
-            }
+            Wish::Positions(goals) => self.servos.go_to(board, &goals),
+            Wish::Speeds(speeds) => self.servos.spin(board, speeds.codes()),
         }
         self.watch(board, started)
     }
@@ -315,11 +310,7 @@ impl App {
         // A servo in wheel mode has no position to hold: it stops.
         let balanced = matches!(self.state, State::Balance(_));
         if balanced || matches!(self.wish, Wish::Speeds(_)) {
-            let mut ids = [0; SERVOS];
-            let all = self.servos.all();
-            (ids.iter_mut().zip(all)).for_each(|(id, servo)| *id = servo.id);
-            let still = ids.into_iter().take(all.len()).map(|id| (id, Signed(0)));
-            self.servos.turn(board, still);
+            self.servos.spin(board, [0; SERVOS].into_iter());
         } else {
             self.servos.hold(board);
         }
@@ -356,19 +347,12 @@ impl App {
 
     #[inline(never)]
     fn report<B: Board>(&mut self, board: &mut B) {
-        let all = self.servos.all();
-        // A bit that moves on: shifting by a variable costs the AVR a loop.
-        let (mut missing, mut bit) = (0u32, 1u32);
-        for servo in all {
-            missing |= if servo.present { 0 } else { bit };
-            bit <<= 1;
-        }
-        let [m0, m1, m2, _] = missing.to_le_bytes();
+        let [m0, m1, m2, _] = self.servos.missing().to_le_bytes();
         let report = StreamReport {
             tick: self.ticks as u16,
             condition: self.condition(),
             obeyed: self.obeyed,
-            positions: Positions::pack(all.iter().map(|servo| servo.position.0)),
+            positions: self.servos.positions,
             missing: [m0, m1, m2],
             slow_from: self.servos.slow_from,
             slow: self.servos.slow,
@@ -383,7 +367,7 @@ impl App {
         if pressed != 0 {
             self.press(board, pressed);
         }
-        let all_answer = self.servos.all().iter().all(|servo| servo.present);
+        let all_answer = self.servos.missing() == 0;
         let lit = leds(
             self.condition(),
             self.ticks,

@@ -13,11 +13,33 @@ pub trait Board {
     /// Puts the watchdog off for another 30 ms.
     fn feed_watchdog(&mut self);
 
-    /// Sends bytes to the servos, and turns the bus to listening after the last stop bit.
+    /// Sends bytes to the servos, and turns the bus to listening after the last stop bit. They may go out while the
+    /// program goes on.
     fn bus_send(&mut self, bytes: &[u8]);
 
-    /// The next byte from the servos, waiting at most this long for it, us.
+    /// Sends the first bytes of a packet, whose last ones [`Board::bus_send`] will send.
+    fn bus_send_part(&mut self, bytes: &[u8]) {
+        self.bus_send(bytes);
+    }
+
+    /// The next byte from the servos, waiting at most this long for it, us, once all is sent.
     fn bus_receive(&mut self, within_us: u16) -> Option<u8>;
+
+    /// Bytes from the servos, until `out` is full or nothing comes for so long; how many came. The first may take
+    /// another time than the others, us.
+    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
+        let mut within_us = first_us;
+        let mut used = 0;
+        for slot in out {
+            let Some(byte) = self.bus_receive(within_us) else {
+                break;
+            };
+            *slot = byte;
+            used += 1;
+            within_us = between_us;
+        }
+        used
+    }
 
     /// Forgets bytes from the servos that nobody took.
     fn bus_flush(&mut self);

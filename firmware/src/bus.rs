@@ -1,14 +1,28 @@
 //! Requests to the servos, and their answers in bounded time.
+//!
+//! A request goes out while the program does something else, such as looking at the answer before it.
 
 use crate::board::Board;
 use crate::design::{BETWEEN_BYTES_US, FIRST_BYTE_US};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{
-    BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, read_packet,
+    BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, check_byte, sync_write_head,
 };
 use handstand_shared::message::Statistics;
-use handstand_shared::packed::SERVOS;
 use handstand_shared::raw::ReturnDelay;
+
+/// Most bytes of registers read at once: position, speed, load, supply and temperature.
+pub const MOST_READ: usize = 8;
+
+/// An answer's bytes as they came; fewer than were asked for if the servo fell silent.
+#[derive(Debug, Clone, Default)]
+pub struct Answer {
+    bytes: [u8; OVERHEAD + MOST_READ],
+    used: u8,
+}
+
+/// A READ, as it goes out.
+pub type ReadPacket = [u8; 8];
 
 /// Why there is no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,46 +35,42 @@ pub enum Failure {
     Stranger,
 }
 
-/// Reads `N` bytes from `address` on. Waits for as long as return delay and length say, and no longer.
-pub fn read<B: Board, const N: usize>(
-    board: &mut B,
-    id: u8,
-    address: u8,
-    delay: ReturnDelay,
-) -> Result<([u8; N], ErrorBits), Failure> {
+/// Sends a READ of at most [`MOST_READ`] bytes. What came unasked is forgotten.
+#[inline(always)]
+pub fn ask<B: Board>(board: &mut B, request: &ReadPacket) {
     board.bus_flush();
-    board.bus_send(&read_packet(id, address, N as u8));
-    answer(board, id, delay)
+    board.bus_send(request);
 }
 
-/// Sums up while it waits for bytes, so that little is left to do after the last one.
-fn answer<B: Board, const N: usize>(
-    board: &mut B,
-    id: u8,
-    delay: ReturnDelay,
-) -> Result<([u8; N], ErrorBits), Failure> {
+/// The bytes of the answer to a READ of `count`. Waits for as long as return delay and length say, and no longer.
+#[inline(always)]
+pub fn hear<B: Board>(board: &mut B, count: u8, delay: ReturnDelay, answer: &mut Answer) {
     let first_us = delay.to_us().saturating_add(FIRST_BYTE_US);
-    let mut sum = board.bus_receive(first_us).ok_or(Failure::Silent)?;
-    let mut next = || {
-        let byte = board
-            .bus_receive(BETWEEN_BYTES_US)
-            .ok_or(Failure::Garbled)?;
-        sum = sum.wrapping_add(byte);
-        Ok(byte)
-    };
-    let header = next()?;
-    let (from, length, error) = (next()?, next()?, next()?);
-    let mut data = [0; N];
-    for slot in &mut data {
-        *slot = next()?;
+    let whole = (OVERHEAD + usize::from(count)).min(answer.bytes.len());
+    let out = answer.bytes.get_mut(..whole).unwrap_or(&mut []);
+    answer.used = board.bus_hear(out, first_us, BETWEEN_BYTES_US) as u8;
+}
+
+/// The `N` registers in an answer, if it is one of this servo, whole and undamaged.
+#[inline(always)]
+pub fn look<const N: usize>(answer: &Answer, id: u8) -> Result<([u8; N], ErrorBits), Failure> {
+    let bytes = answer.bytes.get(..usize::from(answer.used));
+    let bytes = bytes.unwrap_or(&[]);
+    if bytes.is_empty() {
+        return Err(Failure::Silent);
     }
-    next()?;
-    if sum != WHOLE_SUM || header != 0xff || usize::from(length) != N + 2 {
+    let [0xff, 0xff, from, length, error, rest @ ..] = bytes else {
         return Err(Failure::Garbled);
-    }
-    match from == id {
-        true => Ok((data, ErrorBits(error))),
-        false => Err(Failure::Stranger),
+    };
+    let sum = bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+    match rest.first_chunk::<N>() {
+        Some(data) if rest.len() == N + 1 && usize::from(*length) == N + 2 && sum == WHOLE_SUM => {
+            match *from == id {
+                true => Ok((*data, ErrorBits(*error))),
+                false => Err(Failure::Stranger),
+            }
+        }
+        _ => Err(Failure::Garbled),
     }
 }
 
@@ -76,6 +86,7 @@ pub fn count<T>(statistics: &mut Statistics, outcome: &Result<T, Failure>) {
 }
 
 /// Writes the same value to a register of every servo.
+#[inline(never)]
 pub fn write_all<B: Board>(board: &mut B, register: Register, value: u16) {
     let bytes = value.to_le_bytes();
     let data = bytes.get(..usize::from(register.size)).unwrap_or(&bytes);
@@ -95,35 +106,28 @@ pub fn torque_off<B: Board>(board: &mut B) {
     write_all(board, TORQUE_ENABLE, 0);
 }
 
-/// Writes a value of its own to a register of each of these servos, in one packet.
+/// Writes a value of its own to a register of each of `servos` servos, in one packet, which goes out while it is made.
 pub fn write_each<B: Board>(
     board: &mut B,
     register: Register,
+    servos: u8,
     values: impl Iterator<Item = (u8, u16)>,
 ) {
-    const BLOCKS: usize = SERVOS * 3;
-    let mut blocks = [0; BLOCKS];
-    let mut slots = blocks.iter_mut();
-    let mut used = 0;
-    for (id, value) in values.take(SERVOS) {
+    if servos == 0 {
+        return;
+    }
+    let head = sync_write_head(register.address, register.size, servos);
+    board.bus_send_part(&head);
+    let mut sum = head.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+    for (id, value) in values.take(usize::from(servos)) {
         let [low, high] = value.to_le_bytes();
-        let block = [id, low, high];
-        for byte in block.iter().take(1 + usize::from(register.size)) {
-            if let Some(slot) = slots.next() {
-                *slot = *byte;
-                used += 1;
-            }
+        sum = sum.wrapping_add(id).wrapping_add(low);
+        if register.size == 1 {
+            board.bus_send_part(&[id, low]);
+        } else {
+            sum = sum.wrapping_add(high);
+            board.bus_send_part(&[id, low, high]);
         }
     }
-    let request = Request::SyncWrite {
-        address: register.address,
-        width: register.size,
-        blocks: blocks.get(..used).unwrap_or(&[]),
-    };
-    let mut out = [0; OVERHEAD + 2 + BLOCKS];
-    if used > 0
-        && let Some(length) = request.emit(BROADCAST, &mut out)
-    {
-        board.bus_send(out.get(..length).unwrap_or(&[]));
-    }
+    board.bus_send(&[check_byte(sum)]);
 }

@@ -14,6 +14,8 @@ pub struct Link {
 
 impl Link {
     /// Takes a byte from the PC; the command it completes, if it does.
+    // Apart from its caller, which with it would be too long for the AVR's relative jumps.
+    #[inline(never)]
     pub fn push(&mut self, byte: u8, statistics: &mut Statistics) -> Option<Numbered<Command>> {
         let command = match self.decoder.push(byte)? {
             Ok(body) => decode(body).ok(),

@@ -62,6 +62,43 @@ impl<const BITS: usize, const BYTES: usize> Packed<BITS, BYTES> {
     }
 }
 
+impl Positions {
+    /// The code of one servo; 0 beyond [`SERVOS`].
+    // A code lies within two bytes, and shifts by constants cost the AVR little.
+    pub fn get(&self, place: usize) -> u16 {
+        let at = place + place / 4;
+        let [low, high] = match self.0.get(at..at + 2) {
+            Some(&[low, high]) => [low, high],
+            _ => [0; 2],
+        };
+        let both = u16::from_le_bytes([low, high]);
+        let code = match place % 4 {
+            0 => both,
+            1 => both >> 2,
+            2 => both >> 4,
+            _ => both >> 6,
+        };
+        code & 0x3ff
+    }
+
+    /// Sets the code of one servo; upper bits are cut, places beyond [`SERVOS`] ignored.
+    pub fn set(&mut self, place: usize, code: u16) {
+        let at = place + place / 4;
+        let Some([low, high]) = self.0.get_mut(at..at + 2) else {
+            return;
+        };
+        let code = code & 0x3ff;
+        let (mask, code) = match place % 4 {
+            0 => (0x3ff, code),
+            1 => (0x3ff << 2, code << 2),
+            2 => (0x3ff << 4, code << 4),
+            _ => (0x3ff << 6, code << 6),
+        };
+        let both = u16::from_le_bytes([*low, *high]) & !mask | code;
+        [*low, *high] = both.to_le_bytes();
+    }
+}
+
 // serde derives arrays of known length only.
 macro_rules! as_bytes {
     ($Packed:ty) => {
@@ -97,6 +134,19 @@ mod tests {
         fn codes_survive(codes: [u16; SERVOS]) {
             prop_assert!(Positions::pack(codes).codes().eq(codes.map(|c| c & 0x3ff)));
             prop_assert!(Speeds::pack(codes).codes().eq(codes.map(|c| c & 0x7ff)));
+        }
+
+        #[test]
+        fn one_code_is_set_and_got_without_the_others(codes: [u16; SERVOS], place in 0..SERVOS + 8, code: u16) {
+            let mut packed = Positions::pack(codes);
+            packed.set(place, code);
+            let mut changed = codes.map(|c| c & 0x3ff);
+            if let Some(slot) = changed.get_mut(place) {
+                *slot = code & 0x3ff;
+            }
+            prop_assert_eq!(packed, Positions::pack(changed));
+            prop_assert!((0..SERVOS).all(|at| packed.get(at) == changed[at]));
+            prop_assert_eq!(packed.get(SERVOS + place), 0);
         }
     }
 }

@@ -13,6 +13,7 @@ mod usart;
 mod watchdog;
 
 use crate::board::Board;
+use crate::design::CLOCK_PER_US;
 use avr_device::atmega128a::Peripherals;
 use handstand_shared::message::ResetCause;
 
@@ -58,14 +59,23 @@ impl Board for Cm5 {
         avr_device::asm::wdr();
     }
 
+    #[inline(always)]
     fn bus_send(&mut self, bytes: &[u8]) {
-        port::bus_transmits(&self.registers);
-        usart::send(&self.registers, bytes);
-        port::bus_listens(&self.registers);
+        self.bus_send_part(bytes);
+        usart::end(&self.registers);
     }
 
+    #[inline(always)]
+    fn bus_send_part(&mut self, bytes: &[u8]) {
+        usart::put(&self.registers, bytes);
+    }
+
+    #[inline(always)]
     fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
-        let counts = within_us.saturating_mul(crate::design::CLOCK_PER_US);
+        if within_us > 0 {
+            usart::finish(&self.registers);
+        }
+        let counts = within_us.saturating_mul(CLOCK_PER_US);
         let start = self.clock();
         loop {
             if let Some(byte) = usart::BUS_IN.pop() {
@@ -77,6 +87,13 @@ impl Board for Cm5 {
         }
     }
 
+    #[inline(always)]
+    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
+        let [first, between] = [first_us, between_us].map(|us| us.saturating_mul(CLOCK_PER_US));
+        usart::hear(&self.registers, out, first, between)
+    }
+
+    #[inline(always)]
     fn bus_flush(&mut self) {
         // Bounded by the ring's size; nobody sends while the bus is ours.
         while usart::BUS_IN.pop().is_some() {}

@@ -1,17 +1,45 @@
 //! A queue of bytes between one interrupt and the program, without locks.
 
 use core::cell::UnsafeCell;
-use core::sync::atomic::{AtomicU8, Ordering, compiler_fence};
+use core::sync::atomic::{Ordering, compiler_fence};
+
+/// A byte that an interrupt and the program share, and only one of them changes. The AVR reads and writes a byte in one
+/// instruction; `AtomicU8` would switch interrupts off and on around it, which costs more than the access.
+pub struct SharedByte(UnsafeCell<u8>);
+
+// SAFETY: single bytes, accessed in one instruction each, on one core.
+unsafe impl Sync for SharedByte {}
+
+impl SharedByte {
+    /// With this value.
+    pub const fn new(value: u8) -> Self {
+        SharedByte(UnsafeCell::new(value))
+    }
+
+    /// Its value now.
+    #[inline(always)]
+    pub fn get(&self) -> u8 {
+        // SAFETY: the cell is always valid.
+        unsafe { self.0.get().read_volatile() }
+    }
+
+    /// Changes it.
+    #[inline(always)]
+    pub fn set(&self, value: u8) {
+        // SAFETY: the cell is always valid.
+        unsafe { self.0.get().write_volatile(value) }
+    }
+}
 
 /// Holds `N - 1` bytes; `N` is a power of two, at most 256, so that a byte counts around it.
 pub struct Ring<const N: usize> {
     bytes: UnsafeCell<[u8; N]>,
     /// Where the next byte goes; written by the producer only.
-    head: AtomicU8,
+    head: SharedByte,
     /// Where the oldest byte is; written by the consumer only.
-    tail: AtomicU8,
+    tail: SharedByte,
     /// Bytes that found no room.
-    lost: AtomicU8,
+    lost: SharedByte,
 }
 
 // SAFETY: one producer writes `head` and the slots outside tail..head, one consumer writes `tail`; both are single bytes.
@@ -25,20 +53,20 @@ impl<const N: usize> Ring<N> {
         const { assert!(N.is_power_of_two() && N <= 256) };
         Ring {
             bytes: UnsafeCell::new([0; N]),
-            head: AtomicU8::new(0),
-            tail: AtomicU8::new(0),
-            lost: AtomicU8::new(0),
+            head: SharedByte::new(0),
+            tail: SharedByte::new(0),
+            lost: SharedByte::new(0),
         }
     }
 
     /// Adds a byte, or counts it as lost. For the producer only.
     #[inline(always)]
     pub fn push(&self, byte: u8) {
-        let head = self.head.load(Ordering::Relaxed);
+        let head = self.head.get();
         let next = head.wrapping_add(1) & Self::MASK;
-        if next == self.tail.load(Ordering::Relaxed) {
-            let lost = self.lost.load(Ordering::Relaxed);
-            self.lost.store(lost.saturating_add(1), Ordering::Relaxed);
+        if next == self.tail.get() {
+            let lost = self.lost.get();
+            self.lost.set(lost.saturating_add(1));
             return;
         }
         // SAFETY: `head` is below N, and the consumer does not read this slot before `head` moves.
@@ -48,14 +76,14 @@ impl<const N: usize> Ring<N> {
                 .write_volatile(byte)
         };
         compiler_fence(Ordering::Release);
-        self.head.store(next, Ordering::Relaxed);
+        self.head.set(next);
     }
 
     /// Takes the oldest byte. For the consumer only.
     #[inline(always)]
     pub fn pop(&self) -> Option<u8> {
-        let tail = self.tail.load(Ordering::Relaxed);
-        if tail == self.head.load(Ordering::Relaxed) {
+        let tail = self.tail.get();
+        if tail == self.head.get() {
             return None;
         }
         compiler_fence(Ordering::Acquire);
@@ -65,25 +93,21 @@ impl<const N: usize> Ring<N> {
                 .add(usize::from(tail))
                 .read_volatile()
         };
-        self.tail
-            .store(tail.wrapping_add(1) & Self::MASK, Ordering::Relaxed);
+        self.tail.set(tail.wrapping_add(1) & Self::MASK);
         Some(byte)
     }
 
     /// How many bytes it can take.
     pub fn room(&self) -> usize {
-        let (head, tail) = (
-            self.head.load(Ordering::Relaxed),
-            self.tail.load(Ordering::Relaxed),
-        );
+        let (head, tail) = (self.head.get(), self.tail.get());
         usize::from(tail.wrapping_sub(head).wrapping_sub(1) & Self::MASK)
     }
 
     /// How many bytes found no room since the last call.
     pub fn take_lost(&self) -> u8 {
         // A byte lost between the two is not counted; it only says "some".
-        let lost = self.lost.load(Ordering::Relaxed);
-        self.lost.store(0, Ordering::Relaxed);
+        let lost = self.lost.get();
+        self.lost.set(0);
         lost
     }
 }

@@ -10,7 +10,7 @@ mod status;
 
 pub use packet::{Packet, PacketError};
 pub use parser::Parser;
-pub use request::{Instruction, Request, RequestError, read_packet};
+pub use request::{Instruction, Request, RequestError, check_byte, read_packet, sync_write_head};
 pub use status::{ErrorBits, Status};
 
 /// Every servo listens to this id; none answers it.

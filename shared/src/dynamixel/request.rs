@@ -1,6 +1,7 @@
 //! What the host asks of a servo.
 
 use super::packet::{Packet, emit};
+use super::{BROADCAST, WHOLE_SUM};
 
 /// Instruction byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,6 +156,25 @@ pub const fn read_packet(id: u8, address: u8, count: u8) -> [u8; 8] {
     ]
 }
 
+/// The first bytes of a SYNC_WRITE to at most 50 `servos`: a block of id and `width` bytes for each, and [`check_byte`], follow.
+pub const fn sync_write_head(address: u8, width: u8, servos: u8) -> [u8; 7] {
+    let blocks = servos.wrapping_mul(width.wrapping_add(1));
+    [
+        0xff,
+        0xff,
+        BROADCAST,
+        blocks.wrapping_add(4),
+        Instruction::SyncWrite as u8,
+        address,
+        width,
+    ]
+}
+
+/// The last byte of a packet whose other bytes, the header included, sum up to `sum`.
+pub const fn check_byte(sum: u8) -> u8 {
+    WHOLE_SUM.wrapping_sub(sum)
+}
+
 /// Whether the blocks of a SYNC_WRITE are all of id and `width` bytes. Counted, for the AVR divides slowly.
 fn is_whole(blocks: &[u8], width: u8) -> bool {
     let block = usize::from(width) + 1;
@@ -167,7 +187,6 @@ fn is_whole(blocks: &[u8], width: u8) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::BROADCAST;
     use super::*;
     use proptest::prelude::*;
 
@@ -244,6 +263,14 @@ mod tests {
             prop_assert_eq!(&out[..length], read_packet(id, address, count));
             let width = 4;
             let blocks = &data[..data.len() / 5 * 5];
+            if !blocks.is_empty() {
+                let whole = bytes(BROADCAST, Request::SyncWrite { address, width, blocks });
+                let mut pieces = sync_write_head(address, width, (blocks.len() / 5) as u8).to_vec();
+                pieces.extend_from_slice(blocks);
+                let sum = pieces.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+                pieces.push(check_byte(sum));
+                prop_assert_eq!(&whole.0[..whole.1], &pieces[..]);
+            }
             for request in [
                 Request::Ping, Request::Action, Request::Reset, Request::Read { address, count },
                 Request::Write { address, data: &data }, Request::RegWrite { address, data: &data },

@@ -30,6 +30,7 @@ unsafe extern "C" {
     fn rig_pc(rig: *mut Raw) -> u32;
     fn rig_byte_cycles(rig: *mut Raw, uart: c_int) -> u64;
     fn rig_waiting(rig: *mut Raw, uart: c_int) -> c_int;
+    fn rig_lost(rig: *mut Raw, uart: c_int) -> u32;
     fn rig_uart_in(rig: *mut Raw, uart: c_int, byte: u8);
     fn rig_pin(rig: *mut Raw, port: c_char, pin: c_int, level: c_int);
     fn rig_adc(rig: *mut Raw, channel: c_int, millivolts: u32);
@@ -103,7 +104,7 @@ impl Core {
         unsafe { rig_pc(self.0) }
     }
 
-    /// A byte begins to arrive at a USART.
+    /// A byte's stop bit has arrived at a USART.
     pub fn uart_in(&mut self, uart: usize, byte: u8) {
         unsafe { rig_uart_in(self.0, uart as c_int, byte) }
     }
@@ -111,6 +112,11 @@ impl Core {
     /// Bytes that arrived at a USART and were not read.
     pub fn waiting(&self, uart: usize) -> usize {
         unsafe { rig_waiting(self.0, uart as c_int) as usize }
+    }
+
+    /// Bytes that arrived at a USART while three were waiting, and were lost.
+    pub fn lost(&self, uart: usize) -> usize {
+        unsafe { rig_lost(self.0, uart as c_int) as usize }
     }
 
     /// Cycles of a byte on a USART.

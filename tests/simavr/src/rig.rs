@@ -53,10 +53,12 @@ pub struct Rig {
     /// What was noticed.
     pub seen: Seen,
     port_e: u8,
+    /// When the bus was last turned around.
+    turned: u64,
     /// When the bus byte in the transmitter will be out.
     bus_free: u64,
     link_free: u64,
-    /// Bytes from the PC, each with the cycle its start bit begins.
+    /// Bytes from the PC, each with the cycle its stop bit ends.
     to_link: VecDeque<(u64, u8)>,
     decoder: Decoder,
     sequence: u8,
@@ -81,6 +83,7 @@ impl Rig {
             bus: Bus::new(1..=18),
             seen: Seen::default(),
             port_e: 0,
+            turned: 0,
             bus_free: 0,
             link_free: 0,
             to_link: VecDeque::new(),
@@ -112,10 +115,10 @@ impl Rig {
         }
     }
 
-    /// When the next byte for the controller begins; at most a short step away, for servos answer within 18 us.
+    /// When the next byte for the controller ends; at most a short step away, for servos answer within 18 us.
     fn next_event(&self) -> u64 {
-        let bus = self.bus.next_ns().map(begin_of_bus_byte);
-        let link = self.to_link.front().map(|(begin, _)| *begin);
+        let bus = self.bus.next_ns().map(to_cycle);
+        let link = self.to_link.front().map(|(end, _)| *end);
         let step = self.core.cycle() + 4000;
         bus.into_iter().chain(link).fold(step, u64::min)
     }
@@ -123,19 +126,20 @@ impl Rig {
     fn feed(&mut self) {
         let now = self.core.cycle();
         while let Some(ns) = self.bus.next_ns()
-            && begin_of_bus_byte(ns) <= now
+            && to_cycle(ns) <= now
         {
             let Some((_, byte)) = self.bus.take(ns) else {
                 break;
             };
             self.seen.bus_bytes += 1;
-            // Only a bus that listens hears.
-            if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE {
+            // Only a bus that listens from the start bit on hears.
+            let begin = to_cycle(ns - handstand::bus_sim::BYTE_NS);
+            if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE && self.turned <= begin {
                 self.core.uart_in(0, byte);
             }
         }
-        while let Some((begin, byte)) = self.to_link.front().copied()
-            && begin <= now
+        while let Some((end, byte)) = self.to_link.front().copied()
+            && end <= now
         {
             self.to_link.pop_front();
             self.core.uart_in(1, byte);
@@ -177,6 +181,9 @@ impl Rig {
                 if turned && cycle + 8 < self.bus_free {
                     self.seen.direction_faults += 1;
                 }
+                if self.port_e & (TRANSMIT | RECEIVE) != value & (TRANSMIT | RECEIVE) {
+                    self.turned = cycle;
+                }
                 self.port_e = value;
             }
             Event::PortB(_, value) => self.seen.charged |= value & 1 << 5 == 0,
@@ -194,15 +201,15 @@ impl Rig {
     /// Queues raw bytes from the PC, at the line's own pace; when the last will have arrived, cycles.
     pub fn type_bytes(&mut self, bytes: &[u8]) -> u64 {
         const BYTE: u64 = CPU_HZ * 10 / 57_600;
-        let mut begin = self.core.cycle();
+        let mut end = self.core.cycle();
         if let Some((last, _)) = self.to_link.back() {
-            begin = begin.max(last + BYTE);
+            end = end.max(*last);
         }
         for byte in bytes {
-            self.to_link.push_back((begin, *byte));
-            begin += BYTE;
+            end += BYTE;
+            self.to_link.push_back((end, *byte));
         }
-        begin
+        end
     }
 
     /// Queues a command in its frame; when its last byte will have arrived, cycles.
@@ -220,9 +227,4 @@ impl Rig {
     pub fn last_sequence(&self) -> u8 {
         self.sequence.wrapping_sub(1)
     }
-}
-
-/// The cycle in which a servo's byte begins that has arrived at this moment.
-fn begin_of_bus_byte(end_ns: u64) -> u64 {
-    to_cycle(end_ns - handstand::bus_sim::BYTE_NS)
 }

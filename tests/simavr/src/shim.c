@@ -1,7 +1,10 @@
 // A small face of simavr: run until something happens, and say what.
 //
-// Corrected here: simavr lets a byte of 8N1 take 11 bits; cycles_per_byte is set to 10 whenever it changes. Polling a
-// USART never sleeps on the host. The ADC gets its voltages.
+// Corrected here: simavr lets a byte of 8N1 take 11 bits; cycles_per_byte is set to 10 whenever it changes. Its
+// transmitters have no buffer before the shift register; here they do, as in the data sheet (UDRE rises when a byte
+// moves on to be shifted out, TXC when the last one is out). Its receivers hold 64 bytes and hand out one that has only
+// begun when another was read late; here a byte is there when its stop bit is, and the fourth unread one is lost. Polling a USART never sleeps on the host. The ADC gets its
+// voltages.
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +21,27 @@ enum { EVENT_BUS = 1, EVENT_LINK = 2, EVENT_PORT_E = 3, EVENT_PORT_B = 4, EVENT_
 struct event { uint64_t cycle; uint32_t kind; uint32_t value; };
 #define EVENTS 256
 
+// Two bytes and one in the shift register.
+enum { RECEIVER_HOLDS = 3 };
+
+struct receiver {
+	avr_uart_t *uart;
+	uint8_t bytes[RECEIVER_HOLDS];
+	int waiting;
+	uint32_t lost;
+};
+
+struct transmitter {
+	struct rig *rig;
+	avr_uart_t *uart;
+	int shifting; // a byte is on the line
+	int held; // another waits in the data register
+};
+
 struct rig {
 	avr_t *avr;
+	struct transmitter transmitter[2];
+	struct receiver receiver[2];
 	avr_uart_t *uart[2];
 	uint64_t corrected[2];
 	struct event events[EVENTS];
@@ -36,8 +58,80 @@ static void note(struct rig *rig, uint32_t kind, uint32_t value) {
 	}
 }
 
-static void on_bus(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_BUS, value & 0xff); }
-static void on_link(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_LINK, value & 0xff); }
+// The flag too, which simavr leaves to its own handlers.
+static void clear(avr_t *avr, avr_int_vector_t *vector) {
+	avr_clear_interrupt(avr, vector);
+	avr_regbit_clear(avr, vector->raised);
+}
+
+static void hold(struct transmitter *t, int held) {
+	t->held = held;
+	// What simavr asks when UDRIE is set: whether to raise UDRE at once.
+	t->uart->tx_cnt = held;
+}
+
+static avr_cycle_count_t moved_on(avr_t *avr, avr_cycle_count_t when, void *param) {
+	struct transmitter *t = param;
+	hold(t, 0);
+	avr_raise_interrupt(avr, &t->uart->udrc);
+	return 0;
+}
+
+static avr_cycle_count_t shifted_out(avr_t *avr, avr_cycle_count_t when, void *param) {
+	struct transmitter *t = param;
+	if (t->held) {
+		moved_on(avr, when, t);
+		return when + t->uart->cycles_per_byte;
+	}
+	t->shifting = 0;
+	avr_raise_interrupt(avr, &t->uart->txc);
+	return 0;
+}
+
+// The data register is written. Until a byte moves on it takes up to one bit.
+static void on_data(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param) {
+	struct transmitter *t = param;
+	avr_core_watch_write(avr, address, value);
+	if (!avr_regbit_get(avr, t->uart->txen)) return;
+	clear(avr, &t->uart->udrc);
+	hold(t, 1);
+	if (!t->shifting) {
+		t->shifting = 1;
+		avr_cycle_timer_register(avr, 16, moved_on, t);
+		avr_cycle_timer_register(avr, t->uart->cycles_per_byte, shifted_out, t);
+	}
+	note(t->rig, t->uart->name == '0' ? EVENT_BUS : EVENT_LINK, value);
+}
+
+static void raise_received(avr_t *avr, struct receiver *r) {
+	// Its level, not its edge, calls the interrupt.
+	if (r->waiting && !r->uart->rxc.pending) avr_raise_interrupt(avr, &r->uart->rxc);
+}
+
+// The data register is read.
+static uint8_t on_taken(avr_t *avr, avr_io_addr_t address, void *param) {
+	struct receiver *r = param;
+	if (r->waiting) {
+		avr->data[address] = r->bytes[0];
+		r->waiting--;
+		memmove(r->bytes, r->bytes + 1, r->waiting);
+	}
+	clear(avr, &r->uart->rxc);
+	raise_received(avr, r);
+	return avr_core_watch_read(avr, address);
+}
+
+static void idle_usarts(struct rig *rig) {
+	for (int i = 0; i < 2; i++) {
+		rig->receiver[i].waiting = 0;
+		struct transmitter *t = &rig->transmitter[i];
+		avr_cycle_timer_cancel(rig->avr, moved_on, t);
+		avr_cycle_timer_cancel(rig->avr, shifted_out, t);
+		t->shifting = 0;
+		hold(t, 0);
+	}
+}
+
 static void on_port_e(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_E, value & 0xff); }
 static void on_port_b(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_B, value & 0xff); }
 static void on_port_c(struct avr_irq_t *irq, uint32_t value, void *param) { note(param, EVENT_PORT_C, value & 0xff); }
@@ -49,6 +143,7 @@ static __thread struct rig *running;
 static void on_reset(avr_t *avr) {
 	if (running && running->avr == avr) {
 		note(running, EVENT_RESET, 0);
+		idle_usarts(running);
 		if (running->core_reset) running->core_reset(avr);
 	}
 }
@@ -87,9 +182,15 @@ struct rig *rig_new(const char *elf) {
 		avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0' + i), &flags);
 		flags &= ~(AVR_UART_FLAG_POLL_SLEEP | AVR_UART_FLAG_STDIO);
 		avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0' + i), &flags);
+		struct transmitter transmitter = { rig, rig->uart[i], 0, 0 };
+		rig->transmitter[i] = transmitter;
+		avr_io_addr_t data = AVR_DATA_TO_IO(rig->uart[i]->r_udr);
+		avr->io[data].w.c = on_data;
+		avr->io[data].w.param = &rig->transmitter[i];
+		rig->receiver[i].uart = rig->uart[i];
+		avr->io[data].r.c = on_taken;
+		avr->io[data].r.param = &rig->receiver[i];
 	}
-	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_bus, rig);
-	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('1'), UART_IRQ_OUTPUT), on_link, rig);
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('E'), IOPORT_IRQ_REG_PORT), on_port_e, rig);
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), IOPORT_IRQ_REG_PORT), on_port_b, rig);
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_REG_PORT), on_port_c, rig);
@@ -112,6 +213,7 @@ int rig_run(struct rig *rig, uint64_t until) {
 			avr_uart_t *uart = rig->uart[i];
 			if (uart->cycles_per_byte != rig->corrected[i])
 				rig->corrected[i] = uart->cycles_per_byte = uart->cycles_per_byte * 10 / 11;
+			if (avr_regbit_get(avr, uart->rxc.enable)) raise_received(avr, &rig->receiver[i]);
 		}
 		if (state == cpu_Done || state == cpu_Crashed) return -1;
 	}
@@ -131,10 +233,20 @@ uint8_t *rig_flash(struct rig *rig) { return rig->avr->flash; }
 uint32_t rig_pc(struct rig *rig) { return rig->avr->pc; }
 uint64_t rig_byte_cycles(struct rig *rig, int uart) { return rig->uart[uart]->cycles_per_byte; }
 // Bytes received and not yet read by the firmware.
-int rig_waiting(struct rig *rig, int uart) { return (rig->uart[uart]->input.write - rig->uart[uart]->input.read) & 63; }
+int rig_waiting(struct rig *rig, int uart) { return rig->receiver[uart].waiting; }
+// Bytes that found no room, for the firmware read too late.
+uint32_t rig_lost(struct rig *rig, int uart) { return rig->receiver[uart].lost; }
 
+// A byte's stop bit has arrived.
 void rig_uart_in(struct rig *rig, int uart, uint8_t byte) {
-	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_UART_GETIRQ('0' + uart), UART_IRQ_INPUT), byte);
+	struct receiver *r = &rig->receiver[uart];
+	if (!avr_regbit_get(rig->avr, r->uart->rxen)) return;
+	if (r->waiting == RECEIVER_HOLDS) {
+		r->lost++;
+		return;
+	}
+	r->bytes[r->waiting++] = byte;
+	raise_received(rig->avr, r);
 }
 
 void rig_pin(struct rig *rig, char port, int pin, int level) {
