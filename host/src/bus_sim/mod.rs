@@ -7,12 +7,15 @@
 mod bus;
 mod fault;
 mod motor;
+mod obey;
+mod output;
 mod servo;
 
 pub use bus::Bus;
 pub use fault::Faults;
 pub use motor::Motor;
-pub use servo::{Output, Servo};
+pub use output::Output;
+pub use servo::Servo;
 
 /// A bit at 1 Mbps, ns.
 pub const BIT_NS: u64 = 1000;
