@@ -52,35 +52,43 @@ pub trait Link: Send {
     }
 }
 
-impl Link for Box<dyn Link> {
-    fn name(&self) -> &str {
-        (**self).name()
-    }
-    fn baud(&self) -> u32 {
-        (**self).baud()
-    }
-    fn set_baud(&mut self, baud: u32) -> Result<()> {
-        (**self).set_baud(baud)
-    }
-    fn send(&mut self, bytes: &[u8]) -> Result<()> {
-        (**self).send(bytes)
-    }
-    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize> {
-        (**self).receive(bytes, wait)
-    }
-    fn clear(&mut self) -> Result<()> {
-        (**self).clear()
-    }
-    fn now(&self) -> Duration {
-        (**self).now()
-    }
-    fn pause(&mut self, time: Duration) {
-        (**self).pause(time);
-    }
-    fn latency(&self) -> Duration {
-        (**self).latency()
-    }
+/// A line behind a pointer is a line.
+macro_rules! passed_on {
+    ($pointer:ty $(, $($generic:tt)*)?) => {
+        impl$(<$($generic)*>)? Link for $pointer {
+            fn name(&self) -> &str {
+                (**self).name()
+            }
+            fn baud(&self) -> u32 {
+                (**self).baud()
+            }
+            fn set_baud(&mut self, baud: u32) -> Result<()> {
+                (**self).set_baud(baud)
+            }
+            fn send(&mut self, bytes: &[u8]) -> Result<()> {
+                (**self).send(bytes)
+            }
+            fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize> {
+                (**self).receive(bytes, wait)
+            }
+            fn clear(&mut self) -> Result<()> {
+                (**self).clear()
+            }
+            fn now(&self) -> Duration {
+                (**self).now()
+            }
+            fn pause(&mut self, time: Duration) {
+                (**self).pause(time);
+            }
+            fn latency(&self) -> Duration {
+                (**self).latency()
+            }
+        }
+    };
 }
+
+passed_on!(Box<dyn Link>);
+passed_on!(&mut L, L: Link);
 
 /// Receives until `enough` says so or `deadline` (by the link's clock) has passed; what came.
 ///
