@@ -8,13 +8,8 @@ use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request, Status};
 const EEPROM_NS: u64 = 6_000_000;
 
 impl Servo {
-    /// Obeys a request heard at `now_ns`; the answer, its delay in ns, and this servo's id.
-    pub(super) fn hear(
-        &mut self,
-        now_ns: u64,
-        id: u8,
-        request: Request,
-    ) -> Option<(Vec<u8>, u64, u8)> {
+    /// Obeys a request heard at `now_ns`; the answer and its delay in ns.
+    pub(super) fn hear(&mut self, now_ns: u64, id: u8, request: Request) -> Option<(Vec<u8>, u64)> {
         if id != self.id() && id != BROADCAST {
             return None;
         }
@@ -22,8 +17,11 @@ impl Servo {
             self.ignored += 1;
             return None;
         }
+        if self.faults.mishears() {
+            return self.mishear(id);
+        }
         self.measure();
-        let (me, delay_ns) = (self.id(), u64::from(self.get(RETURN_DELAY)) * 2000);
+        let (me, delay_ns) = (self.id(), self.delay_ns());
         let mut error = ErrorBits(self.alarm());
         let mut data = Vec::new();
         let answers_from = match request {
@@ -54,12 +52,7 @@ impl Servo {
                 2
             }
             Request::Reset => {
-                let shaft = self.shaft;
-                *self = Servo {
-                    shaft,
-                    ..Servo::new(1)
-                };
-                self.set(RETURN_DELAY, RETURN_DELAY.default);
+                self.reset();
                 self.silent_until_ns = now_ns + 20 * EEPROM_NS;
                 2
             }
@@ -78,22 +71,41 @@ impl Servo {
         if id == BROADCAST || self.get(STATUS_LEVEL) < answers_from {
             return None;
         }
+        self.answer(me, error, &data, delay_ns)
+    }
+
+    /// Answers a packet for `id` whose checksum was wrong; it obeys nothing.
+    pub(super) fn mishear(&mut self, id: u8) -> Option<(Vec<u8>, u64)> {
+        if id != self.id() || self.faults.dead || self.get(STATUS_LEVEL) == 0 {
+            return None;
+        }
+        self.measure();
+        let error = ErrorBits(self.alarm()).with(ErrorBits::CHECKSUM);
+        self.answer(id, error, &[], self.delay_ns())
+    }
+
+    fn delay_ns(&self) -> u64 {
+        u64::from(self.get(RETURN_DELAY)) * 2000
+    }
+
+    fn answer(
+        &mut self,
+        id: u8,
+        error: ErrorBits,
+        data: &[u8],
+        delay_ns: u64,
+    ) -> Option<(Vec<u8>, u64)> {
         let mut out = [0; 300];
-        let status = Status {
-            id: me,
-            error,
-            data: &data,
-        };
-        let length = status.emit(&mut out)?;
+        let length = Status { id, error, data }.emit(&mut out)?;
         let (bytes, late_ns) = self.faults.pass(out[..length].to_vec())?;
-        Some((bytes, delay_ns + late_ns, me))
+        Some((bytes, delay_ns + late_ns))
     }
 
     fn alarm(&self) -> u8 {
         let supply = self.get(PRESENT_SUPPLY);
         let low = supply < self.get(MIN_SUPPLY) || supply > self.get(MAX_SUPPLY);
         let hot = self.get(PRESENT_TEMPERATURE) > self.get(MAX_TEMPERATURE);
-        u8::from(low) | u8::from(hot) << 2
+        u8::from(low) | u8::from(hot) << 2 | u8::from(self.protection.is_tripped()) << 5
     }
 
     /// All or nothing, as the servo does it: a value out of range changes no register.
@@ -121,6 +133,9 @@ impl Servo {
             .min(usize::from(Register::RAM.saturating_sub(address)));
         if in_eeprom > 0 {
             self.silent_until_ns = now_ns + in_eeprom as u64 * EEPROM_NS;
+        }
+        if REGISTERS.iter().filter(touched).any(|r| *r == TORQUE_LIMIT) {
+            self.recover();
         }
         // A goal switches torque on, as the servo's own firmware does.
         if REGISTERS

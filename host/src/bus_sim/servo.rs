@@ -2,6 +2,7 @@
 
 use super::fault::Faults;
 use super::motor::Motor;
+use super::overload::Protection;
 use handstand_shared::control_table::*;
 use handstand_shared::raw::{Position, Signed};
 
@@ -14,12 +15,18 @@ pub struct Servo {
     pub(super) table: [u8; TABLE],
     pub(super) registered: Option<(u8, Vec<u8>)>,
     pub(super) silent_until_ns: u64,
+    /// Overload protection.
+    pub protection: Protection,
+    /// Tells servos of one id apart: the first of an id has the id itself.
+    pub(super) serial: u64,
     /// What goes wrong with its answers.
     pub faults: Faults,
     /// The shaft. Set it from outside to hang a robot on it; `free` then has to be false.
     pub shaft: Motor,
     /// Whether the shaft moves on its own, without load.
     pub free: bool,
+    /// Whether something blocks the shaft.
+    pub jammed: bool,
     /// Load to report, as a share of full output, counter-clockwise positive; of a free shaft its own.
     pub load: f64,
     /// Supply, V.
@@ -37,24 +44,32 @@ impl Servo {
             table: [0; TABLE],
             registered: None,
             silent_until_ns: 0,
+            protection: Protection::default(),
+            serial: u64::from(id),
             faults: Faults::none(u64::from(id)),
             shaft: Motor {
                 angle_rad: 0.0,
                 speed_rad_s: 0.0,
             },
             free: true,
+            jammed: false,
             load: 0.0,
             supply_v: 9.6,
             temperature: 30.0,
             ignored: 0,
         };
-        for register in REGISTERS {
-            servo.set(*register, register.default);
-        }
+        servo.reset();
         servo.set(ID, u16::from(id));
         servo.set(RETURN_DELAY, 0);
-        servo.set(GOAL_POSITION, Position::CENTRE.0);
         servo
+    }
+
+    /// Factory settings.
+    pub(super) fn reset(&mut self) {
+        for register in REGISTERS {
+            self.set(*register, register.default);
+        }
+        self.set(GOAL_POSITION, Position::CENTRE.0);
     }
 
     /// Its id.
@@ -90,19 +105,18 @@ impl Servo {
         (f64::from(line_baud) / own - 1.0).abs() < 0.03
     }
 
-    /// When within each millisecond its motor interrupt comes, ns: in each servo at another moment, scattered by a
-    /// hash, for servos started together would all stall a regular reader alike.
-    pub(super) fn stall_phase_ns(&self) -> u64 {
-        ((u64::from(self.id()) * 2_654_435_761) >> 8) % 1_000_000
-    }
-
     /// Goes on by `dt_s`, if the shaft is its own, and measures.
     pub fn step(&mut self, dt_s: f64) {
-        if self.free {
-            let output = self.output();
+        let output = self.output();
+        if self.jammed {
+            self.shaft.speed_rad_s = 0.0;
+        } else if self.free {
             self.shaft.step(&output, dt_s);
+        }
+        if self.free {
             self.load = output.duty(self.shaft.angle_rad);
         }
+        self.protect(dt_s);
         self.measure();
     }
 

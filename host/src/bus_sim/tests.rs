@@ -149,6 +149,72 @@ fn faults_do_what_their_names_say() {
         .sum();
     assert_eq!(wrong, 1);
     assert_eq!(answers(|f| f.echo = true)[..6], ping);
+    let misheard = answers(|f| f.mishear = 1.0);
+    assert_eq!(misheard, [0xff, 0xff, 1, 2, 16, 0xec]);
+}
+
+#[test]
+fn a_wrong_checksum_is_complained_of_and_not_obeyed() {
+    let mut bus = Bus::new([1, 2]);
+    // WRITE torque enable 1 to servo 1, its sum one too large.
+    let answer = send(&mut bus, 0, &[0xff, 0xff, 1, 4, 3, 24, 1, 0xdf]);
+    let bytes: Vec<u8> = answer.into_iter().map(|(_, byte)| byte).collect();
+    assert_eq!(bytes, [0xff, 0xff, 1, 2, 16, 0xec]);
+    assert!(!bus.any_torque());
+    assert_eq!(send(&mut bus, 0, &[0xff, 0xff, 254, 4, 3, 24, 1, 0]), []);
+    assert_eq!(send(&mut bus, 0, &[0xff, 0xff, 1, 2, 1, 0xfb]).len(), 6);
+}
+
+#[test]
+fn two_servos_of_one_id_garble_each_other() {
+    let mut bus = Bus::new([1, 2, 2]);
+    let sound = |bytes: Vec<(u64, u8)>| {
+        let bytes: Vec<u8> = bytes.into_iter().map(|(_, byte)| byte).collect();
+        handstand_shared::dynamixel::Packet::new(&bytes).is_ok()
+    };
+    for round in 0..20 {
+        let now_ns = round * 3_141_592;
+        assert!(sound(send(&mut bus, now_ns, &[0xff, 0xff, 1, 2, 1, 0xfb])));
+        let both = send(&mut bus, now_ns + 1_000_000, &[0xff, 0xff, 2, 2, 1, 0xfa]);
+        assert!(!both.is_empty() && !sound(both), "round {round}");
+    }
+}
+
+/// A blocked shaft: the torque limit falls to 0 and stays there until it is written.
+#[test]
+fn an_overloaded_servo_lets_go_until_its_torque_limit_is_written() {
+    let mut bus = Bus::new([1]);
+    let goal = 900u16.to_le_bytes();
+    let write = |register: Register, data: &'static [u8]| Request::Write {
+        address: register.address,
+        data,
+    };
+    bus.servos[0].jammed = true;
+    bus.ask(
+        1,
+        Request::Write {
+            address: GOAL_POSITION.address,
+            data: &goal,
+        },
+    );
+    bus.advance(900_000_000);
+    assert!(bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 1023);
+    bus.advance(1_100_000_000);
+    assert!(!bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 0);
+    assert_eq!(bus.servos[0].output().duty(0.0), 0.0);
+    let ping = |bus: &mut Bus| send(bus, 1_200_000_000, &[0xff, 0xff, 1, 2, 1, 0xfb])[4].1;
+    assert_eq!(ping(&mut bus), 32);
+    bus.ask(1, write(TORQUE_ENABLE, &[1]));
+    assert_eq!(
+        bus.servos[0].output().duty(0.0),
+        0.0,
+        "that alone is not enough"
+    );
+    bus.servos[0].jammed = false;
+    bus.ask(1, write(TORQUE_LIMIT, &[0xff, 3]));
+    assert_eq!(ping(&mut bus), 0);
+    bus.advance(2_000_000_000);
+    assert!(bus.servos[0].get(PRESENT_POSITION) > 850);
 }
 
 #[test]

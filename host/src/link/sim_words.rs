@@ -17,6 +17,9 @@ pub struct SimWords {
     echo: bool,
     dead: Vec<u8>,
     hot: Vec<u8>,
+    overload: Vec<u8>,
+    jam: Vec<u8>,
+    mishear: f64,
     supply_v: f64,
     seed: u64,
 }
@@ -33,14 +36,16 @@ impl Default for SimWords {
             echo: false,
             dead: Vec::new(),
             hot: Vec::new(),
+            overload: Vec::new(),
+            jam: Vec::new(),
+            mishear: 0.0,
             supply_v: 11.1,
             seed: 1,
         }
     }
 }
 
-const KEYS: &str =
-    "ids, delay, level, baud, drop, flip, late, wrong_id, echo, dead, hot, supply, seed";
+const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, mishear, echo, dead, hot, overload, jam, supply, seed";
 
 impl SimWords {
     /// The bus they describe.
@@ -57,9 +62,14 @@ impl SimWords {
             faults.flip = self.flip;
             faults.late = self.late;
             faults.wrong_id = self.wrong_id;
+            faults.mishear = self.mishear;
             faults.echo = self.echo;
             servo.faults = faults;
             servo.supply_v = self.supply_v;
+            servo.jammed = self.jam.contains(&id);
+            if self.overload.contains(&id) {
+                servo.overload();
+            }
             if self.hot.contains(&id) {
                 servo.temperature = 85.0;
             }
@@ -84,9 +94,12 @@ impl FromStr for SimWords {
                 "flip" => words.flip = number(key, value, 1.0)?,
                 "late" => words.late = number(key, value, 1.0)?,
                 "wrong_id" => words.wrong_id = number(key, value, 1.0)?,
+                "mishear" => words.mishear = number(key, value, 1.0)?,
                 "echo" => words.echo = true,
                 "dead" => words.dead = ids(value)?,
                 "hot" => words.hot = ids(value)?,
+                "overload" => words.overload = ids(value)?,
+                "jam" => words.jam = ids(value)?,
                 "supply" => words.supply_v = number(key, value, 20.0)?,
                 "seed" => {
                     words.seed = value

@@ -1,5 +1,6 @@
 //! Why a servo gives no status packet: tests that tell the causes apart.
 
+mod disturbance;
 mod nobody;
 mod pulse;
 mod some;
@@ -53,7 +54,8 @@ pub fn examine<L: Link>(link: L, ids: &[u8], mut step: impl FnMut(&str)) -> Resu
         pulses.push(pulse(&mut servos, *id)?);
     }
     let mut causes = Vec::new();
-    if pulses.iter().all(|pulse| pulse.answered == 0) {
+    let spoke = |pulse: &Pulse| pulse.answered + pulse.late + pulse.misheard + pulse.strangers > 0;
+    if !pulses.iter().any(spoke) {
         nobody(&mut servos, ids, &pulses, &mut causes, &mut step)?;
     } else {
         some(&mut servos, &pulses, &mut causes)?;

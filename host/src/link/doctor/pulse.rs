@@ -4,6 +4,8 @@ use super::super::port::Link;
 use super::super::retry::Failure;
 use super::super::servos::Servos;
 use crate::error::Result;
+use handstand_shared::control_table::RETURN_DELAY;
+use handstand_shared::dynamixel::ErrorBits;
 use serde::Serialize;
 
 /// How often each servo is pinged.
@@ -18,11 +20,17 @@ pub struct Pulse {
     pub answered: usize,
     /// No byte.
     pub silent: usize,
+    /// Bytes, but only after the return delay and its margin.
+    pub late: usize,
+    /// Sound answers with more bytes behind them, as of a second servo.
+    pub doubled: usize,
     /// Bytes, but no sound answer.
     pub garbled: usize,
     /// Another servo's answer.
     pub strangers: usize,
-    /// What it complains of.
+    /// Complaints of a wrong checksum.
+    pub misheard: usize,
+    /// What else it complains of.
     pub errors: Vec<&'static str>,
 }
 
@@ -31,15 +39,27 @@ pub(super) fn pulse<L: Link>(servos: &mut Servos<L>, id: u8) -> Result<Pulse> {
         id,
         ..Pulse::default()
     };
+    // With its return delay known, what is late shows.
+    if let Err(Failure::Port(error)) = servos.get(id, RETURN_DELAY) {
+        return Err(error);
+    }
+    let mut errors = ErrorBits(0);
     for round in 0..PINGS {
         match servos.ping(id) {
-            Ok(errors) => {
+            Ok(error) => {
                 pulse.answered += 1;
-                pulse.errors = errors.names().collect();
+                errors = errors.with(error);
+                let more = servos.stragglers().map_err(|failure| failure.of(id))?;
+                pulse.doubled += usize::from(more > 0);
             }
-            Err(Failure::Silent) => pulse.silent += 1,
+            Err(Failure::Silent) => match servos.stragglers() {
+                Ok(0) => pulse.silent += 1,
+                Ok(_) => pulse.late += 1,
+                Err(failure) => return Err(failure.of(id)),
+            },
             Err(Failure::Garbled(_) | Failure::Refused(_)) => pulse.garbled += 1,
             Err(Failure::Stranger(_)) => pulse.strangers += 1,
+            Err(Failure::Misheard) => pulse.misheard += 1,
             Err(Failure::Port(error)) => return Err(error),
         }
         // A servo that is not there is not there: no need to ask so often.
@@ -48,5 +68,6 @@ pub(super) fn pulse<L: Link>(servos: &mut Servos<L>, id: u8) -> Result<Pulse> {
             break;
         }
     }
+    pulse.errors = errors.names().collect();
     Ok(pulse)
 }

@@ -3,6 +3,7 @@
 use super::super::port::Link;
 use super::super::retry::Failure;
 use super::super::servos::Servos;
+use super::disturbance::{disturbances, is_twice};
 use super::pulse::{PINGS, Pulse};
 use super::{Cause, cause};
 use crate::error::Result;
@@ -15,43 +16,12 @@ pub(super) fn some<L: Link>(
     pulses: &[Pulse],
     causes: &mut Vec<Cause>,
 ) -> Result<()> {
-    let total: usize = pulses
-        .iter()
-        .filter(|p| p.answered > 0)
-        .map(|_| PINGS)
-        .sum();
-    let lost: usize = pulses
-        .iter()
-        .filter(|p| p.answered > 0)
-        .map(|p| PINGS - p.answered)
-        .sum();
-    let poor: Vec<u8> = pulses
-        .iter()
-        .filter(|p| p.answered > 0 && p.answered < PINGS)
-        .map(|p| p.id)
-        .collect();
-    for pulse in pulses.iter().filter(|pulse| pulse.answered == 0) {
-        causes.push(missing(pulse));
+    for pulse in pulses.iter().filter(|pulse| is_twice(pulse)) {
+        causes.push(twice(pulse));
     }
-    if lost > 0 {
-        let few = poor.len() == 1 && pulses.len() > 2;
-        let what = if few {
-            format!("servo {} or its cable is bad", poor[0])
-        } else {
-            "the line is disturbed".to_string()
-        };
-        let remedy = if few {
-            "change its cable, then exchange the servo"
-        } else {
-            "look for loose plugs and a low supply; shorten the cables; keep the ground wire connected"
-        };
-        causes.push(cause(
-            0.4 + 0.5 * lost as f64 / total as f64,
-            what,
-            format!("{lost} of {total} pings got no sound answer: ids {poor:?}"),
-            remedy,
-        ));
-    }
+    let silent = |pulse: &&Pulse| pulse.answered == 0 && !is_twice(pulse);
+    causes.extend(pulses.iter().filter(silent).map(missing));
+    causes.extend(disturbances(pulses));
     for pulse in pulses.iter().filter(|pulse| !pulse.errors.is_empty()) {
         let supply = servos.get(pulse.id, PRESENT_SUPPLY).ok();
         causes.push(complaint(pulse, supply));
@@ -62,21 +32,23 @@ pub(super) fn some<L: Link>(
     Ok(())
 }
 
+fn twice(pulse: &Pulse) -> Cause {
+    let id = pulse.id;
+    cause(
+        0.85,
+        format!("two servos have the id {id}"),
+        format!(
+            "of {PINGS} answers of id {id} {} were garbled, {} came double; those of others are sound",
+            pulse.garbled, pulse.doubled
+        ),
+        format!(
+            "disconnect all others, connect one of the two, and give it a free id: handstand bus setup --new-id N; id {id} stays with the other"
+        ),
+    )
+}
+
 fn missing(pulse: &Pulse) -> Cause {
     let id = pulse.id;
-    if pulse.garbled > 0 {
-        return cause(
-            0.85,
-            format!("two servos have the id {id}"),
-            format!(
-                "{} of {PINGS} answers of id {id} were garbled, those of others are sound",
-                pulse.garbled
-            ),
-            format!(
-                "disconnect all others, connect one of the two, and give it a free id: handstand bus setup --new-id N; id {id} stays with the other"
-            ),
-        );
-    }
     if pulse.strangers > 0 {
         return cause(
             0.8,

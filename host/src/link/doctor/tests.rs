@@ -15,7 +15,31 @@ fn every_fault_is_named_first() {
         ("ids=1-4,delay=0,dead=3", "servo 3 is not there"),
         ("ids=1-4,delay=0,baud=34", "servos answer at 57600 baud"),
         ("ids=21-24,delay=0", "the ids are others"),
-        ("ids=1-4,delay=0,drop=0.2", "the line is disturbed"),
+        (
+            "ids=1-4,delay=0,drop=0.2",
+            "the line is disturbed: answers are lost",
+        ),
+        (
+            "ids=1-4,delay=0,flip=0.2",
+            "bits are wrong on the way from the servos",
+        ),
+        (
+            "ids=1-4,delay=0,mishear=0.2",
+            "bits are wrong on the way to the servos",
+        ),
+        (
+            "ids=1-4,delay=0,late=0.2",
+            "answers come later than the return delay allows",
+        ),
+        (
+            "ids=1-4,delay=0,wrong_id=0.2",
+            "servos answer with others' ids",
+        ),
+        ("ids=1-4+3,delay=0", "two servos have the id 3"),
+        (
+            "ids=1-4,delay=0,overload=2",
+            "servo 2 complains of: overload",
+        ),
         ("ids=1-4,delay=0,hot=2", "servo 2 complains of: overheat"),
         ("ids=1-4,delay=0,supply=5", "complains of: voltage"),
         ("ids=1-4,delay=0,level=0", "has status level 0"),
