@@ -3,6 +3,7 @@
 use super::BYTE_NS;
 use super::collision::{Spoken, heard};
 use super::ear::Ear;
+use super::robot::Robot;
 use super::servo::Servo;
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
 use std::collections::VecDeque;
@@ -16,6 +17,7 @@ const OTHER_NS: u64 = 22_000;
 pub struct Bus {
     /// The servos, in no order.
     pub servos: Vec<Servo>,
+    robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
     ear: Ear,
     line: VecDeque<(u64, u8)>,
@@ -39,6 +41,7 @@ impl Bus {
         }
         Bus {
             servos,
+            robot: None,
             parser: Box::default(),
             ear: Ear::default(),
             line: VecDeque::new(),
@@ -53,11 +56,32 @@ impl Bus {
         self.servos.iter_mut().find(|servo| servo.id() == id)
     }
 
-    /// Lets the servos' own motors run until `now_ns`.
+    /// Hangs a robot on the servos; those it does not hang on stay free.
+    pub fn hang(&mut self, mut robot: Robot) {
+        let ids: Vec<u8> = robot.ids().collect();
+        for servo in &mut self.servos {
+            if ids.contains(&servo.id()) {
+                servo.free = false;
+            }
+        }
+        // Shafts are where its joints are from the beginning.
+        robot.step(&mut self.servos, 0.0);
+        self.robot = Some(robot);
+    }
+
+    /// The robot that hangs on the servos.
+    pub fn robot(&mut self) -> Option<&mut Robot> {
+        self.robot.as_mut()
+    }
+
+    /// Lets the servos' own motors, and the robot, run until `now_ns`.
     pub fn advance(&mut self, now_ns: u64) {
         const STEP_NS: u64 = 1_000_000;
         while self.now_ns + STEP_NS <= now_ns {
             self.now_ns += STEP_NS;
+            if let Some(robot) = &mut self.robot {
+                robot.step(&mut self.servos, STEP_NS as f64 * 1e-9);
+            }
             for servo in &mut self.servos {
                 servo.step(STEP_NS as f64 * 1e-9);
             }

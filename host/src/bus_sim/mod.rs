@@ -12,6 +12,7 @@ mod motor;
 mod obey;
 mod output;
 mod overload;
+mod robot;
 mod servo;
 
 pub use bus::Bus;
@@ -19,6 +20,7 @@ pub use fault::Faults;
 pub use motor::Motor;
 pub use output::Output;
 pub use overload::Protection;
+pub use robot::{DriveState, Robot, State};
 pub use servo::Servo;
 
 /// A bit at 1 Mbps, ns.

@@ -1,5 +1,6 @@
 //! The position regulator and wheel mode: what drives a servo's motor.
 
+use super::motor::Motor;
 use super::servo::Servo;
 use handstand_shared::control_table::*;
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
@@ -50,6 +51,21 @@ impl Output {
             }
         };
         duty.clamp(-self.limit, self.limit)
+    }
+
+    /// The same where the shaft moves: nothing that would speed it up beyond the largest speed.
+    pub fn duty_in_motion(&self, shaft: &Motor) -> f64 {
+        let duty = self.duty(shaft.angle_rad);
+        let is_fast = shaft.speed_rad_s.abs() > self.speed_limit_rad_s;
+        match is_fast && duty * shaft.speed_rad_s > 0.0 {
+            true => 0.0,
+            false => duty,
+        }
+    }
+
+    /// Whether torque is on.
+    pub fn is_on(&self) -> bool {
+        self.drive != Drive::Off
     }
 }
 

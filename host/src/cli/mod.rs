@@ -40,6 +40,7 @@ mod study;
 mod talk;
 mod view;
 mod virtual_robot;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;

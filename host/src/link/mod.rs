@@ -18,6 +18,7 @@ mod serial;
 mod servos;
 mod session;
 mod settings;
+mod sim_robot;
 mod sim_words;
 mod tap;
 
@@ -33,6 +34,7 @@ pub use serial::{Serial, ports};
 pub use servos::Servos;
 pub use session::{Session, condition_words, refusal_words};
 pub use settings::Settings;
+pub use sim_robot::{SimRobot, Start};
 pub use sim_words::{SimWords, ids};
 pub use tap::{Exchange, Tap, Way};
 

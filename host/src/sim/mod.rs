@@ -2,9 +2,11 @@
 
 mod drive;
 mod input;
+mod live;
 mod plant;
 mod run;
 mod stepper;
 
+pub use live::{Live, hanging};
 pub use plant::Plant;
 pub use run::{Memory, Start, predict};
