@@ -25,7 +25,7 @@ mod tap;
 pub use answer::Reading;
 pub use faulty::Faulty;
 pub use in_process::InProcess;
-pub use port::{Link, read_some};
+pub use port::{Link, Voice, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;

@@ -3,6 +3,9 @@
 use crate::error::Result;
 use std::time::Duration;
 
+/// Sends bytes on a line that another thread holds.
+pub type Voice = Box<dyn std::io::Write + Send>;
+
 /// A line of bytes, with the clock it runs by.
 ///
 /// Waiting goes through the line, so that a simulated one needs no real time.
@@ -46,6 +49,12 @@ pub trait Link: Send {
     /// The longest a byte may lie about on its way beside the line's own time: drivers, USB, other programs.
     fn latency(&self) -> Duration;
 
+    /// Another way to speak on this line, for a thread that must not wait for this one; none on a line that ends with the
+    /// program.
+    fn second_voice(&self) -> Option<Voice> {
+        None
+    }
+
     /// Time of so many bytes on the line.
     fn line_time(&self, bytes: usize) -> Duration {
         Duration::from_secs_f64(bytes as f64 * 10.0 / f64::from(self.baud().max(1)))
@@ -82,6 +91,9 @@ macro_rules! passed_on {
             }
             fn latency(&self) -> Duration {
                 (**self).latency()
+            }
+            fn second_voice(&self) -> Option<Voice> {
+                (**self).second_voice()
             }
         }
     };

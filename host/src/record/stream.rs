@@ -1,7 +1,7 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
 use super::sample::{Joint, Sample};
-use super::source::Source;
+use super::source::{LetGo, Source, say_twice};
 use crate::error::{Error, Result};
 use crate::link::{Link, Session, condition_words};
 use handstand_shared::message::{Command, Condition, Mode, Report, Roster};
@@ -133,6 +133,12 @@ impl<L: Link> Source for Stream<L> {
     fn disarm(&mut self) -> Result<()> {
         self.armed = false;
         self.session.obey(&Command::Disarm, "switch torque off")
+    }
+
+    fn let_go(&mut self) -> Option<LetGo> {
+        let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
+        let off = off.map(|command| self.session.bytes(&command)).concat();
+        Some(say_twice(self.session.link().second_voice()?, off))
     }
 
     fn danger(&self) -> Option<String> {

@@ -105,6 +105,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         repeat: Rms::default(),
         talk,
     };
+    run.interrupt.at_once(run.source.let_go());
     run.source.arm()?;
     // Whatever happens, torque goes off before anything is told.
     let outcome = run.follow(&motion);
