@@ -59,6 +59,24 @@ fn a_recording_is_a_log_that_models_are_compared_with() {
     assert_eq!(check.code, Some(0), "{check:?}");
 }
 
+/// A run through the firmware, read by `compare` with the model of a servo: what remains is the firmware's slower goals and
+/// the line's varying delay.
+#[test]
+fn a_run_through_the_firmware_is_what_its_model_says() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.4));
+    let line = "replay motion.csv --port sim-cm5:ids=1-2,delay=0 --stream --yes --record run.csv";
+    let ran = bench.run(line);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/bus_servo.toml");
+    let compared = bench.run(&format!("compare {model} run.csv --json"));
+    assert_eq!(compared.code, Some(0), "{compared:?}");
+    let signal = &compared.json()["comparisons"][0]["signals"][0];
+    let rms_rad = signal["rms"].as_f64().unwrap();
+    assert!((0.0005..0.012).contains(&rms_rad), "{signal}");
+    assert!(signal["fit_percent"].as_f64().unwrap() > 90.0, "{signal}");
+}
+
 #[test]
 fn a_motion_is_followed_by_adapter_and_by_stream() {
     let bench = Bench::new();
