@@ -59,6 +59,24 @@ fn a_recording_is_a_log_that_models_are_compared_with() {
     assert_eq!(check.code, Some(0), "{check:?}");
 }
 
+/// A run through the firmware, read by `compare` with the model of a servo: what remains is the firmware's slower goals and
+/// the line's varying delay.
+#[test]
+fn a_run_through_the_firmware_is_what_its_model_says() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.4));
+    let line = "replay motion.csv --port sim-cm5:ids=1-2,delay=0 --stream --yes --record run.csv";
+    let ran = bench.run(line);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/bus_servo.toml");
+    let compared = bench.run(&format!("compare {model} run.csv --json"));
+    assert_eq!(compared.code, Some(0), "{compared:?}");
+    let signal = &compared.json()["comparisons"][0]["signals"][0];
+    let rms_rad = signal["rms"].as_f64().unwrap();
+    assert!((0.0005..0.012).contains(&rms_rad), "{signal}");
+    assert!(signal["fit_percent"].as_f64().unwrap() > 90.0, "{signal}");
+}
+
 #[test]
 fn a_motion_is_followed_by_adapter_and_by_stream() {
     let bench = Bench::new();
@@ -211,17 +229,70 @@ mod killed {
         while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
             std::thread::sleep(Duration::from_millis(20));
         }
-        let pid = replay.id().to_string();
-        assert!(
-            Command::new("kill")
-                .args(["-INT", &pid])
-                .status()
-                .unwrap()
-                .success()
-        );
+        signal("-INT", &replay);
         assert_eq!(replay.wait().unwrap().code(), Some(5));
         torque(0);
         robot.kill().unwrap();
         robot.wait().unwrap();
+    }
+
+    /// Two Ctrl-C while the servos do not answer: the program ends at once, and torque goes off all the same.
+    #[test]
+    fn a_second_ctrl_c_leaves_torque_off_too() {
+        for (words, options, baud) in [
+            (
+                &["ids=1-2,delay=0"][..],
+                &["--baud", "1000000", "--hz", "50"][..],
+                1_000_000,
+            ),
+            (&["--cm5", "ids=1-2,delay=0"], &["--stream"], 57_600),
+        ] {
+            let bench = Bench::new();
+            bench.put("motion.csv", super::motion(0.4));
+            let serve = ["virtual", "--pty", "--seconds", "60"];
+            let mut robot = spawn(&bench, &[&serve, words].concat());
+            let port = port_of(&mut robot);
+            let follow = [
+                "replay",
+                "motion.csv",
+                "--yes",
+                "--record",
+                "out.csv",
+                "--port",
+                &port,
+            ];
+            let mut replay = spawn(&bench, &[&follow, options].concat());
+            while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            signal("-STOP", &robot);
+            std::thread::sleep(Duration::from_millis(30));
+            signal("-INT", &replay);
+            std::thread::sleep(Duration::from_millis(5));
+            signal("-INT", &replay);
+            assert_eq!(replay.wait().unwrap().code(), Some(5), "{words:?}");
+            signal("-CONT", &robot);
+            std::thread::sleep(Duration::from_millis(500));
+            if baud == 57_600 {
+                // It may have found the line silent, and stopped: greeted anew it is an adapter again.
+                let line =
+                    format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");
+                assert_eq!(bench.run(&line).code, Some(0));
+            }
+            for id in 1..=2 {
+                let line =
+                    format!("bus read {id} torque-enable --port {port} --baud {baud} --json");
+                let read = bench.run(&line);
+                assert_eq!(read.json()[0]["code"], 0, "{words:?}: {read:?}");
+            }
+            robot.kill().unwrap();
+            robot.wait().unwrap();
+        }
+    }
+
+    fn signal(name: &str, child: &Child) {
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args([name, &pid]).status().unwrap();
+        assert!(sent.success());
     }
 }

@@ -3,4 +3,6 @@
 pub mod bench;
 pub mod firmware;
 pub mod hidden;
+#[cfg(unix)]
+pub mod kills;
 pub mod peers;

@@ -1,6 +1,9 @@
 //! The bus: hears requests, and puts the servos' answers on the line in time.
 
 use super::BYTE_NS;
+use super::collision::{Spoken, heard};
+use super::ear::Ear;
+use super::robot::Robot;
 use super::servo::Servo;
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
 use std::collections::VecDeque;
@@ -14,7 +17,9 @@ const OTHER_NS: u64 = 22_000;
 pub struct Bus {
     /// The servos, in no order.
     pub servos: Vec<Servo>,
+    robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
+    ear: Ear,
     line: VecDeque<(u64, u8)>,
     now_ns: u64,
     /// Broadcasts that switched torque off, and when the last one ended, ns: what a safety test looks for.
@@ -24,11 +29,21 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// Factory-new servos with these ids, except that they answer at once (return delay 0).
+    /// Factory-new servos with these ids, except that they answer at once (return delay 0). An id may come twice, as two
+    /// servos fresh from the factory have it.
     pub fn new(ids: impl IntoIterator<Item = u8>) -> Self {
+        let mut servos: Vec<Servo> = Vec::new();
+        for id in ids {
+            let mut servo = Servo::new(id);
+            let same = servos.iter().filter(|other| other.id() == id).count();
+            servo.serial += 256 * same as u64;
+            servos.push(servo);
+        }
         Bus {
-            servos: ids.into_iter().map(Servo::new).collect(),
+            servos,
+            robot: None,
             parser: Box::default(),
+            ear: Ear::default(),
             line: VecDeque::new(),
             now_ns: 0,
             torque_offs: Vec::new(),
@@ -41,11 +56,32 @@ impl Bus {
         self.servos.iter_mut().find(|servo| servo.id() == id)
     }
 
-    /// Lets the servos' own motors run until `now_ns`.
+    /// Hangs a robot on the servos; those it does not hang on stay free.
+    pub fn hang(&mut self, mut robot: Robot) {
+        let ids: Vec<u8> = robot.ids().collect();
+        for servo in &mut self.servos {
+            if ids.contains(&servo.id()) {
+                servo.free = false;
+            }
+        }
+        // Shafts are where its joints are from the beginning.
+        robot.step(&mut self.servos, 0.0);
+        self.robot = Some(robot);
+    }
+
+    /// The robot that hangs on the servos.
+    pub fn robot(&mut self) -> Option<&mut Robot> {
+        self.robot.as_mut()
+    }
+
+    /// Lets the servos' own motors, and the robot, run until `now_ns`.
     pub fn advance(&mut self, now_ns: u64) {
         const STEP_NS: u64 = 1_000_000;
         while self.now_ns + STEP_NS <= now_ns {
             self.now_ns += STEP_NS;
+            if let Some(robot) = &mut self.robot {
+                robot.step(&mut self.servos, STEP_NS as f64 * 1e-9);
+            }
             for servo in &mut self.servos {
                 servo.step(STEP_NS as f64 * 1e-9);
             }
@@ -61,6 +97,10 @@ impl Bus {
                 break;
             }
         }
+        if let Some(id) = self.ear.push(byte) {
+            let answers = answers(&mut self.servos, self.line_baud, |servo| servo.mishear(id));
+            put(&mut self.line, now_ns + OTHER_NS, &answers);
+        }
         let Some(packet) = self.parser.push(byte) else {
             return;
         };
@@ -71,36 +111,13 @@ impl Bus {
         if is_torque_off(id, request) {
             self.torque_offs.push(now_ns);
         }
-        let mut answers = Vec::new();
-        for servo in &mut self.servos {
-            if !servo.understands(self.line_baud) {
-                continue;
-            }
-            if let Some(answer) = servo.hear(now_ns, id, request) {
-                answers.push(answer);
-            }
-        }
-        let begin_ns = now_ns
-            + if request == Request::Ping {
-                PING_NS
-            } else {
-                OTHER_NS
-            };
-        // Two servos with one id would answer into each other; the second waits here, which is kinder than a collision.
-        for (bytes, delay_ns, place) in answers {
-            self.put(begin_ns + delay_ns, &bytes, place);
-        }
-    }
-
-    fn put(&mut self, from_ns: u64, bytes: &[u8], servo_id: u8) {
-        let mut end_ns = from_ns.max(self.line.back().map_or(0, |(end, _)| *end));
-        let servo = self.servo(servo_id);
-        let stall = servo.map(|servo| servo.stall_phase_ns());
-        for byte in bytes {
-            let begin_ns = stall.map_or(end_ns, |phase| after_stall(end_ns, phase));
-            end_ns = begin_ns + BYTE_NS;
-            self.line.push_back((end_ns, *byte));
-        }
+        let wait_ns = match request {
+            Request::Ping => PING_NS,
+            _ => OTHER_NS,
+        };
+        let hear = |servo: &mut Servo| servo.hear(now_ns, id, request);
+        let answers = answers(&mut self.servos, self.line_baud, hear);
+        put(&mut self.line, now_ns + wait_ns, &answers);
     }
 
     /// When the next byte from the servos has arrived, if one is on its way, ns.
@@ -148,6 +165,75 @@ fn is_torque_off(id: u8, request: Request) -> bool {
                 data: [0, ..]
             }
         )
+}
+
+/// What a servo says.
+struct Answer {
+    bytes: Vec<u8>,
+    delay_ns: u64,
+    serial: u64,
+}
+
+/// What the servos that run at this speed say to something.
+fn answers(
+    servos: &mut [Servo],
+    line_baud: u32,
+    mut ask: impl FnMut(&mut Servo) -> Option<(Vec<u8>, u64)>,
+) -> Vec<Answer> {
+    let servos = servos.iter_mut();
+    let servos = servos.filter(|servo| servo.understands(line_baud));
+    let answers = servos.filter_map(|servo| {
+        let (bytes, delay_ns) = ask(servo)?;
+        let serial = servo.serial;
+        Some(Answer {
+            bytes,
+            delay_ns,
+            serial,
+        })
+    });
+    answers.collect()
+}
+
+/// Puts answers on the line, from `begin_ns` on or when it is free.
+fn put(line: &mut VecDeque<(u64, u8)>, begin_ns: u64, answers: &[Answer]) {
+    let free_ns = line.back().map_or(0, |(end, _)| *end);
+    match answers {
+        [] => {}
+        [one] => {
+            let spoken = spoken(one, begin_ns, free_ns).into_iter();
+            line.extend(spoken.map(|(begin, byte)| (begin + BYTE_NS, byte)));
+        }
+        several => {
+            let late = |answer: &Answer| spoken(answer, begin_ns + late_ns(answer.serial), free_ns);
+            let all = several.iter().flat_map(late);
+            line.extend(heard(&all.collect::<Vec<_>>()));
+        }
+    }
+}
+
+/// When each byte of an answer begins.
+fn spoken(answer: &Answer, from_ns: u64, free_ns: u64) -> Vec<Spoken> {
+    let mut end_ns = free_ns.max(from_ns + answer.delay_ns);
+    let begins = answer.bytes.iter().map(|byte| {
+        let begin_ns = after_stall(end_ns, stall_phase_ns(answer.serial));
+        end_ns = begin_ns + BYTE_NS;
+        (begin_ns, *byte)
+    });
+    begins.collect()
+}
+
+/// How much later than its twin a servo begins: no two clocks are the same. Scattered by a hash, below a byte's time.
+fn late_ns(serial: u64) -> u64 {
+    match serial / 256 {
+        0 => 0,
+        twin => 700 + twin * 2_654_435_761 % (BYTE_NS - 1_000),
+    }
+}
+
+/// When within each millisecond a servo's motor interrupt comes, ns: in each servo at another moment, scattered by a hash,
+/// for servos started together would all stall a regular reader alike.
+fn stall_phase_ns(serial: u64) -> u64 {
+    ((serial * 2_654_435_761) >> 8) % 1_000_000
 }
 
 /// The motor's interrupt takes 130 us of every millisecond and holds back a byte that would begin in it.

@@ -19,6 +19,8 @@ pub struct Faults {
     pub late_ns: u64,
     /// An answer carries another servo's id.
     pub wrong_id: f64,
+    /// It hears a request with a wrong bit: it does nothing, and complains of the checksum.
+    pub mishear: f64,
     /// The wiring sends the controller's own bytes back.
     pub echo: bool,
     rng: ChaCha8Rng,
@@ -34,6 +36,7 @@ impl Faults {
             late: 0.0,
             late_ns: 1_000_000,
             wrong_id: 0.0,
+            mishear: 0.0,
             echo: false,
             rng: ChaCha8Rng::seed_from_u64(seed),
         }
@@ -63,6 +66,11 @@ impl Faults {
             0
         };
         Some((answer, late_ns))
+    }
+
+    /// Whether the next request is heard with a wrong bit.
+    pub(super) fn mishears(&mut self) -> bool {
+        self.happens(self.mishear)
     }
 
     fn happens(&mut self, probability: f64) -> bool {

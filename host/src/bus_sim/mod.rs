@@ -5,14 +5,23 @@
 //! its own. Timing, registers and faults are those of the data sheet and of published measurements; every constant says which.
 
 mod bus;
+mod collision;
+mod ear;
 mod fault;
 mod motor;
+mod obey;
+mod output;
+mod overload;
+mod robot;
 mod servo;
 
 pub use bus::Bus;
 pub use fault::Faults;
 pub use motor::Motor;
-pub use servo::{Output, Servo};
+pub use output::Output;
+pub use overload::Protection;
+pub use robot::{DriveState, Robot, State};
+pub use servo::Servo;
 
 /// A bit at 1 Mbps, ns.
 pub const BIT_NS: u64 = 1000;

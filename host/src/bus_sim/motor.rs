@@ -1,6 +1,6 @@
 //! A servo's own motor with nothing hanging on it: the default when no robot is simulated.
 
-use super::servo::Output;
+use super::output::Output;
 
 /// Angle and speed of an unloaded shaft.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -149,6 +149,72 @@ fn faults_do_what_their_names_say() {
         .sum();
     assert_eq!(wrong, 1);
     assert_eq!(answers(|f| f.echo = true)[..6], ping);
+    let misheard = answers(|f| f.mishear = 1.0);
+    assert_eq!(misheard, [0xff, 0xff, 1, 2, 16, 0xec]);
+}
+
+#[test]
+fn a_wrong_checksum_is_complained_of_and_not_obeyed() {
+    let mut bus = Bus::new([1, 2]);
+    // WRITE torque enable 1 to servo 1, its sum one too large.
+    let answer = send(&mut bus, 0, &[0xff, 0xff, 1, 4, 3, 24, 1, 0xdf]);
+    let bytes: Vec<u8> = answer.into_iter().map(|(_, byte)| byte).collect();
+    assert_eq!(bytes, [0xff, 0xff, 1, 2, 16, 0xec]);
+    assert!(!bus.any_torque());
+    assert_eq!(send(&mut bus, 0, &[0xff, 0xff, 254, 4, 3, 24, 1, 0]), []);
+    assert_eq!(send(&mut bus, 0, &[0xff, 0xff, 1, 2, 1, 0xfb]).len(), 6);
+}
+
+#[test]
+fn two_servos_of_one_id_garble_each_other() {
+    let mut bus = Bus::new([1, 2, 2]);
+    let sound = |bytes: Vec<(u64, u8)>| {
+        let bytes: Vec<u8> = bytes.into_iter().map(|(_, byte)| byte).collect();
+        handstand_shared::dynamixel::Packet::new(&bytes).is_ok()
+    };
+    for round in 0..20 {
+        let now_ns = round * 3_141_592;
+        assert!(sound(send(&mut bus, now_ns, &[0xff, 0xff, 1, 2, 1, 0xfb])));
+        let both = send(&mut bus, now_ns + 1_000_000, &[0xff, 0xff, 2, 2, 1, 0xfa]);
+        assert!(!both.is_empty() && !sound(both), "round {round}");
+    }
+}
+
+/// A blocked shaft: the torque limit falls to 0 and stays there until it is written.
+#[test]
+fn an_overloaded_servo_lets_go_until_its_torque_limit_is_written() {
+    let mut bus = Bus::new([1]);
+    let goal = 900u16.to_le_bytes();
+    let write = |register: Register, data: &'static [u8]| Request::Write {
+        address: register.address,
+        data,
+    };
+    bus.servos[0].jammed = true;
+    bus.ask(
+        1,
+        Request::Write {
+            address: GOAL_POSITION.address,
+            data: &goal,
+        },
+    );
+    bus.advance(900_000_000);
+    assert!(bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 1023);
+    bus.advance(1_100_000_000);
+    assert!(!bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 0);
+    assert_eq!(bus.servos[0].output().duty(0.0), 0.0);
+    let ping = |bus: &mut Bus| send(bus, 1_200_000_000, &[0xff, 0xff, 1, 2, 1, 0xfb])[4].1;
+    assert_eq!(ping(&mut bus), 32);
+    bus.ask(1, write(TORQUE_ENABLE, &[1]));
+    assert_eq!(
+        bus.servos[0].output().duty(0.0),
+        0.0,
+        "that alone is not enough"
+    );
+    bus.servos[0].jammed = false;
+    bus.ask(1, write(TORQUE_LIMIT, &[0xff, 3]));
+    assert_eq!(ping(&mut bus), 0);
+    bus.advance(2_000_000_000);
+    assert!(bus.servos[0].get(PRESENT_POSITION) > 850);
 }
 
 #[test]
@@ -167,4 +233,88 @@ fn only_the_servo_addressed_answers_and_nobody_a_broadcast() {
     assert_eq!(bus.ask(BROADCAST, Request::Ping), [0u8; 0]);
     assert_eq!(bus.ask(9, Request::Ping), [0u8; 0]);
     assert_eq!(bus.next_ns(), None);
+}
+
+/// The humanoid on the bar, as `virtual --robot` hangs it.
+fn robot(words: &str) -> Bus {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");
+    let words = format!("ids=1-18,delay=0,robot={model}{words}");
+    words
+        .parse::<crate::link::SimWords>()
+        .unwrap()
+        .set_up()
+        .unwrap()
+}
+
+fn goal(bus: &mut Bus, id: u8, code: u16) {
+    let data = code.to_le_bytes();
+    bus.ask(
+        id,
+        Request::Write {
+            address: GOAL_POSITION.address,
+            data: &data,
+        },
+    );
+}
+
+#[test]
+fn goals_of_the_servos_move_the_robot_s_joints_and_their_twins() {
+    let mut bus = robot("");
+    for (id, code) in [(1, 600), (2, 424), (11, 450), (12, 574)] {
+        goal(&mut bus, id, code);
+    }
+    bus.advance(5_000_000_000);
+    let mut at = |id: u8| i32::from(bus.servo(id).unwrap().get(PRESENT_POSITION));
+    // Compliance and friction leave some; gravity pulls both back towards hanging.
+    for (id, code) in [(1, 600), (11, 450)] {
+        let away = at(id) - code;
+        assert!(away.abs() < 40, "servo {id}: {away}");
+        assert!((at(id) - 512).abs() > 30, "servo {id} moved");
+        assert!((at(id) + at(id + 1) - 1024).abs() <= 1, "its twin faces it");
+    }
+    assert_eq!(at(5), 512, "a servo it does not hang on is free");
+    bus.ask(
+        BROADCAST,
+        Request::Write {
+            address: 24,
+            data: &[0],
+        },
+    );
+    bus.advance(60_000_000_000);
+    let rate = bus.robot().unwrap().rate_rad_s();
+    assert!(rate.abs() < 0.05, "let go it comes to rest: {rate}");
+}
+
+#[test]
+fn a_robot_that_stands_falls_without_torque() {
+    let mut bus = robot(",start=upright");
+    let (tell, states) = std::sync::mpsc::channel();
+    bus.robot().unwrap().watch(tell);
+    goal(&mut bus, 1, 530);
+    goal(&mut bus, 2, 494);
+    bus.advance(3_000_000_000);
+    let states: Vec<State> = states.try_iter().collect();
+    assert_eq!(states.len(), 300);
+    let up = |state: &State| (state.angle_rad[0] - std::f64::consts::PI).abs();
+    assert!(up(&states[0]) < 0.01);
+    let farthest = states.iter().map(up).fold(0.0, f64::max);
+    assert!(farthest > 1.0, "{farthest}");
+    assert!(states[5].drive[0].is_none() && states[5].drive[1].unwrap().torque_on);
+}
+
+#[test]
+fn a_robot_that_fits_no_servos_is_refused() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");
+    for (words, said) in [
+        (
+            format!("ids=1-3,robot={model}"),
+            "servo 11, which is not there",
+        ),
+        (format!("robot={model},joints=1+2"), "2 driven joints"),
+        ("robot=absent.toml".to_string(), "cannot read"),
+    ] {
+        let words: crate::link::SimWords = words.parse().unwrap();
+        let error = words.set_up().unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
 }

@@ -236,7 +236,8 @@ impl Board for Desk {
     fn set_leds(&mut self, _leds: u8) {}
 
     fn gyro(&mut self) -> u16 {
-        512
+        let rate_rad_s = self.bus.robot().map_or(0.0, |robot| robot.rate_rad_s());
+        gyro_code(rate_rad_s)
     }
 
     fn eeprom_read(&mut self, address: u16) -> u8 {
@@ -268,6 +269,11 @@ impl Board for Desk {
     fn stack(&self) -> (u16, u16) {
         (0, 0)
     }
+}
+
+/// A gyro of one code per degree and second, 512 at rest.
+fn gyro_code(rate_rad_s: f64) -> u16 {
+    (512.0 + rate_rad_s.to_degrees()).round().clamp(0.0, 1023.0) as u16
 }
 
 fn nanoseconds(time: Duration) -> u64 {

@@ -5,14 +5,14 @@
 //! $ handstand flash handstand-firmware.bin --port /dev/ttyUSB0
 //! ```
 //!
-//! Press the CM-5's MODE button (reset) when asked. Size and checksum are compared with the boot loader's, flash is
-//! verified, and the application starts at every power-on from then on (`--no-app` leaves that out). The boot loader
+//! Press the CM-5's MODE button (reset) when asked. Size and checksum are compared with the boot loader's, what
+//! it says to `verify` is shown, and the application starts at every power-on from then on (`--no-app` leaves that out). The boot loader
 //! itself is never written. `--pace-us` slows the line down, `--dry-run` only checks the file.
 //!
 //! `--isp PROGRAMMER` goes through avrdude and the board's ISP pads instead. That erases the whole chip, the boot loader
 //! included: afterwards only a programmer can write it. It asks before, unless `--yes`.
 //!
-//! `--json` prints `bytes`, `checksum`, `verified`, `starts_at_power_on`; with `--dry-run` or `--isp` `command` or less.
+//! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with `--dry-run` or `--isp` `command` or less.
 
 use super::Outcome;
 use super::interrupt::Interrupt;
@@ -33,15 +33,8 @@ pub struct Args {
     image: PathBuf,
     #[command(flatten)]
     port: Port,
-    /// Pause after every byte, for a line that loses some
-    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000))]
-    pace_us: u64,
-    /// Seconds to wait for the reset
-    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]
-    wait: u64,
-    /// Do not start the application at power-on
-    #[arg(long)]
-    no_app: bool,
+    #[command(flatten)]
+    loader: Loader,
     /// Start the application when all is well
     #[arg(long)]
     go: bool,
@@ -54,6 +47,20 @@ pub struct Args {
     /// Do not ask
     #[arg(long)]
     yes: bool,
+}
+
+/// How the boot loader is spoken with.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Loader {
+    /// Pause after every byte, for a line that loses some
+    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000))]
+    pace_us: u64,
+    /// Seconds to wait for the reset
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]
+    wait: u64,
+    /// Do not start the application at power-on
+    #[arg(long)]
+    no_app: bool,
 }
 
 /// Checks the image, then writes it.
@@ -70,40 +77,49 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     );
     if args.dry_run {
         talk.say(&format!("{facts}; nothing was sent"));
-        return report(&image, false, false, talk);
+        return report(&image, None, false, talk);
     }
     talk.say(&facts);
+    let said = write(&image, &args.port, &args.loader, args.go, talk)?;
+    report(&image, Some(&said), !args.loader.no_app, talk)
+}
+
+/// Writes an image through the boot loader, and starts it now if `go`; what the loader says to `verify`.
+///
+/// # Errors
+/// It does not answer, or received something else.
+pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) -> Result<String> {
     let interrupt = Interrupt::listen();
-    let link = args.port.open()?;
+    let link = port.open()?;
     talk.say("Press the MODE button (reset) of the CM-5 now.");
-    let patience = Duration::from_secs(args.wait);
-    let mut loader =
-        BootLoader::enter(link, Duration::from_micros(args.pace_us), patience, || {
-            !interrupt.has_come()
-        })?;
+    let patience = Duration::from_secs(how.wait);
+    let pace = Duration::from_micros(how.pace_us);
+    let mut loader = BootLoader::enter(link, pace, patience, || !interrupt.has_come())?;
     let bar = talk.bar();
     bar.set_length(image.bytes().len() as u64);
     bar.set_message("bytes; do not switch off");
-    let loaded = loader.load(&image, |sent| bar.set_position(sent as u64));
+    let loaded = loader.load(image, |sent| bar.set_position(sent as u64));
     bar.finish_and_clear();
     loaded?;
-    loader.verify()?;
-    if !args.no_app {
+    let said = loader.verify()?;
+    talk.say(&format!("verify: the boot loader says `{said}`"));
+    if !how.no_app {
         loader.start_at_power_on()?;
     }
-    if args.go {
+    if go {
         loader.go()?;
     }
-    talk.say("Written and verified.");
-    report(&image, true, !args.no_app, talk)
+    talk.say("Written: size and checksum are those of the file.");
+    Ok(said)
 }
 
-fn report(image: &Image, verified: bool, starts: bool, talk: &Talk) -> Result<Outcome> {
+fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({
             "bytes": image.bytes().len(),
             "checksum": image.checksum(),
-            "verified": verified,
+            "written": said.is_some(),
+            "verify_said": said,
             "starts_at_power_on": starts,
         }))?;
     }

@@ -23,7 +23,7 @@ use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Gains that balance a model at a pose.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// Model file
     model: PathBuf,
@@ -131,6 +131,33 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
     write(args, &design, &made, talk)?;
     Ok(Outcome::Done)
+}
+
+impl Args {
+    /// The same with steps that somebody else prescribes: of the states, and where given of the inputs.
+    pub(super) fn in_steps(&self, steps: Given, input: Option<Given>) -> Result<Args> {
+        match self.state_step {
+            Some(_) => Err(Error::usage(
+                "--state-step has no place here: the firmware measures in steps of its own",
+                "leave it out",
+            )),
+            None => Ok(Args {
+                state_step: Some(steps),
+                input_step: input.or_else(|| self.input_step.clone()),
+                ..self.clone()
+            }),
+        }
+    }
+
+    /// The model file.
+    pub(super) fn model(&self) -> &Path {
+        &self.model
+    }
+
+    /// Whether files are replaced.
+    pub(super) fn force(&self) -> bool {
+        self.force
+    }
 }
 
 /// The design, and where it came from.

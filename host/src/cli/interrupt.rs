@@ -1,29 +1,65 @@
-//! Ctrl-C: asked for, not obeyed at once, so that servos can be let go first. A second one ends the program outright.
+//! Ctrl-C: the first is asked for, not obeyed at once, so that servos can be let go in order. A second one ends the program
+//! at once; if servos may hold torque by then, the last thing on the line is that they let go.
 
-use std::sync::Arc;
+use handstand::record::LetGo;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Whether the user wants to stop.
-#[derive(Debug, Clone, Default)]
-pub struct Interrupt(Arc<AtomicBool>);
+#[derive(Clone, Default)]
+pub struct Interrupt {
+    come: Arc<AtomicBool>,
+    let_go: Arc<Mutex<Option<LetGo>>>,
+}
 
 impl Interrupt {
     /// From now on.
     pub fn listen() -> Self {
         let interrupt = Interrupt::default();
         #[cfg(unix)]
-        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            // The order matters: the first signal finds the flag false, sets it, and only the next one ends the program.
-            // What cannot be registered leaves the system's own way, which ends the program at once.
-            let _ =
-                signal_hook::flag::register_conditional_shutdown(signal, 130, interrupt.0.clone());
-            let _ = signal_hook::flag::register(signal, interrupt.0.clone());
-        }
+        interrupt.clone().wait();
         interrupt
+    }
+
+    /// What a second Ctrl-C does before it ends the program with exit code 5.
+    pub fn at_once(&self, let_go: Option<LetGo>) {
+        if let Ok(mut slot) = self.let_go.lock() {
+            *slot = let_go;
+        }
     }
 
     /// Whether it has come.
     pub fn has_come(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.come.load(Ordering::Relaxed)
+    }
+
+    #[cfg(unix)]
+    fn wait(self) {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        use signal_hook::iterator::Signals;
+        // What cannot be registered leaves the system's own way, which ends the program at once.
+        let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+            return;
+        };
+        std::thread::spawn(move || {
+            for _ in signals.forever() {
+                if self.come.swap(true, Ordering::Relaxed) {
+                    self.end();
+                }
+            }
+        });
+    }
+
+    #[cfg(unix)]
+    fn end(&self) {
+        let let_go = self.let_go.lock().ok().and_then(|mut slot| slot.take());
+        match let_go {
+            Some(let_go) => {
+                let_go();
+                std::process::exit(i32::from(super::Outcome::Stopped.exit_code()));
+            }
+            // As the shell counts a program that a signal ended.
+            None => std::process::exit(130),
+        }
     }
 }

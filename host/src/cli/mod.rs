@@ -40,6 +40,7 @@ mod study;
 mod talk;
 mod view;
 mod virtual_robot;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -89,7 +90,7 @@ pub enum Command {
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
     /// Find gains that balance a model, and write them for firmware
-    Gains(gains::Args),
+    Gains(Box<deploy::Gains>),
     /// See what the closed loop of robot and controller bears
     #[command(subcommand)]
     Study(study::Command),
@@ -122,8 +123,8 @@ pub enum Command {
     Replay(replay::Args),
     /// Measure where the time between PC and servos goes
     Latency(latency::Args),
-    /// Bring gains for a model onto the CM-5, and read them back
-    Deploy(deploy::Args),
+    /// Bring gains for a model onto the CM-5, and read them back: `gains deploy`
+    Deploy(Box<deploy::Args>),
     /// Write a program into the CM-5
     Flash(flash::Args),
     /// Offer simulated servos to any program as a serial port
@@ -143,7 +144,7 @@ impl Command {
             Command::Log(log::Command::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
-            Command::Gains(args) => gains::run(args, talk),
+            Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),

@@ -50,8 +50,8 @@ impl Port {
         };
         let (kind, words) = name.split_once(':').unwrap_or((&name, ""));
         let mut link: AnyLink = match kind {
-            "sim" => Box::new(InProcess::new(simulated(words)?.bus())),
-            "sim-cm5" => Box::new(Cm5::new(simulated(words)?.bus())),
+            "sim" => Box::new(InProcess::new(simulated(words)?.set_up()?)),
+            "sim-cm5" => Box::new(Cm5::new(simulated(words)?.set_up()?)),
             _ => return Ok(Box::new(Serial::open(&name, self.baud.unwrap_or(57_600))?)),
         };
         if let Some(baud) = self.baud {

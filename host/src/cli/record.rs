@@ -5,8 +5,8 @@
 //! $ handstand record swing.csv --from swing.mcap
 //! ```
 //!
-//! Nothing is written to the servos. The file is brought to the disk every second: a crash, `kill -9` or a power cut costs
-//! at most the last one, and what was being written then is dropped when it is read. `--from` takes the samples from
+//! Nothing is written to the servos. The file is brought to the disk twice a second: a crash, `kill -9` or a power cut costs
+//! at most the last second, and what was being written then is dropped when it is read. `--from` takes the samples from
 //! another recording: it turns one format into the other, and a torn file into a whole one. docs/record.md lists columns
 //! and topics.
 //!

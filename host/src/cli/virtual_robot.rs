@@ -10,14 +10,20 @@
 //! $ handstand bus scan --port /dev/pts/5 --baud 1000000
 //! ```
 //!
-//! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`.
+//! `--robot MODEL.toml` hangs a robot on the servos: a chain of links whose driven joints are their shafts. It begins
+//! hanging at rest (`start=upright` among the words: standing); two driven joints hang on the servos 1 and 2, 11 and 12
+//! (`joints=1+2/11+12`). `--log FILE.csv` writes its true state a hundred times a second: `time_s`, each joint's
+//! `q1_rad`, `dq1_rad_s`, and where one is driven `goal2_rad`, `duty2`, `torque_on2`; `supply_v`.
+//!
+//! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`, `robot`.
 
 use super::cm5::Cm5;
 use super::interrupt::Interrupt;
 use super::port::simulated;
 use super::talk::Talk;
+use super::watch::Watch;
 use super::{Outcome, port::AnyLink};
-use handstand::link::InProcess;
+use handstand::link::{InProcess, SimWords};
 use handstand::{Error, Result};
 use std::path::PathBuf;
 
@@ -33,6 +39,12 @@ pub struct Args {
     /// Put a CM-5 with its firmware before the servos
     #[arg(long)]
     cm5: bool,
+    /// Hang this robot on the servos
+    #[arg(long, value_name = "MODEL.toml")]
+    robot: Option<PathBuf>,
+    /// Write what the robot truly does
+    #[arg(long, value_name = "FILE.csv")]
+    log: Option<PathBuf>,
     /// Name the port by this link as well
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
@@ -43,23 +55,27 @@ pub struct Args {
 
 /// Serves until told to stop.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let words = simulated(&args.words)?;
+    let mut words = simulated(&args.words)?;
+    if let Some(model) = &args.robot {
+        words.robot.get_or_insert_default().model = model.clone();
+    }
     if !args.seconds.unwrap_or(1.0).is_finite() {
         return Err(Error::usage(
             "--seconds is no time",
             "give a number of seconds",
         ));
     }
-    let ids = words.ids.clone();
+    let mut bus = words.set_up()?;
+    let watch = Watch::of(&mut bus, args.log.as_deref())?;
     let device: AnyLink = match args.cm5 {
-        true => Box::new(Cm5::new(words.bus())),
-        false => Box::new(InProcess::new(words.bus())),
+        true => Box::new(Cm5::new(bus)),
+        false => Box::new(InProcess::new(bus)),
     };
-    serve(args, talk, device, &ids)
+    serve(args, talk, device, &words, watch)
 }
 
 #[cfg(not(unix))]
-fn serve(_: &Args, _: &Talk, _: AnyLink, _: &[u8]) -> Result<Outcome> {
+fn serve(_: &Args, _: &Talk, _: AnyLink, _: &SimWords, _: Watch) -> Result<Outcome> {
     Err(Error::usage(
         "this system has no pseudo terminals",
         "use --port sim with the command itself",
@@ -67,7 +83,13 @@ fn serve(_: &Args, _: &Talk, _: AnyLink, _: &[u8]) -> Result<Outcome> {
 }
 
 #[cfg(unix)]
-fn serve(args: &Args, talk: &Talk, mut device: AnyLink, ids: &[u8]) -> Result<Outcome> {
+fn serve(
+    args: &Args,
+    talk: &Talk,
+    mut device: AnyLink,
+    words: &SimWords,
+    mut watch: Watch,
+) -> Result<Outcome> {
     use handstand::link::Pty;
     use std::time::{Duration, Instant};
 
@@ -79,21 +101,30 @@ fn serve(args: &Args, talk: &Talk, mut device: AnyLink, ids: &[u8]) -> Result<Ou
         .map(|path| Alias::new(path, pty.name()))
         .transpose()?;
     if talk.json {
-        talk.data(&serde_json::json!({ "port": pty.name(), "ids": ids, "cm5": args.cm5 }))?;
+        talk.data(&serde_json::json!({
+            "port": pty.name(),
+            "ids": words.ids,
+            "cm5": args.cm5,
+            "robot": words.robot.as_ref().map(|robot| &robot.model),
+        }))?;
     } else {
         talk.print(pty.name())?;
     }
     let speed = if args.cm5 { 57_600 } else { 1_000_000 };
     talk.say(&format!(
         "{} simulated servos at {} baud; Ctrl-C ends it",
-        ids.len(),
+        words.ids.len(),
         speed
     ));
     let (started, offset) = (Instant::now(), device.now());
     let mut last_byte = Duration::ZERO;
     let mut bytes = [0; 512];
+    let bar = talk.bar();
     loop {
         let now = started.elapsed();
+        if let Some(state) = watch.newest()? {
+            bar.set_message(state);
+        }
         if interrupt.has_come()
             || args
                 .seconds
@@ -122,6 +153,7 @@ fn serve(args: &Args, talk: &Talk, mut device: AnyLink, ids: &[u8]) -> Result<Ou
             device.send(&bytes[..count])?;
         }
     }
+    bar.finish_and_clear();
     drop(alias);
     Ok(Outcome::Done)
 }

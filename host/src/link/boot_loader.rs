@@ -144,19 +144,25 @@ impl<L: Link> BootLoader<L> {
         judge(&answer, image)
     }
 
-    /// Lets it compare flash with what it received.
+    /// Lets it compare flash with what it received; its answer.
+    ///
+    /// How it words the answer is not known to us. Only one that speaks of an error or a failure counts as bad: size and
+    /// checksum of what it received were compared before.
     ///
     /// # Errors
-    /// [`Error::Device`] if it finds a difference or says nothing.
+    /// [`Error::Device`] if it says nothing, or says so.
     pub fn verify(&mut self) -> Result<String> {
         let answer = self.command("verify", Duration::from_secs(20))?;
         let lower = answer.to_lowercase();
+        // What was sent may come back as an echo, and the prompt ends it.
+        let said = answer.trim_end_matches(PROMPT).trim();
+        let said = said.strip_prefix("verify").unwrap_or(said).trim();
         match lower.contains("error") || lower.contains("fail") {
             true => Err(Error::device(
-                format!("verify failed: {}", answer.trim()),
+                format!("verify failed: the boot loader says `{said}`"),
                 AGAIN,
             )),
-            false => Ok(answer),
+            false => Ok(said.to_string()),
         }
     }
 

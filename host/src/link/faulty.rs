@@ -1,6 +1,6 @@
 //! A line on which things go wrong by chance.
 
-use super::port::Link;
+use super::port::{Link, Voice};
 use crate::error::Result;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -89,5 +89,9 @@ impl<L: Link> Link for Faulty<L> {
 
     fn latency(&self) -> Duration {
         self.inner.latency()
+    }
+
+    fn second_voice(&self) -> Option<Voice> {
+        self.inner.second_voice()
     }
 }

@@ -4,6 +4,7 @@
 //! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
 //! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
 
+mod answer;
 pub mod boot_loader;
 pub mod doctor;
 mod faulty;
@@ -17,20 +18,23 @@ mod serial;
 mod servos;
 mod session;
 mod settings;
+mod sim_robot;
 mod sim_words;
 mod tap;
 
+pub use answer::Reading;
 pub use faulty::Faulty;
 pub use in_process::InProcess;
-pub use port::{Link, read_some};
+pub use port::{Link, Voice, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;
 pub use retry::Failure;
 pub use serial::{Serial, ports};
-pub use servos::{Reading, Servos};
+pub use servos::Servos;
 pub use session::{Session, condition_words, refusal_words};
 pub use settings::Settings;
+pub use sim_robot::{SimRobot, Start};
 pub use sim_words::{SimWords, ids};
 pub use tap::{Exchange, Tap, Way};
 

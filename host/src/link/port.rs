@@ -3,6 +3,9 @@
 use crate::error::Result;
 use std::time::Duration;
 
+/// Sends bytes on a line that another thread holds.
+pub type Voice = Box<dyn std::io::Write + Send>;
+
 /// A line of bytes, with the clock it runs by.
 ///
 /// Waiting goes through the line, so that a simulated one needs no real time.
@@ -46,41 +49,58 @@ pub trait Link: Send {
     /// The longest a byte may lie about on its way beside the line's own time: drivers, USB, other programs.
     fn latency(&self) -> Duration;
 
+    /// Another way to speak on this line, for a thread that must not wait for this one; none on a line that ends with the
+    /// program.
+    fn second_voice(&self) -> Option<Voice> {
+        None
+    }
+
     /// Time of so many bytes on the line.
     fn line_time(&self, bytes: usize) -> Duration {
         Duration::from_secs_f64(bytes as f64 * 10.0 / f64::from(self.baud().max(1)))
     }
 }
 
-impl Link for Box<dyn Link> {
-    fn name(&self) -> &str {
-        (**self).name()
-    }
-    fn baud(&self) -> u32 {
-        (**self).baud()
-    }
-    fn set_baud(&mut self, baud: u32) -> Result<()> {
-        (**self).set_baud(baud)
-    }
-    fn send(&mut self, bytes: &[u8]) -> Result<()> {
-        (**self).send(bytes)
-    }
-    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize> {
-        (**self).receive(bytes, wait)
-    }
-    fn clear(&mut self) -> Result<()> {
-        (**self).clear()
-    }
-    fn now(&self) -> Duration {
-        (**self).now()
-    }
-    fn pause(&mut self, time: Duration) {
-        (**self).pause(time);
-    }
-    fn latency(&self) -> Duration {
-        (**self).latency()
-    }
+/// A line behind a pointer is a line.
+macro_rules! passed_on {
+    ($pointer:ty $(, $($generic:tt)*)?) => {
+        impl$(<$($generic)*>)? Link for $pointer {
+            fn name(&self) -> &str {
+                (**self).name()
+            }
+            fn baud(&self) -> u32 {
+                (**self).baud()
+            }
+            fn set_baud(&mut self, baud: u32) -> Result<()> {
+                (**self).set_baud(baud)
+            }
+            fn send(&mut self, bytes: &[u8]) -> Result<()> {
+                (**self).send(bytes)
+            }
+            fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize> {
+                (**self).receive(bytes, wait)
+            }
+            fn clear(&mut self) -> Result<()> {
+                (**self).clear()
+            }
+            fn now(&self) -> Duration {
+                (**self).now()
+            }
+            fn pause(&mut self, time: Duration) {
+                (**self).pause(time);
+            }
+            fn latency(&self) -> Duration {
+                (**self).latency()
+            }
+            fn second_voice(&self) -> Option<Voice> {
+                (**self).second_voice()
+            }
+        }
+    };
 }
+
+passed_on!(Box<dyn Link>);
+passed_on!(&mut L, L: Link);
 
 /// Receives until `enough` says so or `deadline` (by the link's clock) has passed; what came.
 ///

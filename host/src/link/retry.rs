@@ -10,6 +10,8 @@ pub enum Failure {
     Silent,
     /// Bytes came, but no sound packet.
     Garbled(usize),
+    /// The servo heard a request with a wrong checksum.
+    Misheard,
     /// Another servo answered.
     Stranger(u8),
     /// The servo refused the request.
@@ -23,7 +25,7 @@ impl Failure {
     pub fn is_passing(&self) -> bool {
         matches!(
             self,
-            Failure::Silent | Failure::Garbled(_) | Failure::Stranger(_)
+            Failure::Silent | Failure::Garbled(_) | Failure::Misheard | Failure::Stranger(_)
         )
     }
 
@@ -37,6 +39,7 @@ impl Failure {
                 format!("servo {id}: {bytes} bytes came, but no sound status packet"),
                 doctor,
             ),
+            Failure::Misheard => Error::device(format!("servo {id} hears wrong checksums"), doctor),
             Failure::Stranger(other) => Error::device(
                 format!("servo {id} was asked, servo {other} answered"),
                 doctor,

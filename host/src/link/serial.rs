@@ -1,6 +1,6 @@
 //! A serial port of this computer.
 
-use super::port::Link;
+use super::port::{Link, Voice};
 use crate::error::{Error, Result};
 use serialport::{ClearBuffer, ErrorKind as Kind, SerialPort};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -103,6 +103,10 @@ impl Link for Serial {
 
     fn latency(&self) -> Duration {
         LATENCY
+    }
+
+    fn second_voice(&self) -> Option<Voice> {
+        Some(Box::new(self.port.try_clone().ok()?))
     }
 }
 

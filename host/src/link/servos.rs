@@ -1,11 +1,10 @@
 //! Speaking with servos: requests, answers in bounded time, tries.
 
+use super::answer::{Reading, is_answer, status};
 use super::port::{Link, read_some};
 use super::retry::Failure;
 use handstand_shared::control_table::{RETURN_DELAY, Register, TORQUE_ENABLE};
-use handstand_shared::dynamixel::{
-    BROADCAST, ErrorBits, MAX_PACKET, Packet, Parser, Request, Status, status_length,
-};
+use handstand_shared::dynamixel::{BROADCAST, ErrorBits, MAX_PACKET, Request, status_length};
 use handstand_shared::raw::ReturnDelay;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -17,26 +16,6 @@ const PROCESSING: Duration = Duration::from_micros(600);
 const LATE: Duration = Duration::from_millis(2);
 /// EEPROM makes a servo deaf for about 6 ms per byte.
 const EEPROM_BYTE: Duration = Duration::from_millis(7);
-
-/// A good answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reading {
-    /// What the servo complains of.
-    pub error: ErrorBits,
-    /// The bytes asked for.
-    pub data: Vec<u8>,
-}
-
-impl Reading {
-    /// The bytes as one code, the lower byte first.
-    pub fn code(&self) -> u16 {
-        self.data
-            .iter()
-            .take(2)
-            .rev()
-            .fold(0, |code, byte| code << 8 | u16::from(*byte))
-    }
-}
 
 /// Servos behind a line that passes Dynamixel packets.
 pub struct Servos<L> {
@@ -231,6 +210,15 @@ impl<L: Link> Servos<L> {
         Ok(*self.echo.insert(heard.ends_with(&PROBE)))
     }
 
+    /// Bytes that come after an answer was given up.
+    ///
+    /// # Errors
+    /// The port failed.
+    pub fn stragglers(&mut self) -> Result<usize, Failure> {
+        let deadline = self.link.now() + LATE + self.link.line_time(status_length(0));
+        Ok(read_some(&mut self.link, deadline, |_| false)?.len())
+    }
+
     /// One request and its answer: waits as long as line, return delay and lengths say, and no longer.
     fn once(&mut self, id: u8, request: &Request, count: u8) -> Result<Reading, Failure> {
         let echoes = self.echoes()?;
@@ -253,38 +241,13 @@ impl<L: Link> Servos<L> {
             matches!(&found, Some((from, reading)) if *from == id && is_answer(reading, count))
         })?;
         match found {
+            Some((from, reading)) if from == id && reading.error.has(ErrorBits::CHECKSUM) => {
+                Err(Failure::Misheard)
+            }
             Some((from, reading)) if from == id && is_answer(&reading, count) => Ok(reading),
             Some((from, _)) if from != id => Err(Failure::Stranger(from)),
             _ if bytes.len() <= echo => Err(Failure::Silent),
             _ => Err(Failure::Garbled(bytes.len())),
         }
     }
-}
-
-/// Whether this can be the answer: the bytes asked for, or a refusal of the request.
-fn is_answer(reading: &Reading, count: u8) -> bool {
-    let refusals = ErrorBits::RANGE.0 | ErrorBits::CHECKSUM.0 | ErrorBits::INSTRUCTION.0;
-    reading.data.len() == usize::from(count)
-        || (reading.data.is_empty() && reading.error.0 & refusals != 0)
-}
-
-/// The status packet of servo `id` in these bytes, or else of another.
-fn status(bytes: &[u8], id: u8) -> Option<(u8, Reading)> {
-    let mut parser = Parser::<MAX_PACKET>::default();
-    let mut found: Option<(u8, Reading)> = None;
-    for byte in bytes {
-        let Some(status) = parser.push(*byte).map(|packet: Packet| Status::of(packet)) else {
-            continue;
-        };
-        if found.as_ref().is_none_or(|(from, _)| *from != id) {
-            found = Some((
-                status.id,
-                Reading {
-                    error: status.error,
-                    data: status.data.to_vec(),
-                },
-            ));
-        }
-    }
-    found
 }

@@ -94,18 +94,21 @@ impl<L: Link> Session<L> {
         &mut self.link
     }
 
+    /// A command as it goes over the line, to be sent by whoever comes first.
+    pub fn bytes(&self, command: &Command) -> Vec<u8> {
+        let mut frame = [0; MAX_FRAME];
+        let length = encode(self.next_out, command, &mut frame).unwrap_or(0);
+        // The zero in front ends whatever noise there was, and tells an adapter that this is no servo packet.
+        [&[0], &frame[..length]].concat()
+    }
+
     /// Sends a command, without waiting; its number.
     ///
     /// # Errors
     /// The port failed.
     pub fn send(&mut self, command: &Command) -> Result<u8> {
-        let mut frame = [0; MAX_FRAME];
         let sequence = self.next_out;
-        let length = encode(sequence, command, &mut frame).unwrap_or(0);
-        // The zero in front ends whatever noise there was, and tells an adapter that this is no servo packet.
-        let mut bytes = vec![0];
-        bytes.extend_from_slice(&frame[..length]);
-        self.link.send(&bytes)?;
+        self.link.send(&self.bytes(command))?;
         self.next_out = self.next_out.wrapping_add(1);
         Ok(sequence)
     }

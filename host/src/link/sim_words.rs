@@ -1,6 +1,8 @@
 //! A simulated bus in words: `ids=1-18,delay=0,dead=3`.
 
+use super::sim_robot::SimRobot;
 use crate::bus_sim::{Bus, Faults};
+use crate::error::Result as Done;
 use handstand_shared::control_table::{BAUD, RETURN_DELAY, Register, STATUS_LEVEL};
 use std::str::FromStr;
 
@@ -9,6 +11,8 @@ use std::str::FromStr;
 pub struct SimWords {
     /// Their ids.
     pub ids: Vec<u8>,
+    /// What hangs on them.
+    pub robot: Option<SimRobot>,
     registers: Vec<(Register, u16)>,
     drop: f64,
     flip: f64,
@@ -17,6 +21,9 @@ pub struct SimWords {
     echo: bool,
     dead: Vec<u8>,
     hot: Vec<u8>,
+    overload: Vec<u8>,
+    jam: Vec<u8>,
+    mishear: f64,
     supply_v: f64,
     seed: u64,
 }
@@ -25,6 +32,7 @@ impl Default for SimWords {
     fn default() -> Self {
         SimWords {
             ids: (1..=18).collect(),
+            robot: None,
             registers: vec![(RETURN_DELAY, RETURN_DELAY.default)],
             drop: 0.0,
             flip: 0.0,
@@ -33,17 +41,31 @@ impl Default for SimWords {
             echo: false,
             dead: Vec::new(),
             hot: Vec::new(),
+            overload: Vec::new(),
+            jam: Vec::new(),
+            mishear: 0.0,
             supply_v: 11.1,
             seed: 1,
         }
     }
 }
 
-const KEYS: &str =
-    "ids, delay, level, baud, drop, flip, late, wrong_id, echo, dead, hot, supply, seed";
+const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, mishear, echo, dead, hot, overload, jam, supply, robot, joints, start, seed";
 
 impl SimWords {
-    /// The bus they describe.
+    /// The bus they describe, with the robot on it.
+    ///
+    /// # Errors
+    /// The robot's model cannot be read, does not fit, or hangs on servos that are not there.
+    pub fn set_up(&self) -> Done<Bus> {
+        let mut bus = self.bus();
+        if let Some(robot) = &self.robot {
+            bus.hang(robot.set_up(&self.ids)?);
+        }
+        Ok(bus)
+    }
+
+    /// The bus they describe, the servos free.
     pub fn bus(&self) -> Bus {
         let mut bus = Bus::new(self.ids.iter().copied());
         for (place, servo) in (0..).zip(&mut bus.servos) {
@@ -57,9 +79,14 @@ impl SimWords {
             faults.flip = self.flip;
             faults.late = self.late;
             faults.wrong_id = self.wrong_id;
+            faults.mishear = self.mishear;
             faults.echo = self.echo;
             servo.faults = faults;
             servo.supply_v = self.supply_v;
+            servo.jammed = self.jam.contains(&id);
+            if self.overload.contains(&id) {
+                servo.overload();
+            }
             if self.hot.contains(&id) {
                 servo.temperature = 85.0;
             }
@@ -84,9 +111,15 @@ impl FromStr for SimWords {
                 "flip" => words.flip = number(key, value, 1.0)?,
                 "late" => words.late = number(key, value, 1.0)?,
                 "wrong_id" => words.wrong_id = number(key, value, 1.0)?,
+                "mishear" => words.mishear = number(key, value, 1.0)?,
                 "echo" => words.echo = true,
                 "dead" => words.dead = ids(value)?,
                 "hot" => words.hot = ids(value)?,
+                "overload" => words.overload = ids(value)?,
+                "jam" => words.jam = ids(value)?,
+                "robot" => words.robot().model = value.into(),
+                "joints" => words.robot().joints = Some(SimRobot::joints(value)?),
+                "start" => words.robot().start = value.parse()?,
                 "supply" => words.supply_v = number(key, value, 20.0)?,
                 "seed" => {
                     words.seed = value
@@ -100,7 +133,18 @@ impl FromStr for SimWords {
                 }
             }
         }
-        Ok(words)
+        match &words.robot {
+            Some(robot) if robot.model.as_os_str().is_empty() => {
+                Err("joints and start are a robot's: name its model, robot=MODEL.toml".to_string())
+            }
+            _ => Ok(words),
+        }
+    }
+}
+
+impl SimWords {
+    fn robot(&mut self) -> &mut SimRobot {
+        self.robot.get_or_insert_default()
     }
 }
 
@@ -160,6 +204,8 @@ mod tests {
             ("ids=254", "253"),
             ("drop=2", "0 to 1"),
             ("delay=255", "254"),
+            ("joints=1+2", "robot=MODEL.toml"),
+            ("robot=a.toml,start=lying", "hanging or upright"),
         ] {
             let error = wrong.parse::<SimWords>().unwrap_err();
             assert!(error.contains(said), "{wrong}: {error}");

@@ -1,6 +1,6 @@
 //! Writing down all that passes a line.
 
-use super::port::Link;
+use super::port::{Link, Voice};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -144,5 +144,9 @@ impl<L: Link> Link for Tap<L> {
 
     fn latency(&self) -> Duration {
         self.inner.latency()
+    }
+
+    fn second_voice(&self) -> Option<Voice> {
+        self.inner.second_voice()
     }
 }

@@ -1,13 +1,13 @@
 //! Servos read one by one, through an adapter.
 
 use super::sample::{Joint, Sample};
-use super::source::Source;
+use super::source::{LetGo, Source, say_twice};
 use crate::error::Result;
 use crate::link::{Failure, Link, Servos};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
-use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request};
 use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use std::time::Duration;
 
@@ -126,6 +126,17 @@ impl<L: Link> Source for Adapter<L> {
         self.servos.torque_off().map_err(|failure| failure.of(0))?;
         self.armed = false;
         Ok(())
+    }
+
+    fn let_go(&mut self) -> Option<LetGo> {
+        let mut packet = [0; 16];
+        let off = Request::Write {
+            address: TORQUE_ENABLE.address,
+            data: &[0],
+        };
+        let length = off.emit(BROADCAST, &mut packet)?;
+        let voice = self.servos.link().second_voice()?;
+        Some(say_twice(voice, packet[..length].to_vec()))
     }
 
     fn danger(&self) -> Option<String> {

@@ -25,7 +25,7 @@ struct Health {
     error: Vec<Option<u8>>,
 }
 
-/// Writes chunks of about a second, each with its own check.
+/// Writes chunks of about half a second, each with its own check.
 pub(super) struct McapWriter {
     writer: ::mcap::Writer<BufWriter<File>>,
     names: Vec<String>,

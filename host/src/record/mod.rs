@@ -17,7 +17,7 @@ pub use adapter::Adapter;
 pub use read::{Recording, read};
 pub use recorder::{Format, Recorder};
 pub use sample::{Joint, Sample};
-pub use source::Source;
+pub use source::{LetGo, Source};
 pub use stream::Stream;
 
 #[cfg(test)]

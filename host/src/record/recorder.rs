@@ -44,9 +44,10 @@ pub(super) trait Writer: Send {
     fn finish(&mut self) -> std::io::Result<()>;
 }
 
-const SYNC_EVERY: Duration = Duration::from_secs(1);
+/// Twice as often as a second, for a sync may itself take its time on a busy disk.
+const SYNC_EVERY: Duration = Duration::from_millis(500);
 
-/// A file that grows by samples and is on the disk every second.
+/// A file that grows by samples and is brought to the disk twice a second.
 pub struct Recorder {
     path: PathBuf,
     file: File,
@@ -90,7 +91,7 @@ impl Recorder {
         })
     }
 
-    /// Adds a sample; once a second all is brought to the disk.
+    /// Adds a sample; twice a second all is brought to the disk.
     ///
     /// # Errors
     /// [`Error::File`] if the system refuses.

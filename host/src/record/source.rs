@@ -2,6 +2,24 @@
 
 use super::sample::Sample;
 use crate::error::Result;
+use crate::link::Voice;
+use std::time::Duration;
+
+/// Switches torque off, whatever else is going on.
+pub type LetGo = Box<dyn FnOnce() + Send>;
+
+/// Says these bytes twice, some time apart: what else was being said may have garbled the first, or have been a goal, which
+/// switches torque on.
+pub(super) fn say_twice(mut voice: Voice, bytes: Vec<u8>) -> LetGo {
+    const APART: Duration = Duration::from_millis(50);
+    Box::new(move || {
+        for _ in 0..2 {
+            // Nobody is left who could be told that it failed.
+            let _ = voice.write_all(&bytes);
+            std::thread::sleep(APART);
+        }
+    })
+}
 
 /// Servos that can be sampled, and moved.
 pub trait Source {
@@ -22,6 +40,10 @@ pub trait Source {
     /// # Errors
     /// The device failed.
     fn disarm(&mut self) -> Result<()>;
+
+    /// What switches torque off from another thread, should the program have to end at once; none where nothing outlives
+    /// it.
+    fn let_go(&mut self) -> Option<LetGo>;
 
     /// Why the robot must be stopped, if it must.
     fn danger(&self) -> Option<String>;

@@ -1,7 +1,7 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
 use super::sample::{Joint, Sample};
-use super::source::Source;
+use super::source::{LetGo, Source, say_twice};
 use crate::error::{Error, Result};
 use crate::link::{Link, Session, condition_words};
 use handstand_shared::message::{Command, Condition, Mode, Report, Roster};
@@ -15,6 +15,8 @@ pub struct Stream<L: Link> {
     count: usize,
     begun: Duration,
     goals: Option<Vec<Position>>,
+    /// Where all stood in the newest report that has them all.
+    stood: Option<Vec<Position>>,
     slow: Vec<Joint>,
     armed: bool,
     condition: Condition,
@@ -47,6 +49,7 @@ impl<L: Link> Stream<L> {
             count: ids.len(),
             begun,
             goals: None,
+            stood: None,
             slow: vec![Joint::default(); ids.len()],
             armed: false,
             condition: Condition::Stream,
@@ -97,6 +100,8 @@ impl<L: Link> Source for Stream<L> {
                     joint.error = Some(slow.error);
                 }
             }
+            let stood = (0..self.count).map(|place| report.position(place).map(Position));
+            self.stood = stood.collect::<Option<_>>().or(self.stood.take());
             let goal = |place: usize| {
                 self.goals
                     .as_ref()
@@ -127,12 +132,20 @@ impl<L: Link> Source for Stream<L> {
         self.session
             .obey(&Command::Arm { token }, "switch torque on")?;
         self.armed = true;
+        // The firmware's first goals: where they stand.
+        self.goals = self.stood.clone();
         Ok(())
     }
 
     fn disarm(&mut self) -> Result<()> {
         self.armed = false;
         self.session.obey(&Command::Disarm, "switch torque off")
+    }
+
+    fn let_go(&mut self) -> Option<LetGo> {
+        let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
+        let off = off.map(|command| self.session.bytes(&command)).concat();
+        Some(say_twice(self.session.link().second_voice()?, off))
     }
 
     fn danger(&self) -> Option<String> {

@@ -2,10 +2,12 @@
 
 mod drive;
 mod input;
+mod live;
 mod plant;
 mod rows;
 mod run;
 mod stepper;
 
+pub use live::{Live, hanging};
 pub use plant::Plant;
 pub use run::{Memory, Start, predict};

@@ -64,10 +64,16 @@ impl Bench {
 
     /// Runs the program here with the words of `line`.
     pub fn run(&self, line: &str) -> Ran {
+        self.run_with(line, &[])
+    }
+
+    /// The same in another environment.
+    pub fn run_with(&self, line: &str, environment: &[(&str, String)]) -> Ran {
         let output = Command::new(env!("CARGO_BIN_EXE_handstand"))
             .args(line.split_whitespace())
             .current_dir(self.folder.path())
             .env("NO_COLOR", "1")
+            .envs(environment.iter().map(|(name, value)| (name, value)))
             .timeout(std::time::Duration::from_secs(120))
             .output()
             .unwrap();

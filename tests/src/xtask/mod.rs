@@ -1,6 +1,8 @@
 //! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
 mod bench_firmware;
+#[cfg(unix)]
+mod bench_record;
 mod firmware;
 mod hidden;
 mod install;
@@ -10,6 +12,8 @@ mod python;
 mod real;
 mod scatter;
 mod test;
+#[cfg(unix)]
+mod virtual_cm5;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -34,6 +38,12 @@ enum Chore {
     Firmware(firmware::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
+    /// Kill recorders, and read what is left of their files
+    #[cfg(unix)]
+    BenchRecord(bench_record::Args),
+    /// Offer the firmware, in simavr or in process, as a serial port
+    #[cfg(unix)]
+    Virtual(virtual_cm5::Args),
     /// Install what the tests need, then run all of them
     Test(test::Args),
 }
@@ -47,6 +57,10 @@ impl Chores {
             Chore::Real(args) => real::run(args),
             Chore::Firmware(args) => firmware::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
+            #[cfg(unix)]
+            Chore::BenchRecord(args) => bench_record::run(args),
+            #[cfg(unix)]
+            Chore::Virtual(args) => virtual_cm5::run(args),
             Chore::Test(args) => test::run(args),
         };
         match well {

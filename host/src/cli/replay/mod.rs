@@ -12,14 +12,17 @@
 //! `--json` prints `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions
 //! recorded), `stopped` (why, or null).
 
+mod motion;
+
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::record::Tally;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{Recorder, Recording, Sample, Source, read};
-use handstand::{Error, Place, Result};
+use handstand::record::{Recorder, Sample, Source, read};
+use handstand::{Error, Result};
+use motion::Motion;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -43,90 +46,6 @@ pub struct Args {
 
 /// Speed on the way to the first pose, rad/s.
 const APPROACH_RAD_S: f64 = 0.5;
-
-/// A motion to follow: times from 0, and a pose for each.
-struct Motion {
-    time_s: Vec<f64>,
-    goals_rad: Vec<Vec<f64>>,
-    measured_rad: Vec<Vec<Option<f64>>>,
-}
-
-impl Motion {
-    fn of(recording: &Recording, args: &Args) -> Result<Motion> {
-        let refused =
-            |what: &str, remedy: &str| Err(Error::data(Place::file(&args.motion), what, remedy));
-        if recording.samples.len() < 2 {
-            return refused(
-                "there are fewer than two samples",
-                "record a motion first: handstand record",
-            );
-        }
-        let commanded = recording
-            .samples
-            .iter()
-            .any(|sample| sample.joints.iter().any(|joint| joint.goal_rad.is_some()));
-        let mut pose = vec![None; recording.ids.len()];
-        let mut motion = Motion {
-            time_s: Vec::new(),
-            goals_rad: Vec::new(),
-            measured_rad: Vec::new(),
-        };
-        for sample in &recording.samples {
-            for (last, joint) in pose.iter_mut().zip(&sample.joints) {
-                // A servo that did not answer for a moment stays where it was.
-                *last = if commanded {
-                    joint.goal_rad
-                } else {
-                    joint.position_rad
-                }
-                .or(*last);
-            }
-            // Until every servo has said something there is no pose.
-            let Some(goals) = pose.iter().copied().collect::<Option<Vec<f64>>>() else {
-                continue;
-            };
-            if motion
-                .time_s
-                .last()
-                .is_some_and(|last| sample.time_s <= *last)
-            {
-                return refused("time does not grow", "the recording is damaged");
-            }
-            motion.time_s.push(sample.time_s);
-            motion.goals_rad.push(goals);
-            motion.measured_rad.push(
-                sample
-                    .joints
-                    .iter()
-                    .map(|joint| joint.position_rad)
-                    .collect(),
-            );
-        }
-        let Some(begin) = motion.time_s.first().copied() else {
-            return refused(
-                "a servo never says where it is, nor has it a goal",
-                "record the servos that are there: --ids",
-            );
-        };
-        motion.time_s.iter_mut().for_each(|time| *time -= begin);
-        Ok(motion)
-    }
-
-    /// Goals at a time, straight between two samples; none after the end.
-    fn at(&self, time_s: f64) -> Option<(usize, Vec<f64>)> {
-        let next = self.time_s.partition_point(|time| *time <= time_s);
-        if next >= self.time_s.len() {
-            return None;
-        }
-        let (a, b) = (next - 1, next);
-        let share = (time_s - self.time_s[a]) / (self.time_s[b] - self.time_s[a]);
-        let between = self.goals_rad[a]
-            .iter()
-            .zip(&self.goals_rad[b])
-            .map(|(a, b)| a + share * (b - a));
-        Some((if share < 0.5 { a } else { b }, between.collect()))
-    }
-}
 
 /// Sums of squares.
 #[derive(Default)]
@@ -157,7 +76,7 @@ struct Run<'a> {
 /// Follows the motion.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let recording = read(&args.motion)?;
-    let motion = Motion::of(&recording, args)?;
+    let motion = Motion::of(&recording, &args.motion)?;
     let mut robot = args.robot.clone();
     robot.ids.0 = recording.ids.clone();
     if let Some(file) = &args.record {
@@ -186,6 +105,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         repeat: Rms::default(),
         talk,
     };
+    run.interrupt.at_once(run.source.let_go());
     run.source.arm()?;
     // Whatever happens, torque goes off before anything is told.
     let outcome = run.follow(&motion);

@@ -1,0 +1,281 @@
+//! `handstand gains deploy MODEL`: gains from a model onto the CM-5. `handstand deploy` is the same.
+//!
+//! Step by step: designs as `handstand gains` does, with its options; writes the table (`--rust`, `--c`) and the whole plan
+//! (`--header`) as source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash`
+//! builds the firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
+//! fingerprint; and runs the law the CM-5 has, on the table it has, over random states beside the host's wide integers:
+//! not a bit may differ.
+//!
+//! The plan is more than the table: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
+//! where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen. States are
+//! in the firmware's steps, so `--state-step` has no place here.
+//!
+//! ```console
+//! $ handstand gains deploy handstand.toml --q 100 --r 1 --port /dev/ttyUSB0
+//! $ handstand gains deploy handstand.toml --flash --port /dev/ttyUSB0
+//! ```
+//!
+//! Torque stays off. `--json` prints `steps`, `way` (`upload`, `flash`, null), `fingerprint`, `bytes`, `uploaded`,
+//! `states_replayed`.
+
+mod build;
+mod plan;
+mod upload;
+
+use super::flash::{Loader, write};
+use super::port::Port;
+use super::talk::Talk;
+use super::{Outcome, gains};
+use handstand::link::Session;
+use handstand::link::boot_loader::Image;
+use handstand::output::write_new;
+use handstand::synth::export::Provenance;
+use handstand::synth::{Design, FixedLaw};
+use handstand::{Error, Model, Result};
+use handstand_shared::gains::GainTable;
+use handstand_shared::law::control;
+use handstand_shared::plan::Plan;
+use plan::Rig;
+use rand::{Rng as _, SeedableRng as _};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Bring gains onto the CM-5.
+#[derive(Debug, clap::Args)]
+#[group(id = "deploy")]
+pub struct Args {
+    #[command(flatten)]
+    gains: gains::Args,
+    #[command(flatten)]
+    rig: Rig,
+    #[command(flatten)]
+    port: Port,
+    /// Compile the plan into the firmware and write that through the boot loader, instead of uploading it
+    #[arg(long)]
+    flash: bool,
+    #[command(flatten)]
+    loader: Loader,
+    /// Handstand's repository, for --flash
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    firmware: PathBuf,
+    /// Write the plan as a Rust file
+    #[arg(long, value_name = "FILE.rs")]
+    header: Option<PathBuf>,
+    /// Random states to compare the laws over
+    #[arg(long, default_value_t = 1_000_000)]
+    states: u64,
+    /// Seed of these states
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Send nothing to the CM-5
+    #[arg(long)]
+    dry_run: bool,
+}
+
+/// Gains for a model, or what is done with them.
+#[derive(Debug, clap::Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Gains {
+    #[command(subcommand)]
+    then: Option<Then>,
+    #[command(flatten)]
+    gains: Option<gains::Args>,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Then {
+    /// Bring them onto the CM-5, and read them back
+    Deploy(Box<Args>),
+}
+
+/// Designs; deploys if told to.
+pub fn gains(args: &Gains, talk: &Talk) -> Result<Outcome> {
+    match (&args.then, &args.gains) {
+        (Some(Then::Deploy(args)), _) => run(args, talk),
+        (None, Some(args)) => gains::run(args, talk),
+        (None, None) => Err(Error::usage(
+            "no model is given",
+            "name a model file: handstand gains MODEL",
+        )),
+    }
+}
+
+/// States and inputs of the firmware's law: angles and speeds of three joints, two of them driven.
+const STATES: usize = 6;
+const INPUTS: usize = 2;
+
+/// What was done so far.
+struct Steps<'a> {
+    done: Vec<String>,
+    talk: &'a Talk,
+}
+
+impl Steps<'_> {
+    fn say(&mut self, step: String) {
+        self.talk.say(&format!("{}. {step}", self.done.len() + 1));
+        self.done.push(step);
+    }
+}
+
+/// The design in the firmware's steps.
+fn designed(args: &Args, talk: &Talk) -> Result<(gains::Args, Design, Provenance)> {
+    let given = args.gains.in_steps(plan::state_steps(), None)?;
+    let (design, made) = gains::designed(&given, talk)?;
+    let finer = design
+        .fixed
+        .as_ref()
+        .and_then(|fixed| args.rig.finer(&fixed.law));
+    let Some(finer) = finer else {
+        return Ok((given, design, made));
+    };
+    let given = args.gains.in_steps(plan::state_steps(), Some(finer))?;
+    let (design, made) = gains::designed(&given, talk)?;
+    Ok((given, design, made))
+}
+
+/// Designs, brings over, reads back, replays.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let mut steps = Steps {
+        done: Vec::new(),
+        talk,
+    };
+    let (given, mut design, made) = designed(args, talk)?;
+    plan::tell_from_upright(&mut design, &Model::load(given.model())?)?;
+    let fixed = design.fixed.as_ref().ok_or_else(|| {
+        Error::usage(
+            "gains for continuous time have no table",
+            "leave --continuous out",
+        )
+    })?;
+    let plan = args.rig.plan(&design, &fixed.law)?;
+    let fingerprint = plan.table.fingerprint();
+    let mut bytes = Vec::new();
+    plan.bytes(|byte| bytes.push(byte));
+    steps.say(format!(
+        "designed: fingerprint {fingerprint:08X}, a plan of {} bytes",
+        bytes.len()
+    ));
+    gains::write(&given, &design, &made, talk)?;
+    if let Some(file) = &args.header {
+        write_new(file, &build::header(&bytes, fingerprint), given.force())?;
+        steps.say(format!("wrote {}", file.display()));
+    }
+    let back = match args.flash {
+        true => flash(args, &bytes, fingerprint, &mut steps)?,
+        false => upload(args, &bytes, fingerprint, &mut steps)?,
+    };
+    let back = Plan::from_bytes(&back).ok_or_else(|| {
+        Error::device(
+            "what came back is no plan",
+            "flash the firmware that belongs to this program",
+        )
+    })?;
+    replay(&back.table, &fixed.law, args, talk)?;
+    steps.say(format!(
+        "replayed: its law on its table equals the host's bit for bit over {} states",
+        args.states
+    ));
+    let way = match (args.dry_run, args.flash) {
+        (true, _) => None,
+        (false, true) => Some("flash"),
+        (false, false) => Some("upload"),
+    };
+    if talk.json {
+        return talk
+            .data(&json!({
+                "steps": steps.done,
+                "way": way,
+                "fingerprint": format!("{fingerprint:08X}"),
+                "bytes": bytes.len(),
+                "uploaded": way.is_some(),
+                "states_replayed": args.states,
+            }))
+            .map(|()| Outcome::Done);
+    }
+    talk.print(&format!(
+        "fingerprint {fingerprint:08X}, {} bytes",
+        bytes.len()
+    ))?;
+    talk.say(match way {
+        None => "nothing was sent",
+        Some(_) => "the CM-5 has these gains; torque is off",
+    });
+    Ok(Outcome::Done)
+}
+
+fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Result<Vec<u8>> {
+    if args.dry_run {
+        return Ok(bytes.to_vec());
+    }
+    let mut session = Session::open(args.port.open()?)?;
+    upload::upload(&mut session, bytes, steps.talk)?;
+    steps.say("uploaded: the CM-5 keeps it in EEPROM".to_string());
+    verified(&mut session, bytes, fingerprint, steps)
+}
+
+fn flash(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Result<Vec<u8>> {
+    let folder = tempfile::tempdir()
+        .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
+    let file = folder.path().join("plan.rs");
+    write_new(&file, &build::header(bytes, fingerprint), false)?;
+    let bin = build::build(&args.firmware, &file)?;
+    let image = Image::load(&bin)?;
+    steps.say(format!(
+        "built: {} with the plan compiled in, {} bytes",
+        bin.display(),
+        image.bytes().len()
+    ));
+    if args.dry_run {
+        return Ok(bytes.to_vec());
+    }
+    write(&image, &args.port, &args.loader, true, steps.talk)?;
+    steps.say("flashed: size and checksum are those of the file".to_string());
+    // It starts within its first second.
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let mut session = Session::open(args.port.open()?)?;
+    verified(&mut session, bytes, fingerprint, steps)
+}
+
+fn verified(
+    session: &mut Session<super::port::AnyLink>,
+    bytes: &[u8],
+    fingerprint: u32,
+    steps: &mut Steps,
+) -> Result<Vec<u8>> {
+    let back = upload::verify(session, bytes, fingerprint)?;
+    steps.say(format!(
+        "read back: {} bytes and the fingerprint are the same",
+        back.len()
+    ));
+    Ok(back)
+}
+
+/// The law as the firmware computes it, beside the host's.
+fn replay(
+    table: &GainTable<INPUTS, STATES>,
+    law: &FixedLaw,
+    args: &Args,
+    talk: &Talk,
+) -> Result<()> {
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(args.seed);
+    let bar = talk.bar();
+    bar.set_length(args.states);
+    for count in 0..args.states {
+        let x: [i16; STATES] = random.random();
+        let wide = law.raw(&x.map(i64::from));
+        if control(table, &x).map(i64::from)[..] != wide[..] {
+            return Err(Error::device(
+                format!(
+                    "the laws differ at the states {x:?}: {:?}, the host's {wide:?}",
+                    control(table, &x)
+                ),
+                "this is a bug; please report it with the model",
+            ));
+        }
+        if count % 4096 == 0 {
+            bar.set_position(count);
+        }
+    }
+    bar.finish_and_clear();
+    Ok(())
+}

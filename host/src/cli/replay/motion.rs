@@ -1,0 +1,89 @@
+//! The motion that a recording holds.
+
+use handstand::record::Recording;
+use handstand::{Error, Place, Result};
+use std::path::Path;
+
+/// A motion to follow: times from 0, and a pose for each.
+pub struct Motion {
+    pub time_s: Vec<f64>,
+    pub goals_rad: Vec<Vec<f64>>,
+    pub measured_rad: Vec<Vec<Option<f64>>>,
+}
+
+impl Motion {
+    /// Of a recording; `file` names it in errors.
+    pub fn of(recording: &Recording, file: &Path) -> Result<Motion> {
+        let refused = |what: &str, remedy: &str| Err(Error::data(Place::file(file), what, remedy));
+        if recording.samples.len() < 2 {
+            return refused(
+                "there are fewer than two samples",
+                "record a motion first: handstand record",
+            );
+        }
+        let commanded = recording
+            .samples
+            .iter()
+            .any(|sample| sample.joints.iter().any(|joint| joint.goal_rad.is_some()));
+        let mut pose = vec![None; recording.ids.len()];
+        let mut motion = Motion {
+            time_s: Vec::new(),
+            goals_rad: Vec::new(),
+            measured_rad: Vec::new(),
+        };
+        for sample in &recording.samples {
+            for (last, joint) in pose.iter_mut().zip(&sample.joints) {
+                // A servo that did not answer for a moment stays where it was.
+                *last = if commanded {
+                    joint.goal_rad
+                } else {
+                    joint.position_rad
+                }
+                .or(*last);
+            }
+            // Until every servo has said something there is no pose.
+            let Some(goals) = pose.iter().copied().collect::<Option<Vec<f64>>>() else {
+                continue;
+            };
+            if motion
+                .time_s
+                .last()
+                .is_some_and(|last| sample.time_s <= *last)
+            {
+                return refused("time does not grow", "the recording is damaged");
+            }
+            motion.time_s.push(sample.time_s);
+            motion.goals_rad.push(goals);
+            motion.measured_rad.push(
+                sample
+                    .joints
+                    .iter()
+                    .map(|joint| joint.position_rad)
+                    .collect(),
+            );
+        }
+        let Some(begin) = motion.time_s.first().copied() else {
+            return refused(
+                "a servo never says where it is, nor has it a goal",
+                "record the servos that are there: --ids",
+            );
+        };
+        motion.time_s.iter_mut().for_each(|time| *time -= begin);
+        Ok(motion)
+    }
+
+    /// Goals at a time, straight between two samples; none after the end.
+    pub fn at(&self, time_s: f64) -> Option<(usize, Vec<f64>)> {
+        let next = self.time_s.partition_point(|time| *time <= time_s);
+        if next >= self.time_s.len() {
+            return None;
+        }
+        let (a, b) = (next - 1, next);
+        let share = (time_s - self.time_s[a]) / (self.time_s[b] - self.time_s[a]);
+        let between = self.goals_rad[a]
+            .iter()
+            .zip(&self.goals_rad[b])
+            .map(|(a, b)| a + share * (b - a));
+        Some((if share < 0.5 { a } else { b }, between.collect()))
+    }
+}

@@ -1,0 +1,68 @@
+//! Each fault that the simulated bus has, and the cause that is named for it.
+
+use super::super::{InProcess, SimWords};
+use super::*;
+
+fn diagnose(words: &str, ids: &[u8]) -> Diagnosis {
+    let bus = words.parse::<SimWords>().unwrap().bus();
+    examine(InProcess::new(bus), ids, |_| ()).unwrap()
+}
+
+/// The likeliest cause named for each fault that can be put into the bus.
+#[test]
+fn every_fault_is_named_first() {
+    for (words, said) in [
+        ("ids=1-4,delay=0,dead=3", "servo 3 is not there"),
+        ("ids=1-4,delay=0,baud=34", "servos answer at 57600 baud"),
+        ("ids=21-24,delay=0", "the ids are others"),
+        (
+            "ids=1-4,delay=0,drop=0.2",
+            "the line is disturbed: answers are lost",
+        ),
+        (
+            "ids=1-4,delay=0,flip=0.2",
+            "bits are wrong on the way from the servos",
+        ),
+        (
+            "ids=1-4,delay=0,mishear=0.2",
+            "bits are wrong on the way to the servos",
+        ),
+        (
+            "ids=1-4,delay=0,late=0.2",
+            "answers come later than the return delay allows",
+        ),
+        (
+            "ids=1-4,delay=0,wrong_id=0.2",
+            "servos answer with others' ids",
+        ),
+        ("ids=1-4+3,delay=0", "two servos have the id 3"),
+        (
+            "ids=1-4,delay=0,overload=2",
+            "servo 2 complains of: overload",
+        ),
+        ("ids=1-4,delay=0,hot=2", "servo 2 complains of: overheat"),
+        ("ids=1-4,delay=0,supply=5", "complains of: voltage"),
+        ("ids=1-4,delay=0,level=0", "has status level 0"),
+        ("ids=1-4,delay=250", "waits 500 us"),
+        ("ids=1-4,dead=1-4", "the servos have no power"),
+        (
+            "ids=1-4,dead=1-4,echo",
+            "the adapter never lets the line go",
+        ),
+    ] {
+        let diagnosis = diagnose(words, &[1, 2, 3, 4]);
+        let first = &diagnosis
+            .causes
+            .first()
+            .unwrap_or_else(|| panic!("{words}: no cause"))
+            .cause;
+        assert!(first.contains(said), "{words}: {:?}", diagnosis.causes);
+    }
+}
+
+#[test]
+fn a_bus_that_is_well_has_no_cause() {
+    let diagnosis = diagnose("ids=1-4,delay=0", &[1, 2, 3, 4]);
+    assert!(diagnosis.causes.is_empty(), "{:?}", diagnosis.causes);
+    assert!(diagnosis.pulses.iter().all(|pulse| pulse.answered == PINGS));
+}

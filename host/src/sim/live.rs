@@ -1,0 +1,149 @@
+//! A model that runs on by itself, its drives told at every step what to do: a robot behind simulated servos.
+
+use super::drive::Told;
+use super::plant::Plant;
+use super::stepper::Stepper;
+use crate::error::{Error, Result};
+use crate::log::{Motion, Source};
+use crate::model::{Angles, Drive, Model};
+use std::path::PathBuf;
+
+/// A model in motion. Its drives are told a duty, whatever they are in the model.
+#[derive(Debug, Clone)]
+pub struct Live {
+    plant: Plant,
+    stepper: Stepper,
+    told: Vec<Told>,
+    nominal_supply_v: Vec<Option<f64>>,
+}
+
+impl Live {
+    /// At rest at these angles, rad in the model's convention.
+    ///
+    /// A position or speed servo becomes its bare motor: who tells the duty is the regulator. A torque drive must have
+    /// become a motor before, for it has no full duty.
+    ///
+    /// # Errors
+    /// Another number of angles, or a torque drive.
+    pub fn new(model: &Model, angle_rad: &[f64]) -> Result<Live> {
+        if angle_rad.len() != model.link_count() {
+            return Err(Error::design(
+                format!(
+                    "{} angles for {} joints",
+                    angle_rad.len(),
+                    model.link_count()
+                ),
+                "give one angle per joint",
+            ));
+        }
+        let mut model = model.clone();
+        for joint in &mut model.joints {
+            match &joint.drive {
+                Drive::Passive | Drive::Duty(_) => {}
+                Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
+                    joint.drive = Drive::Duty(motor.clone());
+                }
+                Drive::Torque => {
+                    return Err(Error::design(
+                        format!(
+                            "`{}` has a joint driven by a torque, not by a servo",
+                            model.name
+                        ),
+                        "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, no_load_speed_rad_s",
+                    ));
+                }
+            }
+        }
+        let plant = Plant::new(&model, &nothing());
+        let angles = plant.decode_rad(angle_rad);
+        let supply = |joint: &crate::model::Joint| joint.drive.motor()?.nominal_supply_v;
+        Ok(Live {
+            stepper: Stepper::new(&plant, &angles, &vec![0.0; angles.len()]),
+            told: vec![
+                Told {
+                    input: 0.0,
+                    supply_ratio: 1.0,
+                    energised: false,
+                    shuffled_rad_s: 0.0,
+                };
+                angles.len()
+            ],
+            nominal_supply_v: model.joints.iter().map(supply).collect(),
+            plant,
+        })
+    }
+
+    /// Tells a drive its duty, -1 to 1, at this supply, V; none: it is not energised.
+    pub fn tell(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
+        let told = &mut self.told[joint];
+        told.energised = duty.is_some();
+        told.input = duty.unwrap_or(0.0);
+        if let Some(nominal) = self.nominal_supply_v[joint] {
+            told.supply_ratio = supply_v / nominal;
+        }
+    }
+
+    /// Goes on for `span_s` under constant duties.
+    pub fn advance(&mut self, span_s: f64) {
+        let steps = (span_s / self.plant.step_s - 1e-6).ceil().max(1.0);
+        for _ in 0..steps as usize {
+            self.stepper
+                .advance(&self.plant, &self.told, span_s / steps);
+        }
+    }
+
+    /// How late the drive of a joint obeys, s.
+    pub fn delay_s(&self, joint: usize) -> f64 {
+        self.plant.joints[joint].delay_s
+    }
+
+    /// Angle of a joint in the model's convention, rad.
+    pub fn angle_rad(&self, joint: usize) -> f64 {
+        self.plant.encoded_rad(joint, &self.stepper.angle)
+    }
+
+    /// How fast that changes, rad/s.
+    pub fn speed_rad_s(&self, joint: usize) -> f64 {
+        self.plant.encoded_rad_s(joint, &self.stepper.speed)
+    }
+
+    /// Angle and speed of the shaft in a joint: from the link before it, whatever the model's convention, rad and rad/s.
+    pub fn shaft(&self, joint: usize) -> (f64, f64) {
+        match self.plant.is_absolute() && joint > 0 {
+            true => (self.stepper.angle[joint], self.stepper.speed[joint]),
+            false => (self.angle_rad(joint), self.speed_rad_s(joint)),
+        }
+    }
+}
+
+/// All links straight down at rest, rad in the model's convention.
+pub fn hanging(model: &Model) -> Vec<f64> {
+    let down = -model.angle_zero.from_hanging_rad();
+    let later = match model.angles {
+        Angles::Absolute => down,
+        Angles::Relative => 0.0,
+    };
+    (0..model.link_count())
+        .map(|joint| if joint == 0 { down } else { later })
+        .collect()
+}
+
+/// No log stands behind it: no payload, not turned.
+fn nothing() -> Motion {
+    Motion {
+        name: String::new(),
+        source: Source {
+            path: PathBuf::new(),
+            sha256: String::new(),
+            lines: (0, 0),
+        },
+        time_s: Vec::new(),
+        position_rad: Vec::new(),
+        velocity_rad_s: Vec::new(),
+        input: Vec::new(),
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+    }
+}
