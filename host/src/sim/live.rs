@@ -2,6 +2,7 @@
 
 use super::drive::Told;
 use super::plant::Plant;
+use super::rows::Many;
 use super::stepper::Stepper;
 use crate::error::{Error, Result};
 use crate::log::{Motion, Source};
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone)]
 pub struct Live {
     plant: Plant,
-    stepper: Stepper,
+    stepper: Stepper<Many>,
     told: Vec<Told>,
     nominal_supply_v: Vec<Option<f64>>,
 }

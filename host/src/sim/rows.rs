@@ -15,7 +15,7 @@ pub(super) trait Rows {
 }
 
 /// A single joint.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct One;
 
 impl Rows for One {
@@ -27,7 +27,7 @@ impl Rows for One {
 }
 
 /// Any number of joints.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Many;
 
 impl Rows for Many {

@@ -23,7 +23,7 @@ pub(super) enum Contact {
 }
 
 /// State and scratch of a simulation; `R` says how its rows of one number per joint are kept.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Stepper<R: Rows> {
     pub angle: R::Of<f64>,
     pub speed: R::Of<f64>,
