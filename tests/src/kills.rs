@@ -7,7 +7,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What became of the files.
 #[derive(Debug, Clone, Default)]
@@ -127,14 +127,7 @@ fn one(
     let line = ["--port", port, "--baud", "1000000", "--ids", "1", "--quiet"].map(str::to_string);
     let words = [&words[..], &line].concat();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let recorder = spawn(program, &words, Stdio::null())?;
-    let begin = Instant::now();
-    while !file.exists() {
-        std::thread::sleep(Duration::from_millis(2));
-        if begin.elapsed() > Duration::from_secs(30) {
-            return Err(format!("{}: the recording does not begin", file.display()));
-        }
-    }
+    let recorder = started(program, &words, &file)?;
     std::thread::sleep(Duration::from_secs_f64(alive_s));
     // SIGKILL: it cannot be caught.
     drop(recorder);
@@ -146,6 +139,24 @@ fn one(
             lost_s: lost_s(&tapped, recording.samples.len()),
             torn: recording.torn,
         }))
+}
+
+/// A recorder that has begun. On a busy machine a servo may not answer in time, and it gives up before: then another one.
+fn started(program: &Path, words: &[&str], file: &Path) -> Result<Owned, String> {
+    const TRIES: usize = 10;
+    for _ in 0..TRIES {
+        let mut recorder = spawn(program, words, Stdio::null())?;
+        while matches!(recorder.0.try_wait(), Ok(None)) {
+            if file.exists() {
+                return Ok(recorder);
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        // What it tapped so far would be in its successor's way.
+        let tap = file.with_file_name("tap.txt");
+        std::fs::remove_file(tap).map_err(|error| error.to_string())?;
+    }
+    Err(format!("{TRIES} recordings did not begin"))
 }
 
 /// From the last sample that was kept to the last byte that passed: the tap writes each at once.
