@@ -159,18 +159,18 @@ fn started(program: &Path, words: &[&str], file: &Path) -> Result<Owned, String>
     Err(format!("{TRIES} recordings did not begin"))
 }
 
-/// From the last sample that was kept to the last byte that passed: the tap writes each at once.
+/// Time that the samples span which were taken and are not in the file: the tap writes down each exchange at once.
 fn lost_s(tapped: &str, kept: usize) -> f64 {
-    let time = |line: &str| line.split(' ').next()?.parse::<f64>().ok();
-    // READ of 8 bytes from 36: a round of one servo. A repeated one counts twice, and the loss comes out larger.
-    let rounds: Vec<f64> = tapped
-        .lines()
-        .filter(|line| line.contains("> ff ff 01 04 02 24 08"))
-        .filter_map(time)
-        .collect();
-    let last = tapped.lines().rev().find_map(time);
-    match (last, rounds.get(kept.saturating_sub(1))) {
-        (Some(last), Some(kept)) => last - kept,
+    // READ of 8 bytes from 36, a round of one servo, which counts once it is answered.
+    const ROUND: &str = "> ff ff 01 04 02 24 08";
+    let lines: Vec<&str> = tapped.lines().collect();
+    let answered = lines
+        .windows(2)
+        .filter(|pair| pair[0].contains(ROUND) && pair[1].contains(" < "));
+    let time = |pair: &[&str]| pair[0].split(' ').next()?.parse::<f64>().ok();
+    let rounds: Vec<f64> = answered.filter_map(time).collect();
+    match (rounds.get(kept), rounds.last()) {
+        (Some(first), Some(last)) => last - first,
         _ => 0.0,
     }
 }
