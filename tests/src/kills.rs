@@ -7,7 +7,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What became of the files.
 #[derive(Debug, Clone, Default)]
@@ -127,14 +127,7 @@ fn one(
     let line = ["--port", port, "--baud", "1000000", "--ids", "1", "--quiet"].map(str::to_string);
     let words = [&words[..], &line].concat();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let recorder = spawn(program, &words, Stdio::null())?;
-    let begin = Instant::now();
-    while !file.exists() {
-        std::thread::sleep(Duration::from_millis(2));
-        if begin.elapsed() > Duration::from_secs(30) {
-            return Err(format!("{}: the recording does not begin", file.display()));
-        }
-    }
+    let recorder = started(program, &words, &file)?;
     std::thread::sleep(Duration::from_secs_f64(alive_s));
     // SIGKILL: it cannot be caught.
     drop(recorder);
@@ -148,18 +141,36 @@ fn one(
         }))
 }
 
-/// From the last sample that was kept to the last byte that passed: the tap writes each at once.
+/// A recorder that has begun. On a busy machine a servo may not answer in time, and it gives up before: then another one.
+fn started(program: &Path, words: &[&str], file: &Path) -> Result<Owned, String> {
+    const TRIES: usize = 10;
+    for _ in 0..TRIES {
+        let mut recorder = spawn(program, words, Stdio::null())?;
+        while matches!(recorder.0.try_wait(), Ok(None)) {
+            if file.exists() {
+                return Ok(recorder);
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        // What it tapped so far would be in its successor's way.
+        let tap = file.with_file_name("tap.txt");
+        std::fs::remove_file(tap).map_err(|error| error.to_string())?;
+    }
+    Err(format!("{TRIES} recordings did not begin"))
+}
+
+/// Time that the samples span which were taken and are not in the file: the tap writes down each exchange at once.
 fn lost_s(tapped: &str, kept: usize) -> f64 {
-    let time = |line: &str| line.split(' ').next()?.parse::<f64>().ok();
-    // READ of 8 bytes from 36: a round of one servo. A repeated one counts twice, and the loss comes out larger.
-    let rounds: Vec<f64> = tapped
-        .lines()
-        .filter(|line| line.contains("> ff ff 01 04 02 24 08"))
-        .filter_map(time)
-        .collect();
-    let last = tapped.lines().rev().find_map(time);
-    match (last, rounds.get(kept.saturating_sub(1))) {
-        (Some(last), Some(kept)) => last - kept,
+    // READ of 8 bytes from 36, a round of one servo, which counts once it is answered.
+    const ROUND: &str = "> ff ff 01 04 02 24 08";
+    let lines: Vec<&str> = tapped.lines().collect();
+    let answered = lines
+        .windows(2)
+        .filter(|pair| pair[0].contains(ROUND) && pair[1].contains(" < "));
+    let time = |pair: &[&str]| pair[0].split(' ').next()?.parse::<f64>().ok();
+    let rounds: Vec<f64> = answered.filter_map(time).collect();
+    match (rounds.get(kept), rounds.last()) {
+        (Some(first), Some(last)) => last - first,
         _ => 0.0,
     }
 }

@@ -29,4 +29,6 @@ pub const BIT_NS: u64 = 1000;
 pub const BYTE_NS: u64 = 10 * BIT_NS;
 
 #[cfg(test)]
+mod robot_tests;
+#[cfg(test)]
 mod tests;

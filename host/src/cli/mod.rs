@@ -123,7 +123,7 @@ pub enum Command {
     Replay(replay::Args),
     /// Measure where the time between PC and servos goes
     Latency(latency::Args),
-    /// Bring gains for a model onto the CM-5, and read them back: `gains deploy`
+    /// Bring gains for a model onto the CM-5, and read them back
     Deploy(Box<deploy::Args>),
     /// Write a program into the CM-5
     Flash(flash::Args),

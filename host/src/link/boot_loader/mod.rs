@@ -4,13 +4,14 @@
 //! 150 ms of silence end them -> `Success` or `Error`, `Size:`, `Checksum:XX-YY`; then `verify`, `app` (start the
 //! application at power-on), `go`. 57600 8N1. It lies at 0x1E000, so an image has at most 122,880 bytes.
 
+mod image;
+
+pub use image::{Image, LARGEST};
+
 use super::port::Link;
-use crate::error::{Error, Place, Result};
-use std::path::Path;
+use crate::error::{Error, Result};
 use std::time::Duration;
 
-/// Where the boot loader begins: the largest image, bytes.
-pub const LARGEST: usize = 122_880;
 /// Speed of the boot loader, baud.
 pub const BAUD: u32 = 57_600;
 
@@ -19,60 +20,6 @@ const PROMPT: &str = "- ";
 const ANSWER: Duration = Duration::from_secs(2);
 /// Writing flash: 4.5 ms per page of 256 bytes, and as much again for a slow clock.
 const PAGE: Duration = Duration::from_millis(9);
-
-/// A program as the boot loader takes it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Image(Vec<u8>);
-
-impl Image {
-    /// Reads a raw binary.
-    ///
-    /// # Errors
-    /// A file that cannot be read; Intel HEX or ELF, which the boot loader would write into flash as they are; too large.
-    pub fn load(path: &Path) -> Result<Image> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
-        Image::check(bytes).map_err(|(what, remedy)| Error::data(Place::file(path), what, remedy))
-    }
-
-    fn check(bytes: Vec<u8>) -> Result<Image, (String, &'static str)> {
-        let bin = "give the raw binary, the `.bin` that `cargo xtask firmware` writes";
-        let is_hex = bytes.first() == Some(&b':')
-            && bytes
-                .iter()
-                .take(80)
-                .all(|b| b.is_ascii_hexdigit() || b":\r\n".contains(b));
-        // The first word of an AVR program is a jump: `jmp` or `rjmp`.
-        let is_jump = matches!(bytes[..], [0x0c, 0x94, _, _, ..] | [_, 0xc0..=0xcf, ..]);
-        match bytes.len() {
-            0 => Err(("the file is empty".to_string(), bin)),
-            _ if bytes.starts_with(b"\x7fELF") => {
-                Err(("this is an ELF, not a raw binary".to_string(), bin))
-            }
-            _ if is_hex => Err(("this is Intel HEX, not a raw binary".to_string(), bin)),
-            length if length > LARGEST => Err((
-                format!("{length} bytes are too many: the boot loader begins at {LARGEST}"),
-                "make the program smaller",
-            )),
-            _ if !is_jump => Err((
-                "this is no program for the AVR: it does not begin with a jump".to_string(),
-                bin,
-            )),
-            _ => Ok(Image(bytes)),
-        }
-    }
-
-    /// Its bytes.
-    pub fn bytes(&self) -> &[u8] {
-        &self.0
-    }
-
-    /// Sum of all bytes modulo 256.
-    pub fn checksum(&self) -> u8 {
-        self.0
-            .iter()
-            .fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
-    }
-}
 
 /// A boot loader that waits for commands.
 pub struct BootLoader<L> {
@@ -259,32 +206,8 @@ fn judge(answer: &str, image: &Image) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::image::program;
     use super::*;
-
-    fn program(length: usize) -> Vec<u8> {
-        let mut bytes = vec![0x0c, 0x94, 0x46, 0x00];
-        bytes.resize(length, 0x5a);
-        bytes
-    }
-
-    #[test]
-    fn only_raw_programs_that_fit_are_taken() {
-        assert!(Image::check(program(1000)).is_ok());
-        assert!(Image::check(program(LARGEST)).is_ok());
-        for (bytes, said) in [
-            (Vec::new(), "empty"),
-            (program(LARGEST + 1), "too many"),
-            (b"\x7fELF\x01\x01".to_vec(), "ELF"),
-            (
-                b":100000000C9446000C945E000C945E000C945E00E4\r\n".to_vec(),
-                "Intel HEX",
-            ),
-            (vec![0; 100], "jump"),
-        ] {
-            let (what, _) = Image::check(bytes).unwrap_err();
-            assert!(what.contains(said), "{what}");
-        }
-    }
 
     #[test]
     fn its_word_is_taken_only_if_size_and_sum_agree() {

@@ -1,0 +1,92 @@
+//! A program as the boot loader takes it.
+
+use crate::error::{Error, Place, Result};
+use std::path::Path;
+
+/// Where the boot loader begins: the largest image, bytes.
+pub const LARGEST: usize = 122_880;
+/// A program as the boot loader takes it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image(Vec<u8>);
+
+impl Image {
+    /// Reads a raw binary.
+    ///
+    /// # Errors
+    /// A file that cannot be read; Intel HEX or ELF, which the boot loader would write into flash as they are; too large.
+    pub fn load(path: &Path) -> Result<Image> {
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
+        Image::check(bytes).map_err(|(what, remedy)| Error::data(Place::file(path), what, remedy))
+    }
+
+    pub(super) fn check(bytes: Vec<u8>) -> Result<Image, (String, &'static str)> {
+        let bin = "give the raw binary, the `.bin` that `cargo xtask firmware` writes";
+        let is_hex = bytes.first() == Some(&b':')
+            && bytes
+                .iter()
+                .take(80)
+                .all(|b| b.is_ascii_hexdigit() || b":\r\n".contains(b));
+        // The first word of an AVR program is a jump: `jmp` or `rjmp`.
+        let is_jump = matches!(bytes[..], [0x0c, 0x94, _, _, ..] | [_, 0xc0..=0xcf, ..]);
+        match bytes.len() {
+            0 => Err(("the file is empty".to_string(), bin)),
+            _ if bytes.starts_with(b"\x7fELF") => {
+                Err(("this is an ELF, not a raw binary".to_string(), bin))
+            }
+            _ if is_hex => Err(("this is Intel HEX, not a raw binary".to_string(), bin)),
+            length if length > LARGEST => Err((
+                format!("{length} bytes are too many: the boot loader begins at {LARGEST}"),
+                "make the program smaller",
+            )),
+            _ if !is_jump => Err((
+                "this is no program for the AVR: it does not begin with a jump".to_string(),
+                bin,
+            )),
+            _ => Ok(Image(bytes)),
+        }
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// Sum of all bytes modulo 256.
+    pub fn checksum(&self) -> u8 {
+        self.0
+            .iter()
+            .fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
+    }
+}
+
+/// A program of this many bytes, which begins with a jump.
+#[cfg(test)]
+pub(super) fn program(length: usize) -> Vec<u8> {
+    let mut bytes = vec![0x0c, 0x94, 0x46, 0x00];
+    bytes.resize(length, 0x5a);
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_raw_programs_that_fit_are_taken() {
+        assert!(Image::check(program(1000)).is_ok());
+        assert!(Image::check(program(LARGEST)).is_ok());
+        for (bytes, said) in [
+            (Vec::new(), "empty"),
+            (program(LARGEST + 1), "too many"),
+            (b"\x7fELF\x01\x01".to_vec(), "ELF"),
+            (
+                b":100000000C9446000C945E000C945E000C945E00E4\r\n".to_vec(),
+                "Intel HEX",
+            ),
+            (vec![0; 100], "jump"),
+        ] {
+            let (what, _) = Image::check(bytes).unwrap_err();
+            assert!(what.contains(said), "{what}");
+        }
+    }
+}
