@@ -2,13 +2,13 @@
 
 use crate::balance::{Balance, Stop};
 use crate::board::{Board, since_us};
-use crate::bus;
 use crate::design::{FADE_TICKS, LOW_ROUNDS, LOW_SUPPLY, SILENT_TICKS, TICK_US};
 use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::{Buttons, button, leds};
 use crate::servos::Servos;
 use crate::slots::{Stored, Writer};
+use crate::{boots, bus};
 use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::{
@@ -74,6 +74,9 @@ pub struct App {
     obeyed: u8,
     /// What arming must bring; none before a greeting and after every fault.
     token: Option<u16>,
+    /// Number of this start, and of the greetings in it from a number of chance on: what tokens are made of.
+    boots: u8,
+    greetings: Option<u8>,
     ticks: u32,
     /// Ticks since the last sound frame.
     silent: u8,
@@ -107,6 +110,8 @@ impl App {
             attitude: Attitude::default(),
             obeyed: 0,
             token: None,
+            boots: boots::count(board) as u8,
+            greetings: None,
             ticks: 0,
             silent: 0,
             low: (0, 0),

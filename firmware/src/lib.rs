@@ -1,7 +1,7 @@
 //! The CM-5's firmware: a bridge between the PC line and the servo bus, and a controller of its own.
 //!
 //! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC. Read downward only:
-//! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `slots`, `panel`, `balance` -> `app`.
+//! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `slots`, `boots`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
 #![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt))]
@@ -9,6 +9,7 @@
 pub mod app;
 pub mod balance;
 pub mod board;
+pub mod boots;
 pub mod bus;
 pub mod design;
 pub mod filter;

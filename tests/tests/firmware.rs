@@ -199,6 +199,53 @@ fn any_button_stops_an_armed_robot() {
     assert!(!rig.bus().any_torque());
 }
 
+/// What the last report of a tick says.
+fn condition(bench: &mut impl Bench) -> Option<Condition> {
+    bench.forget();
+    bench.run_ms(30.0);
+    let last = bench.reports().into_iter().rev();
+    last.filter_map(|(_, report)| match report {
+        Report::Stream(report) => Some(report.condition),
+        _ => None,
+    })
+    .next()
+}
+
+#[test]
+fn start_chooses_balancing_and_moves_nothing() {
+    let mut rig = PcRig::new();
+    rig.board.buttons = handstand_firmware::panel::button::START;
+    rig.run_ms(20.0);
+    assert_eq!(rig.app.condition(), Condition::Bridge, "it may be bouncing");
+    assert_eq!(condition(&mut rig), Some(Condition::Balance));
+    rig.board.buttons = handstand_firmware::panel::button::UP;
+    rig.run_ms(50.0);
+    assert_eq!(rig.app.condition(), Condition::Balance);
+    assert!(!rig.bus().any_torque());
+}
+
+#[test]
+fn no_start_and_no_greeting_repeats_a_token() {
+    let mut eeprom = vec![0xff; 4096];
+    let mut tokens = std::collections::BTreeSet::new();
+    for start in 0..200 {
+        // Now and then the power fails while the cell of this start is written.
+        if start % 20 == 7 {
+            eeprom[0x400 + start % 64] = 0x5a;
+        }
+        let mut rig = PcRig::boot(eeprom, ResetCause(ResetCause::POWER));
+        rig.run_ms(20.0);
+        for _ in 0..3 {
+            rig.type_bytes(&[0]);
+            let token = greet(&mut rig).token;
+            assert!(tokens.insert(token), "{token:#06x} again, start {start}");
+        }
+        eeprom = rig.board.eeprom;
+    }
+    let untouched = |range: std::ops::Range<usize>| eeprom[range].iter().all(|byte| *byte == 0xff);
+    assert!(untouched(0..0x400) && untouched(0x440..4096));
+}
+
 /// Existing tools see a plain adapter: their packets go through, and so do the answers.
 fn is_a_plain_adapter(bench: &mut impl Bench) {
     bench.run_ms(20.0);
@@ -326,6 +373,7 @@ mod elf {
             "the receiver holds two bytes, {}",
             rig.seen.most_waiting
         );
+        assert_eq!((rig.core.lost(0), rig.core.lost(1)), (0, 0));
         assert!(!rig.seen.charged, "the charger must stay off");
     }
 
@@ -345,6 +393,60 @@ mod elf {
     fn the_elf_lets_the_robot_down() {
         let Some(built) = built() else { return };
         lets_down(&mut Rig::new(&built.elf).unwrap(), 5);
+    }
+
+    #[test]
+    fn the_elf_reads_the_gyro() {
+        let Some(built) = built() else { return };
+        let mut rig = Rig::new(&built.elf).unwrap();
+        Bench::run_ms(&mut rig, 10.0);
+        rig.type_bytes(&[0]);
+        Bench::say(&mut rig, &Command::Hello { version: VERSION });
+        Bench::run_ms(&mut rig, 20.0);
+        for millivolts in [0, 1250, 2500, 3700, 5000] {
+            rig.core.adc(3, millivolts);
+            Bench::run_ms(&mut rig, 5.0);
+            Bench::forget(&mut rig);
+            rig.type_bytes(&[0]);
+            Bench::say(&mut rig, &Command::Ask(Subject::Telemetry));
+            Bench::run_ms(&mut rig, 30.0);
+            let told = rig
+                .reports()
+                .into_iter()
+                .find_map(|(_, report)| match report {
+                    Report::Telemetry(telemetry) => Some(telemetry.gyro),
+                    _ => None,
+                });
+            let code = (millivolts * 1023 / 5000) as u16;
+            assert!(
+                told.is_some_and(|told| told.abs_diff(code) <= 1),
+                "{millivolts} mV: {told:?} for {code}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_elf_hears_its_buttons() {
+        let Some(built) = built() else { return };
+        let mut rig = Rig::new(&built.elf).unwrap();
+        Bench::run_ms(&mut rig, 10.0);
+        rig.core.pin('D', 0, false);
+        Bench::run_ms(&mut rig, 50.0);
+        assert_eq!(condition(&mut rig), Some(Condition::Balance), "Start");
+        rig.core.pin('D', 0, true);
+        // Each of the others stops.
+        for pin in 4..8 {
+            arm(&mut rig);
+            assert!(rig.bus.any_torque());
+            rig.core.pin('E', pin, false);
+            for _ in 0..5 {
+                Bench::say(&mut rig, &Command::KeepAlive);
+                Bench::run_ms(&mut rig, 10.0);
+            }
+            assert!(!rig.bus.any_torque(), "PE{pin}");
+            rig.core.pin('E', pin, true);
+            Bench::run_ms(&mut rig, 50.0);
+        }
     }
 
     #[test]

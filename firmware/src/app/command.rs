@@ -88,8 +88,7 @@ impl App {
     #[inline(never)]
     fn greet<B: Board>(&mut self, board: &mut B, version: u8) -> Outcome {
         self.link.greet(&mut self.statistics);
-        // When a host greets is chance, to the microsecond: a good enough token.
-        let token = board.clock() ^ (self.ticks as u16).rotate_left(8);
+        let token = self.new_token(board);
         self.token = (version == VERSION).then_some(token);
         let hello = Hello {
             version: VERSION,
@@ -99,6 +98,15 @@ impl App {
         };
         self.link.send(board, &Report::Hello(hello));
         Outcome::Quiet
+    }
+
+    /// Another one than in the last 255 greetings and the last 255 starts. The first of a start is chance, for when a host
+    /// greets is: should the EEPROM be erased, an old frame still fits with 1 in 256 only.
+    fn new_token<B: Board>(&mut self, board: &B) -> u16 {
+        let before = self.greetings.unwrap_or(board.clock() as u8);
+        let greeting = before.wrapping_add(1);
+        self.greetings = Some(greeting);
+        u16::from_le_bytes([greeting, self.boots])
     }
 
     /// Of the gains in EEPROM; 0 if there are none that can be used.

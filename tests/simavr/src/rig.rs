@@ -50,6 +50,8 @@ pub struct Rig {
     pub core: Core,
     /// The servos.
     pub bus: Bus,
+    /// By how much the servos' clock is ahead of the controller's, ns: it decides when their motor interrupts come.
+    pub bus_ahead_ns: u64,
     /// What was noticed.
     pub seen: Seen,
     port_e: u8,
@@ -81,6 +83,7 @@ impl Rig {
         Ok(Rig {
             core,
             bus: Bus::new(1..=18),
+            bus_ahead_ns: 0,
             seen: Seen::default(),
             port_e: 0,
             turned: 0,
@@ -117,23 +120,29 @@ impl Rig {
 
     /// When the next byte for the controller ends; at most a short step away, for servos answer within 18 us.
     fn next_event(&self) -> u64 {
-        let bus = self.bus.next_ns().map(to_cycle);
+        let bus = self.bus_next();
         let link = self.to_link.front().map(|(end, _)| *end);
         let step = self.core.cycle() + 4000;
         bus.into_iter().chain(link).fold(step, u64::min)
     }
 
+    /// The cycle in which the next byte from the servos ends.
+    fn bus_next(&self) -> Option<u64> {
+        let end_ns = self.bus.next_ns()?.saturating_sub(self.bus_ahead_ns);
+        Some(to_cycle(end_ns))
+    }
+
     fn feed(&mut self) {
         let now = self.core.cycle();
-        while let Some(ns) = self.bus.next_ns()
-            && to_cycle(ns) <= now
+        while let Some(end) = self.bus_next()
+            && end <= now
         {
-            let Some((_, byte)) = self.bus.take(ns) else {
+            let Some((_, byte)) = self.bus.take(to_ns(end) + self.bus_ahead_ns) else {
                 break;
             };
             self.seen.bus_bytes += 1;
             // Only a bus that listens from the start bit on hears.
-            let begin = to_cycle(ns - handstand::bus_sim::BYTE_NS);
+            let begin = end.saturating_sub(to_cycle(handstand::bus_sim::BYTE_NS));
             if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE && self.turned <= begin {
                 self.core.uart_in(0, byte);
             }
@@ -153,7 +162,8 @@ impl Rig {
                 self.bus_free = begin + self.core.byte_cycles(0);
                 self.seen.bus_bytes += 1;
                 if self.port_e & (TRANSMIT | RECEIVE) == TRANSMIT {
-                    self.bus.hear(to_ns(self.bus_free), byte);
+                    let end_ns = to_ns(self.bus_free) + self.bus_ahead_ns;
+                    self.bus.hear(end_ns, byte);
                 } else {
                     self.seen.direction_faults += 1;
                 }

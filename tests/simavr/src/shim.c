@@ -3,7 +3,8 @@
 // Corrected here: simavr lets a byte of 8N1 take 11 bits; cycles_per_byte is set to 10 whenever it changes. Its
 // transmitters have no buffer before the shift register; here they do, as in the data sheet (UDRE rises when a byte
 // moves on to be shifted out, TXC when the last one is out). Its receivers hold 64 bytes and hand out one that has only
-// begun when another was read late; here a byte is there when its stop bit is, and the fourth unread one is lost. Polling a USART never sleeps on the host. The ADC gets its
+// begun when another was read late; here a byte is there when its stop bit is, and the fourth unread one is lost. Its ADC
+// converts once where it is told to go on and on; here it goes on. Polling a USART never sleeps on the host. The ADC gets its
 // voltages.
 
 #include <stdlib.h>
@@ -40,6 +41,8 @@ struct transmitter {
 
 struct rig {
 	avr_t *avr;
+	uint32_t millivolts[8];
+	uint8_t low[8]; // pins held low from outside, of ports A to H
 	struct transmitter transmitter[2];
 	struct receiver receiver[2];
 	avr_uart_t *uart[2];
@@ -121,6 +124,23 @@ static uint8_t on_taken(avr_t *avr, avr_io_addr_t address, void *param) {
 	return avr_core_watch_read(avr, address);
 }
 
+enum { ADC_LOW = 0x24, ADC_HIGH = 0x25, ADC_STATUS = 0x26, ADC_CHANNEL = 0x27, ADC_FREE_RUNNING = 0x80 | 0x20 };
+
+// The low byte of a conversion is read: the voltage on the channel chosen, if the ADC runs freely.
+static uint8_t on_converted(avr_t *avr, avr_io_addr_t address, void *param) {
+	struct rig *rig = param;
+	if ((avr->data[ADC_STATUS] & ADC_FREE_RUNNING) == ADC_FREE_RUNNING) {
+		uint32_t code = rig->millivolts[avr->data[ADC_CHANNEL] & 7] * 1023 / avr->avcc;
+		avr->data[ADC_LOW] = code;
+		avr->data[ADC_HIGH] = code >> 8;
+	}
+	return avr_core_watch_read(avr, address);
+}
+
+static uint8_t on_converted_high(avr_t *avr, avr_io_addr_t address, void *param) {
+	return avr_core_watch_read(avr, address);
+}
+
 static void idle_usarts(struct rig *rig) {
 	for (int i = 0; i < 2; i++) {
 		rig->receiver[i].waiting = 0;
@@ -191,6 +211,9 @@ struct rig *rig_new(const char *elf) {
 		avr->io[data].r.c = on_taken;
 		avr->io[data].r.param = &rig->receiver[i];
 	}
+	avr->io[AVR_DATA_TO_IO(ADC_LOW)].r.c = on_converted;
+	avr->io[AVR_DATA_TO_IO(ADC_LOW)].r.param = rig;
+	avr->io[AVR_DATA_TO_IO(ADC_HIGH)].r.c = on_converted_high;
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('E'), IOPORT_IRQ_REG_PORT), on_port_e, rig);
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), IOPORT_IRQ_REG_PORT), on_port_b, rig);
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_REG_PORT), on_port_c, rig);
@@ -249,12 +272,17 @@ void rig_uart_in(struct rig *rig, int uart, uint8_t byte) {
 	raise_received(rig->avr, r);
 }
 
+// Held, or simavr would let the pull-up raise it whenever its port is written.
 void rig_pin(struct rig *rig, char port, int pin, int level) {
+	uint8_t *low = &rig->low[(port - 'A') & 7];
+	*low = level ? *low & ~(1 << pin) : *low | 1 << pin;
+	avr_ioport_external_t held = { .name = port, .mask = *low, .value = 0 };
+	avr_ioctl(rig->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &held);
 	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_IOPORT_GETIRQ(port), IOPORT_IRQ_PIN0 + pin), level);
 }
 
 void rig_adc(struct rig *rig, int channel, uint32_t millivolts) {
-	avr_raise_irq(avr_io_getirq(rig->avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel), millivolts);
+	rig->millivolts[channel & 7] = millivolts;
 }
 
 // The pending EEPROM byte, if one is being written, is left to the caller to spoil.

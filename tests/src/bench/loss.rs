@@ -3,8 +3,10 @@
 use super::Bench;
 use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{Command, Mode, Refusal, Report, VERSION};
-use rand::Rng as _;
+use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Times after the last frame arrived, or after the hang, ms.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +42,48 @@ impl Worst {
             None => self.failed += 1,
         }
     }
+}
+
+impl Worst {
+    /// Both together.
+    fn and(self, other: Worst) -> Worst {
+        Worst {
+            tried: self.tried + other.tried,
+            failed: self.failed + other.failed,
+            soft_ms: self.soft_ms.max(other.soft_ms),
+            off_ms: self.off_ms.max(other.off_ms),
+        }
+    }
+}
+
+/// Tries `count` times, in parallel, ten times each on a bench of its own, and says on stderr how far it is.
+pub fn worst_of<B>(
+    count: usize,
+    seed: u64,
+    new: impl Fn() -> B + Sync,
+    one: impl Fn(&mut B, &mut ChaCha8Rng) -> Option<Loss> + Sync,
+) -> Worst {
+    const EACH: usize = 10;
+    let done = AtomicUsize::new(0);
+    let of_bench = |from: usize| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(from as u64);
+        let mut bench = new();
+        let mut worst = Worst::default();
+        for _ in from..count.min(from + EACH) {
+            worst.add(one(&mut bench, &mut rng));
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if done.is_multiple_of(50) {
+                eprintln!("  {done} of {count}");
+            }
+        }
+        worst
+    };
+    (0..count)
+        .into_par_iter()
+        .step_by(EACH)
+        .map(of_bench)
+        .reduce(Worst::default, Worst::and)
 }
 
 /// Greets, streams and arms; panics with the reason if refused.

@@ -15,7 +15,7 @@ pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 pub use law::{LawRun, law};
 #[cfg(simavr)]
 pub use loss::hang;
-pub use loss::{Loss, Worst, arm, link_loss};
+pub use loss::{Loss, Worst, arm, link_loss, worst_of};
 pub use pc::PcRig;
 pub use power::{PowerCuts, power_cuts};
 pub use stream::{StreamRun, stream};
