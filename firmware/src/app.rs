@@ -7,7 +7,7 @@ use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::{Buttons, button, leds};
 use crate::servos::Servos;
-use crate::slots::{Stored, Writer};
+use crate::slots::Writer;
 use crate::{boots, bus};
 use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::dynamixel::ErrorBits;
@@ -68,7 +68,7 @@ pub struct App {
     buttons: Buttons,
     writer: Writer,
     wish: Wish,
-    balance: Option<Balance>,
+    balance: Balance,
     attitude: Attitude,
     /// Sequence number of the frame `wish` came in.
     obeyed: u8,
@@ -97,16 +97,16 @@ impl App {
         } else {
             State::Bridge
         };
-        App {
+        let mut app = App {
             state,
             link: Link::default(),
             filter: Filter::default(),
             servos: Servos::new(&Roster::default()),
             statistics: Statistics::default(),
             buttons: Buttons::default(),
-            writer: Writer::default(),
+            writer: Writer::new(board),
             wish: Wish::Stay,
-            balance: None,
+            balance: Balance::NONE,
             attitude: Attitude::default(),
             obeyed: 0,
             token: None,
@@ -119,7 +119,9 @@ impl App {
             tick_us: 0,
             longest_tick_us: 0,
             longest_law_us: 0,
-        }
+        };
+        app.load_plan(board);
+        app
     }
 
     /// What it is doing.
@@ -197,7 +199,10 @@ impl App {
         if self.filter.tick() {
             self.link.reset();
         }
-        if let Some(sequence) = self.writer.tick(board) {
+        if let Some((sequence, is_new)) = self.writer.tick(board) {
+            if is_new {
+                self.load_plan(board);
+            }
             self.stored(board, sequence);
         }
         self.state = match self.state {
@@ -256,12 +261,9 @@ impl App {
         self.servos.read(board, &mut self.statistics, started);
         let law_started = board.clock();
         let gyro = board.gyro();
-        let Some(balance) = &mut self.balance else {
-            return self.give_up(board, Cause::Fallen);
-        };
-        balance.sense(self.attitude, gyro);
-        let states = match balance.states(&self.servos) {
-            Ok(states) => states,
+        self.balance.sense(self.attitude, gyro);
+        let readings = match self.balance.readings(&self.servos) {
+            Ok(readings) => readings,
             Err(Stop::Fallen) => return self.give_up(board, Cause::Fallen),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
@@ -270,10 +272,14 @@ impl App {
         if self.servos.errors.0 & limp != 0 {
             return self.give_up(board, Cause::ServoError);
         }
-        let commands = balance.commands(&states);
+        let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
-        self.longest_law_us = self.longest_law_us.max(law_us);
         self.servos.turn(board, commands);
+        // What only the next tick needs delays no command.
+        let learn_started = board.clock();
+        self.balance.learn();
+        let law_us = law_us.saturating_add(since_us(board, learn_started));
+        self.longest_law_us = self.longest_law_us.max(law_us);
         self.report(board);
         self.state
     }
@@ -421,9 +427,16 @@ impl App {
             Mode::Stream => State::Stream(Drive::Off),
             Mode::Balance => State::Balance(Drive::Off),
         };
-        if mode == Mode::Balance {
-            let plan = Stored::newest(board).and_then(|stored| stored.plan(board));
-            self.balance = plan.map(Balance::new);
+    }
+
+    /// The plan in EEPROM, if it can be used, else the one compiled in, if there is one.
+    #[inline(never)]
+    fn load_plan<B: Board>(&mut self, board: &mut B) {
+        let stored = self.writer.newest();
+        let is_loaded = stored.is_some_and(|stored| self.balance.load(stored.bytes(board)));
+        if !is_loaded {
+            self.balance
+                .load((0..).map_while(|at| board.compiled_plan(at)));
         }
     }
 }

@@ -1,21 +1,33 @@
-//! Balancing on board: one tick of estimate, law and command.
+//! Balancing on board: one tick of reading, law and command.
 
 use crate::servos::Servos;
+use handstand_shared::crc::extend32;
+use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
 use handstand_shared::message::Attitude;
-use handstand_shared::plan::Plan;
-use handstand_shared::raw::Signed;
-use handstand_shared::velocity::Memory;
+use handstand_shared::observer::{self, FINE, READINGS};
+use handstand_shared::plan::{Given, Law, Moment, Plan};
+use handstand_shared::raw::{Position, Signed};
+use handstand_shared::velocity;
+use micromath::F32Ext;
 
 /// Ticks a joint's servo may miss before it counts as lost.
 const LOST_AFTER: u8 = 3;
 
+/// A joint further off than 10 degrees, in codes, was not put there on purpose.
+const POSE_CODES: u16 = 34;
+
 /// What balancing remembers from tick to tick.
 #[derive(Debug, Clone)]
 pub struct Balance {
-    /// The plan in use.
-    pub plan: Plan,
-    memory: [Memory; 2],
+    plan: Plan,
+    /// CRC-32 of the plan; none if there is none that can be used.
+    fingerprint: Option<u32>,
+    velocities: [velocity::Memory; 2],
+    estimate: observer::Memory,
+    given: [Given; 2],
+    /// Angles at which the robot balances beside the operating point: the first link's in its steps, the joints' as readings.
+    compensation: [i16; 3],
     /// The first link's angle, in 1/10 of its step: a rate step lasts 1/10 angle step per tick.
     angle: i32,
     rate: i16,
@@ -32,16 +44,44 @@ pub enum Stop {
 }
 
 impl Balance {
-    /// At rest at the plan's operating point.
-    pub fn new(plan: Plan) -> Self {
-        let [angle, ..] = plan.table.x0;
-        Balance {
-            plan,
-            memory: [Memory::default(); 2],
-            angle: i32::from(angle) * 10,
-            rate: 0,
-            missed: 0,
-        }
+    /// Without a plan.
+    pub const NONE: Balance = Balance {
+        plan: Plan::ZERO,
+        fingerprint: None,
+        velocities: [velocity::Memory::NONE; 2],
+        estimate: observer::Memory::ZERO,
+        given: [Given::NOTHING; 2],
+        compensation: [0; 3],
+        angle: 0,
+        rate: 0,
+        missed: 0,
+    };
+
+    /// Takes a plan from its bytes, in place: RAM has no room for two. Whether it can be used.
+    pub fn load(&mut self, bytes: impl Iterator<Item = u8>) -> bool {
+        let mut crc = u32::MAX;
+        let mut bytes = bytes.inspect(|byte| crc = extend32(crc, &[*byte]));
+        let is_sound = self.plan.fill(&mut bytes);
+        drop(bytes);
+        self.fingerprint = is_sound.then_some(!crc);
+        is_sound
+    }
+
+    /// CRC-32 of the plan; none if there is none that can be used.
+    pub fn fingerprint(&self) -> Option<u32> {
+        self.fingerprint
+    }
+
+    /// Begins at rest at the plan's operating point, where the robot's masses balance.
+    #[inline(never)]
+    pub fn start(&mut self) {
+        self.velocities = [velocity::Memory::NONE; 2];
+        self.given = [Given::NOTHING; 2];
+        self.missed = 0;
+        self.rate = 0;
+        self.compensation = compensation(&self.plan.moments);
+        let [angle, ..] = self.point();
+        self.angle = i32::from(angle) * 10;
     }
 
     /// Takes the first link's attitude: the host's, if the plan wants it, or the gyro's rate and its sum.
@@ -59,9 +99,9 @@ impl Balance {
         self.angle = angle.clamp(-320_000, 320_000);
     }
 
-    /// The states, in the table's order.
-    pub fn states(&mut self, servos: &Servos) -> Result<[i16; 6], Stop> {
-        let [shoulder, hip] = self.plan.joints;
+    /// The first link's angle, both joints' in position codes, the first link's rate.
+    pub fn readings(&mut self, servos: &Servos) -> Result<[i16; READINGS], Stop> {
+        let [shoulder, hip] = &self.plan.joints;
         let (Some(first), Some(second)) = (servos.with_id(shoulder.id), servos.with_id(hip.id))
         else {
             return Err(Stop::ServoLost);
@@ -73,27 +113,71 @@ impl Balance {
         if self.missed >= LOST_AFTER {
             return Err(Stop::ServoLost);
         }
-        let [q2, q3] = [shoulder.angle(first.position), hip.angle(second.position)];
-        let [memory2, memory3] = &mut self.memory;
-        let velocity = self.plan.velocity;
-        let (dq2, dq3) = (
-            velocity.estimate(memory2, q2),
-            velocity.estimate(memory3, q3),
-        );
         let angle = (self.angle / 10) as i16;
-        let [x0, ..] = self.plan.table.x0;
+        let [x0, ..] = self.point();
         if angle.abs_diff(x0) > self.plan.range {
             return Err(Stop::Fallen);
         }
-        Ok([angle, q2, q3, self.rate, dq2, dq3])
+        let [q2, q3] = [shoulder.angle(first.position), hip.angle(second.position)];
+        Ok([angle, q2, q3, self.rate])
     }
 
-    /// The servos' commands for these states, each with its id.
-    pub fn commands(&self, states: &[i16; 6]) -> impl Iterator<Item = (u8, Signed)> {
-        let [u2, u3] = control(&self.plan.table, states);
+    /// Whether the driven joints are near the operating point.
+    pub fn is_posed(&self, readings: &[i16; READINGS]) -> bool {
+        let both = readings.iter().zip(self.point());
+        both.skip(1).all(|(q, x)| q.abs_diff(x) <= POSE_CODES)
+    }
+
+    /// Begins to estimate from these readings.
+    pub fn begin(&mut self, readings: &[i16; READINGS]) {
+        if let Law::Observer(observer) = &self.plan.law {
+            observer.start(&mut self.estimate, &fine(readings), self.compensation);
+        }
+    }
+
+    /// The servos' commands at these readings, each with its id.
+    #[inline(never)]
+    pub fn commands(
+        &mut self,
+        readings: &[i16; READINGS],
+    ) -> impl Iterator<Item = (u8, Signed)> + use<> {
+        let [u2, u3] = self.wish(readings);
         let [shoulder, hip] = &self.plan.joints;
+        let [given2, given3] = &mut self.given;
+        let (u2, u3) = (shoulder.give(given2, u2), hip.give(given3, u3));
         let first = shoulder.commands(shoulder.command(u2));
         first.chain(hip.commands(hip.command(u3)))
+    }
+
+    fn wish(&mut self, readings: &[i16; READINGS]) -> [i16; 2] {
+        match &self.plan.law {
+            Law::State { table, velocity } => {
+                let [angle, q2, q3, rate] = *readings;
+                let [v2, v3] = &mut self.velocities;
+                let (dq2, dq3) = (velocity.estimate(v2, q2), velocity.estimate(v3, q3));
+                // The operating point moves to where the robot balances.
+                let [e1, e2, e3] = coarse(self.compensation);
+                let states = [
+                    angle.saturating_sub(e1),
+                    q2.saturating_sub(e2),
+                    q3.saturating_sub(e3),
+                    rate,
+                    dq2,
+                    dq3,
+                ];
+                control(table, &states)
+            }
+            Law::Observer(observer) => observer.wish(&mut self.estimate, &fine(readings)),
+        }
+    }
+
+    /// After the commands are on their way: goes on with the estimate, told what was given.
+    #[inline(never)]
+    pub fn learn(&mut self) {
+        if let Law::Observer(observer) = &self.plan.law {
+            let given = [self.given[0].input, self.given[1].input];
+            observer.learn(&mut self.estimate, given);
+        }
     }
 
     /// Whether all servos it commands answered.
@@ -103,5 +187,93 @@ impl Balance {
             .joints
             .iter()
             .all(|joint| there(joint.id) && there(joint.mirror))
+    }
+
+    /// The operating point with compensation: the first link's angle, and both joints' in codes.
+    fn point(&self) -> [i16; 3] {
+        let [x1, x2, x3] = match &self.plan.law {
+            Law::State { table, .. } => {
+                let [x1, x2, x3, ..] = table.x0;
+                [x1, x2, x3]
+            }
+            // An observer's readings are departures from upright.
+            Law::Observer(_) => [0; 3],
+        };
+        let [e1, e2, e3] = coarse(self.compensation);
+        [
+            x1.saturating_add(e1),
+            x2.saturating_add(e2),
+            x3.saturating_add(e3),
+        ]
+    }
+}
+
+/// Readings with the places an observer wants.
+fn fine(readings: &[i16; READINGS]) -> [i16; READINGS] {
+    let [angle, q2, q3, rate] = *readings;
+    let fine = |q| saturate(i32::from(q) << FINE, i16::MIN, i16::MAX);
+    [angle, fine(q2), fine(q3), rate]
+}
+
+/// Angles with the joints' in whole codes.
+fn coarse([e1, e2, e3]: [i16; 3]) -> [i16; 3] {
+    let whole = |e: i16| e.saturating_add(1 << (FINE - 1)) >> FINE;
+    [e1, whole(e2), whole(e3)]
+}
+
+/// The angles at which the links' masses balance, beside upright: every link's resultant centre of mass above its joint.
+///
+/// The paper, section IV.D: "finding and compensating the system with the angle of the resultant center of gravity". Gravity's torques
+/// vanish where the moments p_j e^{i t_j} of all links point up, so at absolute angles t_j = -arg p_j. micromath's arc is off by up to
+/// 0.003 rad; an observer finds the rest.
+#[inline(never)]
+fn compensation(moments: &[Moment; 3]) -> [i16; 3] {
+    const STEPS: [f32; 3] = [
+        (1.0 / Attitude::ANGLE_LSB_RAD) as f32,
+        ((1 << FINE) as f64 / Position::LSB_RAD) as f32,
+        ((1 << FINE) as f64 / Position::LSB_RAD) as f32,
+    ];
+    let mut angles = [0; 3];
+    let mut before = 0.0;
+    for ((angle, moment), steps) in angles.iter_mut().zip(moments).zip(STEPS) {
+        let absolute = match moment.aside {
+            // Exactly, not nearly, straight.
+            0 => 0.0,
+            aside => -F32Ext::atan2(f32::from(aside), f32::from(moment.along)),
+        };
+        *angle = ((absolute - before) * steps) as i16;
+        before = absolute;
+    }
+    angles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A millimetre aside at 30: 33 mrad; a straight link between tilted ones turns both its joints.
+    #[test]
+    fn resultant_masses_come_to_lie_above_their_joints() {
+        let tilted = Moment {
+            along: 3000,
+            aside: 100,
+        };
+        let straight = Moment {
+            along: 3000,
+            aside: 0,
+        };
+        let found = compensation(&[tilted, straight, tilted]);
+        let rad = (100f64 / 3000.0).atan();
+        let fine = f64::from(1 << FINE) / Position::LSB_RAD;
+        let exact = [-rad * 1e4, rad * fine, -rad * fine];
+        for (i, exact) in exact.into_iter().enumerate() {
+            let step = if i == 0 { 1e4 } else { fine };
+            assert!(
+                (f64::from(found[i]) - exact).abs() <= 3e-3 * step + 1.0,
+                "{found:?}"
+            );
+        }
+        assert_eq!(compensation(&[Moment::ZERO; 3]), [0; 3]);
+        assert_eq!(coarse([7, 48, -48]), [7, 2, -1]);
     }
 }

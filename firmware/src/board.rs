@@ -65,6 +65,11 @@ pub trait Board {
     /// The gyro's voltage, ADC code 0..=1023.
     fn gyro(&mut self) -> u16;
 
+    /// A byte of the plan that was compiled in; none behind its end.
+    fn compiled_plan(&self, _at: u16) -> Option<u8> {
+        None
+    }
+
     /// A byte of EEPROM.
     fn eeprom_read(&mut self, address: u16) -> u8;
 

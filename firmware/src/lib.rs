@@ -4,7 +4,7 @@
 //! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `slots`, `boots`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
-#![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt))]
+#![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt, asm_experimental_arch))]
 
 pub mod app;
 pub mod balance;

@@ -9,9 +9,13 @@ use handstand_shared::crc::extend32;
 use handstand_shared::message::GAIN_CHUNK;
 use handstand_shared::plan::Plan;
 
+const _: () =
+    assert!(Plan::MOST <= MAX_TABLE as usize && STARTS[0] + HEADER + MAX_TABLE <= STARTS[1]);
+const _: () = assert!(STARTS[1] + HEADER + MAX_TABLE <= 0xff6);
+
 /// Longest gain table, bytes.
-pub const MAX_TABLE: u16 = 500;
-const STARTS: [u16; 2] = [0x000, 0x200];
+pub const MAX_TABLE: u16 = 1000;
+const STARTS: [u16; 2] = [0x000, 0x400];
 const HEADER: u16 = 8;
 
 /// A sound table in EEPROM.
@@ -35,14 +39,10 @@ impl Stored {
         }
     }
 
-    /// The plan in it, if it is one that can be used.
-    pub fn plan(&self, board: &mut impl Board) -> Option<Plan> {
-        let mut bytes = [0; Plan::LENGTH];
-        if usize::from(self.length) != bytes.len() {
-            return None;
-        }
-        self.read(board, 0, &mut bytes);
-        Plan::from_bytes(&bytes)
+    /// The table's bytes.
+    pub fn bytes<B: Board>(self, board: &mut B) -> impl Iterator<Item = u8> {
+        let body = start(self.slot) + HEADER;
+        (body..body + self.length).map(|at| board.eeprom_read(at))
     }
 
     /// The table's bytes from `offset` on, as many as `out` holds; beyond its end zeros.
@@ -71,7 +71,8 @@ fn sound(board: &mut impl Board, slot: u8) -> Option<Stored> {
     let sequence = u16::from_le_bytes([s0, s1]);
     let length = u16::from_le_bytes([l0, l1]);
     let is_sound = (1..=MAX_TABLE).contains(&length)
-        && slot_check(board, slot, sequence, length) == u32::from_le_bytes(check);
+        && slot_check(sequence, length, body_check(board, slot, length))
+            == u32::from_le_bytes(check);
     is_sound.then_some(Stored {
         slot,
         sequence,
@@ -79,22 +80,26 @@ fn sound(board: &mut impl Board, slot: u8) -> Option<Stored> {
     })
 }
 
-/// CRC-32 of sequence, length and table.
-fn slot_check(board: &mut impl Board, slot: u8, sequence: u16, length: u16) -> u32 {
-    let crc = extend32(u32::MAX, &sequence.to_le_bytes());
-    let crc = extend32(crc, &length.to_le_bytes());
-    !extend_body(board, slot, length, crc)
+/// The header's check: CRC-32 of table, length and sequence, from that of the table.
+fn slot_check(sequence: u16, length: u16, body: u32) -> u32 {
+    let crc = extend32(!body, &length.to_le_bytes());
+    !extend32(crc, &sequence.to_le_bytes())
 }
 
-fn extend_body(board: &mut impl Board, slot: u8, length: u16, crc: u32) -> u32 {
+/// CRC-32 of the table.
+fn body_check(board: &mut impl Board, slot: u8, length: u16) -> u32 {
     let body = start(slot) + HEADER;
-    (body..body + length.min(MAX_TABLE))
-        .fold(crc, |crc, at| extend32(crc, &[board.eeprom_read(at)]))
+    let bytes = body..body + length.min(MAX_TABLE);
+    !bytes.fold(u32::MAX, |crc, at| extend32(crc, &[board.eeprom_read(at)]))
 }
 
 /// Bytes on their way into the slot that does not count.
 #[derive(Debug, Clone)]
 pub struct Writer {
+    /// The table that counts. Known, for to look for it takes as long as a tick.
+    newest: Option<Stored>,
+    /// What counts once the header is written.
+    next: Option<Stored>,
     bytes: [u8; GAIN_CHUNK],
     used: u8,
     done: u8,
@@ -104,9 +109,12 @@ pub struct Writer {
     busy: bool,
 }
 
-impl Default for Writer {
-    fn default() -> Self {
+impl Writer {
+    /// Looks for the table that counts.
+    pub fn new(board: &mut impl Board) -> Self {
         Writer {
+            newest: Stored::newest(board),
+            next: None,
             bytes: [0; GAIN_CHUNK],
             used: 0,
             done: 0,
@@ -115,27 +123,24 @@ impl Default for Writer {
             busy: false,
         }
     }
-}
 
-impl Writer {
+    /// The table that counts.
+    pub fn newest(&self) -> Option<Stored> {
+        self.newest
+    }
+
     /// Whether bytes are still to be written.
     pub fn is_busy(&self) -> bool {
         self.busy
     }
 
     /// Begins to write a piece of a table; false if it lies outside, or another is being written.
-    pub fn chunk(
-        &mut self,
-        board: &mut impl Board,
-        offset: u16,
-        bytes: &[u8; GAIN_CHUNK],
-        answer: u8,
-    ) -> bool {
+    pub fn chunk(&mut self, offset: u16, bytes: &[u8; GAIN_CHUNK], answer: u8) -> bool {
         if self.busy || offset >= MAX_TABLE {
             return false;
         }
         let room = usize::from(MAX_TABLE - offset).min(GAIN_CHUNK);
-        let address = start(other_slot(board)) + HEADER + offset;
+        let address = start(self.other_slot()) + HEADER + offset;
         self.begin(address, bytes.get(..room).unwrap_or(bytes), answer);
         true
     }
@@ -145,12 +150,17 @@ impl Writer {
         if self.busy || !(1..=MAX_TABLE).contains(&length) {
             return false;
         }
-        let slot = other_slot(board);
-        if !extend_body(board, slot, length, u32::MAX) != check {
+        let slot = self.other_slot();
+        if body_check(board, slot, length) != check {
             return false;
         }
-        let sequence = Stored::newest(board).map_or(1, |old| old.sequence.wrapping_add(1));
-        let sum = slot_check(board, slot, sequence, length);
+        let sequence = self.newest.map_or(1, |old| old.sequence.wrapping_add(1));
+        let sum = slot_check(sequence, length, check);
+        self.next = Some(Stored {
+            slot,
+            sequence,
+            length,
+        });
         let mut header = [0; HEADER as usize];
         let bytes = (sequence.to_le_bytes().into_iter())
             .chain(length.to_le_bytes())
@@ -175,8 +185,9 @@ impl Writer {
         self.busy = true;
     }
 
-    /// Once per tick: writes a byte. The command to answer, when the last one is written.
-    pub fn tick(&mut self, board: &mut impl Board) -> Option<u8> {
+    /// Once per tick: writes a byte. When the last one is written, the command to answer, and whether another table
+    /// counts from now on.
+    pub fn tick(&mut self, board: &mut impl Board) -> Option<(u8, bool)> {
         if !self.busy || !board.eeprom_ready() {
             return None;
         }
@@ -191,13 +202,15 @@ impl Writer {
             }
         }
         self.busy = false;
-        Some(self.answer)
+        let next = self.next.take();
+        self.newest = next.or(self.newest);
+        Some((self.answer, next.is_some()))
     }
-}
 
-fn other_slot(board: &mut impl Board) -> u8 {
-    match Stored::newest(board) {
-        Some(Stored { slot: 0, .. }) => 1,
-        _ => 0,
+    fn other_slot(&self) -> u8 {
+        match self.newest {
+            Some(Stored { slot: 0, .. }) => 1,
+            _ => 0,
+        }
     }
 }

@@ -20,6 +20,9 @@ pub const fn shift_right(value: i32, shift: u8) -> i32 {
         0 => value,
         8 => value >> 8,
         16 => value >> 16,
+        // Whole bytes first: the AVR shifts the rest bit by bit.
+        9..16 => (value >> 8) >> (shift - 8),
+        17..32 => (value >> 16) >> (shift - 16),
         _ => value >> (shift & 31),
     }
 }

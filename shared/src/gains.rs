@@ -103,15 +103,27 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
         self.x0.iter().for_each(|x| put(&x.to_le_bytes()));
     }
 
+    /// A table of zeros.
+    pub const ZERO: Self = GainTable::new([[0; N]; M], [0; M], [0; M], [[0; 2]; M], [0; N]);
+
     /// A table from its canonical bytes; `None` if they are of another version or size. Ask [`GainTable::is_safe`]
     /// before using what came over a line.
-    pub fn from_bytes(mut bytes: &[u8]) -> Option<Self> {
-        let from = &mut bytes;
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let mut bytes = bytes.iter().copied();
+        let mut table = Self::ZERO;
+        table.fill(&mut bytes)?;
+        bytes.next().is_none().then_some(table)
+    }
+
+    /// Overwrites the table by the next canonical bytes, without room for a second one; `None` if they end early or are of
+    /// another version or size, and the table is then spoilt.
+    // Many bytes of code each: inlined, they outgrow the AVR's short jumps.
+    #[inline(never)]
+    pub fn fill(&mut self, from: &mut impl Iterator<Item = u8>) -> Option<()> {
         if take(from)? != [VERSION, M as u8, N as u8] {
             return None;
         }
-        let mut table = GainTable::new([[0; N]; M], [0; M], [0; M], [[0; 2]; M], [0; N]);
-        for row in &mut table.rows {
+        for row in &mut self.rows {
             for k in &mut row.k {
                 *k = i16::from_le_bytes(take(from)?);
             }
@@ -120,10 +132,10 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
             row.low = i16::from_le_bytes(take(from)?);
             row.high = i16::from_le_bytes(take(from)?);
         }
-        for x in &mut table.x0 {
+        for x in &mut self.x0 {
             *x = i16::from_le_bytes(take(from)?);
         }
-        bytes.is_empty().then_some(table)
+        Some(())
     }
 
     /// CRC-32 of the canonical bytes: two tables with one fingerprint are the same gains.
@@ -135,10 +147,12 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
 }
 
 /// The next `L` bytes.
-fn take<const L: usize>(from: &mut &[u8]) -> Option<[u8; L]> {
-    let (head, rest) = from.split_first_chunk()?;
-    *from = rest;
-    Some(*head)
+pub(crate) fn take<const L: usize>(from: &mut impl Iterator<Item = u8>) -> Option<[u8; L]> {
+    let mut bytes = [0; L];
+    for byte in &mut bytes {
+        *byte = from.next()?;
+    }
+    Some(bytes)
 }
 
 #[cfg(test)]

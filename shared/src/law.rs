@@ -1,6 +1,8 @@
 //! The control law: u = sat(u0 - K (x - x0)), with one rounding and one saturation.
 
-use crate::fixed::{mac, saturate, shift_right};
+#[cfg(not(target_arch = "avr"))]
+use crate::fixed::mac;
+use crate::fixed::{saturate, shift_right};
 use crate::gains::{GainTable, Row};
 
 #[cfg(target_arch = "avr")]
@@ -25,7 +27,22 @@ fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
     match row.shift {
         // What is left has 16 bits, and an 8-bit machine compares it in half the time.
         16 => ((sum >> 16) as i16).min(row.high).max(row.low),
+        8 => narrow(sum >> 8).min(row.high).max(row.low),
         shift => saturate(shift_right(sum, shift), row.low, row.high),
+    }
+}
+
+/// The nearest 16-bit value: the limits are then compared in 16 bits.
+#[inline]
+fn narrow(value: i32) -> i16 {
+    let low = value as i16;
+    let high = (value >> 16) as i16;
+    if high == low >> 15 {
+        low
+    } else if high < 0 {
+        i16::MIN
+    } else {
+        i16::MAX
     }
 }
 
@@ -42,9 +59,18 @@ fn sums<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -
     }
     let mut sums = [0; M];
     for (sum, row) in sums.iter_mut().zip(&table.rows) {
-        *sum = row.bias.wrapping_sub(mac(&row.k, &departure));
+        *sum = one_sum(row.bias, &row.k, &departure);
     }
     sums
+}
+
+#[cfg(target_arch = "avr")]
+use avr::row as one_sum;
+
+/// `bias` - sum of products, wrapping.
+#[cfg(not(target_arch = "avr"))]
+fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
+    bias.wrapping_sub(mac(k, x))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What host and firmware agree on: the servo's registers and packets, and the frames and messages of the PC line.
 //!
-//! Read downward only: `raw` -> `control_table`; `dynamixel`; `crc` -> `frame`; `packed` -> `message`; `fixed` -> `gains` -> `law`;
-//! `velocity`.
+//! Read downward only: `raw` -> `control_table`; `dynamixel`; `crc` -> `frame`; `packed` -> `message`; `fixed` -> `gains` -> `law` ->
+//! `observer`; `velocity`; all of these -> `plan`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
 #![cfg_attr(target_arch = "avr", deny(unsafe_code))]
@@ -15,6 +15,7 @@ pub mod frame;
 pub mod gains;
 pub mod law;
 pub mod message;
+pub mod observer;
 pub mod packed;
 pub mod plan;
 pub mod raw;

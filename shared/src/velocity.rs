@@ -23,6 +23,14 @@ pub struct Memory {
     smooth: i32,
 }
 
+impl Memory {
+    /// Of no position.
+    pub const NONE: Memory = Memory {
+        before: None,
+        smooth: 0,
+    };
+}
+
 impl Velocity {
     /// The plain difference of positions: the paper's (theta(t) - theta(t-1)) / Ts.
     pub const DIFFERENCE: Velocity = Velocity {

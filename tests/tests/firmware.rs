@@ -2,9 +2,11 @@
 
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::dynamixel::{ErrorBits, Packet};
+use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::plan::{Law, Plan};
 use handstand_shared::raw::Signed;
 use handstand_shared::velocity::Velocity;
 use handstand_tests::bench::*;
@@ -274,26 +276,44 @@ fn the_adapter_is_transparent() {
     is_a_plain_adapter(&mut PcRig::new());
 }
 
-const CONDITIONS: Conditions = Conditions {
-    weight: 10.0,
-    dead_zone: 0.08,
-    velocity: Velocity {
+/// A law on plain states: the paper's regulator, rounded to the steps the firmware reads in.
+fn state_plan() -> Plan {
+    let (_, plan) = plan();
+    let table = GainTable::new(
+        [
+            [-500, -2000, -700, -850, -400, -150],
+            [-400, -1700, -560, -700, -330, -120],
+        ],
+        [1 << 7; 2],
+        [8; 2],
+        [[-8000, 8000]; 2],
+        [0; 6],
+    );
+    assert!(table.is_safe());
+    let velocity = Velocity {
         fraction: 4,
         share: 128,
-    },
-    start_rad: 0.0,
-};
+    };
+    Plan {
+        law: Law::State { table, velocity },
+        ..plan
+    }
+}
 
 /// The commands that reach the servos are the host's law on the same states, through the plan.
 fn commands_are_the_laws(bench: &mut impl Bench) {
-    let plan = arm_balance(bench, &CONDITIONS).expect("armed");
+    let plan = state_plan();
+    arm_balance(bench, &plan).expect("armed");
+    let Law::State { table, .. } = &plan.law else {
+        unreachable!()
+    };
     for (angle, rate) in [(0, 0), (37, -150), (-400, 20), (1200, 900)] {
-        for _ in 0..4 {
+        for _ in 0..6 {
             bench.say(&Command::Attitude(Attitude { angle, rate }));
             bench.run_ms(10.0);
         }
-        // The shafts stand still at their centres, so only the first link departs.
-        let u = control(&plan.table, &[angle, 0, 0, rate, 0, 0]);
+        // The shafts stand still at their centres, so only the first link departs; six ticks are enough for the slew.
+        let u = control(table, &[angle, 0, 0, rate, 0, 0]);
         for (joint, u) in plan.joints.iter().zip(u) {
             let command = joint.command(u);
             let servo = |bench: &mut dyn FnMut(u8) -> u16, id| Signed(bench(id)).get();
@@ -304,7 +324,7 @@ fn commands_are_the_laws(bench: &mut impl Bench) {
     }
     // Beyond the plan's range it has fallen, and torque is off.
     bench.say(&Command::Attitude(Attitude {
-        angle: 6000,
+        angle: 9000,
         rate: 0,
     }));
     bench.run_ms(30.0);
@@ -314,6 +334,47 @@ fn commands_are_the_laws(bench: &mut impl Bench) {
 #[test]
 fn on_board_the_servos_get_what_the_law_says() {
     commands_are_the_laws(&mut PcRig::new());
+}
+
+/// Two degrees off, eccentric and with another dead zone than the plan believes in, it stands; and its
+/// commands are those of the host's fixed law on the same readings.
+fn it_stands(bench: &mut impl Bench, seconds: f64) {
+    let two = 2f64.to_radians();
+    let conditions = Conditions {
+        dead_zone: 0.09,
+        eccentric_m: [0.5e-3, -0.5e-3, 0.5e-3],
+        start_rad: [two, -two, two],
+    };
+    let (_, plan) = plan();
+    let run = balance(bench, &plan, &conditions, seconds).expect("it arms");
+    assert!(run.stood_s >= seconds - 1e-6, "{:.2} s", run.stood_s);
+    assert_eq!(run.condition, Some(Condition::BalanceArmed));
+    let (different, compared) = different(&plan, &run.ticks);
+    assert!(
+        different == 0 && compared as f64 > 90.0 * seconds,
+        "{different} of {compared}"
+    );
+}
+
+#[test]
+fn three_links_stand() {
+    it_stands(&mut PcRig::new(), 20.0);
+}
+
+#[test]
+fn a_plan_that_was_compiled_in_balances_without_upload() {
+    let mut bytes = Vec::new();
+    let (_, plan) = plan();
+    plan.bytes(|byte| bytes.push(byte));
+    let mut rig = PcRig::with_plan(bytes, vec![0xff; 4096], ResetCause(0));
+    assert_eq!(greet(&mut rig).gains, plan.fingerprint());
+    // One in EEPROM wins, once it is there.
+    rig.type_bytes(&[0]);
+    let other = state_plan();
+    arm_balance(&mut rig, &other).expect("armed");
+    let hello = greet(&mut rig);
+    assert_eq!(hello.gains, other.fingerprint());
+    assert_ne!(other.fingerprint(), plan.fingerprint());
 }
 
 #[test]
@@ -348,8 +409,7 @@ fn damaged_frames_are_refused() {
 #[cfg(simavr)]
 mod elf {
     use super::*;
-    use handstand_shared::gains::GainTable;
-    use handstand_simavr::{Law, Rig};
+    use handstand_simavr::{Law as LawProgram, Rig};
     use handstand_tests::firmware::{Built, find_built};
     use rand::Rng as _;
 
@@ -381,6 +441,23 @@ mod elf {
     fn the_elf_commands_what_the_law_says() {
         let Some(built) = built() else { return };
         commands_are_the_laws(&mut Rig::new(&built.elf).unwrap());
+    }
+
+    #[test]
+    fn the_elf_holds_three_links_up() {
+        let Some(built) = built() else { return };
+        it_stands(&mut Rig::new(&built.elf).unwrap(), 5.0);
+    }
+
+    #[test]
+    fn the_observer_is_the_same_bit_for_bit() {
+        let Some(built) = built() else { return };
+        let (_, plan) = plan();
+        let Law::Observer(observer) = &plan.law else {
+            panic!("the plan has an observer")
+        };
+        let run = observer_law(&built.law, observer, 3000, 9);
+        assert_eq!(run.different, 0, "{run:?}");
     }
 
     #[test]
@@ -462,7 +539,7 @@ mod elf {
     #[test]
     fn the_law_is_the_same_bit_for_bit() {
         let Some(built) = built() else { return };
-        let mut law = Law::load(&built.law).unwrap();
+        let mut law = LawProgram::load(&built.law).unwrap();
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         for shift in [16, 8, 13] {
             let k = [(); 2].map(|()| [(); 6].map(|()| rng.random_range(-10_000..10_000)));

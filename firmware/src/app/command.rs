@@ -1,11 +1,9 @@
 //! What each command of the host does.
 
 use super::{App, Drive, State, Wish};
-use crate::balance::Balance;
 use crate::board::Board;
 use crate::design::LOW_SUPPLY;
 use crate::servos::Servos;
-use crate::slots::Stored;
 use handstand_shared::message::{
     Answer, Command, GAIN_CHUNK, Hello, Mode, Numbered, Refusal, Report, Roster, Subject,
     Telemetry, VERSION,
@@ -54,7 +52,7 @@ impl App {
             Command::Arm { token } => Outcome::Answer(self.arm(board, token)),
             Command::GainChunk { offset, bytes } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
-                false => match self.writer.chunk(board, offset, &bytes, sequence) {
+                false => match self.writer.chunk(offset, &bytes, sequence) {
                     true => Outcome::Later,
                     false => Outcome::Answer(Err(Refusal::BadGains)),
                 },
@@ -68,7 +66,7 @@ impl App {
             },
             Command::GainRead { offset } => {
                 let mut bytes = [0; GAIN_CHUNK];
-                let stored = Stored::newest(board);
+                let stored = self.writer.newest();
                 if let Some(stored) = stored {
                     stored.read(board, offset, &mut bytes);
                 }
@@ -94,7 +92,7 @@ impl App {
             version: VERSION,
             token,
             condition: self.condition(),
-            gains: self.fingerprint(board),
+            gains: self.balance.fingerprint().unwrap_or(0),
         };
         self.link.send(board, &Report::Hello(hello));
         Outcome::Quiet
@@ -107,12 +105,6 @@ impl App {
         let greeting = before.wrapping_add(1);
         self.greetings = Some(greeting);
         u16::from_le_bytes([greeting, self.boots])
-    }
-
-    /// Of the gains in EEPROM; 0 if there are none that can be used.
-    fn fingerprint<B: Board>(&self, board: &mut B) -> u32 {
-        let plan = Stored::newest(board).and_then(|stored| stored.plan(board));
-        plan.map_or(0, |plan| plan.table.fingerprint())
     }
 
     fn stop<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
@@ -184,20 +176,18 @@ impl App {
     #[inline(never)]
     fn arm_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         self.has_supply()?;
-        let plan = self.balance.as_ref().ok_or(Refusal::NoGains)?.plan;
-        let mut balance = Balance::new(plan);
-        if !balance.has_servos(&self.servos) {
+        self.balance.fingerprint().ok_or(Refusal::NoGains)?;
+        if !self.balance.has_servos(&self.servos) {
             return Err(Refusal::Servo);
         }
-        balance.sense(self.attitude, board.gyro());
-        let states = balance.states(&self.servos).map_err(|_| Refusal::Pose)?;
-        let [_, x2, x3, ..] = plan.table.x0;
-        let [_, q2, q3, ..] = states;
-        // A joint further off than 10 degrees was not put there on purpose.
-        if q2.abs_diff(x2) > 34 || q3.abs_diff(x3) > 34 {
+        self.balance.start();
+        self.balance.sense(self.attitude, board.gyro());
+        let readings = self.balance.readings(&self.servos);
+        let readings = readings.map_err(|_| Refusal::Pose)?;
+        if !self.balance.is_posed(&readings) {
             return Err(Refusal::Pose);
         }
-        self.balance = Some(balance);
+        self.balance.begin(&readings);
         self.wish = Wish::Stay;
         self.low = (0, self.servos.rounds);
         self.servos.arm(board);

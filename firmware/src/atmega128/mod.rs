@@ -5,6 +5,7 @@
 
 mod adc;
 mod eeprom;
+mod flash;
 mod port;
 mod ring;
 mod stack;
@@ -126,6 +127,10 @@ impl Board for Cm5 {
 
     fn gyro(&mut self) -> u16 {
         adc::latest(&self.registers)
+    }
+
+    fn compiled_plan(&self, at: u16) -> Option<u8> {
+        flash::plan(at)
     }
 
     fn eeprom_read(&mut self, address: u16) -> u8 {

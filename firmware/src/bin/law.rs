@@ -1,4 +1,4 @@
-//! The control law alone, for the bench: state in, input out, marks on port A before and after.
+//! The laws alone, for the bench: state in, input out, marks on port A before and after.
 #![cfg_attr(target_arch = "avr", no_std, no_main)]
 
 #[cfg(target_arch = "avr")]
@@ -6,55 +6,100 @@ mod program {
     #![allow(unsafe_code)]
 
     use core::hint::black_box;
-    use handstand_shared::{gains::GainTable, law::control};
+    use handstand_shared::gains::GainTable;
+    use handstand_shared::law::control;
+    use handstand_shared::observer::{INPUTS, Memory, Observer, READINGS, WIDTH};
 
     /// What the bench writes and reads, at the address of its symbol.
     #[repr(C)]
     struct Mailbox {
-        /// The bench changes it to hand over a state, or, with its highest bit set, a table.
+        /// The bench changes it to ask.
         asked: u8,
         /// The program copies `asked` when it has answered.
         answered: u8,
+        /// What is asked: 0 the law of 2 x 6 at `x`, 1 to take its table, 2 a tick of the observer, 3 to take it.
+        kind: u8,
         x: [i16; 6],
         u: [i16; 2],
-        /// A table in its canonical bytes.
-        bytes: [u8; GainTable::<2, 6>::LENGTH],
+        /// The observer's memory, before and after.
+        memory: [i16; WIDTH],
+        readings: [i16; READINGS],
+        given: [i16; INPUTS],
+        /// A table or an observer in its bytes.
+        bytes: [u8; Observer::LENGTH],
     }
 
     #[unsafe(no_mangle)]
     static mut MAILBOX: Mailbox = Mailbox {
         asked: 0,
         answered: 0,
+        kind: 0,
         x: [0; 6],
         u: [0; 2],
-        bytes: [0; GainTable::<2, 6>::LENGTH],
+        memory: [0; WIDTH],
+        readings: [0; READINGS],
+        given: [0; INPUTS],
+        bytes: [0; Observer::LENGTH],
     };
+
+    fn mark(value: u8) {
+        // SAFETY: nobody else has the port.
+        unsafe {
+            let registers = avr_device::atmega128a::Peripherals::steal();
+            registers.PORTA.porta().write(|w| w.bits(value));
+        }
+    }
+
+    /// The law between its marks, in a frame of its own: in that of `main`, which holds both laws, every spilt register
+    /// would cost ten cycles more.
+    #[inline(never)]
+    fn timed(law: &GainTable<2, 6>, state: &[i16; 6]) -> [i16; 2] {
+        mark(1);
+        let u = black_box(control(law, state));
+        mark(2);
+        u
+    }
 
     #[avr_device::entry]
     fn main() -> ! {
         let mailbox = &raw mut MAILBOX;
-        let mut table = GainTable::<2, 6>::new([[0; 6]; 2], [0; 2], [0; 2], [[0; 2]; 2], [0; 6]);
+        let mut table = GainTable::<2, 6>::ZERO;
+        let mut observer = Observer::ZERO;
         // SAFETY: one static, one user; the bench changes it between instructions, hence the volatile accesses.
         unsafe {
-            let registers = avr_device::atmega128a::Peripherals::steal();
-            let mark = |value| registers.PORTA.porta().write(|w| w.bits(value));
+            let bytes = (&raw const (*mailbox).bytes).cast::<u8>();
+            let byte = |at| bytes.add(at).read_volatile();
             loop {
                 let asked = (&raw const (*mailbox).asked).read_volatile();
                 if asked == (&raw const (*mailbox).answered).read_volatile() {
                     continue;
                 }
-                if asked & 0x80 != 0 {
-                    let bytes = (&raw const (*mailbox).bytes).read_volatile();
-                    if let Some(new) = GainTable::from_bytes(&bytes) {
-                        table = new;
+                match (&raw const (*mailbox).kind).read_volatile() {
+                    0 => {
+                        let x = (&raw const (*mailbox).x).read_volatile();
+                        let u = timed(black_box(&table), black_box(&x));
+                        (&raw mut (*mailbox).u).write_volatile(u);
                     }
-                } else {
-                    let x = (&raw const (*mailbox).x).read_volatile();
-                    let (law, state) = (black_box(&table), black_box(&x));
-                    mark(1);
-                    let u = black_box(control(law, state));
-                    mark(2);
-                    (&raw mut (*mailbox).u).write_volatile(u);
+                    1 => {
+                        table.fill(&mut (0..GainTable::<2, 6>::LENGTH).map(byte));
+                    }
+                    2 => {
+                        let all = (&raw const (*mailbox).memory).read_volatile();
+                        let readings = (&raw const (*mailbox).readings).read_volatile();
+                        let given = (&raw const (*mailbox).given).read_volatile();
+                        let mut memory = Memory::of(all);
+                        let law = black_box(&observer);
+                        mark(1);
+                        let u = black_box(law.wish(&mut memory, &readings));
+                        mark(2);
+                        law.learn(&mut memory, given);
+                        mark(3);
+                        (&raw mut (*mailbox).u).write_volatile(u);
+                        (&raw mut (*mailbox).memory).write_volatile(*memory.all());
+                    }
+                    _ => {
+                        observer.fill(&mut (0..Observer::LENGTH).map(byte));
+                    }
                 }
                 (&raw mut (*mailbox).answered).write_volatile(asked);
             }

@@ -27,12 +27,12 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     /// Model file
     model: PathBuf,
-    /// Weight of the states: a number, a diagonal, or a CSV file of a matrix
-    #[arg(long, value_name = "WEIGHT", default_value = "100", value_parser = weight, allow_hyphen_values = true)]
-    q: Given,
-    /// Weight of the inputs, likewise
-    #[arg(long, value_name = "WEIGHT", default_value = "1", value_parser = weight, allow_hyphen_values = true)]
-    r: Given,
+    /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    q: Option<Given>,
+    /// Weight of the inputs, likewise [default: 1]
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    r: Option<Given>,
     /// Sampling time, s
     #[arg(
         long,
@@ -154,6 +154,33 @@ impl Args {
         &self.model
     }
 
+    /// An option that serves the regulator on plain states alone, if one is given.
+    pub(super) fn for_plain_states(&self) -> Option<&'static str> {
+        let given = [
+            (self.q.is_some(), "--q"),
+            (self.r.is_some(), "--r"),
+            (self.ts != 0.01, "--ts"),
+            (self.delay.is_some(), "--delay"),
+            (!matches!(self.pose, Pose::Upright), "--pose"),
+            (self.balance, "--balance"),
+            (!self.without.is_empty(), "--without"),
+            (self.continuous, "--continuous"),
+            (self.lqg, "--lqg"),
+            (self.range.is_some(), "--range"),
+            (self.limit.is_some(), "--limit"),
+            (self.state_step.is_some(), "--state-step"),
+            (self.input_step.is_some(), "--input-step"),
+            (self.rust.is_some(), "--rust"),
+            (self.c.is_some(), "--c"),
+            (self.csv.is_some(), "--csv"),
+            (self.state_space.is_some(), "--state-space"),
+        ];
+        given
+            .into_iter()
+            .find(|(given, _)| *given)
+            .map(|(_, name)| name)
+    }
+
     /// Whether files are replaced.
     pub(super) fn force(&self) -> bool {
         self.force
@@ -226,8 +253,8 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
     let degree = std::f64::consts::PI / 180.0;
     Ok(Request {
         pose_rad,
-        q: args.q.read()?,
-        r: args.r.read()?,
+        q: weighed(&args.q, 100.0)?,
+        r: weighed(&args.r, 1.0)?,
         time,
         sensors: args.lqg.then_some(Sensors {
             position_step_rad: args.position_step.unwrap_or(300.0 / 1024.0 * degree),
@@ -246,6 +273,12 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
             input_step: list(&args.input_step, "--input-step", inputs)?,
         },
     })
+}
+
+fn weighed(given: &Option<Given>, default: f64) -> Result<Weight> {
+    given
+        .as_ref()
+        .map_or(Ok(Weight::Scalar(default)), Given::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {

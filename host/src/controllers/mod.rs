@@ -15,6 +15,7 @@ mod known;
 mod lqg;
 mod observed;
 mod offset;
+mod on_board;
 mod paper;
 mod picture;
 mod plant;
@@ -32,6 +33,10 @@ pub use chain::{CHAINS, Chain, SERVO_DEAD_TIME_S};
 pub use conditions::{CONDITIONS, Condition, condition};
 pub use delay::{Longest, longest_held, longest_linear};
 pub use known::Known;
+pub use on_board::{
+    Fitting, OnBoard, Servo, Timing, plan as board_plan, plan_file, reading_steps, regulator_plan,
+    si as board_steps,
+};
 pub use picture::picture;
 pub use robust::{SHARE, WEIGHTS, gain as robust_gain};
 pub use servo::ServoLag;

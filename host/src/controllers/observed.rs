@@ -9,7 +9,7 @@ use super::plant::{Parts, plant};
 use super::sliding::Surface;
 use crate::closed_loop::{Controller, Seen};
 use crate::error::{Error, Result};
-use crate::synth::{Discrete, dlqr};
+use crate::synth::{Discrete, Gains, dlqr};
 use nalgebra::DMatrix;
 
 /// Samples after which the filter's gains stand still at the latest.
@@ -140,15 +140,8 @@ fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
             ..parts
         },
     )?;
-    let (size, m, joints) = (without.a.nrows(), known.drives(), known.joints());
-    let mut q = DMatrix::zeros(size, size);
-    for i in 0..joints {
-        for (part, weights) in options.weights.iter().enumerate() {
-            let weight = weights.get(i).or(weights.last());
-            q[(part * joints + i, part * joints + i)] = weight.copied().unwrap_or(0.0);
-        }
-    }
-    let gains = dlqr(&without, &q, &DMatrix::identity(m, m))?;
+    let gains = regulator(known, options, &without)?;
+    let joints = known.joints();
     let surface = match options.law {
         Law::Regulator => Surface::regulator(gains.k),
         Law::Sliding => Surface::sliding(&without, &gains.riccati)?,
@@ -158,6 +151,19 @@ fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
     } else {
         surface
     })
+}
+
+/// The regulator on the state without offsets, with these weights.
+pub(super) fn regulator(known: &Known, options: &Options, without: &Discrete) -> Result<Gains> {
+    let (size, m, joints) = (without.a.nrows(), known.drives(), known.joints());
+    let mut q = DMatrix::zeros(size, size);
+    for i in 0..joints {
+        for (part, weights) in options.weights.iter().enumerate() {
+            let weight = weights.get(i).or(weights.last());
+            q[(part * joints + i, part * joints + i)] = weight.copied().unwrap_or(0.0);
+        }
+    }
+    dlqr(without, &q, &DMatrix::identity(m, m))
 }
 
 /// The Kalman filter's gains from the first sample on.

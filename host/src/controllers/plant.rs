@@ -18,27 +18,32 @@ pub(super) struct Parts {
 
 /// z(k+1) = A z + B u with z = [angles, speeds, offsets, past inputs, servos].
 pub(super) fn plant(known: &Known, parts: Parts) -> Result<Discrete> {
-    let Continuous { a, b, .. } = &known.plant;
-    let (n, m, joints) = (a.nrows(), b.ncols(), known.joints());
-    let all = if parts.offsets { n + joints } else { n };
-    let (mut wide, mut drive) = (DMatrix::zeros(all, all), DMatrix::zeros(all, m));
-    wide.view_mut((0, 0), (n, n)).copy_from(a);
-    drive.view_mut((0, 0), (n, m)).copy_from(b);
-    if parts.offsets {
-        wide.view_mut((0, n), (n, joints))
-            .copy_from(&-a.columns(0, joints));
-    }
-    let continuous = Continuous {
-        a: wide,
-        b: drive,
-        c: DMatrix::identity(all, all),
-    };
+    let continuous = continuous(known, parts.offsets);
     let delay_s = if parts.delay { known.delay_s } else { 0.0 };
     let sampled = zoh(&continuous, known.period_s, delay_s)?;
     Ok(match known.servo.filter(|_| parts.servo) {
         Some(servo) => behind(&sampled, servo),
         None => sampled,
     })
+}
+
+/// x' = A x + B u, with the angles of balance behind the state if they are wanted.
+pub(super) fn continuous(known: &Known, offsets: bool) -> Continuous {
+    let Continuous { a, b, .. } = &known.plant;
+    let (n, m, joints) = (a.nrows(), b.ncols(), known.joints());
+    let all = if offsets { n + joints } else { n };
+    let (mut wide, mut drive) = (DMatrix::zeros(all, all), DMatrix::zeros(all, m));
+    wide.view_mut((0, 0), (n, n)).copy_from(a);
+    drive.view_mut((0, 0), (n, m)).copy_from(b);
+    if offsets {
+        wide.view_mut((0, n), (n, joints))
+            .copy_from(&-a.columns(0, joints));
+    }
+    Continuous {
+        a: wide,
+        b: drive,
+        c: DMatrix::identity(all, all),
+    }
 }
 
 /// The plant with a servo before each input; their states come last.

@@ -60,6 +60,11 @@ impl Equations {
         }
     }
 
+    /// Moment of each link with all that hangs on its end, p_j above: along the link and across it, kg m.
+    pub fn moments_kg_m(&self) -> &[[f64; 2]] {
+        &self.moment
+    }
+
     /// Number of links.
     pub fn len(&self) -> usize {
         self.own.len()

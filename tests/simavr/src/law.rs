@@ -1,22 +1,40 @@
-//! The control law on the AVR: its answers, and its cycles.
+//! The laws on the AVR: their answers, and their cycles.
 
 use crate::core::{Core, Event};
 use handstand_shared::gains::GainTable;
+use handstand_shared::observer::{INPUTS, Memory, Observer, READINGS, WIDTH};
 use std::path::Path;
 use std::process::Command;
 
-/// The program `law` with a table of gains.
+/// The program `law` with a table of gains and an observer.
 pub struct Law {
     core: Core,
     mailbox: usize,
     asked: u8,
 }
 
+/// A tick of the observer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ObserverTick {
+    /// The inputs wished for.
+    pub wish: [i16; INPUTS],
+    /// What it remembers afterwards.
+    pub memory: Memory,
+    /// Cycles until the wish, marks included.
+    pub wish_cycles: u64,
+    /// Cycles of the update after it, marks included.
+    pub learn_cycles: u64,
+}
+
 // Offsets in the program's mailbox, which is `repr(C)`; the AVR aligns nothing.
 const ANSWERED: usize = 1;
-const X: usize = 2;
+const KIND: usize = 2;
+const X: usize = 3;
 const U: usize = X + 12;
-const BYTES: usize = U + 4;
+const MEMORY: usize = U + 4;
+const MAIL_READINGS: usize = MEMORY + 2 * WIDTH;
+const GIVEN: usize = MAIL_READINGS + 2 * READINGS;
+const BYTES: usize = GIVEN + 2 * INPUTS;
 
 impl Law {
     /// Loads the program.
@@ -44,37 +62,67 @@ impl Law {
 
     /// Hands over a table.
     pub fn set(&mut self, table: &GainTable<2, 6>) {
-        let mut at = self.mailbox + BYTES;
-        table.bytes(|byte| {
-            self.core.data()[at] = byte;
-            at += 1;
-        });
-        self.ask(0x80);
+        let mut bytes = Vec::new();
+        table.bytes(|byte| bytes.push(byte));
+        self.put(BYTES, &bytes);
+        self.ask(1);
+    }
+
+    /// Hands over an observer.
+    pub fn set_observer(&mut self, observer: &Observer) {
+        let mut bytes = Vec::new();
+        observer.bytes(|byte| bytes.push(byte));
+        self.put(BYTES, &bytes);
+        self.ask(3);
     }
 
     /// The inputs for a state, and the cycles between the marks before and after the law.
     pub fn control(&mut self, x: &[i16; 6]) -> ([i16; 2], u64) {
-        for (at, x) in x.iter().enumerate() {
-            let at = self.mailbox + X + 2 * at;
-            self.core.data()[at..at + 2].copy_from_slice(&x.to_le_bytes());
-        }
+        self.put_words(X, x);
         let marks = self.ask(0);
-        let begin = marks.iter().find(|(_, mark)| *mark == 1);
-        let end = marks.iter().find(|(_, mark)| *mark == 2);
-        let cycles = match (begin, end) {
-            (Some((begin, _)), Some((end, _))) => end - begin,
-            _ => panic!("the program made no marks: {marks:?}"),
-        };
-        let u = self.mailbox + U;
+        (self.words(U), between(&marks, 1, 2))
+    }
+
+    /// A tick of the observer.
+    pub fn tick(
+        &mut self,
+        memory: &Memory,
+        readings: &[i16; READINGS],
+        given: &[i16; INPUTS],
+    ) -> ObserverTick {
+        self.put_words(MEMORY, memory.all());
+        self.put_words(MAIL_READINGS, readings);
+        self.put_words(GIVEN, given);
+        let marks = self.ask(2);
+        ObserverTick {
+            wish: self.words(U),
+            memory: Memory::of(self.words(MEMORY)),
+            wish_cycles: between(&marks, 1, 2),
+            learn_cycles: between(&marks, 2, 3),
+        }
+    }
+
+    fn put(&mut self, at: usize, bytes: &[u8]) {
+        let at = self.mailbox + at;
+        self.core.data()[at..at + bytes.len()].copy_from_slice(bytes);
+    }
+
+    fn put_words(&mut self, at: usize, words: &[i16]) {
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        self.put(at, &bytes);
+    }
+
+    fn words<const N: usize>(&mut self, at: usize) -> [i16; N] {
+        let at = self.mailbox + at;
         let data = self.core.data();
-        let u = [u, u + 2].map(|at| i16::from_le_bytes([data[at], data[at + 1]]));
-        (u, cycles)
+        std::array::from_fn(|i| i16::from_le_bytes([data[at + 2 * i], data[at + 2 * i + 1]]))
     }
 
     fn ask(&mut self, kind: u8) -> Vec<(u64, u8)> {
-        self.asked = (self.asked + 1) & 0x7f;
-        let asked = self.asked | kind;
-        self.core.data()[self.mailbox] = asked;
+        self.put(KIND, &[kind]);
+        self.asked = self.asked.wrapping_add(1);
+        let asked = self.asked;
+        self.put(0, &[asked]);
         let mut marks = Vec::new();
         let limit = self.core.cycle() + 1_000_000;
         while self.core.data()[self.mailbox + ANSWERED] != asked {
@@ -87,5 +135,14 @@ impl Law {
             }
         }
         marks
+    }
+}
+
+/// Cycles from one mark to another.
+fn between(marks: &[(u64, u8)], from: u8, to: u8) -> u64 {
+    let at = |wanted| marks.iter().find(|(_, mark)| *mark == wanted);
+    match (at(from), at(to)) {
+        (Some((begin, _)), Some((end, _))) => end - begin,
+        _ => panic!("the program made no marks {from} and {to}: {marks:?}"),
     }
 }

@@ -17,6 +17,6 @@ mod rig;
 #[cfg(simavr)]
 pub use core::{Core, Event};
 #[cfg(simavr)]
-pub use law::Law;
+pub use law::{Law, ObserverTick};
 #[cfg(simavr)]
 pub use rig::{Rig, Seen};

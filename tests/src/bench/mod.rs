@@ -4,15 +4,18 @@ mod balance;
 mod frames;
 #[cfg(simavr)]
 mod law;
+mod laws;
 mod loss;
 mod pc;
 mod power;
+mod robot;
 mod stream;
 
-pub use balance::{Balanced, Conditions, arm_balance, balance, plan};
+pub use balance::{Balanced, Conditions, Tick, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
-pub use law::{LawRun, law};
+pub use law::{LawRun, ObserverRun, law, observer_law};
+pub use laws::{Fixed, Float, HostLaw, Sides, balance_by_host, different, side_by_side};
 #[cfg(simavr)]
 pub use loss::hang;
 pub use loss::{Loss, Worst, arm, link_loss, worst_of};

@@ -30,6 +30,8 @@ pub struct PcBoard {
     pub leds: u8,
     /// The gyro's code.
     pub gyro: u16,
+    /// The plan that was compiled in.
+    pub compiled: Vec<u8>,
     /// Contents of the EEPROM.
     pub eeprom: Vec<u8>,
     eeprom_busy_ns: u64,
@@ -41,7 +43,7 @@ pub struct PcBoard {
 }
 
 impl PcBoard {
-    fn new(eeprom: Vec<u8>, reset_cause: ResetCause) -> Self {
+    fn new(eeprom: Vec<u8>, compiled: Vec<u8>, reset_cause: ResetCause) -> Self {
         PcBoard {
             now_ns: 0,
             next_tick_ns: TICK_NS,
@@ -52,6 +54,7 @@ impl PcBoard {
             buttons: 0,
             leds: 0,
             gyro: 512,
+            compiled,
             eeprom,
             eeprom_busy_ns: 0,
             cut: None,
@@ -133,6 +136,10 @@ impl Board for PcBoard {
         self.gyro
     }
 
+    fn compiled_plan(&self, at: u16) -> Option<u8> {
+        self.compiled.get(usize::from(at)).copied()
+    }
+
     fn eeprom_read(&mut self, address: u16) -> u8 {
         self.now_ns = self.now_ns.max(self.eeprom_busy_ns);
         self.eeprom[usize::from(address)]
@@ -191,7 +198,12 @@ impl PcRig {
 
     /// Starts with this EEPROM, for this reason.
     pub fn boot(eeprom: Vec<u8>, cause: ResetCause) -> Self {
-        let mut board = PcBoard::new(eeprom, cause);
+        Self::with_plan(Vec::new(), eeprom, cause)
+    }
+
+    /// The same with a plan compiled in.
+    pub fn with_plan(compiled: Vec<u8>, eeprom: Vec<u8>, cause: ResetCause) -> Self {
+        let mut board = PcBoard::new(eeprom, compiled, cause);
         let app = App::boot(&mut board);
         PcRig {
             board,

@@ -40,11 +40,11 @@ pub fn find_built() -> Option<Built> {
     built.elf.exists().then_some(built)
 }
 
-/// Builds it. The first time the register definitions are generated too, which takes minutes.
+/// Builds it, with a plan compiled in if one is given. The first time the register definitions are generated too, which takes minutes.
 ///
 /// # Errors
 /// What failed; the compiler's own messages go to stderr.
-pub fn build(toolchain: &Toolchain) -> Result<Built, String> {
+pub fn build(toolchain: &Toolchain, plan: Option<&Path>) -> Result<Built, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut cargo = toolchain.cargo();
     cargo.current_dir(root).args([
@@ -60,6 +60,12 @@ pub fn build(toolchain: &Toolchain) -> Result<Built, String> {
         "-Zbuild-std=core",
         "--target-dir",
     ]);
+    match plan.map(Path::canonicalize) {
+        // The firmware's build script reads it.
+        Some(Ok(plan)) => cargo.env("HANDSTAND_PLAN", plan),
+        Some(Err(error)) => return Err(format!("the plan cannot be read: {error}")),
+        None => cargo.env_remove("HANDSTAND_PLAN"),
+    };
     let status = cargo.arg(folder()).status();
     if !status.is_ok_and(|status| status.success()) {
         return Err(format!("{} could not build the firmware", toolchain.name));

@@ -2,10 +2,14 @@
 
 use handstand_tests::firmware::{self, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolchain};
 use serde_json::json;
+use std::path::PathBuf;
 
 /// Build the CM-5's program: ELF, HEX and BIN.
 #[derive(Debug, Default, clap::Args)]
 pub struct Args {
+    /// A plan to compile in, as `cargo xtask plan` writes it; one in EEPROM wins
+    #[arg(long)]
+    plan: Option<PathBuf>,
     /// Print sizes and files as JSON
     #[arg(long)]
     json: bool,
@@ -13,7 +17,7 @@ pub struct Args {
 
 /// Whether it was built and may be flashed.
 pub fn run(args: &Args) -> bool {
-    match made() {
+    match made(args) {
         Ok((toolchain, built, image)) => {
             show(args, toolchain.name, &built, &image);
             is_fit(&image)
@@ -25,13 +29,13 @@ pub fn run(args: &Args) -> bool {
     }
 }
 
-fn made() -> Result<(Toolchain, Built, Image), String> {
+fn made(args: &Args) -> Result<(Toolchain, Built, Image), String> {
     let toolchain = Toolchain::find()?;
     eprintln!(
         "Building with {}; the first time takes minutes.",
         toolchain.name
     );
-    let built = firmware::build(&toolchain)?;
+    let built = firmware::build(&toolchain, args.plan.as_deref())?;
     let image = Image::of(&built)?;
     Ok((toolchain, built, image))
 }

@@ -4,22 +4,8 @@ use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Where cargo finds the plan, as a path to a Rust file: `pub static PLAN: [u8; N]`.
+/// Where cargo finds the plan, as a path to a Rust file of its bytes.
 pub const PLAN_FILE: &str = "HANDSTAND_PLAN";
-
-/// The plan as a Rust file.
-pub fn header(bytes: &[u8], fingerprint: u32) -> String {
-    let lines = bytes.chunks(16).map(|line| {
-        let line: Vec<String> = line.iter().map(|byte| format!("0x{byte:02x}")).collect();
-        format!("    {},\n", line.join(", "))
-    });
-    format!(
-        "// A plan for the firmware, fingerprint of its gains {fingerprint:08X}. `handstand gains deploy` wrote it.\n\
-         pub static PLAN: [u8; {}] = [\n{}];\n",
-        bytes.len(),
-        lines.collect::<String>()
-    )
-}
 
 /// Builds the firmware of the repository at `root` with this plan; the raw binary.
 ///

@@ -1,42 +1,46 @@
 //! `handstand gains deploy MODEL`: gains from a model onto the CM-5. `handstand deploy` is the same.
 //!
-//! Step by step: designs as `handstand gains` does, with its options; writes the table (`--rust`, `--c`) and the whole plan
-//! (`--header`) as source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash`
-//! builds the firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
-//! fingerprint; and runs the law the CM-5 has, on the table it has, over random states beside the host's wide integers:
+//! Two laws run on the board. `--law observer`, unless told otherwise, is the one that stands on 10-bit positions: a Kalman
+//! filter with known delays and angles of balance, and a regulator behind it; it has weights of its own. `--law state` is
+//! what `handstand gains` designs, with its options, on positions and their differences.
+//!
+//! Step by step: designs; writes the whole plan (`--header`), and of a law on plain states the table (`--rust`, `--c`), as
+//! source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash` builds the
+//! firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
+//! fingerprint; and runs the law the CM-5 has, on the tables it has, over random states beside wide integers:
 //! not a bit may differ.
 //!
-//! The plan is more than the table: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
-//! where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen. States are
-//! in the firmware's steps, so `--state-step` has no place here.
+//! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
+//! slew, where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen.
+//! States are in the firmware's steps, so `--state-step` has no place here.
 //!
 //! ```console
-//! $ handstand gains deploy handstand.toml --q 100 --r 1 --port /dev/ttyUSB0
-//! $ handstand gains deploy handstand.toml --flash --port /dev/ttyUSB0
+//! $ handstand gains deploy handstand.toml --port /dev/ttyUSB0
+//! $ handstand gains deploy handstand.toml --law state --q 100 --r 1 --flash --port /dev/ttyUSB0
 //! ```
 //!
-//! Torque stays off. `--json` prints `steps`, `way` (`upload`, `flash`, null), `fingerprint`, `bytes`, `uploaded`,
+//! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null), `fingerprint`, `bytes`, `uploaded`,
 //! `states_replayed`.
 
 mod build;
 mod plan;
+mod replay;
 mod upload;
 
 use super::flash::{Loader, write};
 use super::port::Port;
 use super::talk::Talk;
 use super::{Outcome, gains};
+use clap::ValueEnum as _;
+use handstand::controllers::plan_file;
 use handstand::link::Session;
 use handstand::link::boot_loader::Image;
 use handstand::output::write_new;
+use handstand::synth::Design;
 use handstand::synth::export::Provenance;
-use handstand::synth::{Design, FixedLaw};
 use handstand::{Error, Model, Result};
-use handstand_shared::gains::GainTable;
-use handstand_shared::law::control;
 use handstand_shared::plan::Plan;
 use plan::Rig;
-use rand::{Rng as _, SeedableRng as _};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +54,9 @@ pub struct Args {
     rig: Rig,
     #[command(flatten)]
     port: Port,
+    /// The law
+    #[arg(long, value_enum, default_value_t = Law::Observer)]
+    law: Law,
     /// Compile the plan into the firmware and write that through the boot loader, instead of uploading it
     #[arg(long)]
     flash: bool,
@@ -70,6 +77,15 @@ pub struct Args {
     /// Send nothing to the CM-5
     #[arg(long)]
     dry_run: bool,
+}
+
+/// What runs on the board.
+#[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Law {
+    /// On an estimated state
+    Observer,
+    /// The designed gains on positions and their differences
+    State,
 }
 
 /// Gains for a model, or what is done with them.
@@ -133,35 +149,53 @@ fn designed(args: &Args, talk: &Talk) -> Result<(gains::Args, Design, Provenance
     Ok((given, design, made))
 }
 
-/// Designs, brings over, reads back, replays.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let mut steps = Steps {
-        done: Vec::new(),
-        talk,
-    };
+/// The plan that was asked for; the files of a design are written.
+fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
+    if args.law == Law::Observer {
+        if let Some(option) = args.gains.for_plain_states() {
+            return Err(Error::usage(
+                format!(
+                    "{option} is for gains on plain states, which `--law observer` does not run"
+                ),
+                "leave it out, or say --law state",
+            ));
+        }
+        return args.rig.observing(&Model::load(args.gains.model())?);
+    }
     let (given, mut design, made) = designed(args, talk)?;
-    plan::tell_from_upright(&mut design, &Model::load(given.model())?)?;
+    let model = Model::load(given.model())?;
+    plan::tell_from_upright(&mut design, &model)?;
     let fixed = design.fixed.as_ref().ok_or_else(|| {
         Error::usage(
             "gains for continuous time have no table",
             "leave --continuous out",
         )
     })?;
-    let plan = args.rig.plan(&design, &fixed.law)?;
-    let fingerprint = plan.table.fingerprint();
+    let plan = args.rig.regulating(&model, &design, &fixed.law)?;
+    gains::write(&given, &design, &made, talk)?;
+    Ok(plan)
+}
+
+/// Designs, brings over, reads back, replays.
+pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+    let mut steps = Steps {
+        done: Vec::new(),
+        talk,
+    };
+    let plan = planned(args, talk)?;
+    let fingerprint = plan.fingerprint();
     let mut bytes = Vec::new();
     plan.bytes(|byte| bytes.push(byte));
     steps.say(format!(
         "designed: fingerprint {fingerprint:08X}, a plan of {} bytes",
         bytes.len()
     ));
-    gains::write(&given, &design, &made, talk)?;
     if let Some(file) = &args.header {
-        write_new(file, &build::header(&bytes, fingerprint), given.force())?;
+        write_new(file, &plan_file(&plan, &talk.command), args.gains.force())?;
         steps.say(format!("wrote {}", file.display()));
     }
     let back = match args.flash {
-        true => flash(args, &bytes, fingerprint, &mut steps)?,
+        true => flash(args, &plan, &bytes, &mut steps)?,
         false => upload(args, &bytes, fingerprint, &mut steps)?,
     };
     let back = Plan::from_bytes(&back).ok_or_else(|| {
@@ -170,9 +204,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "flash the firmware that belongs to this program",
         )
     })?;
-    replay(&back.table, &fixed.law, args, talk)?;
+    replay::replay(&back.law, args.states, args.seed, talk)?;
     steps.say(format!(
-        "replayed: its law on its table equals the host's bit for bit over {} states",
+        "replayed: its law on its tables equals wide integers bit for bit over {} states",
         args.states
     ));
     let way = match (args.dry_run, args.flash) {
@@ -183,6 +217,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         return talk
             .data(&json!({
+                "law": args.law.to_possible_value().map(|law| law.get_name().to_string()),
                 "steps": steps.done,
                 "way": way,
                 "fingerprint": format!("{fingerprint:08X}"),
@@ -213,11 +248,11 @@ fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Res
     verified(&mut session, bytes, fingerprint, steps)
 }
 
-fn flash(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Result<Vec<u8>> {
+fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut Steps) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()
         .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
     let file = folder.path().join("plan.rs");
-    write_new(&file, &build::header(bytes, fingerprint), false)?;
+    write_new(&file, &plan_file(plan, &steps.talk.command), false)?;
     let bin = build::build(&args.firmware, &file)?;
     let image = Image::load(&bin)?;
     steps.say(format!(
@@ -233,7 +268,7 @@ fn flash(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Resu
     // It starts within its first second.
     std::thread::sleep(std::time::Duration::from_secs(1));
     let mut session = Session::open(args.port.open()?)?;
-    verified(&mut session, bytes, fingerprint, steps)
+    verified(&mut session, bytes, plan.fingerprint(), steps)
 }
 
 fn verified(
@@ -248,34 +283,4 @@ fn verified(
         back.len()
     ));
     Ok(back)
-}
-
-/// The law as the firmware computes it, beside the host's.
-fn replay(
-    table: &GainTable<INPUTS, STATES>,
-    law: &FixedLaw,
-    args: &Args,
-    talk: &Talk,
-) -> Result<()> {
-    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(args.seed);
-    let bar = talk.bar();
-    bar.set_length(args.states);
-    for count in 0..args.states {
-        let x: [i16; STATES] = random.random();
-        let wide = law.raw(&x.map(i64::from));
-        if control(table, &x).map(i64::from)[..] != wide[..] {
-            return Err(Error::device(
-                format!(
-                    "the laws differ at the states {x:?}: {:?}, the host's {wide:?}",
-                    control(table, &x)
-                ),
-                "this is a bug; please report it with the model",
-            ));
-        }
-        if count % 4096 == 0 {
-            bar.set_position(count);
-        }
-    }
-    bar.finish_and_clear();
-    Ok(())
 }

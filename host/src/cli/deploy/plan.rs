@@ -1,15 +1,15 @@
-//! From a design to the plan that the firmware runs: its table in the firmware's own steps, and how inputs meet servos.
+//! What the robot is like beside its model, and the plan that follows.
 
-use super::INPUTS;
-use super::STATES;
+use super::{INPUTS, STATES};
 use crate::cli::given::Given;
+use handstand::controllers::{Fitting, Servo, Timing, board_plan, regulator_plan};
 use handstand::link::SimRobot;
 use handstand::model::Angles;
 use handstand::synth::{Design, FixedLaw, Weight, upright};
 use handstand::{Error, Model, Result};
 use handstand_shared::gains::GainTable;
 use handstand_shared::message::Attitude;
-use handstand_shared::plan::{Gyro, Joint, Plan};
+use handstand_shared::plan::{Gyro, Plan};
 use handstand_shared::raw::Position;
 use handstand_shared::velocity::Velocity;
 
@@ -31,6 +31,9 @@ pub struct Rig {
     /// Largest share of full output
     #[arg(long, default_value_t = 1.0)]
     most: f64,
+    /// Largest change of a torque in a tick, N m
+    #[arg(long, default_value_t = 1.0)]
+    slew: f64,
     /// Take the first link's rate from the gyro at the ADC, so many rad/s per code; else from the PC
     #[arg(long, value_name = "RAD_S", allow_negative_numbers = true)]
     gyro_per_code: Option<f64>,
@@ -77,11 +80,24 @@ impl Rig {
         is_coarse.then(|| Given::Numbers(Weight::Diagonal(vec![step; law.input_step.len()])))
     }
 
-    /// The plan of this design.
+    /// The plan of a law on an estimated state.
+    ///
+    /// # Errors
+    /// A model the firmware has no law for, or values that fit no register.
+    pub fn observing(&self, model: &Model) -> Result<Plan> {
+        relative(model)?;
+        let timing = match self.gyro_per_code {
+            Some(_) => Timing::GYRO,
+            None => Timing::HOST_ATTITUDE,
+        };
+        Ok(board_plan(model, &self.fitting()?, &timing)?.1)
+    }
+
+    /// The plan of this design: its gains on plain states.
     ///
     /// # Errors
     /// A design the firmware has no law for, or values that fit no register.
-    pub fn plan(&self, design: &Design, law: &FixedLaw) -> Result<Plan> {
+    pub fn regulating(&self, model: &Model, design: &Design, law: &FixedLaw) -> Result<Plan> {
         let ts_s = design.sampled.as_ref().map_or(0.0, |(plant, _)| plant.ts_s);
         if (ts_s - PERIOD_S).abs() > 1e-9 {
             return Err(Error::design(
@@ -90,61 +106,34 @@ impl Rig {
             ));
         }
         let table = table(law)?;
+        let steps = [law.input_step[0], law.input_step[1]];
+        regulator_plan(model, &self.fitting()?, table, VELOCITY, steps)
+    }
+
+    fn fitting(&self) -> Result<Fitting> {
         let [shoulder, hip] = &self.joints.0[..] else {
             return Err(Error::usage(
                 format!("--joints names {} joints", self.joints.0.len()),
                 "name the servos of shoulder and hip: 1+2/11+12",
             ));
         };
-        let plan = Plan {
-            table,
-            joints: [
-                self.joint(shoulder, law.input_step[0])?,
-                self.joint(hip, law.input_step[1])?,
-            ],
-            velocity: VELOCITY,
+        let full_nm = fitting("--full-torque", self.full_torque, 1e-3, 1e3)?;
+        let range = fitting(
+            "--fallen",
+            self.fallen / Attitude::ANGLE_LSB_RAD,
+            0.0,
+            65_535.0,
+        )?;
+        Ok(Fitting {
+            period_s: PERIOD_S,
+            servos: [servo(shoulder)?, servo(hip)?],
+            full_nm,
+            most_nm: full_nm * fitting("--most", self.most, 1e-3, 1.0)?,
+            dead_zone: fitting("--dead-zone", self.dead_zone, 0.0, 0.999)?,
+            begins_at_nothing: true,
+            slew_nm: fitting("--slew", self.slew, 1e-3, 1e3)?,
             gyro: self.gyro()?,
-            range: fitting(
-                "--fallen",
-                self.fallen / Attitude::ANGLE_LSB_RAD,
-                0.0,
-                65_535.0,
-            )? as u16,
-        };
-        let mut bytes = Vec::new();
-        plan.bytes(|byte| bytes.push(byte));
-        match Plan::from_bytes(&bytes) {
-            Some(read) if read == plan => Ok(plan),
-            _ => Err(Error::design(
-                "the firmware would refuse this plan: the table could overflow, or the dead zone is beyond the largest output",
-                "weigh the inputs more (a larger --r), or give other --dead-zone and --most",
-            )),
-        }
-    }
-
-    fn joint(&self, ids: &[u8], input_step_nm: f64) -> Result<Joint> {
-        let (id, mirror) = match ids {
-            [id] => (*id, 255),
-            [id, mirror] => (*id, *mirror),
-            _ => {
-                return Err(Error::usage(
-                    format!("{} servos in a joint", ids.len()),
-                    "the firmware drives one or two: 1+2/11+12",
-                ));
-            }
-        };
-        let dead = fitting("--dead-zone", self.dead_zone * 1023.0, 0.0, 1023.0)?;
-        let full = fitting("--full-torque", self.full_torque, 1e-3, 1e3)?;
-        let gain = input_step_nm / full * (1023.0 - dead.round()) * 65_536.0;
-        Ok(Joint {
-            id,
-            mirror,
-            reversed: false,
-            centre: Position::CENTRE.0,
-            dead: dead.round() as u16,
-            gain: fitting("a joint's command per step of torque", gain, 1.0, 65_535.0)?.round()
-                as u16,
-            most: fitting("--most", self.most * 1023.0, 1.0, 1023.0)?.round() as u16,
+            range_rad: range * Attitude::ANGLE_LSB_RAD,
         })
     }
 
@@ -166,20 +155,32 @@ impl Rig {
     }
 }
 
+/// A joint's servos.
+fn servo(ids: &[u8]) -> Result<Servo> {
+    let (id, mirror) = match ids {
+        [id] => (*id, 255),
+        [id, mirror] => (*id, *mirror),
+        _ => {
+            return Err(Error::usage(
+                format!("{} servos in a joint", ids.len()),
+                "the firmware drives one or two: 1+2/11+12",
+            ));
+        }
+    };
+    Ok(Servo {
+        id,
+        mirror,
+        reversed: false,
+        centre: Position::CENTRE.0,
+    })
+}
+
 /// Tells the operating point from upright, as the firmware tells angles.
 ///
 /// # Errors
 /// Angles that are not relative: the firmware's are the servos' own.
 pub fn tell_from_upright(design: &mut Design, model: &Model) -> Result<()> {
-    if model.angles == Angles::Absolute {
-        return Err(Error::design(
-            format!(
-                "`{}` has absolute angles, servos measure relative ones",
-                model.name
-            ),
-            "give a model with `angles = \"relative\"`",
-        ));
-    }
+    relative(model)?;
     let up = upright(model);
     design.x0.iter_mut().zip(&up).for_each(|(x0, up)| *x0 -= up);
     if let Some(fixed) = &mut design.fixed {
@@ -189,6 +190,19 @@ pub fn tell_from_upright(design: &mut Design, model: &Model) -> Result<()> {
         }
     }
     Ok(())
+}
+
+fn relative(model: &Model) -> Result<()> {
+    match model.angles {
+        Angles::Relative => Ok(()),
+        Angles::Absolute => Err(Error::design(
+            format!(
+                "`{}` has absolute angles, servos measure relative ones",
+                model.name
+            ),
+            "give a model with `angles = \"relative\"`",
+        )),
+    }
 }
 
 fn table(law: &FixedLaw) -> Result<GainTable<INPUTS, STATES>> {
@@ -208,7 +222,7 @@ fn fitting(name: &str, value: f64, least: f64, most: f64) -> Result<f64> {
     match (least..=most).contains(&value) {
         true => Ok(value),
         false => Err(Error::usage(
-            format!("{name} comes to {value:.1}, which fits no register"),
+            format!("{name} comes to {value}, which does not fit"),
             format!("it has to lie between {least} and {most}"),
         )),
     }

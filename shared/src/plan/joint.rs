@@ -1,0 +1,172 @@
+//! One driven joint: from its servo's position to the law's reading, from the law's wish to the servo's command.
+
+use crate::raw::{Position, Signed};
+
+/// One driven joint, moved by one servo or by two facing each other, in wheel mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Joint {
+    /// The servo that measures and drives.
+    pub id: u8,
+    /// The servo that drives along, mirrored; 255 if there is none.
+    pub mirror: u8,
+    /// Whether the joint's angle falls when the servo turns counter-clockwise.
+    pub reversed: bool,
+    /// Position code at the joint's zero.
+    pub centre: u16,
+    /// Command at which the servo begins to move: its dead zone, jumped over.
+    pub dead: u16,
+    /// Command codes per step of the law's input, times 65536.
+    pub gain: u16,
+    /// Least input that surely passes, in steps, where a servo obeys whole what it obeys at all: less is saved up until it
+    /// is worth giving. 0 for servos whose torque begins at nothing behind the dead zone.
+    pub least: i16,
+    /// Largest input, in steps: the torque limit.
+    pub most: i16,
+    /// Largest change of the input in one tick, in steps.
+    pub slew: i16,
+}
+
+/// What was given last, and what is still owed, in steps of the input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Given {
+    /// The input given last.
+    pub input: i16,
+    owed: i16,
+}
+
+impl Given {
+    /// Nothing given, nothing owed.
+    pub const NOTHING: Given = Given { input: 0, owed: 0 };
+}
+
+impl Joint {
+    pub(super) const LENGTH: usize = 15;
+
+    pub(super) const ZERO: Joint = Joint {
+        id: 0,
+        mirror: 0,
+        reversed: false,
+        centre: 0,
+        dead: 0,
+        gain: 0,
+        least: 0,
+        most: 0,
+        slew: 0,
+    };
+
+    /// Angle in position codes from the centre.
+    pub fn angle(&self, position: Position) -> i16 {
+        let angle = (position.0 as i16).wrapping_sub(self.centre as i16);
+        if self.reversed { -angle } else { angle }
+    }
+
+    /// The input that is given for one that is wished for: within the limits of size and change, and never one that would
+    /// vanish in the dead zone. What falls short of `least` is owed.
+    pub fn give(&self, given: &mut Given, wish: i16) -> i16 {
+        let owed = wish.saturating_add(given.owed);
+        let half = self.least / 2;
+        let whole = if owed.unsigned_abs() < half.unsigned_abs() {
+            0
+        } else {
+            self.beyond_least(owed)
+        };
+        let last = given.input;
+        let (low, high) = (
+            last.saturating_sub(self.slew),
+            last.saturating_add(self.slew),
+        );
+        let mut input = whole.max(-self.most).min(self.most).max(low).min(high);
+        if input != 0 && input.unsigned_abs() < self.least.unsigned_abs() {
+            // The slew's limit lies in the dead zone: nothing, or as little as passes on the side it comes from.
+            input = match (low..=high).contains(&0) {
+                true => 0,
+                false => self.beyond_least(last.signum()),
+            };
+        }
+        given.input = input;
+        // What a limit holds back is not owed: it would come when it is no longer wanted.
+        given.owed = owed.saturating_sub(input).max(-half).min(half);
+        input
+    }
+
+    fn beyond_least(&self, input: i16) -> i16 {
+        if input < 0 {
+            input.min(-self.least)
+        } else {
+            input.max(self.least)
+        }
+    }
+
+    /// The command for an input: nothing for nothing, else beyond the dead zone.
+    pub fn command(&self, input: i16) -> i16 {
+        if input == 0 {
+            return 0;
+        }
+        let size = u32::from(input.unsigned_abs()) * u32::from(self.gain);
+        let size = (size.wrapping_add(0x8000) >> 16) as u16;
+        let size = size.saturating_add(self.dead).min(1023);
+        let clockwise = (input < 0) != self.reversed;
+        if clockwise {
+            -(size as i16)
+        } else {
+            size as i16
+        }
+    }
+
+    /// Both servos' commands, each with its id.
+    pub fn commands(&self, command: i16) -> impl Iterator<Item = (u8, Signed)> + use<> {
+        let pair = [(self.id, command), (self.mirror, -command)];
+        let there = pair.into_iter().filter(|(id, _)| *id < 254);
+        there.map(|(id, command)| (id, Signed::new(command)))
+    }
+
+    pub(super) fn is_sound(&self) -> bool {
+        self.id < 254
+            && self.centre <= 1023
+            && self.dead <= 1023
+            && (0..=self.most).contains(&self.least)
+            // Else it could never leave nothing.
+            && self.slew >= self.least.max(1)
+    }
+
+    pub(super) fn bytes(&self, sink: &mut impl FnMut(u8)) {
+        [self.id, self.mirror, u8::from(self.reversed)]
+            .into_iter()
+            .for_each(&mut *sink);
+        let codes = [self.centre, self.dead, self.gain].map(u16::to_le_bytes);
+        let steps = [self.least, self.most, self.slew].map(i16::to_le_bytes);
+        let words = codes.into_iter().chain(steps);
+        words.flatten().for_each(sink);
+    }
+
+    pub(super) fn from_bytes(bytes: [u8; Joint::LENGTH]) -> Self {
+        let [
+            id,
+            mirror,
+            reversed,
+            c0,
+            c1,
+            d0,
+            d1,
+            g0,
+            g1,
+            l0,
+            l1,
+            m0,
+            m1,
+            s0,
+            s1,
+        ] = bytes;
+        Joint {
+            id,
+            mirror,
+            reversed: reversed != 0,
+            centre: u16::from_le_bytes([c0, c1]),
+            dead: u16::from_le_bytes([d0, d1]),
+            gain: u16::from_le_bytes([g0, g1]),
+            least: i16::from_le_bytes([l0, l1]),
+            most: i16::from_le_bytes([m0, m1]),
+            slew: i16::from_le_bytes([s0, s1]),
+        }
+    }
+}

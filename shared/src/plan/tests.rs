@@ -1,0 +1,151 @@
+extern crate std;
+use super::*;
+use crate::raw::{Position, Signed};
+use proptest::prelude::*;
+use std::vec::Vec;
+
+const JOINT: Joint = Joint {
+    id: 1,
+    mirror: 2,
+    reversed: false,
+    centre: 512,
+    dead: 80,
+    gain: 1 << 15,
+    least: 0,
+    most: 1840,
+    slew: 1840,
+};
+
+fn plan(law: Law) -> Plan {
+    Plan {
+        law,
+        joints: [
+            JOINT,
+            Joint {
+                id: 11,
+                mirror: 255,
+                reversed: true,
+                ..JOINT
+            },
+        ],
+        gyro: Gyro {
+            from_host: true,
+            zero: 512,
+            scale: -77,
+        },
+        moments: [
+            Moment {
+                along: 1000,
+                aside: -3,
+            },
+            Moment::ZERO,
+            Moment {
+                along: 500,
+                aside: 7,
+            },
+        ],
+        range: 5000,
+    }
+}
+
+fn laws() -> [Law; 2] {
+    let table = GainTable::new(
+        [[1, -2, 3, -4, 5, -6]; 2],
+        [7; 2],
+        [16; 2],
+        [[-9, 9]; 2],
+        [0; 6],
+    );
+    let velocity = Velocity {
+        fraction: 4,
+        share: 128,
+    };
+    let mut observer = Observer::ZERO;
+    observer.update.rows[3].k[20] = 77;
+    observer.reading_places = [1, 2, 3, 4];
+    observer.balance_places = [5, 6, 7];
+    [Law::State { table, velocity }, Law::Observer(observer)]
+}
+
+fn bytes_of(plan: &Plan) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    plan.bytes(|byte| bytes.push(byte));
+    bytes
+}
+
+#[test]
+fn a_plan_survives_its_bytes_and_others_are_refused() {
+    for plan in laws().map(plan) {
+        let mut bytes = bytes_of(&plan);
+        assert!(bytes.len() <= Plan::MOST);
+        assert_eq!(Plan::from_bytes(&bytes), Some(plan));
+        assert_eq!(plan.fingerprint(), crate::crc::crc32(&bytes));
+        for length in 0..bytes.len() {
+            assert_eq!(Plan::from_bytes(&bytes[..length]), None);
+        }
+        bytes.push(0);
+        assert_eq!(Plan::from_bytes(&bytes), None);
+        let mut unsound = plan;
+        unsound.joints[0].dead = 1024;
+        assert_eq!(Plan::from_bytes(&bytes_of(&unsound)), None);
+        unsound = plan;
+        (unsound.joints[1].least, unsound.joints[1].slew) = (20, 19);
+        assert_eq!(Plan::from_bytes(&bytes_of(&unsound)), None);
+    }
+    assert_eq!(bytes_of(&plan(laws()[1])).len(), Plan::MOST);
+    assert_eq!(Plan::from_bytes(&bytes_of(&Plan::ZERO)), None);
+}
+
+#[test]
+fn commands_jump_over_the_dead_zone_and_stop_at_the_last_code() {
+    assert_eq!(
+        [0, 1, 2, 200, -200, 30_000].map(|u| JOINT.command(u)),
+        [0, 81, 81, 180, -180, 1023]
+    );
+    let reversed = plan(laws()[0]).joints[1];
+    assert_eq!(
+        (reversed.command(200), reversed.angle(Position(500))),
+        (-180, 12)
+    );
+    let both: Vec<_> = JOINT.commands(-180).collect();
+    assert_eq!(both, [(1, Signed::new(-180)), (2, Signed::new(180))]);
+    assert_eq!(reversed.commands(5).count(), 1);
+}
+
+#[test]
+fn the_mean_of_what_is_given_is_what_was_wished_for() {
+    let joint = Joint {
+        least: 250,
+        ..JOINT
+    };
+    for wish in [-200, -30, 10, 100, 124, 200, 700] {
+        let mut given = Given::NOTHING;
+        let sum: i32 = (0..1000)
+            .map(|_| i32::from(joint.give(&mut given, wish)))
+            .sum();
+        assert!((sum - 1000 * i32::from(wish)).abs() <= 250, "{wish}: {sum}");
+    }
+}
+
+proptest! {
+    /// Whatever is wished for: within the limits, never a change beyond the slew, never lost in the dead zone.
+    #[test]
+    fn limits_hold(
+        least in 0i16..300,
+        more in 0i16..2000,
+        slew in 0i16..2000,
+        wishes in prop::collection::vec(any::<i16>(), 1..60),
+        small in prop::collection::vec(-400i16..400, 1..60),
+    ) {
+        let joint = Joint { least, most: least.saturating_add(more), slew: least.max(1).saturating_add(slew), ..JOINT };
+        let mut given = Given::NOTHING;
+        let mut last = 0;
+        for wish in wishes.into_iter().chain(small) {
+            let input = joint.give(&mut given, wish);
+            prop_assert!(input.abs() <= joint.most);
+            prop_assert!((i32::from(input) - i32::from(last)).abs() <= i32::from(joint.slew));
+            prop_assert!(input == 0 || input.abs() >= joint.least, "{input}");
+            last = input;
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The laws side by side: in floating point and in fixed point on the host, in a loop timed like the CM-5's; and the
+//! CM-5's own, told tick by tick what it saw.
+
+use super::Bench;
+use super::balance::{Balanced, Conditions, Tick, balance, plan};
+use super::robot::{FULL_NM, Robot, STEP_MS};
+use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
+use handstand_shared::message::{Attitude, Refusal};
+use handstand_shared::observer::{FINE, Memory, WIDTH};
+use handstand_shared::plan::{Given, Law, Plan};
+use handstand_shared::raw::{Position, Signed};
+
+/// A law of the host, between readings in steps and commands in codes.
+pub trait HostLaw {
+    /// Commands at these readings; goes on by a tick.
+    fn commands(&mut self, readings: [i16; 4]) -> [i16; 2];
+}
+
+/// The plan's law with the firmware's own fixed-point code.
+pub struct Fixed<'a> {
+    plan: &'a Plan,
+    memory: Option<Memory>,
+    given: [Given; 2],
+}
+
+/// The machine as it was designed, with the plan's servos.
+pub struct Float<'a> {
+    plan: &'a Plan,
+    machine: &'a OnBoard,
+    memory: Option<[f64; WIDTH]>,
+}
+
+impl<'a> Fixed<'a> {
+    /// Before its first readings.
+    pub fn new(plan: &'a Plan) -> Self {
+        Fixed {
+            plan,
+            memory: None,
+            given: [Given::NOTHING; 2],
+        }
+    }
+}
+
+impl<'a> Float<'a> {
+    /// Before its first readings.
+    pub fn new(plan: &'a Plan, machine: &'a OnBoard) -> Self {
+        Float {
+            plan,
+            machine,
+            memory: None,
+        }
+    }
+}
+
+impl HostLaw for Fixed<'_> {
+    fn commands(&mut self, [angle, q2, q3, rate]: [i16; 4]) -> [i16; 2] {
+        let Law::Observer(observer) = &self.plan.law else {
+            panic!("the plan has an observer")
+        };
+        let readings = [angle, q2 << FINE, q3 << FINE, rate];
+        let memory = self.memory.get_or_insert_with(|| {
+            let mut memory = Memory::ZERO;
+            observer.start(&mut memory, &readings, [0; 3]);
+            memory
+        });
+        let wish = observer.wish(memory, &readings);
+        let joints = &self.plan.joints;
+        let given = [0, 1].map(|i| joints[i].give(&mut self.given[i], wish[i]));
+        observer.learn(memory, given);
+        [0, 1].map(|i| joints[i].command(given[i]))
+    }
+}
+
+impl HostLaw for Float<'_> {
+    fn commands(&mut self, [angle, q2, q3, rate]: [i16; 4]) -> [i16; 2] {
+        let step = board_steps();
+        let readings = [angle, q2 << FINE, q3 << FINE, rate];
+        let reading_step = reading_steps();
+        let readings: [f64; 4] = std::array::from_fn(|i| f64::from(readings[i]) * reading_step[i]);
+        let memory = self.memory.get_or_insert_with(|| {
+            let mut memory = [0.0; WIDTH];
+            memory[..3].copy_from_slice(&readings[..3]);
+            memory
+        });
+        let wish = self.machine.wish(memory, &readings);
+        let given = wish.map(|torque| torque.clamp(-FULL_NM, FULL_NM));
+        self.machine.learn(memory, given);
+        [0, 1].map(|i| self.plan.joints[i].command((given[i] / step[WIDTH - 1]).round() as i16))
+    }
+}
+
+/// How many ticks of the firmware differ from the fixed law on the same readings, and how many were compared.
+///
+/// The firmware's memory is not told, so that the fixed law follows from the first tick on: one difference would show in
+/// all later ones.
+pub fn different(plan: &Plan, ticks: &[Tick]) -> (usize, usize) {
+    let mut fixed = Fixed::new(plan);
+    let commands = ticks.iter().map(|tick| fixed.commands(tick.readings));
+    let different = commands
+        .zip(ticks)
+        .filter(|(commands, tick)| *commands != tick.commands)
+        .count();
+    (different, ticks.len())
+}
+
+/// Lets the robot go under a host's law, its readings and torques as late as the CM-5's.
+pub fn balance_by_host(
+    law: &mut dyn HostLaw,
+    conditions: &Conditions,
+    timing: &Timing,
+    seconds: f64,
+) -> Balanced {
+    let mut robot = Robot::new(conditions);
+    let in_steps = |time_s: f64| (time_s * 1e3 / STEP_MS).round() as usize;
+    let period = in_steps(0.01);
+    let mut past = vec![robot.readings()];
+    let mut torque_nm = [0.0; 2];
+    let mut next_nm = [0.0; 2];
+    let mut square = [0.0; 3];
+    let (mut counted, mut stood_s) = (0, 0.0);
+    for step in 1..=in_steps(seconds) {
+        let at = (step - 1) % period;
+        if at == 0 {
+            let ago = |place: usize| {
+                past[past.len() - 1 - in_steps(timing.age_s[place]).min(past.len() - 1)][place]
+            };
+            let code = |rad: f64| {
+                (i32::from(Position::from_rad(rad).0) - i32::from(Position::CENTRE.0)) as i16
+            };
+            let attitude = |value: f64, step: f64| (value / step).round() as i16;
+            let readings = [
+                attitude(ago(0), Attitude::ANGLE_LSB_RAD),
+                code(ago(1)),
+                code(ago(2)),
+                attitude(ago(3), Attitude::RATE_LSB_RAD_S),
+            ];
+            let commands = law.commands(readings);
+            next_nm = commands.map(|code| robot.torque(f64::from(code) * Signed::OUTPUT_LSB));
+        }
+        if at == in_steps(timing.effect_s) {
+            torque_nm = next_nm;
+        }
+        robot.advance(torque_nm);
+        past.push(robot.readings());
+        if robot.has_fallen() {
+            break;
+        }
+        stood_s = step as f64 * STEP_MS * 1e-3;
+        if stood_s > 1.0 {
+            counted += 1;
+            let values = [robot.lean_rad(), torque_nm[0], torque_nm[1]];
+            (square.iter_mut().zip(values)).for_each(|(sum, value)| *sum += value * value);
+        }
+    }
+    let rms = square.map(|sum: f64| (sum / f64::from(counted.max(1))).sqrt());
+    Balanced {
+        stood_s,
+        rms_rad: rms[0],
+        torque_rms_nm: [rms[1], rms[2]],
+        condition: None,
+        ticks: Vec::new(),
+    }
+}
+
+/// The same start under three laws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sides {
+    /// Floating point on the host.
+    pub float: Balanced,
+    /// Fixed point on the host.
+    pub fixed: Balanced,
+    /// The firmware's, or what it refused.
+    pub board: Result<Balanced, Option<Refusal>>,
+    /// Ticks in which the firmware differs from the fixed law on the same readings, and ticks compared.
+    pub different: (usize, usize),
+}
+
+/// Lets the robot go from the same start under all three laws.
+pub fn side_by_side(bench: &mut impl Bench, conditions: &Conditions, seconds: f64) -> Sides {
+    let (machine, plan) = plan();
+    let timing = Timing::HOST_ATTITUDE;
+    let board = balance(bench, &plan, conditions, seconds);
+    let ticks = board.as_ref().map_or(&[][..], |board| &board.ticks);
+    let mut float = Float::new(&plan, &machine);
+    let mut fixed = Fixed::new(&plan);
+    Sides {
+        different: different(&plan, ticks),
+        float: balance_by_host(&mut float, conditions, &timing, seconds),
+        fixed: balance_by_host(&mut fixed, conditions, &timing, seconds),
+        board,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::robot::model;
+    use handstand::controllers::{Fitting, board_plan};
+
+    const TWO: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
+    /// From two degrees in every combination of signs, with attitude from the host or a gyro alone.
+    #[test]
+    fn both_laws_of_the_host_stand() {
+        for timing in [Timing::HOST_ATTITUDE, Timing::GYRO] {
+            let (machine, plan) = board_plan(&model(), &Fitting::BIOLOID, &timing).unwrap();
+            for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+                let conditions = Conditions {
+                    dead_zone: 0.08,
+                    eccentric_m: [0.0; 3],
+                    start_rad: [TWO, signs[0] * TWO, signs[1] * TWO],
+                };
+                let float =
+                    balance_by_host(&mut Float::new(&plan, &machine), &conditions, &timing, 10.0);
+                let fixed = balance_by_host(&mut Fixed::new(&plan), &conditions, &timing, 10.0);
+                for run in [&float, &fixed] {
+                    assert!(run.stood_s >= 10.0 && run.rms_rad < 0.06, "{run:?}");
+                }
+                assert!(
+                    (float.rms_rad - fixed.rms_rad).abs() < 0.01,
+                    "{float:?} {fixed:?}"
+                );
+            }
+        }
+    }
+}
