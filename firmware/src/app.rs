@@ -86,6 +86,8 @@ pub struct App {
     tick_us: u16,
     longest_tick_us: u16,
     longest_law_us: u16,
+    /// Whether it has looked for a plan.
+    has_looked: bool,
 }
 
 impl App {
@@ -97,7 +99,7 @@ impl App {
         } else {
             State::Bridge
         };
-        let mut app = App {
+        App {
             state,
             link: Link::default(),
             filter: Filter::default(),
@@ -119,9 +121,8 @@ impl App {
             tick_us: 0,
             longest_tick_us: 0,
             longest_law_us: 0,
-        };
-        app.load_plan(board);
-        app
+            has_looked: false,
+        }
     }
 
     /// What it is doing.
@@ -146,6 +147,11 @@ impl App {
 
     /// One turn of the main loop: passes bytes on, and runs a tick when it is due.
     pub fn run<B: Board>(&mut self, board: &mut B) {
+        if !self.has_looked {
+            // Not while booting: what boots is moved, and RAM has no room for two plans.
+            self.has_looked = true;
+            self.load_plan(board);
+        }
         self.pump(board);
         if board.tick_due() {
             self.tick(board);
