@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Build the CM-5's program: ELF, HEX and BIN.
 #[derive(Debug, Default, clap::Args)]
 pub struct Args {
-    /// A plan to compile in, as `cargo xtask plan` writes it; one in EEPROM wins
+    /// A plan to compile in, as `handstand gains deploy --header` writes it; one in EEPROM wins
     #[arg(long)]
     plan: Option<PathBuf>,
     /// Print sizes and files as JSON

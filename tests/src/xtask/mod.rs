@@ -7,7 +7,6 @@ mod firmware;
 mod hidden;
 mod install;
 mod peers;
-mod plan;
 mod program;
 mod python;
 mod real;
@@ -37,8 +36,6 @@ enum Chore {
     Real(real::Args),
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(firmware::Args),
-    /// Write the plan of the repository's robot, to be compiled in
-    Plan(plan::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
     /// Kill recorders, and read what is left of their files
@@ -59,7 +56,6 @@ impl Chores {
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
             Chore::Firmware(args) => firmware::run(args),
-            Chore::Plan(args) => plan::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             #[cfg(unix)]
             Chore::BenchRecord(args) => bench_record::run(args),
