@@ -10,25 +10,19 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     let bench = Bench::new();
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
     let ran = bench.run(&format!(
-        "gains deploy {model} --port sim-cm5 --states 20000 --rust gains.rs --header plan.rs --tap bytes.txt --json"
+        "gains deploy {model} --law state --port sim-cm5 --states 20000 --rust gains.rs --header plan.rs --tap bytes.txt --json"
     ));
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
     assert_eq!(
-        (&data["uploaded"], &data["bytes"]),
-        (&true.into(), &89.into())
+        (&data["uploaded"], &data["law"]),
+        (&true.into(), &"state".into())
     );
     // The very fingerprint that the generated file carries.
     let fingerprint = data["fingerprint"].as_str().unwrap();
-    assert!(
-        bench.get("gains.rs").to_uppercase().contains(fingerprint),
-        "{fingerprint}"
-    );
-    assert!(
-        bench
-            .get("plan.rs")
-            .contains("pub static PLAN: [u8; 89] = [")
-    );
+    let (plan, table) = (bench.get("plan.rs"), bench.get("gains.rs"));
+    assert!(plan.contains(fingerprint), "{fingerprint}: {plan}");
+    assert!(table.contains("pub const K"), "{table}");
     let steps: Vec<&str> = (data["steps"].as_array().unwrap().iter())
         .map(|step| step.as_str().unwrap().split(':').next().unwrap())
         .collect();
@@ -45,10 +39,12 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     // What no register takes, and what the firmware prescribes.
     for (option, code, said) in [
         ("--dead-zone 1.5", 2, "--dead-zone"),
-        ("--dead-zone 0.9 --most 0.5", 3, "would refuse"),
+        ("--slew 0", 2, "--slew"),
         ("--joints 1+2", 2, "--joints names 1"),
-        ("--state-step 1,1,1,1,1,1", 2, "--state-step"),
-        ("--ts 0.02", 3, "ticks every 0.01 s"),
+        ("--joints 300/11", 2, "--joints"),
+        ("--q 10", 2, "--law state"),
+        ("--law state --state-step 1,1,1,1,1,1", 2, "--state-step"),
+        ("--law state --ts 0.02", 3, "ticks every 0.01 s"),
     ] {
         let ran = bench.run(&format!(
             "gains deploy {model} --dry-run --states 10 {option}"
@@ -58,13 +54,26 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     }
     // Another design is another table.
     let other = bench.run(&format!(
-        "deploy {model} --q 1 --dry-run --states 100 --json"
+        "deploy {model} --law state --q 1 --dry-run --states 100 --json"
     ));
     assert_ne!(
         other.json()["fingerprint"],
         data["fingerprint"],
         "{other:?}"
     );
+    // The law that stands is the one that comes without asking.
+    let standing = bench.run(&format!("gains deploy {model} --port sim-cm5 --json"));
+    assert_eq!(standing.code, Some(0), "{standing:?}");
+    let standing = standing.json();
+    assert_eq!(
+        (
+            &standing["law"],
+            &standing["way"],
+            &standing["states_replayed"]
+        ),
+        (&"observer".into(), &"upload".into(), &1_000_000.into())
+    );
+    assert_ne!(standing["fingerprint"], data["fingerprint"]);
     // A CM-5 that is not there, and a model the firmware has no law for.
     let absent = bench.run(&format!("deploy {model} --port sim --states 10"));
     assert_eq!(absent.code, Some(4), "{absent:?}");
@@ -120,11 +129,7 @@ fn a_plan_is_compiled_in_and_flashed() {
     assert_eq!(loader.did.recv().unwrap().0, "flash", "{ran:?}");
     assert_eq!(loader.did.recv().unwrap().0, "app");
     assert_eq!(loader.did.recv().unwrap().0, "go");
-    assert!(
-        bench
-            .get("seen.rs")
-            .contains("pub static PLAN: [u8; 89] = [")
-    );
+    assert!(bench.get("seen.rs").contains("// Fingerprint "), "{ran:?}");
     assert!(ran.stderr.contains("3. flashed"), "{ran:?}");
     assert_eq!(ran.code, Some(4), "no firmware runs on the loader: {ran:?}");
 }
