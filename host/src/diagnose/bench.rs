@@ -22,6 +22,8 @@ use rayon::prelude::*;
 pub(super) const FINISH: usize = 25;
 /// Iterations over the judging horizon, from what the windows found.
 const JUDGE: usize = 12;
+/// The first windows to judge over where no model follows a whole motion, s.
+const LONGEST_WINDOW_S: f64 = 4.0;
 
 /// What every trial is measured with.
 pub(super) struct Bench<'a> {
@@ -33,6 +35,8 @@ pub(super) struct Bench<'a> {
     pub held_out: Option<Data>,
     pub base: Trial,
     pub horizon: Horizon,
+    /// Whether the user has chosen it.
+    told_horizon: bool,
     /// How long the windows of `search` are.
     pub search_horizon: Horizon,
     pub shams: Vec<Trial>,
@@ -89,6 +93,7 @@ impl<'a> Bench<'a> {
             held_out,
             base,
             horizon,
+            told_horizon: options.horizon.is_some(),
             search_horizon,
             shams: Vec::new(),
             candidates,
@@ -124,6 +129,53 @@ impl<'a> Bench<'a> {
                     .as_ref()
                     .is_none_or(|score| score.rms() < AT_FLOOR)
         })
+    }
+
+    /// Shortens the judging horizon while the best trial, which explains every short window of the training motions,
+    /// does not follow them over the whole horizon: an arm that sticks a sample sooner or later takes another way, and
+    /// no model foretells that from the start of the run.
+    pub fn shorten(&mut self, best: &mut Trial) {
+        if !best.follows_windows() {
+            return;
+        }
+        let mut shortened = false;
+        loop {
+            self.judge(best);
+            let follows = best
+                .judged
+                .as_ref()
+                .is_some_and(|judged| judged.training.rms() < AT_FLOOR);
+            let Some(shorter) = self.shorter().filter(|_| !follows) else {
+                break;
+            };
+            shortened = true;
+            best.judged = None;
+            self.horizon = shorter;
+            self.training = self.training.recut(shorter);
+            self.held_out = self.held_out.as_ref().map(|data| data.recut(shorter));
+        }
+        if shortened {
+            self.base.judged = None;
+            let held_out = self.held_out.as_ref();
+            self.base.judge(&self.training, held_out, FINISH);
+            for sham in &mut self.shams {
+                sham.judged = None;
+                sham.judge(&self.training, held_out, JUDGE);
+            }
+        }
+    }
+
+    /// The next shorter judging horizon, if it may be chosen and is not the shortest already.
+    fn shorter(&self) -> Option<Horizon> {
+        let Horizon::Seconds(least) = self.search_horizon else {
+            return None;
+        };
+        let next = match self.horizon {
+            Horizon::Whole => LONGEST_WINDOW_S,
+            Horizon::Seconds(seconds) if seconds > least => seconds / 2.0,
+            Horizon::Seconds(_) => return None,
+        };
+        (!self.told_horizon).then_some(Horizon::Seconds(next.min(LONGEST_WINDOW_S).max(least)))
     }
 
     /// Judges a trial over the judging horizon.

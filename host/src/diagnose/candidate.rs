@@ -1,6 +1,6 @@
 //! Which effects could be missing, and where.
 
-use crate::effects::{EFFECTS, Effect, Needs, Scope};
+use crate::effects::{EFFECTS, Effect, Needs, SMOOTH_DIFFERENCE, Scope};
 use crate::log::Motion;
 use crate::model::{Drive, EffectInstance, Model, ParameterPath};
 use std::fmt;
@@ -27,6 +27,11 @@ impl Candidate {
     /// Whether the model holds it already.
     pub fn in_model(&self, model: &Model) -> bool {
         model.has_effect(self.effect.card().id, self.joint)
+    }
+
+    /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
+    pub fn jumps(&self) -> bool {
+        self.effect.difference() > SMOOTH_DIFFERENCE
     }
 
     /// The effect with these values, to be added to a model.

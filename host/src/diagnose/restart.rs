@@ -1,6 +1,6 @@
-//! Few samples: simulations are cheap and false valleys many, so fits start from many random values.
+//! Fits from other starts, where false valleys are many: few samples, or a law that jumps.
 
-use super::bench::Bench;
+use super::bench::{Bench, FINISH};
 use super::opening::Opening;
 use super::trial::Trial;
 use crate::identify::{Data, Fit, FitOptions, fit};
@@ -44,6 +44,34 @@ impl Bench<'_> {
                 Trial::new(set, fit(&model, &free, &self.search, None, options))
             })
             .collect()
+    }
+}
+
+impl Bench<'_> {
+    /// Looks for candidates whose law jumps from the values the model came with, and from each start on the card: what
+    /// is missing has bent the base values, and a fit that starts from them may end in a false valley.
+    pub fn look_elsewhere(&self, trials: &mut [Trial]) {
+        let alone = |trial: &&mut Trial| trial.set.len() == 1 && trial.set[0].jumps();
+        let jumping: Vec<&mut Trial> = trials.iter_mut().filter(alone).collect();
+        jumping.into_par_iter().for_each(|trial| {
+            let candidate = trial.set[0];
+            let found = candidate.starts().into_par_iter().map(|start| {
+                let mut model = self.start.clone();
+                model.effects.push(candidate.instance(&start));
+                let options = FitOptions {
+                    iterations: FINISH,
+                    ..FitOptions::default()
+                };
+                let found = fit(&model, &trial.search.free, &self.search, None, options);
+                Trial::new(vec![candidate], found)
+            });
+            let found = found.collect::<Vec<_>>().into_iter();
+            if let Some(best) = found.min_by(|a, b| a.search_mean.total_cmp(&b.search_mean))
+                && best.search_mean < trial.search_mean
+            {
+                *trial = best;
+            }
+        });
     }
 }
 

@@ -61,7 +61,7 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
-    let bench = Bench::new(model, training, held_out, options, progress);
+    let mut bench = Bench::new(model, training, held_out, options, progress);
     let (best, trials) = bench.search();
     let all = steps_up_to(bench.most_effects.max(1), bench.candidates.len());
     bench.steps.begin(REMAINS, all);
@@ -79,9 +79,13 @@ pub fn diagnose(
     diagnosis
 }
 
+fn by_error(a: &Trial, b: &Trial) -> std::cmp::Ordering {
+    a.search_mean.total_cmp(&b.search_mean)
+}
+
 impl Bench<'_> {
     /// The smallest set that pays, if any does, and every set that was tried.
-    fn search(&self) -> (Option<Trial>, Vec<Trial>) {
+    fn search(&mut self) -> (Option<Trial>, Vec<Trial>) {
         self.steps.begin(ALONE, BASE_STEPS);
         let mut sizes = vec![self.singles()];
         let mut best = self.accepted(&self.base, &sizes[0]).cloned();
@@ -111,10 +115,18 @@ impl Bench<'_> {
         (best, sizes.into_iter().flatten().collect())
     }
 
-    fn singles(&self) -> Vec<Trial> {
+    fn singles(&mut self) -> Vec<Trial> {
         let starts = if self.small() { 6 } else { 2 };
         let trials = self.first_look(&self.base, &self.changes, starts);
-        self.finals(trials)
+        let mut trials = self.heats(trials);
+        if !trials.iter().any(Trial::follows_windows) {
+            self.look_elsewhere(&mut trials);
+            trials.sort_by(by_error);
+        }
+        if let Some(best) = trials.first_mut() {
+            self.shorten(best);
+        }
+        self.judged(trials)
     }
 
     /// Short fits of candidates on top of a trial, each from its best openings, at most `starts`; the better one
@@ -152,22 +164,31 @@ impl Bench<'_> {
     }
 
     /// Sorts trials by training error, takes the best to the end and judges them.
-    fn finals(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
-        let by_error = |a: &Trial, b: &Trial| a.search_mean.total_cmp(&b.search_mean);
+    fn finals(&self, trials: Vec<Trial>) -> Vec<Trial> {
+        let trials = self.heats(trials);
+        self.judged(trials)
+    }
+
+    /// Sorts trials by training error and takes the best to the end: many get a second look, few go on.
+    fn heats(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
         trials.sort_by(by_error);
-        // Halving: many get a second look, few go to the end.
-        let heats = [(SECOND_LOOKS, LOOK, false), (FINALISTS, FINISH, true)];
-        for (places, iterations, last) in heats {
-            let places = places.min(trials.len());
-            trials[..places].par_iter_mut().for_each(|trial| {
-                match last {
-                    false => trial.look_again(&self.search, iterations),
-                    true => trial.finish(&self.search, iterations),
-                }
-                self.steps.step(1);
-            });
-            trials.sort_by(by_error);
-        }
+        let seconds = SECOND_LOOKS.min(trials.len());
+        trials[..seconds].par_iter_mut().for_each(|trial| {
+            trial.look_again(&self.search, LOOK);
+            self.steps.step(1);
+        });
+        trials.sort_by(by_error);
+        let finalists = FINALISTS.min(trials.len());
+        trials[..finalists].par_iter_mut().for_each(|trial| {
+            trial.finish(&self.search, FINISH);
+            self.steps.step(1);
+        });
+        trials.sort_by(by_error);
+        trials
+    }
+
+    /// Judges the finalists.
+    fn judged(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
         let finalists = FINALISTS.min(trials.len());
         trials[..finalists].par_iter_mut().for_each(|trial| {
             self.judge(trial);

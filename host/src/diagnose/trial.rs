@@ -1,7 +1,7 @@
 //! One attempt: a set of effects added to the base model, everything refitted, judged on held-out motions.
 
 use super::candidate::Candidate;
-use super::score::Score;
+use super::score::{AT_FLOOR, Score};
 use crate::identify::{Data, Fit, FitOptions, fit, intervals, settle};
 
 /// A fitted set of effects.
@@ -86,6 +86,11 @@ impl Trial {
             set,
             fit(&model, &free, data, Some(&self.search.nodes), options),
         )
+    }
+
+    /// Whether nothing but noise is left in the short windows it was searched on.
+    pub fn follows_windows(&self) -> bool {
+        self.search_mean.sqrt() < AT_FLOOR
     }
 
     /// Goes on fitting where an earlier, short fit stopped.

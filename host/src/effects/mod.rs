@@ -85,6 +85,9 @@ pub const CONTROLS: &[&dyn Effect] = &[
     &probe::SENSOR_PROBE,
 ];
 
+/// Relative step of a finite difference in the values of a smooth law.
+pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
+
 /// The effect (or control) of this id.
 pub fn named(id: &str) -> Option<&'static dyn Effect> {
     EFFECTS
@@ -105,7 +108,7 @@ pub trait Effect: Sync + fmt::Debug {
     /// Relative step of a finite difference in its values: large where the law jumps, so that a difference sees
     /// the jumps pass.
     fn difference(&self) -> f64 {
-        2e-4
+        SMOOTH_DIFFERENCE
     }
 
     /// Body: changes the rig's constants before a motion is simulated.

@@ -39,6 +39,8 @@ const TRUSTED: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 const TRIES: (usize, usize) = (9, 2);
 /// Up to as many unknowns, fresh derivatives cost no more than a poor step.
 const CHEAP: usize = 3;
+/// Fewer samples than this are few.
+const FEW_SAMPLES: usize = 500;
 
 impl<'a> Search<'a> {
     pub fn new(
@@ -131,8 +133,10 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether fresh derivatives cost next to nothing: few unknowns, or few samples, whose valleys are many and narrow.
     fn is_cheap(&self) -> bool {
         self.free.len() + self.nodes.first().map_or(0, Node::unknowns) <= CHEAP
+            || self.data.samples() < FEW_SAMPLES
     }
 
     /// Fresh derivatives.

@@ -34,7 +34,7 @@ pub struct Model {
     pub angles: Angles,
     /// Gravity, m/s^2, downwards.
     pub gravity_m_s2: f64,
-    /// Longest integration step, s.
+    /// Longest integration step, s; jitter may stretch it by up to a tenth.
     pub step_s: f64,
     /// Links from the base outwards; link i follows joint i.
     pub links: Vec<Link>,

@@ -184,7 +184,7 @@ impl<R: Rows> Stepper<R> {
 
     /// Accelerations at the stage state into `slope[stage]`; for held joints the holding torque.
     fn accelerate(&mut self, plant: &Plant, told: &[Told], stage: usize) {
-        for joint in 0..self.len() {
+        for (joint, &told) in told[..self.len()].iter().enumerate() {
             let plan = &plant.joints[joint];
             let speed = self.stage_speed[joint];
             self.held[joint] = self.contact[joint] == Contact::Held;
@@ -192,15 +192,15 @@ impl<R: Rows> Stepper<R> {
                 Drive::Passive => 0.0,
                 Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, self.stage_angle.as_ref());
-                    plan.drive_torque_nm(told[joint], reading, speed)
+                    plan.drive_torque_nm(told, reading, speed)
                 }
-                _ => plan.drive_torque_nm(told[joint], 0.0, speed),
+                _ => plan.drive_torque_nm(told, 0.0, speed),
             };
             let state = JointState {
                 angle_rad: self.stage_angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
                 speed_rad_s: speed,
                 drive_nm: drive,
-                shuffled_rad_s: told[joint].shuffled_rad_s,
+                shuffled_rad_s: told.shuffled_rad_s,
             };
             self.drive_torque[joint] = drive;
             self.torque[joint] = plan
