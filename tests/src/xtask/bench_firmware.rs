@@ -5,7 +5,7 @@
 
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::bench::{
-    Balanced, Bench, Conditions, FrameTally, PcRig, Sides, StreamRun, Worst, bit_flips, link_loss,
+    Balanced, Conditions, FrameTally, PcRig, Sides, StreamRun, Worst, bit_flips, link_loss,
     patterns, power_cuts, random_bytes, resynchronised, side_by_side, stream, worst_of,
 };
 use handstand_tests::firmware::{Built, find_built};
