@@ -233,7 +233,7 @@ fn no_start_and_no_greeting_repeats_a_token() {
     for start in 0..200 {
         // Now and then the power fails while the cell of this start is written.
         if start % 20 == 7 {
-            eeprom[0x400 + start % 64] = 0x5a;
+            eeprom[0x800 + start % 64] = 0x5a;
         }
         let mut rig = PcRig::boot(eeprom, ResetCause(ResetCause::POWER));
         rig.run_ms(20.0);
@@ -245,7 +245,7 @@ fn no_start_and_no_greeting_repeats_a_token() {
         eeprom = rig.board.eeprom;
     }
     let untouched = |range: std::ops::Range<usize>| eeprom[range].iter().all(|byte| *byte == 0xff);
-    assert!(untouched(0..0x400) && untouched(0x440..4096));
+    assert!(untouched(0..0x800) && untouched(0x840..4096));
 }
 
 /// Existing tools see a plain adapter: their packets go through, and so do the answers.

@@ -107,17 +107,21 @@ impl<'a> Bench<'a> {
         bench
     }
 
-    /// What a trial leaves to explain: in short windows, or where those show nothing, over the judging horizon.
+    /// What a trial leaves to explain: in short windows or over the judging horizon, whichever surely shows more.
     ///
     /// A large remainder is best told in windows, over which the simulation can be taken for linear; a small one
     /// shows only over the longer horizon.
     pub fn remainder(&self, trial: &Trial) -> Option<Remainder> {
         let held_out = self.held_out.as_ref()?;
         let unseen = held_out.recut(self.search_horizon);
-        remainder(&trial.search, &self.search, &unseen, self.seed).or_else(|| {
-            let judged = trial.judged.as_ref()?;
-            remainder(&judged.fit, &self.training, held_out, self.seed)
-        })
+        let short = remainder(&trial.search, &self.search, &unseen, self.seed);
+        let judged = trial.judged.as_ref();
+        let long =
+            judged.and_then(|judged| remainder(&judged.fit, &self.training, held_out, self.seed));
+        [short, long]
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.explainable_low.total_cmp(&b.explainable_low))
     }
 
     /// Whether a trial leaves nothing but noise.

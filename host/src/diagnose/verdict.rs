@@ -52,9 +52,16 @@ impl Case<'_> {
         if self.bench.at_floor(chosen) || self.bench.held_out.is_none() {
             return false;
         }
-        let structured = self.remainder.as_ref().is_some_and(|r| {
-            r.explainable_low > UNEXPLAINED_LOW && r.explainable_share > UNEXPLAINED_SHARE
-        });
+        // Far above the noise, structure needs less proof.
+        let surely = if self.is_far_off(chosen) {
+            0.0
+        } else {
+            UNEXPLAINED_LOW
+        };
+        let structured = self
+            .remainder
+            .as_ref()
+            .is_some_and(|r| r.explainable_low > surely && r.explainable_share > UNEXPLAINED_SHARE);
         structured || self.leaves_much() || self.inconstant()
     }
 
@@ -72,8 +79,13 @@ impl Case<'_> {
         if self.best.is_some() {
             left > FAR_OFF && left - 1.0 > MOST_LEFT * (before - 1.0)
         } else {
-            left.sqrt() > FAR_OFF * FAR_OFF
+            self.is_far_off(self.chosen())
         }
+    }
+
+    /// Whether a trial leaves a multiple of the noise that no noise explains.
+    fn is_far_off(&self, trial: &Trial) -> bool {
+        trial.deciding_mean().sqrt() > FAR_OFF * FAR_OFF
     }
 
     /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the error.

@@ -216,10 +216,7 @@ mod tests {
                 for run in [&float, &fixed] {
                     assert!(run.stood_s >= 10.0 && run.rms_rad < 0.06, "{run:?}");
                 }
-                assert!(
-                    (float.rms_rad - fixed.rms_rad).abs() < 0.01,
-                    "{float:?} {fixed:?}"
-                );
+                assert!(fixed.rms_rad < 2.0 * float.rms_rad, "{float:?} {fixed:?}");
             }
         }
     }

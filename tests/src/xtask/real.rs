@@ -95,7 +95,8 @@ const RIGS: &[Rig] = &[
         expected: "ambiguous with drag, <= 6.5 mrad",
         why: Some(
             "drag is sure, what goes with it is not: without drag neither Coulomb nor bearing friction gains anything \
-             (6.40 mrad, both fit to 0); with it they leave 2.70 and 2.91 mrad",
+             (6.40 mrad, both fit to 0); with it they leave 2.70 and 2.91 mrad, \
+             and what takes that to 1.98, a tilted base or a wrong scale, looks alike",
         ),
     },
     Rig {
@@ -107,7 +108,7 @@ const RIGS: &[Rig] = &[
         expected: "coulomb only, 25 % below",
         why: Some(
             "held out, the second link goes over the top (9.0 rad, 22 rad/s; trained on 1.4 rad and 13 rad/s), so small \
-             errors of inertia grow: some 5 mrad trained, 27 held out; friction at joint 1 differs by direction in \
+             errors of inertia grow: some 5 mrad trained, 31 held out; friction at joint 1 differs by direction in \
              either trajectory (-0.08 and -0.13 N m), so Coulomb friction at joint 2 alone is not all of it",
         ),
     },
