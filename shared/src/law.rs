@@ -27,19 +27,19 @@ fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
     match row.shift {
         // What is left has 16 bits, and an 8-bit machine compares it in half the time.
         16 => ((sum >> 16) as i16).min(row.high).max(row.low),
-        8 => narrow(sum >> 8).min(row.high).max(row.low),
+        8 => middle(sum).min(row.high).max(row.low),
         shift => saturate(shift_right(sum, shift), row.low, row.high),
     }
 }
 
-/// The nearest 16-bit value: the limits are then compared in 16 bits.
+/// The 16-bit value nearest to `sum` / 256: the limits are then compared in 16 bits, and overflow in a byte.
 #[inline]
-fn narrow(value: i32) -> i16 {
-    let low = value as i16;
-    let high = (value >> 16) as i16;
-    if high == low >> 15 {
-        low
-    } else if high < 0 {
+fn middle(sum: i32) -> i16 {
+    let middle = (sum >> 8) as i16;
+    let top = (sum >> 24) as i8;
+    if top == ((middle >> 8) as i8) >> 7 {
+        middle
+    } else if top < 0 {
         i16::MIN
     } else {
         i16::MAX
