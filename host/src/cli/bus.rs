@@ -12,6 +12,7 @@
 //! simulated servos (`--port sim`). Registers are named as in the AX-12's manual; codes are the register's own.
 
 mod backup;
+mod changes;
 mod doctor;
 mod monitor;
 mod registers;

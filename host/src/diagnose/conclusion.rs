@@ -94,15 +94,7 @@ fn fitted_values(
             high: path.bounds(&fit.model).1,
         };
         let interval = known.as_ref().map_or(unknown, |k| k.0[i]);
-        values.push(FittedValue {
-            path: path.to_string(),
-            key: path.key().to_string(),
-            unit: path.unit().to_string(),
-            value,
-            low: interval.low,
-            high: interval.high,
-            on_bound: on_bound[i],
-        });
+        values.push(FittedValue::of(*path, value, interval, on_bound[i]));
     }
     let mut collinear = Vec::new();
     if let Some((_, correlation)) = &known {

@@ -1,5 +1,7 @@
 //! The result of a diagnosis, as plain values for every writer: text, JSON, HTML.
 
+use crate::identify::Interval;
+use crate::model::ParameterPath;
 use serde::Serialize;
 
 /// What a diagnosis may end in.
@@ -35,6 +37,21 @@ pub struct FittedValue {
     pub high: f64,
     /// Whether the value lies on a bound: a warning, not a result.
     pub on_bound: bool,
+}
+
+impl FittedValue {
+    /// The value at this address.
+    pub fn of(path: ParameterPath, value: f64, interval: Interval, on_bound: bool) -> Self {
+        FittedValue {
+            path: path.to_string(),
+            key: path.key().to_string(),
+            unit: path.unit().to_string(),
+            value,
+            low: interval.low,
+            high: interval.high,
+            on_bound,
+        }
+    }
 }
 
 /// An effect with its fitted values.

@@ -143,14 +143,8 @@ fn finish(
     let intervals = profiled(&found, data, &intervals);
     let rows = found.free.iter().zip(found.values()).zip(intervals);
     let values = rows.zip(found.on_bound());
-    let values = values.map(|(((path, value), interval), on_bound)| FittedValue {
-        path: path.to_string(),
-        key: path.key().to_string(),
-        unit: path.unit().to_string(),
-        value,
-        low: interval.low,
-        high: interval.high,
-        on_bound,
+    let values = values.map(|(((path, value), interval), on_bound)| {
+        FittedValue::of(*path, value, interval, on_bound)
     });
     let judged = if split.held_out.is_empty() {
         data.clone()

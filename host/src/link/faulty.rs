@@ -1,6 +1,6 @@
 //! A line on which things go wrong by chance.
 
-use super::port::{Link, Voice};
+use super::port::{Link, left_to_inner};
 use crate::error::Result;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -41,17 +41,7 @@ impl<L: Link> Faulty<L> {
 }
 
 impl<L: Link> Link for Faulty<L> {
-    fn name(&self) -> &str {
-        self.inner.name()
-    }
-
-    fn baud(&self) -> u32 {
-        self.inner.baud()
-    }
-
-    fn set_baud(&mut self, baud: u32) -> Result<()> {
-        self.inner.set_baud(baud)
-    }
+    left_to_inner!();
 
     fn send(&mut self, bytes: &[u8]) -> Result<()> {
         self.inner.send(bytes)
@@ -73,25 +63,5 @@ impl<L: Link> Link for Faulty<L> {
                 return Ok(kept);
             }
         }
-    }
-
-    fn clear(&mut self) -> Result<()> {
-        self.inner.clear()
-    }
-
-    fn now(&self) -> Duration {
-        self.inner.now()
-    }
-
-    fn pause(&mut self, time: Duration) {
-        self.inner.pause(time);
-    }
-
-    fn latency(&self) -> Duration {
-        self.inner.latency()
-    }
-
-    fn second_voice(&self) -> Option<Voice> {
-        self.inner.second_voice()
     }
 }

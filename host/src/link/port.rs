@@ -122,3 +122,41 @@ pub fn read_some(
         }
     }
 }
+
+/// What a line that wraps another in `inner` leaves to it: everything but `send` and `receive`.
+macro_rules! left_to_inner {
+    () => {
+        fn name(&self) -> &str {
+            self.inner.name()
+        }
+
+        fn baud(&self) -> u32 {
+            self.inner.baud()
+        }
+
+        fn set_baud(&mut self, baud: u32) -> $crate::error::Result<()> {
+            self.inner.set_baud(baud)
+        }
+
+        fn clear(&mut self) -> $crate::error::Result<()> {
+            self.inner.clear()
+        }
+
+        fn now(&self) -> std::time::Duration {
+            self.inner.now()
+        }
+
+        fn pause(&mut self, time: std::time::Duration) {
+            self.inner.pause(time);
+        }
+
+        fn latency(&self) -> std::time::Duration {
+            self.inner.latency()
+        }
+
+        fn second_voice(&self) -> Option<$crate::link::port::Voice> {
+            self.inner.second_voice()
+        }
+    };
+}
+pub(super) use left_to_inner;

@@ -1,6 +1,6 @@
 //! Writing down all that passes a line.
 
-use super::port::{Link, Voice};
+use super::port::{Link, left_to_inner};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -107,17 +107,7 @@ impl<L: Link> Tap<L> {
 }
 
 impl<L: Link> Link for Tap<L> {
-    fn name(&self) -> &str {
-        self.inner.name()
-    }
-
-    fn baud(&self) -> u32 {
-        self.inner.baud()
-    }
-
-    fn set_baud(&mut self, baud: u32) -> Result<()> {
-        self.inner.set_baud(baud)
-    }
+    left_to_inner!();
 
     fn send(&mut self, bytes: &[u8]) -> Result<()> {
         self.tell(Way::Out, bytes);
@@ -128,25 +118,5 @@ impl<L: Link> Link for Tap<L> {
         let count = self.inner.receive(bytes, wait)?;
         self.tell(Way::In, &bytes[..count]);
         Ok(count)
-    }
-
-    fn clear(&mut self) -> Result<()> {
-        self.inner.clear()
-    }
-
-    fn now(&self) -> Duration {
-        self.inner.now()
-    }
-
-    fn pause(&mut self, time: Duration) {
-        self.inner.pause(time);
-    }
-
-    fn latency(&self) -> Duration {
-        self.inner.latency()
-    }
-
-    fn second_voice(&self) -> Option<Voice> {
-        self.inner.second_voice()
     }
 }

@@ -8,6 +8,33 @@ use crate::gains::{GainTable, Row};
 use core::arch::asm;
 use core::mem::{offset_of, size_of};
 
+/// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four registers; r24 is zero.
+macro_rules! mac {
+    () => {
+        concat!(
+            ".macro handstand_mac a0, a1, a2, a3\n",
+            "muls r21, r23\n", // high x high
+            "movw r18, r0\n",
+            "mul r20, r22\n", // low x low
+            "sub \\a0, r0\n",
+            "sbc \\a1, r1\n",
+            "sbc \\a2, r18\n",
+            "sbc \\a3, r19\n",
+            "mulsu r21, r22\n", // high x low, in the middle; the carry is its sign
+            "adc \\a3, r24\n",
+            "sub \\a1, r0\n",
+            "sbc \\a2, r1\n",
+            "sbc \\a3, r24\n",
+            "mulsu r23, r20\n", // low x high
+            "adc \\a3, r24\n",
+            "sub \\a1, r0\n",
+            "sbc \\a2, r1\n",
+            "sbc \\a3, r24\n",
+            ".endm\n",
+        )
+    };
+}
+
 /// The sums, if the table is of two inputs and six states.
 #[inline(always)]
 pub fn fast<const M: usize, const N: usize>(
@@ -43,25 +70,7 @@ fn sums(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i32; 2] {
     // SAFETY: reads 12 bytes from X and within the table from Z; r1 is zero again at the end.
     unsafe {
         asm!(
-            ".macro handstand_mac a0, a1, a2, a3",
-            "muls r21, r23",        // high x high
-            "movw r18, r0",
-            "mul r20, r22",         // low x low
-            "sub \\a0, r0",
-            "sbc \\a1, r1",
-            "sbc \\a2, r18",
-            "sbc \\a3, r19",
-            "mulsu r21, r22",       // high x low, in the middle; the carry is its sign
-            "adc \\a3, r24",
-            "sub \\a1, r0",
-            "sbc \\a2, r1",
-            "sbc \\a3, r24",
-            "mulsu r23, r20",       // low x high
-            "adc \\a3, r24",
-            "sub \\a1, r0",
-            "sbc \\a2, r1",
-            "sbc \\a3, r24",
-            ".endm",
+            mac!(),
             "clr r24",
             ".irp j, 0, 2, 4, 6, 8, 10",
             "ld r20, X+",
@@ -119,31 +128,17 @@ pub fn row(bias: i32, k: &[i16], x: &[i16]) -> i32 {
     // SAFETY: reads `count` words from X and from Z, which both have; r1 is zero again at the end.
     unsafe {
         asm!(
+            mac!(),
             "clr r24",
             "2: ld r20, X+",
             "ld r21, X+",
             "ld r22, Z+",
             "ld r23, Z+",
-            "muls r21, r23",        // high x high
-            "movw r18, r0",
-            "mul r20, r22",         // low x low
-            "sub {low:l}, r0",
-            "sbc {low:h}, r1",
-            "sbc {high:l}, r18",
-            "sbc {high:h}, r19",
-            "mulsu r21, r22",       // high x low, in the middle; the carry is its sign
-            "adc {high:h}, r24",
-            "sub {low:h}, r0",
-            "sbc {high:l}, r1",
-            "sbc {high:h}, r24",
-            "mulsu r23, r20",       // low x high
-            "adc {high:h}, r24",
-            "sub {low:h}, r0",
-            "sbc {high:l}, r1",
-            "sbc {high:h}, r24",
+            "handstand_mac {low:l}, {low:h}, {high:l}, {high:h}",
             "dec r25",
             "brne 2b",
             "clr r1",
+            ".purgem handstand_mac",
             low = inout(reg_pair) low,
             high = inout(reg_pair) high,
             inout("X") x.as_ptr() => _,

@@ -12,6 +12,9 @@ pub struct Toolchain {
     rustc: PathBuf,
 }
 
+/// The workspace's `rust-version`.
+const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
+
 /// What to do when there is none.
 pub const REMEDY: &str = "install one of:\n  rustup toolchain install nightly --component rust-src, and gcc-avr, binutils-avr, avr-libc\n  apt-get install rustc-web rust-web-src cargo-web gcc-avr binutils-avr avr-libc";
 
@@ -24,9 +27,16 @@ impl Toolchain {
         if output(Command::new("avr-gcc").arg("--version")).is_none() {
             return Err(format!("there is no avr-gcc to link with: {REMEDY}"));
         }
-        nightly().or_else(debian).ok_or_else(|| {
-            format!("there is no Rust compiler with the sources of `core` for the AVR: {REMEDY}")
+        compiler().ok_or_else(|| {
+            format!(
+                "there is no Rust compiler from {OLDEST} on with the sources of `core` for the AVR: {REMEDY}"
+            )
         })
+    }
+
+    /// Whether there is a compiler, whatever links.
+    pub fn is_there() -> bool {
+        compiler().is_some()
     }
 
     /// Its cargo, set up to use its own compiler only.
@@ -50,6 +60,10 @@ impl Toolchain {
     }
 }
 
+fn compiler() -> Option<Toolchain> {
+    nightly().or_else(debian)
+}
+
 fn nightly() -> Option<Toolchain> {
     let which = |name| {
         let path = output(Command::new("rustup").args(["which", "--toolchain", "nightly", name]))?;
@@ -70,7 +84,7 @@ fn debian() -> Option<Toolchain> {
     })
 }
 
-/// The toolchain, if its sources are there and it knows the AVR.
+/// The toolchain, if it is not too old, its sources are there and it knows the AVR.
 fn complete(toolchain: Toolchain) -> Option<Toolchain> {
     let ask = |words: &[&str]| output(Command::new(&toolchain.rustc).args(words));
     let sysroot = ask(&["--print", "sysroot"])?;
@@ -78,8 +92,15 @@ fn complete(toolchain: Toolchain) -> Option<Toolchain> {
     let knows = ask(&["--print", "target-list"])?
         .lines()
         .any(|line| line == "avr-none");
-    let whole = knows && library.join("core/Cargo.toml").exists() && toolchain.cargo.exists();
+    let recent = minor(ask(&["--version"])?.strip_prefix("rustc ")?)? >= minor(OLDEST)?;
+    let whole =
+        recent && knows && library.join("core/Cargo.toml").exists() && toolchain.cargo.exists();
     whole.then_some(toolchain)
+}
+
+/// 88 of `1.88.0-nightly (..)`.
+fn minor(version: &str) -> Option<u32> {
+    version.strip_prefix("1.")?.split('.').next()?.parse().ok()
 }
 
 /// What a program prints, if it is there and succeeds.

@@ -1,7 +1,7 @@
 //! What the tests need beside cargo: said, and installed where it can be.
 
 use super::program::{self, found, is_root};
-use std::path::Path;
+use handstand_tests::firmware::Toolchain;
 use std::process::Command;
 
 /// Programs or files that some tests need, and the Debian packages that bring them.
@@ -11,10 +11,19 @@ pub struct Need {
     pub name: &'static str,
     /// Which tests need it, as in "for the test that renders a report".
     pub wanted_for: &'static str,
-    /// It is here if one of these is a program on the path or an absolute path that exists.
-    pub signs: &'static [&'static str],
+    /// How it is known to be here.
+    pub sign: Sign,
     /// Debian's packages.
     pub packages: &'static [&'static str],
+}
+
+/// How a need is known to be met.
+#[derive(Debug)]
+pub enum Sign {
+    /// One of these is a program on the path, or a file that exists.
+    Files(&'static [&'static str]),
+    /// Who needs it finds it.
+    Asked(fn() -> bool),
 }
 
 /// Every need; a new one is one entry.
@@ -22,43 +31,43 @@ pub const NEEDS: &[Need] = &[
     Need {
         name: "Chromium",
         wanted_for: "the tests that render pages",
-        signs: &["chromium", "chromium-browser", "google-chrome"],
+        sign: Sign::Files(&["chromium", "chromium-browser", "google-chrome"]),
         packages: &["chromium"],
     },
     Need {
         name: "Slurm",
         wanted_for: "the test of the recipe for job arrays",
-        signs: &["slurmctld", "/usr/sbin/slurmctld"],
+        sign: Sign::Files(&["slurmctld", "/usr/sbin/slurmctld"]),
         packages: &["slurm-wlm"],
     },
     Need {
         name: "GNU parallel",
         wanted_for: "the test of the recipe for several processes",
-        signs: &["parallel"],
+        sign: Sign::Files(&["parallel"]),
         packages: &["parallel"],
     },
     Need {
         name: "Python 3",
         wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
-        signs: &["python3"],
+        sign: Sign::Files(&["python3"]),
         packages: &["python3", "python3-venv"],
     },
     Need {
         name: "The AVR's linker",
         wanted_for: "the build and the tests of the firmware's ELF",
-        signs: &["avr-gcc"],
+        sign: Sign::Files(&["avr-gcc"]),
         packages: &["gcc-avr", "binutils-avr", "avr-libc"],
     },
     Need {
         name: "A Rust compiler with its sources",
         wanted_for: "the build and the tests of the firmware's ELF",
-        signs: &["/usr/lib/rustlib/src/rust/library/core/Cargo.toml"],
+        sign: Sign::Asked(Toolchain::is_there),
         packages: &["rustc-web", "rust-web-src", "cargo-web"],
     },
     Need {
         name: "simavr",
         wanted_for: "the tests of the firmware's ELF",
-        signs: &["/usr/include/simavr/sim_avr.h"],
+        sign: Sign::Files(&["/usr/include/simavr/sim_avr.h"]),
         packages: &["libsimavr-dev", "simavr"],
     },
 ];
@@ -66,9 +75,10 @@ pub const NEEDS: &[Need] = &[
 impl Need {
     /// Whether it is here.
     pub fn is_met(&self) -> bool {
-        let (paths, programs): (Vec<&str>, Vec<&str>) =
-            self.signs.iter().partition(|sign| sign.starts_with('/'));
-        paths.iter().any(|path| Path::new(path).exists()) || found(&programs)
+        match self.sign {
+            Sign::Files(files) => found(files),
+            Sign::Asked(is_there) => is_there(),
+        }
     }
 }
 
@@ -106,9 +116,10 @@ fn bring(need: &Need) {
         need.wanted_for,
         need.packages.join(" ")
     );
-    // The lists of packages may be missing or stale; they are renewed only when they did not serve.
-    let well = install(need) || (apt(&["update"]) && install(need));
-    if !well || !need.is_met() {
+    // The lists of packages may be missing or stale, and then bring too old a version; they are renewed only when they
+    // did not serve.
+    let well = |need: &Need| install(need) && need.is_met();
+    if !(well(need) || (apt(&["update"]) && well(need))) {
         println!(
             "{} could not be installed; {} are skipped.",
             need.name, need.wanted_for

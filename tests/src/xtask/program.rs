@@ -4,7 +4,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Whether one of these programs can be found.
+/// Whether one of these files can be found: on the path, or where an absolute name says.
 pub fn found(names: &[&str]) -> bool {
     let Some(path) = std::env::var_os("PATH") else {
         return false;

@@ -6,12 +6,12 @@
 use super::super::Outcome;
 use super::super::input;
 use super::super::port::{Ids, Port, id_list};
-use super::super::show::table;
 use super::super::talk::Talk;
+use super::changes::{self, Change};
 use super::scan::scan;
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
-use handstand_shared::control_table::{MODEL, Register};
+use handstand_shared::control_table::MODEL;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -91,7 +91,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
         saved.retain(|servo| ids.contains(&servo.id));
     }
     let mut servos = args.port.servos()?;
-    let mut changes: Vec<(u8, Register, u16, u16)> = Vec::new();
+    let mut changes: Vec<Change> = Vec::new();
     // All servos are read before any is written: a servo that is missing stops a half restored robot from arising.
     for servo in &saved {
         let now = Settings::read(&mut servos, servo.id).map_err(|failure| failure.of(servo.id))?;
@@ -109,42 +109,31 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
         let differing = servo
             .restorable()
             .filter(|(register, code)| now.get(*register) != Some(*code));
-        changes
-            .extend(differing.map(|(register, code)| {
-                (servo.id, register, now.get(register).unwrap_or(0), code)
-            }));
+        changes.extend(differing.map(|(register, code)| Change {
+            id: servo.id,
+            register,
+            before: now.get(register).unwrap_or(0),
+            code,
+        }));
     }
     let bar = talk.bar();
     bar.set_length(changes.len() as u64);
-    for (id, register, _, code) in changes.iter().filter(|_| !args.dry_run) {
+    for change in changes.iter().filter(|_| !args.dry_run) {
         servos
-            .set(*id, *register, *code)
-            .map_err(|failure| failure.of(*id))?;
+            .set(change.id, change.register, change.code)
+            .map_err(|failure| failure.of(change.id))?;
         bar.inc(1);
     }
     bar.finish_and_clear();
     show(args, &changes, talk)
 }
 
-fn show(args: &RestoreArgs, changes: &[(u8, Register, u16, u16)], talk: &Talk) -> Result<Outcome> {
+fn show(args: &RestoreArgs, changes: &[Change], talk: &Talk) -> Result<Outcome> {
     if talk.json {
-        let change = |(id, register, before, code): &(u8, Register, u16, u16)| json!({ "id": id, "register": register.name, "before": before, "code": code });
-        let changes: Vec<_> = changes.iter().map(change).collect();
-        talk.data(&json!({ "written": !args.dry_run, "changes": changes }))?;
+        talk.data(&json!({ "written": !args.dry_run, "changes": changes::data(changes) }))?;
         return Ok(Outcome::Done);
     }
-    let mut shown = table(["Id", "Register", "Before", "Saved"]);
-    for (id, register, before, code) in changes {
-        shown.add_row([
-            id.to_string(),
-            register.name.to_string(),
-            before.to_string(),
-            code.to_string(),
-        ]);
-    }
-    if !changes.is_empty() {
-        talk.print(&shown.to_string())?;
-    }
+    changes::print(changes, "Saved", talk)?;
     let done = if args.dry_run {
         "would be written"
     } else {

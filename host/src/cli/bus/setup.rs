@@ -5,11 +5,11 @@
 
 use super::super::Outcome;
 use super::super::port::{Ids, Port, id_list};
-use super::super::show::table;
 use super::super::talk::Talk;
+use super::changes::{self, Change};
 use super::scan::scan;
 use handstand::{Error, Result};
-use handstand_shared::control_table::{ID, RETURN_DELAY, Register, STATUS_LEVEL};
+use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
 use serde_json::json;
 
 /// Prepare servos.
@@ -60,7 +60,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             servos
                 .set(only, ID, u16::from(new))
                 .map_err(|failure| failure.of(only))?;
-            changes.push((new, ID, u16::from(only), u16::from(new)));
+            changes.push(Change {
+                id: new,
+                register: ID,
+                before: u16::from(only),
+                code: u16::from(new),
+            });
         }
         ids = vec![new];
     }
@@ -78,7 +83,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 servos
                     .set(*id, register, code)
                     .map_err(|failure| failure.of(*id))?;
-                changes.push((*id, register, before, code));
+                changes.push(Change {
+                    id: *id,
+                    register,
+                    before,
+                    code,
+                });
             }
         }
         bar.inc(1);
@@ -87,25 +97,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     show(&ids, &changes, talk)
 }
 
-fn show(ids: &[u8], changes: &[(u8, Register, u16, u16)], talk: &Talk) -> Result<Outcome> {
+fn show(ids: &[u8], changes: &[Change], talk: &Talk) -> Result<Outcome> {
     if talk.json {
-        let change = |(id, register, before, code): &(u8, Register, u16, u16)| json!({ "id": id, "register": register.name, "before": before, "code": code });
-        let changes: Vec<_> = changes.iter().map(change).collect();
-        talk.data(&json!({ "ids": ids, "changes": changes }))?;
+        talk.data(&json!({ "ids": ids, "changes": changes::data(changes) }))?;
         return Ok(Outcome::Done);
     }
-    let mut shown = table(["Id", "Register", "Before", "Now"]);
-    for (id, register, before, code) in changes {
-        shown.add_row([
-            id.to_string(),
-            register.name.to_string(),
-            before.to_string(),
-            code.to_string(),
-        ]);
-    }
-    if !changes.is_empty() {
-        talk.print(&shown.to_string())?;
-    }
+    changes::print(changes, "Now", talk)?;
     talk.say(&format!(
         "{} servos are ready; {} registers were changed",
         ids.len(),
