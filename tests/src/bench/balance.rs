@@ -88,7 +88,7 @@ pub fn ready(
 /// Uploads the plan and arms it, the first link upright and the servos at their centres.
 ///
 /// # Errors
-/// As [`ready`].
+/// What the firmware refused; nothing if it did not answer.
 pub fn arm_balance(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Refusal>> {
     let token = ready(bench, plan, Attitude::default())?;
     command(bench, &Command::Arm { token })
@@ -97,7 +97,7 @@ pub fn arm_balance(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Ref
 /// Arms and lets the robot go; the host says the first link's attitude after every report.
 ///
 /// # Errors
-/// As [`ready`].
+/// As [`arm_balance`].
 pub fn balance(
     bench: &mut impl Bench,
     plan: &Plan,

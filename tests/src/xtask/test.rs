@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that must hold, and one closing line: `N passed, N failed`.
+//! `cargo xtask test`: everything that must hold; at its end what failed, by name, and `N passed, N failed`.
 //!
 //! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
 //! documentation count as one test each, as does the firmware's build, and every test of the workspace as one.
@@ -26,11 +26,12 @@ pub fn run(args: &Args) -> bool {
     let mut tally = Tally::default();
     for words in CHECKS {
         let mut check = cargo(words);
-        tally.count(program::run(check.env("RUSTDOCFLAGS", "-D warnings")));
+        let well = program::run(check.env("RUSTDOCFLAGS", "-D warnings"));
+        tally.count(well, &format!("cargo {}", words[0]));
     }
     firmware(&mut tally);
     tests(&mut tally);
-    println!("\n{} passed, {} failed", tally.passed, tally.failed);
+    tally.tell();
     tally.failed == 0
 }
 
@@ -51,7 +52,10 @@ const CHECKS: &[&[&str]] = &[
 fn firmware(tally: &mut Tally) {
     println!("\nThe firmware for the AVR:");
     match Toolchain::find() {
-        Ok(_) => tally.count(firmware::run(&firmware::Args::default())),
+        Ok(_) => tally.count(
+            firmware::run(&firmware::Args::default()),
+            "cargo xtask firmware",
+        ),
         Err(why) => println!("SKIPPED, and with it the tests of its ELF: {why}"),
     }
     if !handstand_simavr::AVAILABLE && !Path::new("/usr/include/simavr/sim_avr.h").exists() {
@@ -63,14 +67,27 @@ fn firmware(tally: &mut Tally) {
 struct Tally {
     passed: usize,
     failed: usize,
+    /// What failed, by name, and what the tests among it printed.
+    failures: Vec<String>,
 }
 
 impl Tally {
-    fn count(&mut self, well: bool) {
+    fn count(&mut self, well: bool, name: &str) {
         match well {
             true => self.passed += 1,
-            false => self.failed += 1,
+            false => {
+                self.failed += 1;
+                self.failures.push(name.into());
+            }
         }
+    }
+
+    /// Repeats the failures, which else lie far up, and counts.
+    fn tell(&self) {
+        if !self.failures.is_empty() {
+            println!("\nWhat failed:\n{}", self.failures.join("\n"));
+        }
+        println!("\n{} passed, {} failed", self.passed, self.failed);
     }
 }
 
@@ -89,15 +106,22 @@ fn install() {
 fn tests(tally: &mut Tally) {
     let failed_before = tally.failed;
     let words = ["test", "--workspace", "--no-fail-fast"];
+    let mut in_failures = false;
     let well = overheard(&mut cargo(&words), |line| {
+        // Between this line and the result lies what the failed tests printed, then their names.
+        in_failures |= line == "failures:";
         if let Some((passed, failed)) = result(line) {
             tally.passed += passed;
             tally.failed += failed;
+            in_failures = false;
+        }
+        if in_failures {
+            tally.failures.push(line.into());
         }
     });
     // What did not even compile has no line of its own.
     if !well && tally.failed == failed_before {
-        tally.failed += 1;
+        tally.count(false, "cargo test: did not compile, or was killed");
     }
 }
 
