@@ -11,11 +11,12 @@
 //! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`, `failures`,
 //! `traces`) and `provenance`.
 
-use super::page::{self, Page};
+use super::page::{self, Page, PageFile};
 use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::identify::Horizon;
 use handstand::log::{LogRequest, Split, read};
+use handstand::report::{html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
@@ -33,19 +34,13 @@ pub struct Args {
     /// Seconds the models run without correction, or `whole`; chosen by the first one's stability without it
     #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
     horizon: Option<Horizon>,
-    /// Write a page with pictures
-    #[arg(long, value_name = "FILE.html")]
-    report: Option<PathBuf>,
-    /// Replace the page if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    page: PageFile,
 }
 
 /// Compares, prints, writes the page.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    if let Some(page) = &args.report {
-        input::vacant(page, args.force)?;
-    }
+    args.page.vacant()?;
     let mut horizon = args.horizon;
     let mut comparisons = Vec::new();
     let mut split = Split::default();
@@ -78,12 +73,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk,
     )?;
     if talk.json {
-        talk.data(&handstand::report::json(&report))?;
+        talk.data(&json(&report))?;
     } else {
         talk.print(&text)?;
     }
-    if let Some(file) = &args.report {
-        page::write(&report, file, args.force, talk)?;
-    }
+    args.page.write(|| Ok(html(&report)), talk)?;
     Ok(Outcome::Done)
 }

@@ -11,7 +11,7 @@
 //! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for `unfit`, 0 for the
 //! others, which are answers. `--json` prints the diagnosis; its keys are in `docs/json.md`.
 
-use super::page::{self, Page};
+use super::page::{self, Page, PageFile};
 use super::talk::Talk;
 use super::{Outcome, input, log, name};
 use handstand::compare::{Comparison, compare};
@@ -21,7 +21,7 @@ use handstand::effects;
 use handstand::identify::Horizon;
 use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
 use handstand::model::{EffectInstance, ParameterPath};
-use handstand::report::{diagnosis_json, diagnosis_text};
+use handstand::report::{diagnosis_json, diagnosis_text, html};
 use handstand::{Model, Result};
 use std::path::PathBuf;
 
@@ -45,12 +45,8 @@ pub struct Args {
     /// Seconds the model runs without correction, or `whole`; chosen by its stability without it
     #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
     horizon: Option<Horizon>,
-    /// Write a page with pictures
-    #[arg(long, value_name = "FILE.html")]
-    report: Option<PathBuf>,
-    /// Replace the page if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    page: PageFile,
 }
 
 /// Diagnoses, prints, writes the page.
@@ -64,9 +60,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 /// As [`run`], for who goes on with what was found.
 pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
-    if let Some(page) = &args.report {
-        input::vacant(page, args.force)?;
-    }
+    args.page.vacant()?;
     for effect in &args.without {
         name::effect(effect)?;
     }
@@ -89,7 +83,7 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
         *line = with_names(line, args);
     }
     print(&diagnosis, talk)?;
-    if let Some(file) = &args.report {
+    let page = || {
         let page = Page {
             title: format!("What {} is missing", model.name),
             comparisons: comparisons(&model, &diagnosis, args)?,
@@ -97,8 +91,9 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
             models: &[&args.model],
             split: &split,
         };
-        page::write(&page::report(page, talk)?, file, args.force, talk)?;
-    }
+        Ok(html(&page::report(page, talk)?))
+    };
+    args.page.write(page, talk)?;
     Ok(diagnosis)
 }
 

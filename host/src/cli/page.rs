@@ -1,13 +1,54 @@
-//! Reports: what they were made from, and writing them.
+//! Pages: what they were made from, and writing them.
 
+use super::input;
 use super::talk::Talk;
 use handstand::compare::Comparison;
 use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
-use handstand::report::{LogFile, ModelFile, Provenance, Report, html};
+use handstand::report::{LogFile, ModelFile, Provenance, Report};
 use handstand::{Error, Result, output};
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
+
+/// Where a page goes.
+#[derive(Debug, clap::Args)]
+pub struct PageFile {
+    /// Write a page with pictures
+    #[arg(long = "report", value_name = "FILE.html")]
+    file: Option<PathBuf>,
+    /// Replace the page if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl PageFile {
+    /// Whether one is wanted.
+    pub fn is_wanted(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// Refuses a name that is taken before the work begins, not after it.
+    ///
+    /// # Errors
+    /// As [`input::vacant`].
+    pub fn vacant(&self) -> Result<()> {
+        self.file
+            .as_ref()
+            .map_or(Ok(()), |file| input::vacant(file, self.force))
+    }
+
+    /// Writes what `page` makes, if a page is wanted.
+    ///
+    /// # Errors
+    /// Those of `page`, and as [`output::write_new`].
+    pub fn write(&self, page: impl FnOnce() -> Result<String>, talk: &Talk) -> Result<()> {
+        if let Some(file) = &self.file {
+            output::write_new(file, &page()?, self.force)?;
+            talk.say(&format!("wrote {}", file.display()));
+        }
+        Ok(())
+    }
+}
 
 /// What a report is made of.
 pub struct Page<'a> {
@@ -43,16 +84,6 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
             command: talk.command.clone(),
         },
     })
-}
-
-/// Writes the page.
-///
-/// # Errors
-/// As [`output::write_new`].
-pub fn write(report: &Report, file: &Path, force: bool, talk: &Talk) -> Result<()> {
-    output::write_new(file, &html(report), force)?;
-    talk.say(&format!("wrote {}", file.display()));
-    Ok(())
 }
 
 /// Name and hash of a model file.

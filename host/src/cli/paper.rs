@@ -11,12 +11,12 @@
 //! Exit code 1 if a number neither agrees nor is a misprint. `--json` prints `rows` and `follows`; with `--findings` or
 //! `--report` also `figures` and `findings` (`docs/json.md`).
 
+use super::page::PageFile;
 use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{Outcome, show};
+use handstand::Result;
 use handstand::paper::{Computed, Row, STEPS, Study, Verdict, check, html, study};
-use handstand::{Result, output};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 
 /// The paper's numbers, figures and findings beside our own.
 #[derive(Debug, clap::Args)]
@@ -24,20 +24,14 @@ pub struct Args {
     /// Also judge the figures and all that the paper found
     #[arg(long)]
     findings: bool,
-    /// Write a page with the figures redrawn
-    #[arg(long, value_name = "FILE.html")]
-    report: Option<PathBuf>,
-    /// Replace the page if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    page: PageFile,
 }
 
 /// Computes, prints, writes the page.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    if let Some(page) = &args.report {
-        input::vacant(page, args.force)?;
-    }
-    let whole = match args.findings || args.report.is_some() {
+    args.page.vacant()?;
+    let whole = match args.findings || args.page.is_wanted() {
         true => Some(worked(talk)?),
         false => None,
     };
@@ -57,9 +51,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         talk.print(&parts.join("\n\n"))?;
     }
-    if let (Some(file), Some(study)) = (&args.report, &whole) {
-        output::write_new(file, &html(study, &talk.command), args.force)?;
-        talk.say(&format!("wrote {}", file.display()));
+    if let Some(study) = &whole {
+        let page = || Ok(html(study, &talk.command));
+        args.page.write(page, talk)?;
     }
     let differs = rows.iter().any(|row| row.verdict == Verdict::Differs);
     Ok(if differs {

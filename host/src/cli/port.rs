@@ -61,6 +61,11 @@ impl Port {
     }
 }
 
+/// The error where no servo answers.
+pub fn nobody() -> Error {
+    Error::device("no servo answers", "`handstand bus doctor` finds the cause")
+}
+
 /// A simulated bus from its words.
 ///
 /// # Errors

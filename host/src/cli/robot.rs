@@ -1,6 +1,6 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
-use super::port::{Ids, Port, id_list};
+use super::port::{Ids, Port, id_list, nobody};
 use handstand::record::{Adapter, Source, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
@@ -33,10 +33,7 @@ impl Robot {
         let mut servos = self.port.servos()?;
         let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
         if !present {
-            return Err(Error::device(
-                "no servo answers",
-                "`handstand bus doctor` finds the cause",
-            ));
+            return Err(nobody());
         }
         Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
     }

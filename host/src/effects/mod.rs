@@ -269,6 +269,18 @@ pub struct JointState {
     pub shuffled_rad_s: f64,
 }
 
+impl JointState {
+    /// Without a drive.
+    pub fn undriven(angle_rad: f64, speed_rad_s: f64) -> Self {
+        JointState {
+            angle_rad,
+            speed_rad_s,
+            drive_nm: 0.0,
+            shuffled_rad_s: 0.0,
+        }
+    }
+}
+
 /// A joint that slides, or is about to.
 #[derive(Debug, Clone, Copy)]
 pub struct Slide {

@@ -169,17 +169,7 @@ fn depends_on_speed(effect: &dyn Effect, values: &[f64]) -> bool {
 }
 
 fn depends_on_angle(effect: &dyn Effect, values: &[f64]) -> bool {
-    let at = |angle_rad| {
-        effect.torque(
-            values,
-            &JointState {
-                angle_rad,
-                speed_rad_s: 0.0,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            },
-        )
-    };
+    let at = |angle_rad| effect.torque(values, &JointState::undriven(angle_rad, 0.0));
     at(0.1) != at(0.2)
 }
 
@@ -261,29 +251,13 @@ fn friction_over_bearing_load(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, 
 
 fn joint_over_angle(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
     over(-1.6, 1.6, |angle_rad| {
-        effect.torque(
-            values,
-            &JointState {
-                angle_rad,
-                speed_rad_s: 0.0,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            },
-        )
+        effect.torque(values, &JointState::undriven(angle_rad, 0.0))
     })
 }
 
 fn joint_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
     over(-6.0, 6.0, |speed_rad_s| {
-        effect.torque(
-            values,
-            &JointState {
-                angle_rad: 0.0,
-                speed_rad_s,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            },
-        )
+        effect.torque(values, &JointState::undriven(0.0, speed_rad_s))
     })
 }
 

@@ -162,12 +162,7 @@ impl<'a> At<'a> {
             torque_nm: 0.0,
             full_torque_nm: 1.0,
         };
-        let state = JointState {
-            angle_rad: self.angle_rad,
-            speed_rad_s: 0.0,
-            drive_nm: 0.0,
-            shuffled_rad_s: 0.0,
-        };
+        let state = JointState::undriven(self.angle_rad, 0.0);
         let mut own = Own::default();
         for (effect, values) in self.of(Site::Joint) {
             let slope = self.slope(effect, values, &at)?;

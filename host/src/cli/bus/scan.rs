@@ -1,11 +1,11 @@
 //! `bus scan`: pings every id and reads what answers.
 
 use super::super::Outcome;
-use super::super::port::{AnyLink, Ids, Port, id_list};
+use super::super::port::{AnyLink, Ids, Port, id_list, nobody};
 use super::super::show::table;
 use super::super::talk::Talk;
+use handstand::Result;
 use handstand::link::{Failure, Servos};
-use handstand::{Error, Result};
 use handstand_shared::control_table as ct;
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::Position;
@@ -74,10 +74,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         args.ids.0.len()
     ));
     if found.is_empty() {
-        return Err(Error::device(
-            "no servo answers",
-            "`handstand bus doctor` finds the cause",
-        ));
+        return Err(nobody());
     }
     Ok(Outcome::Done)
 }

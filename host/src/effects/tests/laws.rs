@@ -56,12 +56,7 @@ fn load_and_direction_set_friction() {
 
 #[test]
 fn springs_and_ripples_depend_on_the_angle() {
-    let joint = JointState {
-        angle_rad: 0.5,
-        speed_rad_s: 9.0,
-        drive_nm: 0.0,
-        shuffled_rad_s: 0.0,
-    };
+    let joint = JointState::undriven(0.5, 9.0);
     near(effect("cable_spring").torque(&[0.2, 0.1], &joint), -0.08);
     near(
         effect("cogging").torque(&[0.2, 4.0, 0.1], &joint),

@@ -29,12 +29,7 @@ fn off_leaves_no_torque() {
     for effect in EFFECTS {
         let (id, off) = (effect.card().id, off_values(*effect));
         for speed_rad_s in SPEEDS_RAD_S {
-            let joint = JointState {
-                angle_rad: 0.7,
-                speed_rad_s,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            };
+            let joint = JointState::undriven(0.7, speed_rad_s);
             assert_eq!(effect.torque(&off, &joint), 0.0, "{id}");
             assert_eq!(effect.friction(&off, &slide(speed_rad_s, 1.0)), 0.0, "{id}");
         }
@@ -114,12 +109,7 @@ fn friction_resists_except_for_the_asymmetry() {
 fn passive_torques_take_energy() {
     for id in ["viscous", "air_drag"] {
         for speed_rad_s in SPEEDS_RAD_S {
-            let joint = JointState {
-                angle_rad: 0.7,
-                speed_rad_s,
-                drive_nm: 0.0,
-                shuffled_rad_s: 0.0,
-            };
+            let joint = JointState::undriven(0.7, speed_rad_s);
             assert!(
                 effect(id).torque(&[0.02], &joint) * speed_rad_s <= 0.0,
                 "{id}"
