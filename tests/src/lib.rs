@@ -1,7 +1,8 @@
 //! What the benchmarks measure with; `cargo xtask` prints it and the tests sample it.
 
+pub use handstand_xtask::firmware;
+
 pub mod bench;
-pub mod firmware;
 pub mod hidden;
 #[cfg(unix)]
 pub mod kills;

@@ -1,9 +1,8 @@
 //! `cargo xtask bench-record`: recorders killed a thousand times; no file may be lost, nor more than a second of any.
 
-use super::program;
 use handstand_tests::kills::kill_recorders;
+use handstand_xtask::{cargo, program};
 use std::path::PathBuf;
-use std::process::Command;
 
 /// Kill recorders, and read what is left
 #[derive(Debug, clap::Args)]
@@ -55,8 +54,7 @@ pub fn run(args: &Args) -> bool {
 /// The program beside this one.
 fn built() -> Option<PathBuf> {
     let here = std::env::current_exe().ok()?;
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args([
+    let mut cargo = cargo(&[
         "build",
         "--release",
         "--package",

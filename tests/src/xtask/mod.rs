@@ -1,24 +1,19 @@
-//! The chores there are. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
+//! The chores that measure. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
 mod bench_firmware;
 #[cfg(unix)]
 mod bench_record;
-mod firmware;
 mod hidden;
-mod install;
 mod peers;
-mod program;
-mod python;
 mod real;
 mod scatter;
-mod test;
 #[cfg(unix)]
 mod virtual_cm5;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// The project's own chores.
+/// The project's chores that measure.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 pub struct Chores {
@@ -34,8 +29,6 @@ enum Chore {
     Hidden(hidden::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
-    /// Build the CM-5's program: ELF, HEX and BIN
-    Firmware(firmware::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
     /// Kill recorders, and read what is left of their files
@@ -44,8 +37,6 @@ enum Chore {
     /// Offer the firmware, in simavr or in process, as a serial port
     #[cfg(unix)]
     Virtual(virtual_cm5::Args),
-    /// Install what the tests need, then run all of them
-    Test(test::Args),
 }
 
 impl Chores {
@@ -55,13 +46,11 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
-            Chore::Firmware(args) => firmware::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             #[cfg(unix)]
             Chore::BenchRecord(args) => bench_record::run(args),
             #[cfg(unix)]
             Chore::Virtual(args) => virtual_cm5::run(args),
-            Chore::Test(args) => test::run(args),
         };
         match well {
             true => ExitCode::SUCCESS,

@@ -3,12 +3,12 @@
 //! First says and installs what the peers need, into `target/peers`; `--no-install` leaves that out. A figure is
 //! a ratio of two times taken one after the other on this machine. Fails when a target is missed.
 
-use super::program::run as succeeds;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::peers::{
     Arm, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off, forward_seconds,
     runs_per_second,
 };
+use handstand_xtask::program::run as succeeds;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

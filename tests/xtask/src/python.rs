@@ -1,12 +1,13 @@
 //! Python packages that some tests need, in an environment of their own under `target`.
 
-use super::program::{self, found};
-use std::path::{Path, PathBuf};
+use handstand_xtask::program::{self, found};
+use handstand_xtask::root;
+use std::path::PathBuf;
 use std::process::Command;
 
 /// The environment: ROBOTIS's SDK drives simulated servos in a test, MCAP's own reader reads our recordings in another.
 fn sdk() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/sdk/venv")
+    root().join("target/sdk/venv")
 }
 
 /// Installs what is not there yet; what cannot be is said, and its test skipped.

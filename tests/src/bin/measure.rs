@@ -1,4 +1,4 @@
-//! `cargo xtask`: the project's own chores, one file each under `src/xtask/`.
+//! The chores of `cargo xtask` that measure, one file each under `src/xtask/`; it runs this program.
 
 #[path = "../xtask/mod.rs"]
 mod xtask;

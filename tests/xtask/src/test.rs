@@ -3,12 +3,11 @@
 //! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
 //! documentation count as one test each, as does the firmware's build, and every test of the workspace as one.
 
-use super::firmware;
-use super::install;
-use super::program::{self, overheard};
-use handstand_tests::firmware::Toolchain;
+use super::{image, install};
+use handstand_xtask::cargo;
+use handstand_xtask::firmware::Toolchain;
+use handstand_xtask::program::{self, overheard};
 use std::path::Path;
-use std::process::Command;
 
 /// Install what the tests need, then run all of them.
 #[derive(Debug, clap::Args)]
@@ -52,13 +51,10 @@ const CHECKS: &[&[&str]] = &[
 fn firmware(tally: &mut Tally) {
     println!("\nThe firmware for the AVR:");
     match Toolchain::find() {
-        Ok(_) => tally.count(
-            firmware::run(&firmware::Args::default()),
-            "cargo xtask firmware",
-        ),
+        Ok(_) => tally.count(image::run(&image::Args::default()), "cargo xtask firmware"),
         Err(why) => println!("SKIPPED, and with it the tests of its ELF: {why}"),
     }
-    if !handstand_simavr::AVAILABLE && !Path::new("/usr/include/simavr/sim_avr.h").exists() {
+    if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
         println!("SKIPPED: the tests of the firmware's ELF, for simavr is not installed");
     }
 }
@@ -89,12 +85,6 @@ impl Tally {
         }
         println!("\n{} passed, {} failed", self.passed, self.failed);
     }
-}
-
-fn cargo(words: &[&str]) -> Command {
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args(words);
-    cargo
 }
 
 fn install() {

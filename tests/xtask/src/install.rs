@@ -1,7 +1,7 @@
 //! What the tests need beside cargo: said, and installed where it can be.
 
-use super::program::{self, found, is_root};
-use handstand_tests::firmware::Toolchain;
+use handstand_xtask::firmware::Toolchain;
+use handstand_xtask::program::{self, found, is_root};
 use std::process::Command;
 
 /// Programs or files that some tests need, and the Debian packages that bring them.

@@ -1,6 +1,7 @@
 //! Building the program: ELF, Intel HEX and the raw bytes a boot loader takes.
 
 use super::toolchain::Toolchain;
+use crate::root;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,7 +32,7 @@ impl Built {
 
 /// Where builds go: a folder of their own, for another compiler would spoil the host's.
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/avr")
+    root().join("target/avr")
 }
 
 /// The last build, if there is one.
@@ -45,9 +46,8 @@ pub fn find_built() -> Option<Built> {
 /// # Errors
 /// What failed; the compiler's own messages go to stderr.
 pub fn build(toolchain: &Toolchain, plan: Option<&Path>) -> Result<Built, String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut cargo = toolchain.cargo();
-    cargo.current_dir(root).args([
+    cargo.current_dir(root()).args([
         "build",
         "--locked",
         "--package",

@@ -1,0 +1,19 @@
+//! What `cargo xtask` is made of. It knows nothing of the library, so nothing waits for that to be compiled.
+
+pub mod firmware;
+pub mod program;
+
+use std::path::PathBuf;
+use std::process::Command;
+
+/// The folder of the workspace.
+pub fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// The cargo that runs this, or the one on the path, in the workspace.
+pub fn cargo(words: &[&str]) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(words);
+    cargo
+}

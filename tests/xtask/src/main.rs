@@ -1,0 +1,94 @@
+//! `cargo xtask`: the project's own chores. What measures is another program, built in release when it is asked for: the
+//! chores here start at once.
+
+mod image;
+mod install;
+mod python;
+mod test;
+
+use clap::{Parser, Subcommand};
+use handstand_xtask::cargo;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// The project's own chores.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Chores {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Install what the tests need, then run all of them
+    Test(test::Args),
+    /// Build the CM-5's program: ELF, HEX and BIN
+    Firmware(image::Args),
+    /// Measure the firmware: cycles, times, losses and frames
+    BenchFirmware(Words),
+    /// Kill recorders, and read what is left of their files
+    BenchRecord(Words),
+    /// Measure how often hidden effects are named, missed and invented
+    Hidden(Words),
+    /// Measure other programs and the library on the same tasks
+    Peers(Words),
+    /// Diagnose public logs of real rigs
+    Real(Words),
+    /// Offer the firmware, in simavr or in process, as a serial port
+    Virtual(Words),
+}
+
+/// What the measuring program reads for itself.
+#[derive(Debug, clap::Args)]
+#[command(disable_help_flag = true)]
+struct Words {
+    /// See --help
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<OsString>,
+}
+
+fn main() -> ExitCode {
+    let chores = Chores::parse();
+    let (name, words) = match chores.chore {
+        Chore::Test(args) => return code(test::run(&args)),
+        Chore::Firmware(args) => return code(image::run(&args)),
+        Chore::BenchFirmware(words) => ("bench-firmware", words),
+        Chore::BenchRecord(words) => ("bench-record", words),
+        Chore::Hidden(words) => ("hidden", words),
+        Chore::Peers(words) => ("peers", words),
+        Chore::Real(words) => ("real", words),
+        Chore::Virtual(words) => ("virtual", words),
+    };
+    measure(name, &words.words)
+}
+
+/// Builds the measuring program if need be, and becomes it: its exit code is ours.
+fn measure(name: &str, words: &[OsString]) -> ExitCode {
+    let run = [
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "handstand-tests",
+    ];
+    let mut cargo = cargo(&run);
+    cargo.args(["--bin", "measure", "--", name]).args(words);
+    match cargo.status() {
+        Ok(status) => {
+            let code = status.code().and_then(|code| u8::try_from(code).ok());
+            code.map_or(ExitCode::FAILURE, ExitCode::from)
+        }
+        Err(error) => {
+            eprintln!("cargo cannot be run: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn code(well: bool) -> ExitCode {
+    match well {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}
