@@ -172,7 +172,7 @@ impl App {
         if self.state == State::Bridge {
             for _ in 0..64 {
                 match board.bus_receive(0) {
-                    Some(byte) => board.link_send(byte),
+                    Some(byte) => board.link_send(&[byte]),
                     None => break,
                 }
             }

@@ -222,14 +222,14 @@ impl Board for Desk {
         ROOM.saturating_sub(waiting)
     }
 
-    fn link_send(&mut self, byte: u8) {
-        if self.link_room() > 0 {
+    fn link_send(&mut self, bytes: &[u8]) {
+        for byte in bytes.iter().take(self.link_room()) {
             self.last_out_ns = self.last_out_ns.max(self.now_ns) + LINK_BYTE_NS;
-            self.to_pc.push_back((self.last_out_ns, byte));
+            self.to_pc.push_back((self.last_out_ns, *byte));
         }
     }
 
-    fn buttons(&self) -> u8 {
+    fn buttons(&mut self) -> u8 {
         0
     }
 

@@ -119,12 +119,14 @@ impl Board for PcBoard {
         255usize.saturating_sub(queued as usize)
     }
 
-    fn link_send(&mut self, byte: u8) {
-        self.link_free_ns = self.link_free_ns.max(self.now_ns) + LINK_NS;
-        self.from_link.push_back((self.link_free_ns, byte));
+    fn link_send(&mut self, bytes: &[u8]) {
+        for byte in bytes.iter().take(self.link_room()) {
+            self.link_free_ns = self.link_free_ns.max(self.now_ns) + LINK_NS;
+            self.from_link.push_back((self.link_free_ns, *byte));
+        }
     }
 
-    fn buttons(&self) -> u8 {
+    fn buttons(&mut self) -> u8 {
         self.buttons & (button::START | 0xf)
     }
 
