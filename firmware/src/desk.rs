@@ -136,6 +136,8 @@ impl<S: TimedBus> Board for Desk<S> {
             self.now_ns += BUS_BYTE_NS;
             self.bus.hear(self.now_ns, *byte);
         }
+        // Who drives the bus does not hear it: a byte that began meanwhile is missed.
+        while self.bus.take(self.now_ns + BUS_BYTE_NS - 1).is_some() {}
     }
 
     fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
