@@ -39,7 +39,7 @@ pub struct Balance {
 pub enum Stop {
     /// Too far from where the gains hold.
     Fallen,
-    /// A joint's servo does not answer.
+    /// A joint's servo does not answer, the mirrored one included.
     ServoLost,
 }
 
@@ -106,7 +106,7 @@ impl Balance {
         else {
             return Err(Stop::ServoLost);
         };
-        self.missed = match first.present && second.present {
+        self.missed = match self.has_servos(servos) {
             true => 0,
             false => self.missed.saturating_add(1),
         };

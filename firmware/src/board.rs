@@ -50,14 +50,14 @@ pub trait Board {
     /// Bytes from the PC that were lost for want of room, since the last call.
     fn link_overruns(&mut self) -> u8;
 
-    /// How many bytes can be handed to [`Board::link_send`] now.
+    /// How many bytes [`Board::link_send`] takes now.
     fn link_room(&self) -> usize;
 
-    /// Queues a byte for the PC; lost if there is no room.
-    fn link_send(&mut self, byte: u8);
+    /// Queues bytes for the PC; those that find no room are lost.
+    fn link_send(&mut self, bytes: &[u8]);
 
     /// Which buttons are down, see [`crate::panel`].
-    fn buttons(&self) -> u8;
+    fn buttons(&mut self) -> u8;
 
     /// Which LEDs are lit, see [`crate::panel`].
     fn set_leds(&mut self, leds: u8);

@@ -58,10 +58,7 @@ impl Link {
         if board.link_room() < length {
             return false;
         }
-        frame
-            .iter()
-            .take(length)
-            .for_each(|byte| board.link_send(*byte));
+        board.link_send(frame.get(..length).unwrap_or(&[]));
         self.next_out = self.next_out.wrapping_add(1);
         true
     }

@@ -109,7 +109,7 @@ fn a_plan_is_compiled_in_and_flashed() {
     bench.put("firmware/Cargo.toml", "");
     bench.put(
         "tools/cargo",
-        "#!/bin/sh\ncp \"$HANDSTAND_PLAN\" seen.rs\nprintf '\\014\\224\\106\\000' > image.bin\ncat seen.rs >> image.bin\n\
+        "#!/bin/sh\ncp \"$5\" seen.rs\nprintf '\\014\\224\\106\\000' > image.bin\ncat seen.rs >> image.bin\n\
          echo \"{\\\"bin\\\": \\\"$PWD/image.bin\\\"}\"\n",
     );
     let tool = bench.path("tools/cargo");

@@ -263,6 +263,8 @@ mod killed {
             ];
             let mut replay = spawn(&bench, &[&follow, options].concat());
             while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
+                let ended = replay.try_wait().unwrap();
+                assert!(ended.is_none(), "{words:?}: it ended early, {ended:?}");
                 std::thread::sleep(Duration::from_millis(20));
             }
             signal("-STOP", &robot);

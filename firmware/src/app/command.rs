@@ -4,6 +4,7 @@ use super::{App, Drive, State, Wish};
 use crate::board::Board;
 use crate::design::LOW_SUPPLY;
 use crate::servos::Servos;
+use crate::slots::MAX_TABLE;
 use handstand_shared::message::{
     Answer, Command, GAIN_CHUNK, Hello, Mode, Numbered, Refusal, Report, Roster, Subject,
     Telemetry, VERSION,
@@ -64,22 +65,35 @@ impl App {
                     false => Outcome::Answer(Err(Refusal::BadGains)),
                 },
             },
-            Command::GainRead { offset } => {
-                let mut bytes = [0; GAIN_CHUNK];
-                let stored = self.writer.newest();
-                if let Some(stored) = stored {
-                    stored.read(board, offset, &mut bytes);
-                }
-                let length = stored.map_or(0, |stored| stored.length);
-                let report = Report::GainChunk {
-                    offset,
-                    length,
-                    bytes,
-                };
-                self.link.send(board, &report);
-                Outcome::Quiet
-            }
+            Command::GainRead { offset } => self.read_plan(board, offset),
         }
+    }
+
+    /// A piece of the plan that counts: the one in EEPROM, else the one compiled in.
+    #[inline(never)]
+    fn read_plan<B: Board>(&mut self, board: &mut B, offset: u16) -> Outcome {
+        let mut bytes = [0; GAIN_CHUNK];
+        let length = match self.writer.newest() {
+            Some(stored) => {
+                stored.read(board, offset, &mut bytes);
+                stored.length
+            }
+            None => {
+                for (at, byte) in (offset..).zip(bytes.iter_mut()) {
+                    *byte = board.compiled_plan(at).unwrap_or(0);
+                }
+                (0..MAX_TABLE)
+                    .find(|at| board.compiled_plan(*at).is_none())
+                    .unwrap_or(MAX_TABLE)
+            }
+        };
+        let report = Report::GainChunk {
+            offset,
+            length,
+            bytes,
+        };
+        self.link.send(board, &report);
+        Outcome::Quiet
     }
 
     /// A host of another version is told ours, and gets no token.
@@ -217,6 +231,7 @@ impl App {
             stack_size,
             supply: self.servos.supply.map_or(0, |supply| supply.0),
             gyro: board.gyro(),
+            limp: self.servos.limp,
         };
         if self.link.send(board, &Report::Telemetry(telemetry)) {
             self.longest_tick_us = 0;

@@ -1,6 +1,8 @@
 //! The CM-5's ATmega128: the only unsafe code of the project, and every register it writes.
 //!
-//! Registers are written by their bits, for the generated names of the USART's frame format are wrong in avr-device 0.9.
+//! A module per peripheral. Pins are embedded-hal's and the PC line is embedded-io's; for ADC, EEPROM and watchdog embedded-hal 1.0 has
+//! no traits, and nothing here waits for a time, so there is no delay. Registers are written by their bits, for the generated names of
+//! the USART's frame format are wrong in avr-device 0.9.
 #![allow(unsafe_code)]
 
 mod adc;
@@ -16,11 +18,17 @@ mod watchdog;
 use crate::board::Board;
 use crate::design::CLOCK_PER_US;
 use avr_device::atmega128a::Peripherals;
+use embedded_io::{Read as _, ReadReady as _, Write as _, WriteReady as _};
 use handstand_shared::message::ResetCause;
+use port::{Buttons, Leds};
+use usart::Link;
 
 /// The board, taken over whatever state a boot loader left it in.
 pub struct Cm5 {
     registers: Peripherals,
+    link: Link,
+    buttons: Buttons,
+    leds: Leds,
     reset_cause: ResetCause,
 }
 
@@ -34,14 +42,19 @@ impl Cm5 {
         watchdog::start(&registers);
         let reset_cause = watchdog::take_reset_cause(&registers);
         stack::paint();
-        port::start(&registers);
+        let (buttons, leds) = port::start(&registers);
         timer::start(&registers);
-        usart::start(&registers);
+        usart::bus::start(&registers);
+        // SAFETY: the line is used through this alone from here on.
+        let link = Link::start(unsafe { Peripherals::steal() }.USART1);
         adc::start(&registers);
         // SAFETY: everything an interrupt uses is set up.
         unsafe { avr_device::interrupt::enable() };
         Cm5 {
             registers,
+            link,
+            buttons,
+            leds,
             reset_cause,
         }
     }
@@ -63,66 +76,60 @@ impl Board for Cm5 {
     #[inline(always)]
     fn bus_send(&mut self, bytes: &[u8]) {
         self.bus_send_part(bytes);
-        usart::end(&self.registers);
+        usart::bus::end(&self.registers);
     }
 
     #[inline(always)]
     fn bus_send_part(&mut self, bytes: &[u8]) {
-        usart::put(&self.registers, bytes);
+        usart::bus::put(&self.registers, bytes);
     }
 
     #[inline(always)]
     fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
-        if within_us > 0 {
-            usart::finish(&self.registers);
-        }
-        let counts = within_us.saturating_mul(CLOCK_PER_US);
-        let start = self.clock();
-        loop {
-            if let Some(byte) = usart::BUS_IN.pop() {
-                return Some(byte);
-            }
-            if self.clock().wrapping_sub(start) >= counts {
-                return None;
-            }
-        }
+        usart::bus::receive(&self.registers, within_us.saturating_mul(CLOCK_PER_US))
     }
 
     #[inline(always)]
     fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
         let [first, between] = [first_us, between_us].map(|us| us.saturating_mul(CLOCK_PER_US));
-        usart::hear(&self.registers, out, first, between)
+        usart::bus::hear(&self.registers, out, first, between)
     }
 
     #[inline(always)]
     fn bus_flush(&mut self) {
-        // Bounded by the ring's size; nobody sends while the bus is ours.
-        while usart::BUS_IN.pop().is_some() {}
+        usart::bus::flush();
     }
 
     fn link_receive(&mut self) -> Option<u8> {
-        usart::LINK_IN.pop()
+        let Ok(is_there) = self.link.read_ready();
+        is_there.then(|| {
+            let mut byte = [0];
+            let Ok(_) = self.link.read(&mut byte);
+            byte[0]
+        })
     }
 
     fn link_overruns(&mut self) -> u8 {
-        usart::LINK_IN.take_lost()
+        self.link.take_lost()
     }
 
     fn link_room(&self) -> usize {
-        usart::LINK_OUT.room()
+        self.link.room()
     }
 
-    fn link_send(&mut self, byte: u8) {
-        usart::LINK_OUT.push(byte);
-        usart::wake_link(&self.registers);
+    fn link_send(&mut self, bytes: &[u8]) {
+        // Writing waits for room, so only where there is some.
+        if let Ok(true) = self.link.write_ready() {
+            let Ok(_) = self.link.write(bytes);
+        }
     }
 
-    fn buttons(&self) -> u8 {
-        port::buttons(&self.registers)
+    fn buttons(&mut self) -> u8 {
+        self.buttons.down()
     }
 
     fn set_leds(&mut self, leds: u8) {
-        port::set_leds(&self.registers, leds);
+        self.leds.show(leds);
     }
 
     fn gyro(&mut self) -> u16 {

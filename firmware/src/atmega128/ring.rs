@@ -82,10 +82,10 @@ impl<const N: usize> Ring<N> {
     /// Takes the oldest byte. For the consumer only.
     #[inline(always)]
     pub fn pop(&self) -> Option<u8> {
-        let tail = self.tail.get();
-        if tail == self.head.get() {
+        if self.is_empty() {
             return None;
         }
+        let tail = self.tail.get();
         compiler_fence(Ordering::Acquire);
         // SAFETY: `tail` is below N, and the producer does not write this slot before `tail` moves.
         let byte = unsafe {
@@ -97,7 +97,14 @@ impl<const N: usize> Ring<N> {
         Some(byte)
     }
 
+    /// Whether it holds nothing.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.tail.get() == self.head.get()
+    }
+
     /// How many bytes it can take.
+    #[inline(always)]
     pub fn room(&self) -> usize {
         let (head, tail) = (self.head.get(), self.tail.get());
         usize::from(tail.wrapping_sub(head).wrapping_sub(1) & Self::MASK)

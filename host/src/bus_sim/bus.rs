@@ -6,6 +6,7 @@ use super::ear::Ear;
 use super::robot::Robot;
 use super::servo::Servo;
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
+use handstand_shared::timed_bus::TimedBus;
 use std::collections::VecDeque;
 
 /// From the request's last stop bit to the answer's first start bit with return delay 0, ns: a ping is quicker than the rest.
@@ -153,6 +154,28 @@ impl Bus {
             Ok(packet) => Status::of(packet).data.to_vec(),
             Err(_) => Vec::new(),
         }
+    }
+}
+
+impl TimedBus for Bus {
+    fn hear(&mut self, now_ns: u64, byte: u8) {
+        Bus::hear(self, now_ns, byte);
+    }
+
+    fn take(&mut self, now_ns: u64) -> Option<(u64, u8)> {
+        Bus::take(self, now_ns)
+    }
+
+    fn next_ns(&self) -> Option<u64> {
+        Bus::next_ns(self)
+    }
+
+    fn advance(&mut self, now_ns: u64) {
+        Bus::advance(self, now_ns);
+    }
+
+    fn rate_rad_s(&mut self) -> Option<f64> {
+        self.robot().map(|robot| robot.rate_rad_s())
     }
 }
 

@@ -79,6 +79,15 @@ struct Answer {
     missing: u64,
 }
 
+/// What was measured, either way.
+struct Measured {
+    round_trip_us: Times,
+    line_us: f64,
+    bus_us: f64,
+    round_us: Times,
+    missing: u64,
+}
+
 /// A byte on the servos' bus at 1 Mbaud, us.
 const BUS_BYTE_US: f64 = 10.0;
 
@@ -90,10 +99,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "give 0.1 to 10000",
         ));
     }
-    let answer = match args.robot.stream {
+    let measured = match args.robot.stream {
         true => by_stream(args, talk)?,
         false => by_adapter(args, talk)?,
     };
+    let answer = judge(measured, args);
     if talk.json {
         talk.data(&answer)?;
     } else {
@@ -106,7 +116,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     })
 }
 
-fn by_adapter(args: &Args, talk: &Talk) -> Result<Answer> {
+fn by_adapter(args: &Args, talk: &Talk) -> Result<Measured> {
     let mut servos = args.robot.port.servos()?;
     let ids = &args.robot.ids.0;
     let mut delay_us = 0.0;
@@ -127,17 +137,16 @@ fn by_adapter(args: &Args, talk: &Talk) -> Result<Answer> {
     let bus_us = delay_us + 18.0 + if is_direct { 0.0 } else { 12.0 * BUS_BYTE_US };
     let adapter = Adapter::new(servos, ids, Duration::ZERO);
     let (round_us, missing) = rounds(adapter, args, talk)?;
-    Ok(answer(
-        args,
+    Ok(Measured {
         round_trip_us,
         line_us,
         bus_us,
         round_us,
         missing,
-    ))
+    })
 }
 
-fn by_stream(args: &Args, talk: &Talk) -> Result<Answer> {
+fn by_stream(args: &Args, talk: &Talk) -> Result<Measured> {
     let mut stream = Stream::new(args.robot.port.open()?, &args.robot.ids.0)?;
     let mut trips = Vec::new();
     let mut ticks = Vec::new();
@@ -162,24 +171,23 @@ fn by_stream(args: &Args, talk: &Talk) -> Result<Answer> {
             .line_time(wire_length(4) + 1 + wire_length(24)),
     );
     let (round_us, missing) = rounds(stream, args, talk)?;
-    Ok(answer(
-        args,
+    Ok(Measured {
         round_trip_us,
         line_us,
         bus_us,
         round_us,
         missing,
-    ))
+    })
 }
 
-fn answer(
-    args: &Args,
-    round_trip_us: Times,
-    line_us: f64,
-    bus_us: f64,
-    round_us: Times,
-    missing: u64,
-) -> Answer {
+fn judge(measured: Measured, args: &Args) -> Answer {
+    let Measured {
+        round_trip_us,
+        line_us,
+        bus_us,
+        round_us,
+        missing,
+    } = measured;
     let period_us = args.period_ms * 1e3;
     // A stream comes at the CM-5's own pace; half a millisecond of jitter is the line's.
     let limit_us = if args.robot.stream {

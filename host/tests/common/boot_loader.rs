@@ -1,6 +1,8 @@
 //! A boot loader that behaves like the CM-5's, on a pseudo terminal: ours, after its protocol.
 
 use handstand::link::Pty;
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
@@ -28,21 +30,33 @@ pub struct Loader {
 
 /// Starts it; it ends by itself after a few seconds of silence.
 pub fn start(trouble: Trouble) -> Loader {
+    start_then(trouble, |_, _| ())
+}
+
+/// The same; after every `go` the line and what was flashed are `then`'s until it returns.
+pub fn start_then(trouble: Trouble, mut then: impl FnMut(&Pty, &[u8]) + Send + 'static) -> Loader {
     let pty = Pty::open().unwrap();
     let port = pty.name().to_string();
     let (tell, did) = channel();
     std::thread::spawn(move || {
         let say = |text: &str| pty.send(text.as_bytes()).unwrap();
+        let waiting = RefCell::new(VecDeque::<u8>::new());
         let hear = |ms| {
-            let mut byte = [0];
-            (pty.receive(&mut byte, Duration::from_millis(ms)).unwrap() == 1).then_some(byte[0])
+            let mut waiting = waiting.borrow_mut();
+            if waiting.is_empty() {
+                let mut bytes = [0; 512];
+                let count = pty.receive(&mut bytes, Duration::from_millis(ms)).unwrap();
+                waiting.extend(&bytes[..count]);
+            }
+            waiting.pop_front()
         };
         if trouble == Trouble::Silence {
             while hear(3000).is_some() {}
             return;
         }
         let (mut knocks, mut line, mut flash) = (0, String::new(), Vec::new());
-        while let Some(byte) = hear(5000) {
+        // Whoever is to knock may have a program to build first.
+        while let Some(byte) = hear(if knocks == 0 { 120_000 } else { 5000 }) {
             // The reset button is pressed at the fifth knock.
             if knocks < 5 {
                 knocks += u32::from(byte == b'#');
@@ -86,7 +100,10 @@ pub fn start(trouble: Trouble) -> Loader {
                 }
                 "verify" if trouble == Trouble::BadFlash => say("Error at 0100\r\n- "),
                 "verify" => say(&format!("{} bytes O.K.\r\n- ", flash.len())),
-                "go" => tell.send(("go".to_string(), Vec::new())).unwrap(),
+                "go" => {
+                    tell.send(("go".to_string(), Vec::new())).unwrap();
+                    then(&pty, &flash);
+                }
                 "app" => {
                     tell.send(("app".to_string(), Vec::new())).unwrap();
                     say("\r\n- ");

@@ -9,8 +9,8 @@ mod report;
 
 pub use command::{Attitude, Command, GAIN_CHUNK, Mode, Roster, Subject};
 pub use report::{
-    Answer, Cause, Condition, Hello, Refusal, Report, ResetCause, Slow, Statistics, StreamReport,
-    Telemetry,
+    Answer, Cause, Condition, Hello, Limp, Refusal, Report, ResetCause, Slow, Statistics,
+    StreamReport, Telemetry,
 };
 
 use crate::crc::crc32;
@@ -18,7 +18,7 @@ use crate::frame::{self, MAX_BODY, MAX_FRAME};
 use serde::{Deserialize, Serialize};
 
 /// Version of the messages; host and firmware must have the same.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 
 /// A message for one direction of the line.
 pub trait Message: Serialize + for<'de> Deserialize<'de> {

@@ -54,7 +54,7 @@ pub enum Condition {
     Balance,
     /// Balancing.
     BalanceArmed,
-    /// The link fell silent: positions held, torque limit falling.
+    /// It must stop: positions held, torque limit falling.
     Soft,
     /// Torque off until armed anew.
     Fault(Cause),
@@ -193,6 +193,17 @@ pub struct Telemetry {
     pub supply: u8,
     /// The gyro's last reading, ADC code.
     pub gyro: u16,
+    /// The servo that let the robot down, until it is armed anew.
+    pub limp: Option<Limp>,
+}
+
+/// A servo that gave up under torque.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limp {
+    /// Its id.
+    pub id: u8,
+    /// What it said: [`crate::dynamixel::ErrorBits`].
+    pub error: u8,
 }
 
 /// Why the controller started: bits of the ATmega128's MCUCSR.

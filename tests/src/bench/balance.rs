@@ -6,7 +6,7 @@ use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, MOVING_SPEED};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
-    Attitude, Command, Condition, GAIN_CHUNK, Mode, Refusal, Report, VERSION,
+    Attitude, Command, Condition, GAIN_CHUNK, Hello, Mode, Refusal, Report, VERSION,
 };
 use handstand_shared::plan::Plan;
 use handstand_shared::raw::Signed;
@@ -47,9 +47,14 @@ pub struct Tick {
     pub number: u16,
     /// The first link's angle, both joints' in position codes from their centres, the first link's rate.
     pub readings: [i16; 4],
+    /// The same with the other attitude, where one was just arriving when the tick began, and may have been seen or not.
+    pub or: Option<[i16; 4]>,
     /// Commands of shoulder and hip.
     pub commands: [i16; 2],
 }
+
+/// Ticks after arming in which the answer, which goes before them, makes reports late, and so the host's attitudes.
+const LATE_TICKS: usize = 8;
 
 /// The machine in floating point and the plan of the paper's robot.
 ///
@@ -59,7 +64,7 @@ pub fn plan() -> (OnBoard, Plan) {
     board_plan(&model(), &Fitting::BIOLOID, &Timing::HOST_ATTITUDE).expect("a plan can be made")
 }
 
-/// Makes driven servos turn without end, uploads the plan, and waits for the law's moment with the robot as it is.
+/// Makes driven servos turn without end, uploads the plan unless it is there, and waits for the law's moment with the robot as it is.
 ///
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.
@@ -75,14 +80,16 @@ pub fn ready(
         servo.free = false;
     }
     bench.run_ms(10.0);
-    let token = greet(bench)?;
-    upload(bench, plan)?;
+    let hello = greet(bench)?;
+    if hello.gains != plan.fingerprint() {
+        upload(bench, plan)?;
+    }
     command(bench, &Command::Mode(Mode::Balance))?;
     for _ in 0..25 {
         bench.say(&Command::Attitude(attitude));
         bench.run_ms(10.0);
     }
-    Ok(token)
+    Ok(hello.token)
 }
 
 /// Uploads the plan and arms it, the first link upright and the servos at their centres.
@@ -128,11 +135,11 @@ pub fn balance(
     Ok(run.fall_or_stand(bench, &mut robot, seconds))
 }
 
-fn greet(bench: &mut impl Bench) -> Result<u16, Option<Refusal>> {
+fn greet(bench: &mut impl Bench) -> Result<Hello, Option<Refusal>> {
     bench.forget();
     bench.say(&Command::Hello { version: VERSION });
     wait(bench, |report| match report {
-        Report::Hello(hello) => Some(Ok(hello.token)),
+        Report::Hello(hello) => Some(Ok(hello)),
         _ => None,
     })
 }
@@ -258,23 +265,31 @@ impl Run {
     fn hear(&mut self, arrived_ms: f64, report: &handstand_shared::message::StreamReport) {
         self.condition = Some(report.condition);
         self.due_ms = Some(arrived_ms + HOST_MS);
-        let before = |at_ms: f64| move |(when, _): &&(f64, _)| *when <= at_ms;
-        let attitude = self
-            .said
-            .iter()
-            .rev()
-            .find(|(at, _)| *at <= arrived_ms - 17.0);
-        let commands = self.commanded.iter().rev().find(before(arrived_ms - 4.0));
+        let commands = latest(&self.commanded, arrived_ms - 4.0);
         let codes: Vec<u16> = report.positions.codes().collect();
-        if let (Some((_, attitude)), Some((_, commands)), Condition::BalanceArmed) =
-            (attitude, commands, report.condition)
+        let joint = |place: usize| codes[place] as i16 - 512;
+        let seen = |before_ms: f64| {
+            let Attitude { angle, rate } = latest(&self.said, arrived_ms - before_ms)?;
+            Some([angle, joint(0), joint(10), rate])
+        };
+        if let (Some(readings), Some(commands), Condition::BalanceArmed) =
+            (seen(17.0), commands, report.condition)
         {
-            let joint = |place: usize| codes[place] as i16 - 512;
+            let mut doubtful = [seen(18.0), seen(16.0)].into_iter().flatten();
+            let or = doubtful.find(|other| *other != readings && self.ticks.len() < LATE_TICKS);
             self.ticks.push(Tick {
                 number: report.tick,
-                readings: [attitude.angle, joint(0), joint(10), attitude.rate],
-                commands: *commands,
+                readings,
+                or,
+                commands,
             });
         }
     }
+}
+
+/// What was noted last by then.
+fn latest<T: Copy>(noted: &[(f64, T)], by_ms: f64) -> Option<T> {
+    let mut noted = noted.iter().rev();
+    let (_, value) = noted.find(|(at, _)| *at <= by_ms)?;
+    Some(*value)
 }

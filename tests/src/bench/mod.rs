@@ -9,6 +9,8 @@ mod loss;
 mod pc;
 mod power;
 mod robot;
+#[cfg(unix)]
+mod serve;
 mod stream;
 
 pub use balance::{Balanced, Conditions, Tick, arm_balance, balance, plan};
@@ -21,6 +23,8 @@ pub use loss::hang;
 pub use loss::{Loss, Worst, arm, link_loss, worst_of};
 pub use pc::PcRig;
 pub use power::{PowerCuts, power_cuts};
+#[cfg(unix)]
+pub use serve::serve;
 pub use stream::{StreamRun, stream};
 
 use handstand::bus_sim::Bus;

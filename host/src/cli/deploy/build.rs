@@ -4,9 +4,6 @@ use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Where cargo finds the plan, as a path to a Rust file of its bytes.
-pub const PLAN_FILE: &str = "HANDSTAND_PLAN";
-
 /// Builds the firmware of the repository at `root` with this plan; the raw binary.
 ///
 /// # Errors
@@ -22,9 +19,9 @@ pub fn build(root: &Path, plan: &Path) -> Result<PathBuf> {
         .canonicalize()
         .map_err(|error| Error::file(plan, "read", error))?;
     let output = Command::new("cargo")
-        .args(["xtask", "firmware", "--json"])
+        .args(["xtask", "firmware", "--json", "--plan"])
+        .arg(&plan)
         .current_dir(root)
-        .env(PLAN_FILE, &plan)
         .stderr(Stdio::inherit())
         .output()
         .map_err(|error| {

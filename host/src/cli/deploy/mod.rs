@@ -268,7 +268,16 @@ fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut Steps) -> Result<Ve
     // It starts within its first second.
     std::thread::sleep(std::time::Duration::from_secs(1));
     let mut session = Session::open(args.port.open()?)?;
-    verified(&mut session, bytes, plan.fingerprint(), steps)
+    let (theirs, ours) = (session.hello.gains, plan.fingerprint());
+    if theirs != ours {
+        return Err(Error::device(
+            format!(
+                "the CM-5 balances by {theirs:08X}, not by {ours:08X} that was compiled in: a plan in its EEPROM wins"
+            ),
+            "replace that plan: the same without --flash",
+        ));
+    }
+    verified(&mut session, bytes, ours, steps)
 }
 
 fn verified(

@@ -35,9 +35,14 @@ fn folder() -> PathBuf {
     root().join("target/avr")
 }
 
-/// The last build, if there is one.
+/// Where the files are put, apart by whether a plan is in them: tests rely on the plain ones.
+fn files(has_plan: bool) -> PathBuf {
+    folder().join(if has_plan { "with-plan" } else { "plain" })
+}
+
+/// The last build without a plan, if there is one.
 pub fn find_built() -> Option<Built> {
-    let built = Built::at(&folder().join("avr-none/avr"));
+    let built = Built::at(&files(false));
     built.elf.exists().then_some(built)
 }
 
@@ -70,10 +75,23 @@ pub fn build(toolchain: &Toolchain, plan: Option<&Path>) -> Result<Built, String
     if !status.is_ok_and(|status| status.success()) {
         return Err(format!("{} could not build the firmware", toolchain.name));
     }
-    let built = Built::at(&folder().join("avr-none/avr"));
+    let made = Built::at(&folder().join("avr-none/avr"));
+    let built = Built::at(&files(plan.is_some()));
+    put(&made.elf, &built.elf)?;
+    put(&made.law, &built.law)?;
     objcopy(&built.elf, &built.hex, "ihex")?;
     objcopy(&built.elf, &built.bin, "binary")?;
     Ok(built)
+}
+
+/// A copy of a file, its folder included.
+fn put(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", to.display());
+    to.parent()
+        .map_or(Ok(()), std::fs::create_dir_all)
+        .map_err(failed)?;
+    std::fs::copy(from, to).map_err(failed)?;
+    Ok(())
 }
 
 fn objcopy(elf: &Path, to: &Path, format: &str) -> Result<(), String> {

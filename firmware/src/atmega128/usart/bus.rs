@@ -1,30 +1,24 @@
-//! USART0 is the servo bus, USART1 the PC line.
+//! USART0, the servo bus: half duplex, packet by packet.
+//!
+//! Not as embedded-io's traits: a byte lasts 160 cycles. Packets leave by interrupt while they are still being made, and answers
+//! are polled with a time-out of their own for the first byte; a reader of bytes has no words for either.
 
-use super::ring::{Ring, SharedByte};
-use super::timer::clock;
-use crate::design::{BUS_UBRR, CLOCK_PER_US, LINK_UBRR};
+use super::{
+    DOUBLE_SPEED, EIGHT_BITS, EMPTY_INTERRUPT, RECEIVED, RECEIVER, RECEIVER_ON, SENT,
+    SENT_INTERRUPT, TRANSMITTER,
+};
+use crate::atmega128::port::{bus_listens, bus_transmits};
+use crate::atmega128::ring::{Ring, SharedByte};
+use crate::atmega128::timer::clock;
+use crate::design::{BUS_UBRR, CLOCK_PER_US};
 use avr_device::atmega128a::Peripherals;
 
 /// From the servos. A whole answer of 14 bytes can wait here.
-pub static BUS_IN: Ring<64> = Ring::new();
+static IN: Ring<64> = Ring::new();
 /// To the servos: a SYNC_WRITE to 18 of them has 62 bytes.
-pub static BUS_OUT: Ring<64> = Ring::new();
-/// From the PC: more than what comes in while a tick runs, 57 bytes per 10 ms.
-pub static LINK_IN: Ring<128> = Ring::new();
-/// To the PC: a report, an answer and telemetry together.
-pub static LINK_OUT: Ring<256> = Ring::new();
+static OUT: Ring<64> = Ring::new();
 
-const DOUBLE_SPEED: u8 = 1 << 1;
-const SENT: u8 = 1 << 6;
-const SENT_INTERRUPT: u8 = 1 << 6;
-const EIGHT_BITS: u8 = 0b110;
-const RECEIVED: u8 = 1 << 7;
-const RECEIVER_ON: u8 = 1 << 4;
-const RECEIVER: u8 = RECEIVER_ON | 1 << 7; // with its interrupt
-const TRANSMITTER: u8 = 1 << 3;
-const EMPTY_INTERRUPT: u8 = 1 << 5;
-
-/// Both at their speeds, 8N1.
+/// At its speed, 8N1.
 pub fn start(r: &Peripherals) {
     // SAFETY: plain bits, as in the data sheet's tables. Double speed before the baud rate.
     unsafe {
@@ -34,41 +28,35 @@ pub fn start(r: &Peripherals) {
         r.USART0.ubrr0h().write(|w| w.bits(0));
         r.USART0.ubrr0l().write(|w| w.bits(BUS_UBRR as u8));
         r.USART0.ucsr0b().write(|w| w.bits(RECEIVER | TRANSMITTER));
-        r.USART1.ucsr1b().write(|w| w.bits(0));
-        r.USART1.ucsr1a().write(|w| w.bits(DOUBLE_SPEED));
-        r.USART1.ucsr1c().write(|w| w.bits(EIGHT_BITS));
-        r.USART1.ubrr1h().write(|w| w.bits(0));
-        r.USART1.ubrr1l().write(|w| w.bits(LINK_UBRR as u8));
-        r.USART1.ucsr1b().write(|w| w.bits(RECEIVER | TRANSMITTER));
     }
 }
 
 /// The bus's transmitter: idle, or a packet is on its way. Written by the program when idle, by the interrupt when it ends.
-static BUS: SharedByte = SharedByte::new(IDLE);
+static STATE: SharedByte = SharedByte::new(IDLE);
 const IDLE: u8 = 0;
 /// More of the packet will be handed over.
 const OPEN: u8 = 1;
 /// All of it was.
 const CLOSED: u8 = 2;
 
-/// Longest time a packet takes, us: 63 bytes of 10 us in [`BUS_OUT`], and as much again for interrupts between them.
+/// Longest time a packet takes, us: 63 bytes of 10 us in [`OUT`], and as much again for interrupts between them.
 const LONGEST_US: u16 = 1300;
 
 /// Hands over bytes of a packet, which go out while the program goes on; the first ones of it wait until the packet
 /// before is out, and drive the bus.
 #[inline(always)]
 pub fn put(r: &Peripherals, mut bytes: &[u8]) {
-    if BUS.get() != OPEN
+    if STATE.get() != OPEN
         && let Some((first, rest)) = bytes.split_first()
     {
         finish(r);
-        BUS.set(OPEN);
-        super::port::bus_transmits(r);
+        STATE.set(OPEN);
+        bus_transmits();
         transmit(r, *first);
         bytes = rest;
     }
-    bytes.iter().for_each(|byte| BUS_OUT.push(*byte));
-    wake_bus(r);
+    bytes.iter().for_each(|byte| OUT.push(*byte));
+    wake(r);
 }
 
 /// Gives the transmitter a byte, for which it has room.
@@ -85,25 +73,49 @@ fn transmit(r: &Peripherals, byte: u8) {
 /// The packet that was begun is whole: after its last stop bit the bus is let in.
 #[inline(always)]
 pub fn end(r: &Peripherals) {
-    BUS.set(CLOSED);
-    wake_bus(r);
+    STATE.set(CLOSED);
+    wake(r);
 }
 
 /// Whether a packet is on its way.
 #[inline(always)]
-pub fn is_sending() -> bool {
-    BUS.get() != IDLE
+fn is_sending() -> bool {
+    STATE.get() != IDLE
 }
 
 /// Waits until the last stop bit is out. A USART that is not done after twice the longest time is broken, and given up.
 #[inline(always)]
-pub fn finish(r: &Peripherals) {
+fn finish(r: &Peripherals) {
     let start = clock(r);
     while is_sending() {
         if clock(r).wrapping_sub(start) >= LONGEST_US * CLOCK_PER_US {
             give_up(r);
         }
     }
+}
+
+/// The next byte from the servos, waiting for it for so many counts of the clock.
+#[inline(always)]
+pub fn receive(r: &Peripherals, within: u16) -> Option<u8> {
+    if within > 0 {
+        finish(r);
+    }
+    let start = clock(r);
+    loop {
+        if let Some(byte) = IN.pop() {
+            return Some(byte);
+        }
+        if clock(r).wrapping_sub(start) >= within {
+            return None;
+        }
+    }
+}
+
+/// Forgets what came and was not taken.
+#[inline(always)]
+pub fn flush() {
+    // Bounded by the ring's size; nobody sends while the bus is ours.
+    while IN.pop().is_some() {}
 }
 
 /// Takes bytes from the servos until `out` is full, or nothing comes for `first` counts of the clock, or `between` after the
@@ -120,7 +132,7 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize 
         let start = clock(r);
         *slot = loop {
             // What came before the interrupt was off.
-            if let Some(byte) = BUS_IN.pop() {
+            if let Some(byte) = IN.pop() {
                 break byte;
             }
             if r.USART0.ucsr0a().read().bits() & RECEIVED != 0 {
@@ -142,14 +154,14 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize 
 fn give_up(r: &Peripherals) {
     // SAFETY: plain bits; the interrupts that use the rest are off by them.
     unsafe { r.USART0.ucsr0b().write(|w| w.bits(RECEIVER | TRANSMITTER)) };
-    while BUS_OUT.pop().is_some() {}
-    super::port::bus_listens(r);
-    BUS.set(IDLE);
+    while OUT.pop().is_some() {}
+    bus_listens();
+    STATE.set(IDLE);
 }
 
-/// Something is in [`BUS_OUT`], or nothing more will be.
+/// Something is in [`OUT`], or nothing more will be.
 #[inline(always)]
-fn wake_bus(r: &Peripherals) {
+fn wake(r: &Peripherals) {
     // SAFETY: plain bits, in one store.
     unsafe {
         r.USART0
@@ -158,22 +170,11 @@ fn wake_bus(r: &Peripherals) {
     };
 }
 
-/// Something is in [`LINK_OUT`].
-#[inline(always)]
-pub fn wake_link(r: &Peripherals) {
-    // SAFETY: plain bits.
-    unsafe {
-        r.USART1
-            .ucsr1b()
-            .write(|w| w.bits(RECEIVER | TRANSMITTER | EMPTY_INTERRUPT))
-    };
-}
-
 #[avr_device::interrupt(atmega128a)]
 fn USART0_RX() {
     // SAFETY: the program reads the data register only while this interrupt is off.
     let r = unsafe { Peripherals::steal() };
-    BUS_IN.push(r.USART0.udr0().read().bits());
+    IN.push(r.USART0.udr0().read().bits());
 }
 
 #[avr_device::interrupt(atmega128a)]
@@ -181,10 +182,10 @@ fn USART0_UDRE() {
     // SAFETY: the program writes these registers only before a packet, and then in one store each.
     let r = unsafe { Peripherals::steal() };
     unsafe {
-        match BUS_OUT.pop() {
+        match OUT.pop() {
             Some(byte) => transmit(&r, byte),
             None => {
-                let last = BUS.get() == CLOSED;
+                let last = STATE.get() == CLOSED;
                 let ending = if last { SENT_INTERRUPT } else { 0 };
                 let bits = RECEIVER | TRANSMITTER | ending;
                 r.USART0.ucsr0b().write(|w| w.bits(bits));
@@ -195,28 +196,9 @@ fn USART0_UDRE() {
 
 #[avr_device::interrupt(atmega128a)]
 fn USART0_TX() {
-    // SAFETY: single bits of a port, and a register the program leaves alone while a packet is on its way.
+    bus_listens();
+    // SAFETY: a register the program leaves alone while a packet is on its way.
     let r = unsafe { Peripherals::steal() };
-    super::port::bus_listens(&r);
     unsafe { r.USART0.ucsr0b().write(|w| w.bits(RECEIVER | TRANSMITTER)) };
-    BUS.set(IDLE);
-}
-
-#[avr_device::interrupt(atmega128a)]
-fn USART1_RX() {
-    // SAFETY: only this interrupt reads the data register.
-    let r = unsafe { Peripherals::steal() };
-    LINK_IN.push(r.USART1.udr1().read().bits());
-}
-
-#[avr_device::interrupt(atmega128a)]
-fn USART1_UDRE() {
-    // SAFETY: only this interrupt writes the data register; the program changes UCSR1B in one store.
-    let r = unsafe { Peripherals::steal() };
-    unsafe {
-        match LINK_OUT.pop() {
-            Some(byte) => r.USART1.udr1().write(|w| w.bits(byte)),
-            None => r.USART1.ucsr1b().write(|w| w.bits(RECEIVER | TRANSMITTER)),
-        };
-    }
+    STATE.set(IDLE);
 }

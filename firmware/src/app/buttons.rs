@@ -1,0 +1,46 @@
+//! What buttons do, and which LEDs tell the state.
+
+use super::{App, Drive, State};
+use crate::board::Board;
+use crate::design::SILENT_TICKS;
+use crate::panel::{button, leds};
+use handstand_shared::message::Mode;
+
+impl App {
+    /// Buttons and LEDs.
+    #[inline(never)]
+    pub(super) fn panel<B: Board>(&mut self, board: &mut B) {
+        let pressed = self.buttons.pressed(board.buttons());
+        if pressed != 0 {
+            self.press(board, pressed);
+        }
+        let all_answer = self.servos.missing() == 0;
+        let lit = leds(
+            self.condition(),
+            self.ticks,
+            self.silent <= SILENT_TICKS,
+            all_answer,
+        );
+        board.set_leds(lit);
+    }
+
+    /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the host arms.
+    fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
+        match self.state {
+            State::Stream(Drive::On | Drive::Soft { .. }) => {
+                self.disarm(board);
+                self.state = State::Stream(Drive::Off);
+            }
+            State::Balance(Drive::On | Drive::Soft { .. }) => {
+                self.disarm(board);
+                self.state = State::Balance(Drive::Off);
+            }
+            State::Bridge | State::Stream(Drive::Off) => {
+                if pressed & button::START != 0 {
+                    self.enter(board, Mode::Balance);
+                }
+            }
+            State::Balance(Drive::Off) | State::Fault(_) => {}
+        }
+    }
+}

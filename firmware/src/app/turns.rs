@@ -1,0 +1,91 @@
+//! What a tick does in each state.
+
+use super::{App, State, Wish};
+use crate::balance::Stop;
+use crate::board::{Board, since_us};
+use crate::bus;
+use handstand_shared::message::{Cause, Report, StreamReport};
+
+impl App {
+    /// Torque off, or about to be: reads and reports.
+    #[inline(never)]
+    pub(super) fn watch<B: Board>(&mut self, board: &mut B, started: u16) {
+        self.servos.read(board, &mut self.statistics, started);
+        self.report(board);
+    }
+
+    /// Torque must stay off: says so ten times a second, for a servo may have missed it.
+    pub(super) fn insist<B: Board>(&mut self, board: &mut B, started: u16) {
+        if self.ticks & 7 == 0 {
+            bus::torque_off(board);
+        }
+        self.watch(board, started);
+    }
+
+    /// Goals first, for their delay counts most; then reads and reports.
+    #[inline(never)]
+    pub(super) fn stream<B: Board>(&mut self, board: &mut B, started: u16) {
+        if let Some(cause) = self.must_stop() {
+            self.soften(board, cause, State::Stream);
+            return self.watch(board, started);
+        }
+        match self.wish {
+            Wish::Stay => {}
+            Wish::Positions(goals) => self.servos.go_to(board, &goals),
+            Wish::Speeds(speeds) => self.servos.spin(board, speeds.codes()),
+        }
+        self.watch(board, started);
+    }
+
+    /// Reads, then the law at once, then the report.
+    #[inline(never)]
+    pub(super) fn balance<B: Board>(&mut self, board: &mut B, started: u16) {
+        if let Some(cause) = self.must_stop() {
+            self.soften(board, cause, State::Balance);
+            return self.watch(board, started);
+        }
+        self.servos.read(board, &mut self.statistics, started);
+        match self.servos.limp {
+            None => self.command(board),
+            // It leaves the other ones to throw the robot: not one command more.
+            Some(_) => self.soften(board, Cause::ServoError, State::Balance),
+        }
+        self.report(board);
+    }
+
+    /// The law's commands at these readings.
+    #[inline(always)]
+    fn command<B: Board>(&mut self, board: &mut B) {
+        let law_started = board.clock();
+        let gyro = board.gyro();
+        self.balance.sense(self.attitude, gyro);
+        let readings = match self.balance.readings(&self.servos) {
+            Ok(readings) => readings,
+            Err(Stop::Fallen) => return self.give_up(board, Cause::Fallen),
+            Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
+        };
+        let commands = self.balance.commands(&readings);
+        let law_us = since_us(board, law_started);
+        self.servos.turn(board, commands);
+        // What only the next tick needs delays no command.
+        let learn_started = board.clock();
+        self.balance.learn();
+        let law_us = law_us.saturating_add(since_us(board, learn_started));
+        self.longest_law_us = self.longest_law_us.max(law_us);
+    }
+
+    #[inline(never)]
+    fn report<B: Board>(&mut self, board: &mut B) {
+        let [m0, m1, m2, _] = self.servos.missing().to_le_bytes();
+        let report = StreamReport {
+            tick: self.ticks as u16,
+            condition: self.condition(),
+            obeyed: self.obeyed,
+            positions: self.servos.positions,
+            missing: [m0, m1, m2],
+            slow_from: self.servos.slow_from,
+            slow: self.servos.slow,
+        };
+        self.link.send(board, &Report::Stream(report));
+    }
+}

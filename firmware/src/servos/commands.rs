@@ -1,0 +1,113 @@
+//! Commanding: torque, goals and speeds, one packet for all.
+
+use super::{Servo, Servos};
+use crate::board::Board;
+use crate::bus;
+use crate::design::GOAL_SLEW;
+use handstand_shared::control_table::{
+    GOAL_POSITION, MOVING_SPEED, Register, TORQUE_ENABLE, TORQUE_LIMIT,
+};
+use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::raw::{Position, Signed, TorqueLimit};
+use heapless::Vec;
+
+impl Servos {
+    /// Torque on where a servo answered: full limit, and the goal where it stands.
+    pub fn arm<B: Board>(&mut self, board: &mut B) {
+        self.limp = None;
+        for servo in self.all_mut() {
+            servo.armed = servo.present;
+            servo.goal = servo.position;
+        }
+        bus::write_all(board, TORQUE_LIMIT, TorqueLimit::FULL.0);
+        self.write_each(board, MOVING_SPEED, |_| 0);
+        self.write_each(board, GOAL_POSITION, |servo| servo.goal.0);
+        self.write_each(board, TORQUE_ENABLE, |_| 1);
+    }
+
+    /// Torque off everywhere.
+    pub fn disarm<B: Board>(&mut self, board: &mut B) {
+        bus::torque_off(board);
+        for servo in self.all_mut() {
+            servo.armed = false;
+        }
+    }
+
+    /// Torque off where none is commanded, as in servos that gave up: else the limits written to all would wake them.
+    pub fn release<B: Board>(&self, board: &mut B) {
+        let released = self.all().iter().filter(|servo| !servo.armed);
+        let count = self.count.saturating_sub(self.armed());
+        bus::write_each(
+            board,
+            TORQUE_ENABLE,
+            count,
+            released.map(|servo| (servo.id, 0)),
+        );
+    }
+
+    /// Sends goals, each at most [`GOAL_SLEW`] from the last.
+    pub fn go_to<B: Board>(&mut self, board: &mut B, goals: &Positions) {
+        let armed = self.armed();
+        let moved = self
+            .all_mut()
+            .iter_mut()
+            .enumerate()
+            .filter_map(|(place, servo)| {
+                let from = servo.goal.0;
+                let nearest = from.saturating_sub(GOAL_SLEW);
+                let farthest = from.saturating_add(GOAL_SLEW).min(Position::MAX.0);
+                let goal = goals.get(place).max(nearest).min(farthest);
+                servo.goal = Position(goal);
+                servo.armed.then_some((servo.id, goal))
+            });
+        bus::write_each(board, GOAL_POSITION, armed, moved);
+    }
+
+    /// Sends commands to servos in wheel mode, in the roster's order.
+    pub fn spin<B: Board>(&self, board: &mut B, speeds: impl Iterator<Item = u16>) {
+        let all = self.all().iter().zip(speeds);
+        let commanded = all.filter(|(servo, _)| servo.armed);
+        let commands = commanded.map(|(servo, code)| (servo.id, code));
+        bus::write_each(board, MOVING_SPEED, self.armed(), commands);
+    }
+
+    /// Sends commands to servos in wheel mode, each given with its id.
+    pub fn turn<B: Board>(&self, board: &mut B, commands: impl Iterator<Item = (u8, Signed)>) {
+        let armed = |id: u8| self.with_id(id).is_some_and(|servo| servo.armed);
+        let mut known: Vec<(u8, u16), SERVOS, u8> = Vec::new();
+        for (id, code) in commands.filter(|(id, _)| armed(*id)).take(SERVOS) {
+            // There is room for as many as are taken.
+            let _ = known.push((id, code.0));
+        }
+        bus::write_each(
+            board,
+            MOVING_SPEED,
+            known.len() as u8,
+            known.iter().copied(),
+        );
+    }
+
+    /// Goals where the servos stand now.
+    pub fn hold<B: Board>(&mut self, board: &mut B) {
+        for servo in self.all_mut() {
+            servo.goal = servo.position;
+        }
+        self.write_each(board, GOAL_POSITION, |servo| servo.goal.0);
+    }
+
+    /// How many are commanded.
+    fn armed(&self) -> u8 {
+        self.all().iter().map(|servo| u8::from(servo.armed)).sum()
+    }
+
+    fn write_each<B: Board>(
+        &self,
+        board: &mut B,
+        register: Register,
+        value: impl Fn(&Servo) -> u16,
+    ) {
+        let armed = self.all().iter().filter(|servo| servo.armed);
+        let values = armed.map(|servo| (servo.id, value(servo)));
+        bus::write_each(board, register, self.armed(), values);
+    }
+}

@@ -1,0 +1,55 @@
+//! The firmware: its logic in process, and the real ELF in simavr where both are there.
+
+mod adapter;
+mod arming;
+mod balance;
+mod damage;
+#[cfg(simavr)]
+mod elf;
+mod faults;
+mod panel;
+mod safety;
+mod stream;
+
+use handstand_shared::message::*;
+use handstand_tests::bench::*;
+
+/// What it says against a command; nothing if it obeys.
+fn refused(rig: &mut PcRig, command: Command) -> Option<Refusal> {
+    rig.forget();
+    let sequence = rig.say(&command);
+    rig.run_ms(30.0);
+    rig.reports()
+        .into_iter()
+        .find_map(|(_, report)| match report {
+            Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.err()),
+            _ => None,
+        })?
+}
+
+/// Greets it.
+fn greet(rig: &mut PcRig) -> Hello {
+    rig.forget();
+    rig.say(&Command::Hello { version: VERSION });
+    rig.run_ms(20.0);
+    let hello = rig
+        .reports()
+        .into_iter()
+        .find_map(|(_, report)| match report {
+            Report::Hello(hello) => Some(hello),
+            _ => None,
+        });
+    hello.expect("an answer")
+}
+
+/// What the last report of a tick says.
+fn condition(bench: &mut impl Bench) -> Option<Condition> {
+    bench.forget();
+    bench.run_ms(30.0);
+    let last = bench.reports().into_iter().rev();
+    last.filter_map(|(_, report)| match report {
+        Report::Stream(report) => Some(report.condition),
+        _ => None,
+    })
+    .next()
+}
