@@ -74,20 +74,23 @@ macro_rules! finish {
             "handstand_scale \\u0, \\u1, \\a1, \\a2, \\a3\n",
             "rjmp 40f\n",
             "36: breq 35f\n",
-            "cpi r24, 24\n",
-            "brlo 37f\n",
             "cpi r24, 255\n",
             "breq 20f\n",
-            "mov \\a2, \\a3\n", // from 25 on
-            "lsl \\a3\n",
-            "sbc \\a3, \\a3\n",
-            "37: handstand_power\n", // from 17 on
-            "mul \\a2, r20\n",
+            "handstand_power\n",
+            "cpi r24, 24\n",
+            "brsh 38f\n",
+            "mul \\a2, r20\n", // 17 to 24
             "mov \\u0, r1\n",
             "mulsu \\a3, r20\n",
             "add \\u0, r0\n",
             "adc r1, r11\n",
             "mov \\u1, r1\n",
+            "rjmp 50f\n",
+            "38: mulsu \\a3, r20\n", // from 25 on
+            "mov \\u0, r1\n",
+            "mov \\u1, r1\n",
+            "lsl \\u1\n",
+            "sbc \\u1, \\u1\n",
             "rjmp 50f\n",
             "35: movw \\u0, \\a2\n", // 16
             "rjmp 50f\n",
@@ -100,8 +103,7 @@ macro_rules! finish {
             "mov r0, \\a2\n",
             "lsl r0\n",
             "adc \\a3, r11\n",
-            "brne 60f\n",
-            "rjmp 40f\n",
+            "breq 40f\n",
             "60: brlt 61f\n", // Beyond 16 bits: the limit of that side.
             "ldd \\u0, Z+\\high\n",
             "ldd \\u1, Z+\\high+1\n",

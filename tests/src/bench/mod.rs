@@ -14,7 +14,7 @@ mod stream;
 pub use balance::{Balanced, Conditions, Tick, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
-pub use law::{LawRun, ObserverRun, law, observer_law};
+pub use law::{CHOSEN, Cycles, LawRun, ObserverRun, SHIFTS, law, observer_law};
 pub use laws::{Fixed, Float, HostLaw, Sides, balance_by_host, different, side_by_side};
 #[cfg(simavr)]
 pub use loss::hang;
