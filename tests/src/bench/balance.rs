@@ -1,18 +1,65 @@
 //! The robot in closed loop with the firmware: three links on a bar, two joints driven by servos in wheel mode.
 
 use super::Bench;
-use super::robot::{Robot, STEP_MS, model};
+use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, STEP_MS, model};
 use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, MOVING_SPEED};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
-    Attitude, Command, Condition, GAIN_CHUNK, Mode, Refusal, Report, VERSION,
+    Attitude, Command, Condition, GAIN_CHUNK, Mode, Refusal, Report, Subject, Telemetry, VERSION,
 };
-use handstand_shared::plan::Plan;
+use handstand_shared::plan::{Gyro, Plan};
 use handstand_shared::raw::Signed;
 
 /// After a report has arrived the host takes this long to say the attitude, ms.
-const HOST_MS: f64 = 1.0;
+pub(super) const HOST_MS: f64 = 1.0;
+
+/// A report's last byte comes so long after its tick's commands, and after the attitude that tick used was said, ms: from the
+/// first to the second of each, which are a period apart. [`super::ages`] measures it.
+pub const REPORT_WINDOWS_MS: [[f64; 2]; 2] = [[5.5, 15.5], [14.0, 24.0]];
+
+/// Where the CM-5 has the first link's attitude from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The host says it after every report.
+    Host,
+    /// A gyro of 10 deg/s per code on the ADC, and nothing else.
+    Gyro,
+}
+
+impl Source {
+    /// When things happen.
+    pub fn timing(self) -> Timing {
+        match self {
+            Source::Host => Timing::HOST_ATTITUDE,
+            Source::Gyro => Timing::GYRO,
+        }
+    }
+
+    /// The servos, and the gyro as it is wired.
+    pub fn fitting(self) -> Fitting {
+        let gyro = match self {
+            Source::Host => Fitting::BIOLOID.gyro,
+            Source::Gyro => Gyro {
+                from_host: false,
+                zero: GYRO_ZERO,
+                scale: (GYRO_STEP_RAD_S / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
+            },
+        };
+        Fitting {
+            gyro,
+            ..Fitting::BIOLOID
+        }
+    }
+
+    /// The machine in floating point and the plan of the paper's robot.
+    ///
+    /// # Panics
+    /// The repository's own model cannot be read or designed for: a bug.
+    pub fn plan(self) -> (OnBoard, Plan) {
+        board_plan(&model(), &self.fitting(), &self.timing()).expect("a plan can be made")
+    }
+}
 
 /// The simulated rig around the firmware.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +83,8 @@ pub struct Balanced {
     pub torque_rms_nm: [f64; 2],
     /// What the firmware said at the end; nothing where there is none.
     pub condition: Option<Condition>,
+    /// The firmware's own account of the time since torque came on.
+    pub telemetry: Option<Telemetry>,
     /// What each tick saw and commanded, as far as the line told.
     pub ticks: Vec<Tick>,
 }
@@ -51,12 +100,9 @@ pub struct Tick {
     pub commands: [i16; 2],
 }
 
-/// The machine in floating point and the plan of the paper's robot.
-///
-/// # Panics
-/// The repository's own model cannot be read or designed for: a bug.
+/// [`Source::plan`] with the attitude from the host.
 pub fn plan() -> (OnBoard, Plan) {
-    board_plan(&model(), &Fitting::BIOLOID, &Timing::HOST_ATTITUDE).expect("a plan can be made")
+    Source::Host.plan()
 }
 
 /// Makes driven servos turn without end, uploads the plan, and waits for the law's moment with the robot as it is.
@@ -125,7 +171,23 @@ pub fn balance(
             return Err(answer);
         }
     }
-    Ok(run.fall_or_stand(bench, &mut robot, seconds))
+    // Asked for now, so that the next one knows the longest tick since now.
+    bench.say(&Command::Ask(Subject::Telemetry));
+    let mut balanced = run.fall_or_stand(bench, &mut robot, seconds);
+    balanced.telemetry = telemetry(bench);
+    Ok(balanced)
+}
+
+fn telemetry(bench: &mut impl Bench) -> Option<Telemetry> {
+    bench.run_ms(30.0);
+    bench.forget();
+    bench.say(&Command::Ask(Subject::Telemetry));
+    bench.run_ms(50.0);
+    let mut reports = bench.reports().into_iter();
+    reports.find_map(|(_, report)| match report {
+        Report::Telemetry(telemetry) => Some(telemetry),
+        _ => None,
+    })
 }
 
 fn greet(bench: &mut impl Bench) -> Result<u16, Option<Refusal>> {
@@ -224,6 +286,7 @@ impl Run {
             rms_rad: rms[0],
             torque_rms_nm: [rms[1], rms[2]],
             condition: self.condition,
+            telemetry: None,
             ticks: self.ticks,
         }
     }
@@ -251,20 +314,25 @@ impl Run {
             self.said.push((now_ms, attitude));
             bench.say(&Command::Attitude(attitude));
         }
+        bench.turn_gyro(robot.gyro());
         bench.run_ms(STEP_MS);
     }
 
-    /// A report's last byte comes some 15 ms after its tick began, and 9 ms after that tick's commands.
     fn hear(&mut self, arrived_ms: f64, report: &handstand_shared::message::StreamReport) {
         self.condition = Some(report.condition);
         self.due_ms = Some(arrived_ms + HOST_MS);
+        let [[commands_ms, _], [attitude_ms, _]] = REPORT_WINDOWS_MS;
         let before = |at_ms: f64| move |(when, _): &&(f64, _)| *when <= at_ms;
         let attitude = self
             .said
             .iter()
             .rev()
-            .find(|(at, _)| *at <= arrived_ms - 17.0);
-        let commands = self.commanded.iter().rev().find(before(arrived_ms - 4.0));
+            .find(|(at, _)| *at <= arrived_ms - attitude_ms);
+        let commands = self
+            .commanded
+            .iter()
+            .rev()
+            .find(before(arrived_ms - commands_ms));
         let codes: Vec<u16> = report.positions.codes().collect();
         if let (Some((_, attitude)), Some((_, commands)), Condition::BalanceArmed) =
             (attitude, commands, report.condition)

@@ -4,8 +4,10 @@
 //! and says so. simavr lets a byte of 8N1 take 11 bits; the bench sets it to 10, so no time here needs correcting.
 
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+#[cfg(simavr)]
+use handstand_shared::message::Telemetry;
 use handstand_tests::bench::{
-    Balanced, Conditions, FrameTally, PcRig, Sides, StreamRun, Worst, bit_flips, link_loss,
+    Balanced, Conditions, FrameTally, PcRig, Sides, Source, StreamRun, Worst, bit_flips, link_loss,
     patterns, power_cuts, random_bytes, resynchronised, side_by_side, stream, worst_of,
 };
 use handstand_tests::firmware::{Built, find_built};
@@ -87,7 +89,10 @@ const ROWS: &[(&str, Measure)] = &[
     ("link loss", losses),
     ("hang", hangs),
     ("law", laws),
+    ("age of readings", readings),
     ("closed loop", loops),
+    ("gyro alone", gyros),
+    ("balancing", balancing),
     ("power cut", cuts),
     ("frames", frames),
 ];
@@ -177,25 +182,30 @@ fn stream_rows(run: &StreamRun) -> Vec<Row> {
 }
 
 #[cfg(simavr)]
+fn stack_row(name: &'static str, telemetry: &Telemetry) -> Row {
+    let depth = f64::from(telemetry.stack_used);
+    // Of all RAM: what the static data takes is not the stack's.
+    let used = 4096.0 - f64::from(telemetry.stack_size) + depth;
+    Row {
+        name,
+        measured: format!(
+            "{depth} of {} bytes; {used} of 4096, {:.0} %",
+            telemetry.stack_size,
+            100.0 * used / 4096.0
+        ),
+        limit: "80 % of 4096",
+        holds: used <= 0.8 * 4096.0,
+        values: json!({"stack_bytes": depth, "stack_size_bytes": telemetry.stack_size, "ram_bytes": used}),
+    }
+}
+
+#[cfg(simavr)]
 fn elf_rows(run: &StreamRun, rig: &handstand_simavr::Rig) -> Vec<Row> {
     let Some(telemetry) = run.telemetry else {
         return Vec::new();
     };
-    let depth = f64::from(telemetry.stack_used);
-    // Of all RAM: what the static data takes is not the stack's.
-    let used = 4096.0 - f64::from(telemetry.stack_size) + depth;
     vec![
-        Row {
-            name: "deepest stack, and RAM with static data",
-            measured: format!(
-                "{depth} of {} bytes; {used} of 4096, {:.0} %",
-                telemetry.stack_size,
-                100.0 * used / 4096.0
-            ),
-            limit: "80 % of 4096",
-            holds: used <= 0.8 * 4096.0,
-            values: json!({"stack_bytes": depth, "stack_size_bytes": telemetry.stack_size, "ram_bytes": used}),
-        },
+        stack_row("deepest stack, and RAM with static data", &telemetry),
         Row {
             name: "bus turned early, receiver's bytes waiting, charger on",
             measured: format!(
@@ -237,6 +247,49 @@ fn longest_tick(built: &Built, args: &Args) -> Row {
         holds: share <= 0.6 && overruns == 0,
         values: json!({"longest_tick_us": longest, "overruns": overruns, "starts": starts}),
     }
+}
+
+/// What the firmware says of itself while it balances, whatever the moment of the servos' interrupts.
+#[cfg(simavr)]
+fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    use handstand_tests::bench::balance;
+    let Some(built) = built else {
+        return Vec::new();
+    };
+    let starts = args.reduced(10, 3) as u64;
+    let (_, plan) = Source::Host.plan();
+    let of_start = |start: u64| {
+        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        rig.bus_ahead_ns = start * 1_000_000 / starts;
+        let run = balance(&mut rig, &plan, &corner(1.0, [1.0, -1.0, 1.0]), 2.0).expect("it arms");
+        run.telemetry.expect("it was asked for")
+    };
+    let runs: Vec<_> = (0..starts).into_par_iter().map(of_start).collect();
+    let ticks = runs.iter().map(|run| run.longest_tick_us);
+    let (least, longest) = (ticks.clone().min(), ticks.max());
+    let (least, longest) = (least.unwrap_or(0), longest.unwrap_or(0));
+    let law = runs.iter().map(|run| run.longest_law_us).max().unwrap_or(0);
+    let overruns: u16 = runs.iter().map(|run| run.overruns).sum();
+    let share = f64::from(longest) / 10_000.0;
+    let deepest = runs.iter().max_by_key(|run| run.stack_used);
+    let mut rows = vec![Row {
+        name: "longest tick while balancing, waiting for the bus included",
+        measured: format!(
+            "{least} to {longest} us in {starts} starts, {:.1} % of the period, the law {law} us, {overruns} overruns",
+            100.0 * share
+        ),
+        limit: "60 %",
+        holds: share <= 0.6 && overruns == 0,
+        values: json!({"longest_tick_us": longest, "longest_law_us": law, "overruns": overruns, "starts": starts}),
+    }];
+    rows.extend(deepest.map(|run| stack_row("deepest stack while balancing, and RAM", run)));
+    rows
+}
+
+#[cfg(not(simavr))]
+fn balancing(_: &Args, _: Option<&Built>) -> Vec<Row> {
+    eprintln!("Left out: ticks and stack are the ELF's, and simavr is not installed");
+    Vec::new()
 }
 
 fn losses(args: &Args, built: Option<&Built>) -> Vec<Row> {
@@ -363,40 +416,167 @@ fn laws(_: &Args, _: Option<&Built>) -> Vec<Row> {
     Vec::new()
 }
 
+/// In ten different tenths of the servos' motor interrupts.
+#[cfg(simavr)]
+fn readings(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    use handstand::controllers::Timing;
+    use handstand_tests::bench::{Ages, REPORT_WINDOWS_MS, Spread, ages};
+    let Some(built) = built else {
+        return Vec::new();
+    };
+    let starts = args.reduced(10, 2) as u64;
+    let of_start = |start: u64| {
+        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        rig.bus_ahead_ns = start * 1_000_000 / starts;
+        ages(&mut rig, 1.0)
+    };
+    let runs: Vec<_> = (0..starts).into_par_iter().map(of_start).collect();
+    let over = |part: fn(&Ages) -> Spread| {
+        let parts: Vec<Spread> = runs.iter().map(part).collect();
+        let mean = parts.iter().map(|part| part[1]).sum::<f64>() / parts.len() as f64;
+        let least = parts
+            .iter()
+            .map(|part| part[0])
+            .fold(f64::INFINITY, f64::min);
+        let most = parts.iter().map(|part| part[2]).fold(0.0, f64::max);
+        [least, mean, most]
+    };
+    let Timing {
+        age_s, effect_s, ..
+    } = Timing::HOST_ATTITUDE;
+    let row = |name, part, designed_s: f64| {
+        let [least, middle, most] = over(part);
+        let designed_ms = designed_s * 1e3;
+        Row {
+            name,
+            measured: format!(
+                "{least:.2} / {middle:.2} / {most:.2} ms, designed for {designed_ms:.1}"
+            ),
+            limit: "middle within 0.2 ms of the design",
+            holds: (middle - designed_ms).abs() <= 0.2,
+            values: json!({"least_ms": least, "middle_ms": middle, "most_ms": most, "designed_ms": designed_ms}),
+        }
+    };
+    let window = |name, part, [first, second]: [f64; 2]| {
+        let [least, middle, most] = over(part);
+        Row {
+            name,
+            measured: format!(
+                "{least:.2} / {middle:.2} / {most:.2} ms, taken for {first} to {second}"
+            ),
+            limit: "between",
+            holds: least >= first && most < second,
+            values: json!({"least_ms": least, "middle_ms": middle, "most_ms": most}),
+        }
+    };
+    let [commands, attitude] = REPORT_WINDOWS_MS;
+    vec![
+        row(
+            "age of readings: attitude said by the host",
+            |ages| ages.attitude,
+            age_s[0],
+        ),
+        row("age of readings: shoulder", |ages| ages.joints[0], age_s[1]),
+        row("age of readings: hip", |ages| ages.joints[1], age_s[2]),
+        row(
+            "from the law until its torques act",
+            |ages| ages.effect,
+            effect_s,
+        ),
+        window("from commands to report", |ages| ages.report[0], commands),
+        window(
+            "from an attitude to the report of its tick",
+            |ages| ages.report[1],
+            attitude,
+        ),
+    ]
+}
+
+#[cfg(not(simavr))]
+fn readings(_: &Args, _: Option<&Built>) -> Vec<Row> {
+    eprintln!("Left out: the ages are the ELF's, and simavr is not installed");
+    Vec::new()
+}
+
+/// A start with all angles this far off, with these signs.
+fn corner(degrees: f64, signs: [f64; 3]) -> Conditions {
+    Conditions {
+        dead_zone: 0.08,
+        eccentric_m: [0.0; 3],
+        start_rad: signs.map(|sign| sign * degrees.to_radians()),
+    }
+}
+
 fn loops(args: &Args, built: Option<&Built>) -> Vec<Row> {
     // The corners of a cube of starts, but for mirror images; the first takes the longest way back.
-    let corner = |degrees: f64, signs: [f64; 3]| signs.map(|sign| sign * degrees.to_radians());
     let starts = [
+        ("2, 2, 2 deg", corner(2.0, [1.0, 1.0, 1.0])),
         ("1.5, 1.5, 1.5 deg", corner(1.5, [1.0, 1.0, 1.0])),
         ("2, -2, 2 deg", corner(2.0, [1.0, -1.0, 1.0])),
         ("2, 2, -2 deg", corner(2.0, [1.0, 1.0, -1.0])),
         ("2, -2, -2 deg", corner(2.0, [1.0, -1.0, -1.0])),
     ];
     let seconds = if args.quick { 5.0 } else { 60.0 };
-    let mut rows = Vec::new();
-    for (start, start_rad) in starts {
-        let conditions = Conditions {
-            dead_zone: 0.08,
-            eccentric_m: [0.0; 3],
-            start_rad,
-        };
-        let sides = loop_sides(built, &conditions, seconds);
-        rows.extend(loop_rows(start, &sides, seconds));
-    }
-    rows
+    let of_start = |(start, conditions): &(&str, Conditions)| {
+        let sides = loop_sides(built, conditions, Source::Host, seconds);
+        let mut rows = loop_rows(LOOP_NAMES, start, &sides, seconds);
+        let (different, compared) = sides.different;
+        rows.push(Row {
+            name: "its commands against the fixed host law's on the same readings",
+            measured: format!("{compared} ticks, {different} different"),
+            limit: "0",
+            holds: different == 0 && compared > 0,
+            values: json!({"ticks": compared, "different": different}),
+        });
+        rows
+    };
+    starts.par_iter().flat_map_iter(of_start).collect()
 }
 
-fn loop_sides(built: Option<&Built>, conditions: &Conditions, seconds: f64) -> Sides {
+/// With nothing but a gyro of 10 deg/s per code for the first link.
+fn gyros(args: &Args, built: Option<&Built>) -> Vec<Row> {
+    let starts = [
+        ("upright", corner(0.0, [1.0, 1.0, 1.0])),
+        ("0.5, 0.5, 0.5 deg", corner(0.5, [1.0, 1.0, 1.0])),
+        ("1, 1, 1 deg", corner(1.0, [1.0, 1.0, 1.0])),
+        ("1, -1, 1 deg", corner(1.0, [1.0, -1.0, 1.0])),
+        ("2, -2, 2 deg", corner(2.0, [1.0, -1.0, 1.0])),
+    ];
+    let seconds = if args.quick { 5.0 } else { 60.0 };
+    let of_start = |(start, conditions): &(&str, Conditions)| {
+        let sides = loop_sides(built, conditions, Source::Gyro, seconds);
+        loop_rows(GYRO_NAMES, start, &sides, seconds)
+    };
+    starts.par_iter().flat_map_iter(of_start).collect()
+}
+
+const LOOP_NAMES: [&str; 3] = [
+    "three links, float host law",
+    "three links, fixed host law",
+    "three links, the firmware's law",
+];
+const GYRO_NAMES: [&str; 3] = [
+    "gyro alone, float host law",
+    "gyro alone, fixed host law",
+    "gyro alone, the firmware's law",
+];
+
+fn loop_sides(
+    built: Option<&Built>,
+    conditions: &Conditions,
+    source: Source,
+    seconds: f64,
+) -> Sides {
     #[cfg(simavr)]
     if let Some(built) = built {
         let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
-        return side_by_side(&mut rig, conditions, seconds);
+        return side_by_side(&mut rig, conditions, source, seconds);
     }
     let _ = built;
-    side_by_side(&mut PcRig::new(), conditions, seconds)
+    side_by_side(&mut PcRig::new(), conditions, source, seconds)
 }
 
-fn loop_rows(start: &str, sides: &Sides, seconds: f64) -> Vec<Row> {
+fn loop_rows(names: [&'static str; 3], start: &str, sides: &Sides, seconds: f64) -> Vec<Row> {
     let row = |name, run: Result<&Balanced, String>| {
         let stood_s = run.as_ref().map_or(0.0, |run| run.stood_s);
         let values = run.as_ref().map_or(json!({}), |run| {
@@ -419,22 +599,15 @@ fn loop_rows(start: &str, sides: &Sides, seconds: f64) -> Vec<Row> {
             values,
         }
     };
+    let [float, fixed, firmware] = names;
     let board = sides.board.as_ref();
-    let (different, compared) = sides.different;
     vec![
-        row("three links, float host law", Ok(&sides.float)),
-        row("three links, fixed host law", Ok(&sides.fixed)),
+        row(float, Ok(&sides.float)),
+        row(fixed, Ok(&sides.fixed)),
         row(
-            "three links, the firmware's law",
+            firmware,
             board.map_err(|refusal| format!("refused: {refusal:?}")),
         ),
-        Row {
-            name: "its commands against the fixed host law's on the same readings",
-            measured: format!("{compared} ticks, {different} different"),
-            limit: "0",
-            holds: different == 0 && compared > 0,
-            values: json!({"ticks": compared, "different": different}),
-        },
     ]
 }
 
