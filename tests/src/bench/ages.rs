@@ -31,8 +31,8 @@ pub struct Ages {
     pub attitude: Spread,
     /// From the law until the servos have their commands.
     pub effect: Spread,
-    /// From the commands, and from saying the attitude used, until the tick's report has arrived.
-    pub report: [Spread; 2],
+    /// From a tick's first request until its report has arrived.
+    pub report: Spread,
 }
 
 /// One tick as the bus shows it, ms.
@@ -169,30 +169,20 @@ fn measured(rounds: &[Round], said: &[(f64, f64)], heard: &[(f64, [u16; 2])]) ->
         Some(round.law - said)
     });
     // Both shafts' codes tell the report of a tick.
-    let reported = |round: &&Round| {
+    let reported = |round: &Round| {
         let codes = round.joints.map(|(code, _)| code);
-        let report = heard.iter().find(|(arrived, reported)| {
+        let (arrived, _) = heard.iter().find(|(arrived, reported)| {
             *reported == codes && (round.acted..round.acted + 20.0).contains(arrived)
         })?;
-        Some((report.0, said_before(round.began)?.0))
+        Some(arrived - round.began)
     };
-    let reports: Vec<_> = rounds
-        .iter()
-        .filter_map(|round| reported(&round).map(|report| (round, report)))
-        .collect();
-    let from_commands = reports
-        .iter()
-        .map(|(round, (arrived, _))| arrived - round.acted);
-    let from_attitude = reports.iter().map(|(_, (arrived, said))| arrived - said);
+    let reports = rounds.iter().filter_map(reported);
     Ages {
         ticks: rounds.len(),
         joints: [joint(0), joint(1)],
         attitude: spread(attitudes.collect()),
         effect: spread(rounds.iter().map(|round| round.acted - round.law).collect()),
-        report: [
-            spread(from_commands.collect()),
-            spread(from_attitude.collect()),
-        ],
+        report: spread(reports.collect()),
     }
 }
 

@@ -15,9 +15,7 @@ mod stream;
 
 #[cfg(simavr)]
 pub use ages::{Ages, Spread, ages};
-pub use balance::{
-    Balanced, Conditions, REPORT_WINDOWS_MS, Source, Tick, arm_balance, balance, plan,
-};
+pub use balance::{Balanced, Conditions, REPORT_MS, Source, Tick, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
 pub use law::{CHOSEN, Cycles, LawRun, ObserverRun, SHIFTS, law, observer_law};
