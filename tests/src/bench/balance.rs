@@ -16,7 +16,8 @@ use handstand_shared::raw::Signed;
 /// After a report has arrived the host takes this long to say the attitude, ms.
 pub(super) const HOST_MS: f64 = 1.0;
 
-/// A report that has not to wait comes so long after its tick began, to its last byte, ms; [`super::ages`] measures it.
+/// A report that has not to wait comes so long after its tick began, to its last byte, ms;
+/// `cargo xtask bench-firmware --only "age of readings"` measures it.
 pub const REPORT_MS: f64 = 15.1;
 /// Period of the law, ms.
 const PERIOD_MS: f64 = 10.0;
