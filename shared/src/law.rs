@@ -1,71 +1,42 @@
 //! The control law: u = sat(u0 - K (x - x0)), with one rounding and one saturation.
 
 #[cfg(not(target_arch = "avr"))]
-use crate::fixed::mac;
-use crate::fixed::{saturate, shift_right};
-use crate::gains::{GainTable, Row};
+use crate::fixed::{mac, saturate, shift_right};
+use crate::gains::GainTable;
+#[cfg(not(target_arch = "avr"))]
+use crate::gains::Row;
 
 #[cfg(target_arch = "avr")]
 mod avr;
+#[cfg(target_arch = "avr")]
+use avr::{finish, one_sum};
 
 /// The inputs for the states `x`, both in the table's steps.
 ///
 /// Exact up to its one rounding for every `x`, if the table is safe ([`GainTable::is_safe`]).
 #[inline]
 pub fn control<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i16; M] {
-    let mut u = [0; M];
-    let sums = sums(table, x);
-    for ((u, row), sum) in u.iter_mut().zip(&table.rows).zip(sums) {
-        *u = finish(sum, row);
-    }
-    u
-}
-
-/// The one rounding and the one saturation.
-#[inline]
-fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
-    match row.shift {
-        // What is left has 16 bits, and an 8-bit machine compares it in half the time.
-        16 => ((sum >> 16) as i16).min(row.high).max(row.low),
-        8 => middle(sum).min(row.high).max(row.low),
-        shift => saturate(shift_right(sum, shift), row.low, row.high),
-    }
-}
-
-/// The 16-bit value nearest to `sum` / 256: the limits are then compared in 16 bits, and overflow in a byte.
-#[inline]
-fn middle(sum: i32) -> i16 {
-    let middle = (sum >> 8) as i16;
-    let top = (sum >> 24) as i8;
-    if top == ((middle >> 8) as i8) >> 7 {
-        middle
-    } else if top < 0 {
-        i16::MIN
-    } else {
-        i16::MAX
-    }
-}
-
-/// bias - K (x - x0), wrapping.
-#[inline]
-fn sums<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i32; M] {
     #[cfg(target_arch = "avr")]
-    if let Some(sums) = avr::fast(table, x) {
-        return sums;
+    if let Some(u) = avr::fast(table, x) {
+        return u;
     }
     let mut departure = [0; N];
     for ((departure, x), x0) in departure.iter_mut().zip(x).zip(&table.x0) {
         *departure = x.saturating_sub(*x0);
     }
-    let mut sums = [0; M];
-    for (sum, row) in sums.iter_mut().zip(&table.rows) {
-        *sum = one_sum(row.bias, &row.k, &departure);
+    let mut u = [0; M];
+    for (u, row) in u.iter_mut().zip(&table.rows) {
+        *u = finish(one_sum(row.bias, &row.k, &departure), row);
     }
-    sums
+    u
 }
 
-#[cfg(target_arch = "avr")]
-use avr::row as one_sum;
+/// The one rounding and the one saturation.
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
+    saturate(shift_right(sum, row.shift), row.low, row.high)
+}
 
 /// `bias` - sum of products, wrapping.
 #[cfg(not(target_arch = "avr"))]

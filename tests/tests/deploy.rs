@@ -32,12 +32,12 @@ fn a_plan_goes_through_toolchain_and_boot_loader_and_is_read_back_from_the_chip(
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    // `cargo xtask` is the one that belongs to this test, not another profile's.
+    // `cargo xtask` is the one beside this test, which built the ELF, without cargo's looking for changes.
+    let beside = std::env::current_exe().unwrap();
+    let beside = beside.ancestors().nth(2).unwrap();
     let cargo = folder.path().join("cargo");
-    let script = format!(
-        "#!/bin/sh\nshift\nexec {} \"$@\"\n",
-        env!("CARGO_BIN_EXE_xtask")
-    );
+    let xtask = beside.join("xtask");
+    let script = format!("#!/bin/sh\nshift\nexec {} \"$@\"\n", xtask.display());
     std::fs::write(&cargo, script).unwrap();
     std::fs::set_permissions(&cargo, std::fs::Permissions::from_mode(0o755)).unwrap();
     let path = std::env::var("PATH").unwrap();
@@ -45,9 +45,7 @@ fn a_plan_goes_through_toolchain_and_boot_loader_and_is_read_back_from_the_chip(
     let loader = start_then(Trouble::None, move |pty, image| {
         run_image(pty, &built.elf, image)
     });
-    let here = std::env::current_exe().unwrap();
-    let handstand = here.ancestors().nth(2).unwrap().join("handstand");
-    let ran = assert_cmd::Command::new(handstand)
+    let ran = assert_cmd::Command::new(beside.join("handstand"))
         .args([
             "gains",
             "deploy",

@@ -49,18 +49,19 @@ const POSITION_RAD: f64 = POSITION_STEP_RAD * 0.288_675_134_594_812_9;
 const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
 
 impl Timing {
-    /// The law on the CM-5 between 18 servos with return delay 0, measured on the bench: what is read first is oldest.
+    /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the last answer; measured by
+    /// `cargo xtask bench-firmware --only "age of readings"`. What is read first is oldest.
     /// The host says the first link's attitude every period, as it hears a report. Its rate counts no more than a gyro's of
     /// 10 deg/s: trusted more, what the linear model makes of one so old fells the robot from 2 deg.
     pub const HOST_ATTITUDE: Timing = Timing {
-        effect_s: 0.7e-3,
-        age_s: [9.5e-3, 5.5e-3, 2.8e-3, 9.5e-3],
+        effect_s: 0.8e-3,
+        age_s: [8.1e-3, 4.1e-3, 1.8e-3, 8.1e-3],
         deviation: [EXACT_RAD, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
     };
 
     /// The same with a gyro on the CM-5, read at the law's moment; nothing tells the first link's angle.
     pub const GYRO: Timing = Timing {
-        age_s: [0.0, 5.5e-3, 2.8e-3, 0.1e-3],
+        age_s: [0.0, 4.1e-3, 1.8e-3, 0.1e-3],
         deviation: [f64::INFINITY, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
         ..Timing::HOST_ATTITUDE
     };

@@ -1,46 +1,156 @@
-//! The law in the AVR's own words: the sums `bias - K (x - x0)`.
+//! The law in the AVR's own words.
 //!
 //! The compiler's product of two 16-bit values takes 110 cycles. Here it takes 31 in a row of any length, and 25 in the law of two
-//! inputs and six states, which is unrolled: four 8-bit products and their sum.
+//! inputs and six states, which is unrolled: four 8-bit products and their sum. A shift by bits is a product with a power of two.
 #![allow(unsafe_code)]
 
 use crate::gains::{GainTable, Row};
 use core::arch::asm;
 use core::mem::{offset_of, size_of};
 
-/// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four registers; r24 is zero.
+/// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four registers; r11 is zero, r24 and r25
+/// are spoilt.
 macro_rules! mac {
     () => {
         concat!(
             ".macro handstand_mac a0, a1, a2, a3\n",
             "muls r21, r23\n", // high x high
-            "movw r18, r0\n",
+            "movw r24, r0\n",
             "mul r20, r22\n", // low x low
             "sub \\a0, r0\n",
             "sbc \\a1, r1\n",
-            "sbc \\a2, r18\n",
-            "sbc \\a3, r19\n",
+            "sbc \\a2, r24\n",
+            "sbc \\a3, r25\n",
             "mulsu r21, r22\n", // high x low, in the middle; the carry is its sign
-            "adc \\a3, r24\n",
+            "adc \\a3, r11\n",
             "sub \\a1, r0\n",
             "sbc \\a2, r1\n",
-            "sbc \\a3, r24\n",
+            "sbc \\a3, r11\n",
             "mulsu r23, r20\n", // low x high
-            "adc \\a3, r24\n",
+            "adc \\a3, r11\n",
             "sub \\a1, r0\n",
             "sbc \\a2, r1\n",
-            "sbc \\a3, r24\n",
+            "sbc \\a3, r11\n",
             ".endm\n",
         )
     };
 }
 
-/// The sums, if the table is of two inputs and six states.
+/// The assembler's macro `handstand_finish`: the sum in a0 to a3 shifted and within its limits, in u0 and u1; a2 and a3 are among
+/// r16 to r23, shift and limits lie at Z, r11 is zero, r20, r24 and r25 and the sum are spoilt.
+///
+/// Three bytes times 2^(8 - n), without the lowest byte of the product, are those bytes shifted by n: 2^(7 - (shift - 1) % 8).
+macro_rules! finish {
+    () => {
+        concat!(
+            ".macro handstand_power\n", // r20 = 2^(7 - r24 % 8)
+            "ldi r20, 1\n",
+            "sbrs r24, 1\n",
+            "ldi r20, 4\n",
+            "sbrs r24, 0\n",
+            "lsl r20\n",
+            "sbrs r24, 2\n",
+            "swap r20\n",
+            ".endm\n",
+            ".macro handstand_scale u0, u1, b0, b1, b2\n", // r1, u1, u0 = b2, b1, b0 times r20 / 256
+            "mul \\b1, r20\n",
+            "movw \\u0, r0\n",
+            "mul \\b0, r20\n",
+            "add \\u0, r1\n",
+            "adc \\u1, r11\n",
+            "mulsu \\b2, r20\n",
+            "add \\u1, r0\n",
+            "adc r1, r11\n",
+            ".endm\n",
+            ".macro handstand_finish a0, a1, a2, a3, u0, u1, shift, low, high\n",
+            "ldd r24, Z+\\shift\n",
+            "dec r24\n",
+            "cpi r24, 7\n",
+            "brlo 27f\n",
+            "breq 28f\n",
+            "cpi r24, 15\n",
+            "brsh 36f\n",
+            "handstand_power\n", // 9 to 15
+            "handstand_scale \\u0, \\u1, \\a1, \\a2, \\a3\n",
+            "rjmp 40f\n",
+            "36: breq 35f\n",
+            "cpi r24, 255\n",
+            "breq 20f\n",
+            "handstand_power\n",
+            "cpi r24, 24\n",
+            "brsh 38f\n",
+            "mul \\a2, r20\n", // 17 to 24
+            "mov \\u0, r1\n",
+            "mulsu \\a3, r20\n",
+            "add \\u0, r0\n",
+            "adc r1, r11\n",
+            "mov \\u1, r1\n",
+            "rjmp 50f\n",
+            "38: mulsu \\a3, r20\n", // from 25 on
+            "mov \\u0, r1\n",
+            "mov \\u1, r1\n",
+            "lsl \\u1\n",
+            "sbc \\u1, \\u1\n",
+            "rjmp 50f\n",
+            "35: movw \\u0, \\a2\n", // 16
+            "rjmp 50f\n",
+            "28: mov \\u0, \\a1\n", // 8
+            "mov \\u1, \\a2\n",
+            "mov r1, \\a3\n",
+            "rjmp 40f\n",
+            "20: movw \\u0, \\a0\n", // 0
+            "mov r1, \\a2\n",
+            "mov r0, \\a2\n",
+            "lsl r0\n",
+            "adc \\a3, r11\n",
+            "breq 40f\n",
+            "60: brlt 61f\n", // Beyond 16 bits: the limit of that side.
+            "ldd \\u0, Z+\\high\n",
+            "ldd \\u1, Z+\\high+1\n",
+            "rjmp 99f\n",
+            "61: ldd \\u0, Z+\\low\n",
+            "ldd \\u1, Z+\\low+1\n",
+            "rjmp 99f\n",
+            "27: mov r0, \\a2\n", // 1 to 7: what needs more than 24 bits needs more than 16 when shifted.
+            "lsl r0\n",
+            "adc \\a3, r11\n",
+            "brne 60b\n",
+            "handstand_power\n",
+            "handstand_scale \\u0, \\u1, \\a0, \\a1, \\a2\n",
+            "40: mov r0, \\u1\n", // The third byte is the sign of the second, or all is beyond 16 bits.
+            "lsl r0\n",
+            "adc r1, r11\n",
+            "brne 60b\n",
+            "50: ldd r24, Z+\\high\n",
+            "ldd r25, Z+\\high+1\n",
+            "cp r24, \\u0\n",
+            "cpc r25, \\u1\n",
+            "brlt 51f\n",
+            "ldd r24, Z+\\low\n",
+            "ldd r25, Z+\\low+1\n",
+            "cp \\u0, r24\n",
+            "cpc \\u1, r25\n",
+            "brge 99f\n",
+            "51: movw \\u0, r24\n",
+            "99:\n",
+            ".endm\n",
+        )
+    };
+}
+
+/// So that the next block may define them again.
+macro_rules! forget {
+    ($($name:literal)*) => {
+        concat!($(".purgem handstand_", $name, "\n"),*)
+    };
+}
+
+/// The inputs, if the table is of two inputs and six states.
 #[inline(always)]
 pub fn fast<const M: usize, const N: usize>(
     table: &GainTable<M, N>,
     x: &[i16; N],
-) -> Option<[i32; M]> {
+) -> Option<[i16; M]> {
     if M != 2 || N != 6 {
         return None;
     }
@@ -49,29 +159,35 @@ pub fn fast<const M: usize, const N: usize>(
         let table = (&raw const *table).cast::<GainTable<2, 6>>();
         (&*table, &*(&raw const *x).cast::<[i16; 6]>())
     };
-    let sums = sums(table, x);
+    let inputs = two_by_six(table, x);
     let mut out = [0; M];
-    out.iter_mut().zip(sums).for_each(|(out, sum)| *out = sum);
+    out.iter_mut().zip(inputs).for_each(|(out, u)| *out = u);
     Some(out)
 }
 
-/// Both sums, wrapping, for the states `x`.
+/// Both inputs for the states `x`.
 #[inline(always)]
-fn sums(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i32; 2] {
+fn two_by_six(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i16; 2] {
     const ROWS: usize = offset_of!(GainTable<2, 6>, rows);
     const ROW: usize = size_of::<Row<6>>();
-    const K: usize = ROWS + offset_of!(Row<6>, k);
     const X0: usize = offset_of!(GainTable<2, 6>, x0);
     // Every field is reached by a displacement from one pointer, of which the AVR has six bits.
-    const { assert!(K + ROW + 12 <= 64 && X0 + 12 <= 64) };
-    let [first, second] = &table.rows;
-    let (mut low0, mut high0) = (first.bias as u16, (first.bias >> 16) as u16);
-    let (mut low1, mut high1) = (second.bias as u16, (second.bias >> 16) as u16);
+    const { assert!(ROWS + 2 * ROW <= 64 && X0 + 12 <= 64) };
+    let (first, second): (i16, i16);
     // SAFETY: reads 12 bytes from X and within the table from Z; r1 is zero again at the end.
     unsafe {
         asm!(
             mac!(),
-            "clr r24",
+            finish!(),
+            "clr r11",
+            "ldd r14, Z+{bias}",
+            "ldd r15, Z+{bias}+1",
+            "ldd r18, Z+{bias}+2",
+            "ldd r19, Z+{bias}+3",
+            "ldd r12, Z+{row}+{bias}",
+            "ldd r13, Z+{row}+{bias}+1",
+            "ldd r16, Z+{row}+{bias}+2",
+            "ldd r17, Z+{row}+{bias}+3",
             ".irp j, 0, 2, 4, 6, 8, 10",
             "ld r20, X+",
             "ld r21, X+",
@@ -80,46 +196,83 @@ fn sums(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i32; 2] {
             "sub r20, r22",
             "sbc r21, r23",
             "brvc 2f",
-            // Beyond 16 bits: 7fff or 8000, the larger one where the wrapped difference is negative.
-            "lsl r21",
+            // Beyond 16 bits: 7fff where the unsigned difference borrowed, else 8000.
             "sbc r20, r20",
             "mov r21, r20",
             "subi r21, 0x80",
             "2: ldd r22, Z+{k}+\\j",
             "ldd r23, Z+{k}+\\j+1",
-            "handstand_mac {low0:l}, {low0:h}, {high0:l}, {high0:h}",
-            "ldd r22, Z+{k1}+\\j",
-            "ldd r23, Z+{k1}+\\j+1",
-            "handstand_mac {low1:l}, {low1:h}, {high1:l}, {high1:h}",
+            "handstand_mac r14, r15, r18, r19",
+            "ldd r22, Z+{row}+{k}+\\j",
+            "ldd r23, Z+{row}+{k}+\\j+1",
+            "handstand_mac r12, r13, r16, r17",
             ".endr",
+            "handstand_finish r14, r15, r18, r19, r26, r27, {shift}, {low}, {high}",
+            "handstand_finish r12, r13, r16, r17, r22, r23, {row}+{shift}, {row}+{low}, {row}+{high}",
             "clr r1",
-            ".purgem handstand_mac",
+            forget!("mac" "power" "scale" "finish"),
             x0 = const X0,
-            k = const K,
-            k1 = const K + ROW,
-            low0 = inout(reg_pair) low0,
-            high0 = inout(reg_pair) high0,
-            low1 = inout(reg_pair) low1,
-            high1 = inout(reg_pair) high1,
-            inout("X") x.as_ptr() => _,
+            row = const ROW,
+            k = const ROWS + offset_of!(Row<6>, k),
+            bias = const ROWS + offset_of!(Row<6>, bias),
+            shift = const ROWS + offset_of!(Row<6>, shift),
+            low = const ROWS + offset_of!(Row<6>, low),
+            high = const ROWS + offset_of!(Row<6>, high),
             in("Z") table,
+            inout("X") x.as_ptr() => first,
+            out("r23r22") second,
+            out("r11") _,
+            out("r12") _,
+            out("r13") _,
+            out("r14") _,
+            out("r15") _,
+            out("r16") _,
+            out("r17") _,
             out("r18") _,
             out("r19") _,
             out("r20") _,
             out("r21") _,
-            out("r22") _,
-            out("r23") _,
             out("r24") _,
+            out("r25") _,
             options(nostack, readonly),
         );
     }
-    let join = |low: u16, high: u16| (u32::from(high) << 16 | u32::from(low)) as i32;
-    [join(low0, high0), join(low1, high1)]
+    [first, second]
+}
+
+/// The one rounding and the one saturation.
+#[inline(never)]
+pub fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
+    const { assert!(size_of::<Row<N>>() <= 64) };
+    let input: i16;
+    // SAFETY: reads within the row from Z; r1 is zero again at the end.
+    unsafe {
+        asm!(
+            finish!(),
+            "clr r11",
+            "handstand_finish {low:l}, {low:h}, r18, r19, r22, r23, {shift}, {least}, {most}",
+            "clr r1",
+            forget!("power" "scale" "finish"),
+            shift = const offset_of!(Row<N>, shift),
+            least = const offset_of!(Row<N>, low),
+            most = const offset_of!(Row<N>, high),
+            low = in(reg_pair) sum as u16,
+            inout("r19r18") (sum >> 16) as u16 => _,
+            in("Z") row,
+            out("r23r22") input,
+            out("r11") _,
+            out("r20") _,
+            out("r24") _,
+            out("r25") _,
+            options(nostack, readonly),
+        );
+    }
+    input
 }
 
 /// `bias` - sum of products of `k` and `x`, wrapping; of as many as the shorter has, at most 255.
 #[inline(never)]
-pub fn row(bias: i32, k: &[i16], x: &[i16]) -> i32 {
+pub fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
     let count = k.len().min(x.len()).min(255) as u8;
     if count == 0 {
         return bias;
@@ -129,28 +282,28 @@ pub fn row(bias: i32, k: &[i16], x: &[i16]) -> i32 {
     unsafe {
         asm!(
             mac!(),
-            "clr r24",
+            "clr r11",
             "2: ld r20, X+",
             "ld r21, X+",
             "ld r22, Z+",
             "ld r23, Z+",
             "handstand_mac {low:l}, {low:h}, {high:l}, {high:h}",
-            "dec r25",
+            "dec {count}",
             "brne 2b",
             "clr r1",
-            ".purgem handstand_mac",
+            forget!("mac"),
             low = inout(reg_pair) low,
             high = inout(reg_pair) high,
+            count = inout(reg) count => _,
             inout("X") x.as_ptr() => _,
             inout("Z") k.as_ptr() => _,
-            inout("r25") count => _,
-            out("r18") _,
-            out("r19") _,
+            out("r11") _,
             out("r20") _,
             out("r21") _,
             out("r22") _,
             out("r23") _,
             out("r24") _,
+            out("r25") _,
             options(nostack, readonly),
         );
     }

@@ -54,6 +54,8 @@ pub struct Rig {
     pub bus_ahead_ns: u64,
     /// What was noticed.
     pub seen: Seen,
+    /// Bytes on the bus with the cycles their stop bits end, whoever sent them; kept where there is a list.
+    pub trace: Option<Vec<(u64, u8)>>,
     port_e: u8,
     /// When the bus was last turned around.
     turned: u64,
@@ -85,6 +87,7 @@ impl Rig {
             bus: Bus::new(1..=18),
             bus_ahead_ns: 0,
             seen: Seen::default(),
+            trace: None,
             port_e: 0,
             turned: 0,
             bus_free: 0,
@@ -141,6 +144,9 @@ impl Rig {
                 break;
             };
             self.seen.bus_bytes += 1;
+            self.trace
+                .iter_mut()
+                .for_each(|trace| trace.push((end, byte)));
             // Only a bus that listens from the start bit on hears.
             let begin = end.saturating_sub(to_cycle(handstand::bus_sim::BYTE_NS));
             if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE && self.turned <= begin {
@@ -161,6 +167,10 @@ impl Rig {
                 let begin = cycle.max(self.bus_free);
                 self.bus_free = begin + self.core.byte_cycles(0);
                 self.seen.bus_bytes += 1;
+                let end = self.bus_free;
+                self.trace
+                    .iter_mut()
+                    .for_each(|trace| trace.push((end, byte)));
                 if self.port_e & (TRANSMIT | RECEIVE) == TRANSMIT {
                     let end_ns = to_ns(self.bus_free) + self.bus_ahead_ns;
                     self.bus.hear(end_ns, byte);

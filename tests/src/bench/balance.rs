@@ -1,18 +1,69 @@
 //! The robot in closed loop with the firmware: three links on a bar, two joints driven by servos in wheel mode.
 
 use super::Bench;
-use super::robot::{Robot, STEP_MS, model};
+use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, STEP_MS, model};
 use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, MOVING_SPEED};
 use handstand_shared::crc::crc32;
+use handstand_shared::frame::MAX_FRAME;
 use handstand_shared::message::{
-    Attitude, Command, Condition, GAIN_CHUNK, Hello, Mode, Refusal, Report, VERSION,
+    Attitude, Command, Condition, GAIN_CHUNK, Hello, Mode, Refusal, Report, StreamReport, Subject,
+    Telemetry, VERSION, encode,
 };
-use handstand_shared::plan::Plan;
+use handstand_shared::plan::{Gyro, Plan};
 use handstand_shared::raw::Signed;
 
 /// After a report has arrived the host takes this long to say the attitude, ms.
-const HOST_MS: f64 = 1.0;
+pub(super) const HOST_MS: f64 = 1.0;
+
+/// A report that has not to wait comes so long after its tick began, to its last byte, ms;
+/// `cargo xtask bench-firmware --only "age of readings"` measures it.
+pub const REPORT_MS: f64 = 15.1;
+/// Period of the law, ms.
+const PERIOD_MS: f64 = 10.0;
+
+/// Where the CM-5 has the first link's attitude from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The host says it after every report.
+    Host,
+    /// A gyro of 10 deg/s per code on the ADC, and nothing else.
+    Gyro,
+}
+
+impl Source {
+    /// When things happen.
+    pub fn timing(self) -> Timing {
+        match self {
+            Source::Host => Timing::HOST_ATTITUDE,
+            Source::Gyro => Timing::GYRO,
+        }
+    }
+
+    /// The servos, and the gyro as it is wired.
+    pub fn fitting(self) -> Fitting {
+        let gyro = match self {
+            Source::Host => Fitting::BIOLOID.gyro,
+            Source::Gyro => Gyro {
+                from_host: false,
+                zero: GYRO_ZERO,
+                scale: (GYRO_STEP_RAD_S / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
+            },
+        };
+        Fitting {
+            gyro,
+            ..Fitting::BIOLOID
+        }
+    }
+
+    /// The machine in floating point and the plan of the paper's robot.
+    ///
+    /// # Panics
+    /// The repository's own model cannot be read or designed for: a bug.
+    pub fn plan(self) -> (OnBoard, Plan) {
+        board_plan(&model(), &self.fitting(), &self.timing()).expect("a plan can be made")
+    }
+}
 
 /// The simulated rig around the firmware.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +87,8 @@ pub struct Balanced {
     pub torque_rms_nm: [f64; 2],
     /// What the firmware said at the end; nothing where there is none.
     pub condition: Option<Condition>,
+    /// The firmware's own account, its longest tick and its overruns since shortly before it was armed.
+    pub telemetry: Option<Telemetry>,
     /// What each tick saw and commanded, as far as the line told.
     pub ticks: Vec<Tick>,
 }
@@ -47,24 +100,17 @@ pub struct Tick {
     pub number: u16,
     /// The first link's angle, both joints' in position codes from their centres, the first link's rate.
     pub readings: [i16; 4],
-    /// The same with the other attitude, where one was just arriving when the tick began, and may have been seen or not.
-    pub or: Option<[i16; 4]>,
     /// Commands of shoulder and hip.
     pub commands: [i16; 2],
 }
 
-/// Ticks after arming in which the answer, which goes before them, makes reports late, and so the host's attitudes.
-const LATE_TICKS: usize = 8;
-
-/// The machine in floating point and the plan of the paper's robot.
-///
-/// # Panics
-/// The repository's own model cannot be read or designed for: a bug.
+/// [`Source::plan`] with the attitude from the host.
 pub fn plan() -> (OnBoard, Plan) {
-    board_plan(&model(), &Fitting::BIOLOID, &Timing::HOST_ATTITUDE).expect("a plan can be made")
+    Source::Host.plan()
 }
 
-/// Makes driven servos turn without end, uploads the plan unless it is there, and waits for the law's moment with the robot as it is.
+/// Makes driven servos turn without end, uploads the plan unless it is there, and waits for the law's moment with the robot as it
+/// is: the token that arms, and the firmware's account so far.
 ///
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.
@@ -72,7 +118,7 @@ pub fn ready(
     bench: &mut impl Bench,
     plan: &Plan,
     attitude: Attitude,
-) -> Result<u16, Option<Refusal>> {
+) -> Result<(u16, Option<Telemetry>), Option<Refusal>> {
     for id in [1, 2, 11, 12] {
         let servo = bench.bus().servo(id).expect("18 servos");
         servo.set(CW_LIMIT, 0);
@@ -85,11 +131,13 @@ pub fn ready(
         upload(bench, plan)?;
     }
     command(bench, &Command::Mode(Mode::Balance))?;
+    // Long before anything depends on the line, which has no room for it beside the reports.
+    let telemetry = telemetry(bench);
     for _ in 0..25 {
         bench.say(&Command::Attitude(attitude));
         bench.run_ms(10.0);
     }
-    Ok(hello.token)
+    Ok((hello.token, telemetry))
 }
 
 /// Uploads the plan and arms it, the first link upright and the servos at their centres.
@@ -97,7 +145,7 @@ pub fn ready(
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.
 pub fn arm_balance(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Refusal>> {
-    let token = ready(bench, plan, Attitude::default())?;
+    let (token, _) = ready(bench, plan, Attitude::default())?;
     command(bench, &Command::Arm { token })
 }
 
@@ -113,7 +161,7 @@ pub fn balance(
 ) -> Result<Balanced, Option<Refusal>> {
     let mut robot = Robot::new(conditions);
     robot.place(bench);
-    let token = ready(bench, plan, robot.attitude())?;
+    let (token, before) = ready(bench, plan, robot.attitude())?;
     bench.forget();
     let sequence = bench.say(&Command::Arm { token });
     let mut run = Run::default();
@@ -132,7 +180,24 @@ pub fn balance(
             return Err(answer);
         }
     }
-    Ok(run.fall_or_stand(bench, &mut robot, seconds))
+    let mut balanced = run.fall_or_stand(bench, &mut robot, seconds);
+    let after = telemetry(bench);
+    balanced.telemetry = before.zip(after).map(|(before, after)| Telemetry {
+        overruns: after.overruns - before.overruns,
+        ..after
+    });
+    Ok(balanced)
+}
+
+fn telemetry(bench: &mut impl Bench) -> Option<Telemetry> {
+    bench.forget();
+    bench.say(&Command::Ask(Subject::Telemetry));
+    bench.run_ms(50.0);
+    let mut reports = bench.reports().into_iter();
+    reports.find_map(|(_, report)| match report {
+        Report::Telemetry(telemetry) => Some(telemetry),
+        _ => None,
+    })
 }
 
 fn greet(bench: &mut impl Bench) -> Result<Hello, Option<Refusal>> {
@@ -190,11 +255,14 @@ fn upload(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Refusal>> {
 struct Run {
     /// When the next attitude is due, ms.
     due_ms: Option<f64>,
-    /// What was said, and when.
-    said: Vec<(f64, Attitude)>,
+    /// When an attitude was said last, ms.
+    said_ms: Option<f64>,
+    /// Angles and rates said, and when they had arrived.
+    arrived: Vec<(f64, [i16; 2])>,
     /// What the servos were commanded, step by step.
     commanded: Vec<(f64, [i16; 2])>,
-    ticks: Vec<Tick>,
+    /// Reports of ticks of the law, and when they arrived.
+    heard: Vec<(f64, StreamReport)>,
     condition: Option<Condition>,
 }
 
@@ -231,7 +299,8 @@ impl Run {
             rms_rad: rms[0],
             torque_rms_nm: [rms[1], rms[2]],
             condition: self.condition,
-            ticks: self.ticks,
+            telemetry: None,
+            ticks: self.ticks(),
         }
     }
 
@@ -250,46 +319,68 @@ impl Run {
         }
         bench.forget();
         // A host that hears nothing says something every 20 ms.
-        let last_ms = self.said.last().map_or(f64::NEG_INFINITY, |(at, _)| *at);
+        let last_ms = self.said_ms.unwrap_or(f64::NEG_INFINITY);
         let due_ms = self.due_ms.unwrap_or(last_ms + 20.0);
         if now_ms >= due_ms {
             self.due_ms = None;
             let attitude = robot.attitude();
-            self.said.push((now_ms, attitude));
-            bench.say(&Command::Attitude(attitude));
+            self.said_ms = Some(now_ms);
+            let command = Command::Attitude(attitude);
+            bench.say(&command);
+            let arrives_ms = now_ms + line_ms(&command);
+            self.arrived
+                .push((arrives_ms, [attitude.angle, attitude.rate]));
         }
+        bench.turn_gyro(robot.gyro());
         bench.run_ms(STEP_MS);
     }
 
-    /// A report's last byte comes some 15 ms after its tick began, and 9 ms after that tick's commands.
-    fn hear(&mut self, arrived_ms: f64, report: &handstand_shared::message::StreamReport) {
+    fn hear(&mut self, arrived_ms: f64, report: &StreamReport) {
         self.condition = Some(report.condition);
         self.due_ms = Some(arrived_ms + HOST_MS);
-        let commands = latest(&self.commanded, arrived_ms - 4.0);
-        let codes: Vec<u16> = report.positions.codes().collect();
-        let joint = |place: usize| codes[place] as i16 - 512;
-        let seen = |before_ms: f64| {
-            let Attitude { angle, rate } = latest(&self.said, arrived_ms - before_ms)?;
-            Some([angle, joint(0), joint(10), rate])
-        };
-        if let (Some(readings), Some(commands), Condition::BalanceArmed) =
-            (seen(17.0), commands, report.condition)
-        {
-            let mut doubtful = [seen(18.0), seen(16.0)].into_iter().flatten();
-            let or = doubtful.find(|other| *other != readings && self.ticks.len() < LATE_TICKS);
-            self.ticks.push(Tick {
-                number: report.tick,
-                readings,
-                or,
-                commands,
-            });
+        if report.condition == Condition::BalanceArmed {
+            self.heard.push((arrived_ms, *report));
         }
+    }
+
+    /// What each tick saw and commanded: the attitude that had arrived when it began, and the commands before the next one's.
+    ///
+    /// Ticks begin every 10 ms; of all reports the one that waited least on the line tells when.
+    fn ticks(&self) -> Vec<Tick> {
+        let Some((_, first)) = self.heard.first() else {
+            return Vec::new();
+        };
+        let since_first =
+            |report: &StreamReport| f64::from(report.tick.wrapping_sub(first.tick)) * PERIOD_MS;
+        let from_first = self
+            .heard
+            .iter()
+            .map(|(at, report)| at - since_first(report));
+        let first_ms = from_first.fold(f64::INFINITY, f64::min) - REPORT_MS;
+        let tick = |(_, report): &(f64, StreamReport)| {
+            let began_ms = first_ms + since_first(report);
+            let [angle, rate] = *last_before(&self.arrived, began_ms)?;
+            let commands = *last_before(&self.commanded, began_ms + PERIOD_MS)?;
+            let codes: Vec<u16> = report.positions.codes().collect();
+            let joint = |place: usize| codes[place] as i16 - 512;
+            Some(Tick {
+                number: report.tick,
+                readings: [angle, joint(0), joint(10), rate],
+                commands,
+            })
+        };
+        self.heard.iter().filter_map(tick).collect()
     }
 }
 
-/// What was noted last by then.
-fn latest<T: Copy>(noted: &[(f64, T)], by_ms: f64) -> Option<T> {
-    let mut noted = noted.iter().rev();
-    let (_, value) = noted.find(|(at, _)| *at <= by_ms)?;
-    Some(*value)
+fn last_before<T>(list: &[(f64, T)], at_ms: f64) -> Option<&T> {
+    let after = list.partition_point(|(when, _)| *when <= at_ms);
+    list.get(after.checked_sub(1)?).map(|(_, value)| value)
+}
+
+/// How long a command takes on the line, ms.
+fn line_ms(command: &Command) -> f64 {
+    let mut frame = [0; MAX_FRAME];
+    let length = encode(0, command, &mut frame).expect("every command fits");
+    length as f64 * 10.0 / 57.6
 }

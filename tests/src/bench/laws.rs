@@ -2,8 +2,8 @@
 //! CM-5's own, told tick by tick what it saw.
 
 use super::Bench;
-use super::balance::{Balanced, Conditions, Tick, balance, plan};
-use super::robot::{FULL_NM, Robot, STEP_MS};
+use super::balance::{Balanced, Conditions, Source, Tick, balance};
+use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
 use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
@@ -17,7 +17,6 @@ pub trait HostLaw {
 }
 
 /// The plan's law with the firmware's own fixed-point code.
-#[derive(Clone)]
 pub struct Fixed<'a> {
     plan: &'a Plan,
     memory: Option<Memory>,
@@ -96,18 +95,37 @@ impl HostLaw for Float<'_> {
 /// all later ones.
 pub fn different(plan: &Plan, ticks: &[Tick]) -> (usize, usize) {
     let mut fixed = Fixed::new(plan);
-    let mut different = 0;
-    for tick in ticks {
-        let mut other = fixed.clone();
-        let is_same = fixed.commands(tick.readings) == tick.commands;
-        let is_other = |readings| other.commands(readings) == tick.commands;
-        if !is_same && tick.or.is_some_and(is_other) {
-            fixed = other;
-        } else {
-            different += usize::from(!is_same);
-        }
-    }
+    let commands = ticks.iter().map(|tick| fixed.commands(tick.readings));
+    let different = commands
+        .zip(ticks)
+        .filter(|(commands, tick)| *commands != tick.commands)
+        .count();
     (different, ticks.len())
+}
+
+/// The first link's angle and rate as the law gets them, in steps of [`Attitude`].
+struct Sensor {
+    source: Source,
+    /// The sum of the gyro's rates, rad.
+    turned_rad: f64,
+}
+
+impl Sensor {
+    fn read(&mut self, angle_rad: f64, rate_rad_s: f64, period_s: f64) -> [i16; 2] {
+        let (angle_rad, rate_rad_s) = match self.source {
+            Source::Host => (angle_rad, rate_rad_s),
+            Source::Gyro => {
+                let rate_rad_s = (rate_rad_s / GYRO_STEP_RAD_S).round() * GYRO_STEP_RAD_S;
+                self.turned_rad += rate_rad_s * period_s;
+                (self.turned_rad, rate_rad_s)
+            }
+        };
+        let steps = |value: f64, step: f64| (value / step).round() as i16;
+        [
+            steps(angle_rad, Attitude::ANGLE_LSB_RAD),
+            steps(rate_rad_s, Attitude::RATE_LSB_RAD_S),
+        ]
+    }
 }
 
 /// Lets the robot go under a host's law, its readings and torques as late as the CM-5's.
@@ -115,8 +133,13 @@ pub fn balance_by_host(
     law: &mut dyn HostLaw,
     conditions: &Conditions,
     timing: &Timing,
+    source: Source,
     seconds: f64,
 ) -> Balanced {
+    let mut sensor = Sensor {
+        source,
+        turned_rad: 0.0,
+    };
     let mut robot = Robot::new(conditions);
     let in_steps = |time_s: f64| (time_s * 1e3 / STEP_MS).round() as usize;
     let period = in_steps(0.01);
@@ -134,13 +157,8 @@ pub fn balance_by_host(
             let code = |rad: f64| {
                 (i32::from(Position::from_rad(rad).0) - i32::from(Position::CENTRE.0)) as i16
             };
-            let attitude = |value: f64, step: f64| (value / step).round() as i16;
-            let readings = [
-                attitude(ago(0), Attitude::ANGLE_LSB_RAD),
-                code(ago(1)),
-                code(ago(2)),
-                attitude(ago(3), Attitude::RATE_LSB_RAD_S),
-            ];
+            let [angle, rate] = sensor.read(ago(0), ago(3), 0.01);
+            let readings = [angle, code(ago(1)), code(ago(2)), rate];
             let commands = law.commands(readings);
             next_nm = commands.map(|code| robot.torque(f64::from(code) * Signed::OUTPUT_LSB));
         }
@@ -165,6 +183,7 @@ pub fn balance_by_host(
         rms_rad: rms[0],
         torque_rms_nm: [rms[1], rms[2]],
         condition: None,
+        telemetry: None,
         ticks: Vec::new(),
     }
 }
@@ -178,22 +197,31 @@ pub struct Sides {
     pub fixed: Balanced,
     /// The firmware's, or what it refused.
     pub board: Result<Balanced, Option<Refusal>>,
-    /// Ticks in which the firmware differs from the fixed law on the same readings, and ticks compared.
+    /// Ticks in which the firmware differs from the fixed law on the same readings, and ticks compared; none with a gyro,
+    /// whose readings no report tells.
     pub different: (usize, usize),
 }
 
 /// Lets the robot go from the same start under all three laws.
-pub fn side_by_side(bench: &mut impl Bench, conditions: &Conditions, seconds: f64) -> Sides {
-    let (machine, plan) = plan();
-    let timing = Timing::HOST_ATTITUDE;
+pub fn side_by_side(
+    bench: &mut impl Bench,
+    conditions: &Conditions,
+    source: Source,
+    seconds: f64,
+) -> Sides {
+    let (machine, plan) = source.plan();
+    let timing = source.timing();
     let board = balance(bench, &plan, conditions, seconds);
-    let ticks = board.as_ref().map_or(&[][..], |board| &board.ticks);
+    let ticks = match (&board, source) {
+        (Ok(board), Source::Host) => &board.ticks[..],
+        _ => &[],
+    };
     let mut float = Float::new(&plan, &machine);
     let mut fixed = Fixed::new(&plan);
     Sides {
         different: different(&plan, ticks),
-        float: balance_by_host(&mut float, conditions, &timing, seconds),
-        fixed: balance_by_host(&mut fixed, conditions, &timing, seconds),
+        float: balance_by_host(&mut float, conditions, &timing, source, seconds),
+        fixed: balance_by_host(&mut fixed, conditions, &timing, source, seconds),
         board,
     }
 }
@@ -217,9 +245,11 @@ mod tests {
                     eccentric_m: [0.0; 3],
                     start_rad: [TWO, signs[0] * TWO, signs[1] * TWO],
                 };
-                let float =
-                    balance_by_host(&mut Float::new(&plan, &machine), &conditions, &timing, 60.0);
-                let fixed = balance_by_host(&mut Fixed::new(&plan), &conditions, &timing, 60.0);
+                let told = |law: &mut dyn HostLaw| {
+                    balance_by_host(law, &conditions, &timing, Source::Host, 60.0)
+                };
+                let float = told(&mut Float::new(&plan, &machine));
+                let fixed = told(&mut Fixed::new(&plan));
                 for run in [&float, &fixed] {
                     assert!(run.stood_s >= 60.0 && run.rms_rad < 0.06, "{run:?}");
                 }

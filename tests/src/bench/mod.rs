@@ -1,5 +1,7 @@
 //! The bench of the firmware: the same scenarios on the logic in process and on the real ELF in simavr.
 
+#[cfg(simavr)]
+mod ages;
 mod balance;
 mod frames;
 #[cfg(simavr)]
@@ -13,10 +15,12 @@ mod robot;
 mod serve;
 mod stream;
 
-pub use balance::{Balanced, Conditions, Tick, arm_balance, balance, plan};
+#[cfg(simavr)]
+pub use ages::{Ages, Spread, ages};
+pub use balance::{Balanced, Conditions, REPORT_MS, Source, Tick, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
-pub use law::{LawRun, ObserverRun, law, observer_law};
+pub use law::{CHOSEN, Cycles, LawRun, ObserverRun, SHIFTS, law, observer_law};
 pub use laws::{Fixed, Float, HostLaw, Sides, balance_by_host, different, side_by_side};
 #[cfg(simavr)]
 pub use loss::hang;
@@ -52,6 +56,8 @@ pub trait Bench {
     fn forget(&mut self);
     /// The servos.
     fn bus(&mut self) -> &mut Bus;
+    /// Turns the gyro's voltage so that the ADC reads this code.
+    fn turn_gyro(&mut self, code: u16);
 }
 
 /// The real ELF.
@@ -102,5 +108,10 @@ impl Bench for handstand_simavr::Rig {
 
     fn bus(&mut self) -> &mut Bus {
         &mut self.bus
+    }
+
+    fn turn_gyro(&mut self, code: u16) {
+        // The least voltage of that code.
+        self.core.adc(3, (u32::from(code) * 5000).div_ceil(1023));
     }
 }

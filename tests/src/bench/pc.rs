@@ -128,4 +128,8 @@ impl Bench for PcRig {
     fn bus(&mut self) -> &mut Bus {
         &mut self.board.bus
     }
+
+    fn turn_gyro(&mut self, code: u16) {
+        self.board.gyro = code;
+    }
 }

@@ -12,6 +12,10 @@ use std::path::Path;
 pub const FULL_NM: f64 = 2.0;
 /// Step of the simulation, ms.
 pub const STEP_MS: f64 = 0.5;
+/// The gyro's rate of one ADC code: the paper's.
+pub const GYRO_STEP_RAD_S: f64 = 10.0 * PI / 180.0;
+/// Its code at rest.
+pub const GYRO_ZERO: u16 = 512;
 /// A first link that leans further has fallen, rad.
 const FALLEN_RAD: f64 = 0.8;
 
@@ -69,6 +73,12 @@ impl Robot {
             angle: (self.lean_rad() / Attitude::ANGLE_LSB_RAD).round() as i16,
             rate: (self.speed_rad_s[0] / Attitude::RATE_LSB_RAD_S).round() as i16,
         }
+    }
+
+    /// The code that a gyro on the first link makes.
+    pub fn gyro(&self) -> u16 {
+        let code = f64::from(GYRO_ZERO) + (self.speed_rad_s[0] / GYRO_STEP_RAD_S).round();
+        code.clamp(0.0, 1023.0) as u16
     }
 
     /// The servos' torques.

@@ -90,6 +90,15 @@ fn the_elf_bears_two_servos_of_one_id() {
     a_twin_ends_balancing(&mut Rig::new(&built.elf).unwrap(), 2);
 }
 
+/// Every shift has its turn in 3200 states.
+#[test]
+fn the_law_is_the_same_at_every_shift() {
+    let Some(built) = built() else { return };
+    let run = law(&built.law, 3200, 9);
+    assert_eq!((run.states, run.different), (3200, 0), "{run:?}");
+    assert!(run.over(0..SHIFTS).is_some(), "{run:?}");
+}
+
 #[test]
 fn the_observer_is_the_same_bit_for_bit() {
     let Some(built) = built() else { return };
