@@ -100,9 +100,15 @@ pub struct Tick {
     pub number: u16,
     /// The first link's angle, both joints' in position codes from their centres, the first link's rate.
     pub readings: [i16; 4],
+    /// The same with the other attitude, where one was arriving just as the tick began.
+    pub or: Option<[i16; 4]>,
     /// Commands of shoulder and hip.
     pub commands: [i16; 2],
 }
+
+/// An attitude that arrives so close to a tick's beginning may have been seen by it or not, ms: for the beginning is known from
+/// the reports alone. It happens after arming, whose answer makes the reports late, and so the host.
+const DOUBT_MS: f64 = 1.0;
 
 /// [`Source::plan`] with the attitude from the host.
 pub fn plan() -> (OnBoard, Plan) {
@@ -359,13 +365,19 @@ impl Run {
         let first_ms = from_first.fold(f64::INFINITY, f64::min) - REPORT_MS;
         let tick = |(_, report): &(f64, StreamReport)| {
             let began_ms = first_ms + since_first(report);
-            let [angle, rate] = *last_before(&self.arrived, began_ms)?;
+            let seen = |by_ms: f64| last_before(&self.arrived, by_ms).copied();
+            let attitude = seen(began_ms)?;
+            let mut doubtful = [seen(began_ms - DOUBT_MS), seen(began_ms + DOUBT_MS)]
+                .into_iter()
+                .flatten();
             let commands = *last_before(&self.commanded, began_ms + PERIOD_MS)?;
             let codes: Vec<u16> = report.positions.codes().collect();
             let joint = |place: usize| codes[place] as i16 - 512;
+            let readings = |[angle, rate]: [i16; 2]| [angle, joint(0), joint(10), rate];
             Some(Tick {
                 number: report.tick,
-                readings: [angle, joint(0), joint(10), rate],
+                readings: readings(attitude),
+                or: doubtful.find(|other| *other != attitude).map(readings),
                 commands,
             })
         };

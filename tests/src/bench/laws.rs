@@ -17,6 +17,7 @@ pub trait HostLaw {
 }
 
 /// The plan's law with the firmware's own fixed-point code.
+#[derive(Clone, PartialEq)]
 pub struct Fixed<'a> {
     plan: &'a Plan,
     memory: Option<Memory>,
@@ -92,15 +93,38 @@ impl HostLaw for Float<'_> {
 /// How many ticks of the firmware differ from the fixed law on the same readings, and how many were compared.
 ///
 /// The firmware's memory is not told, so that the fixed law follows from the first tick on: one difference would show in
-/// all later ones.
+/// all later ones. Where a tick may have seen either of two attitudes, both are followed as long as they agree with it.
 pub fn different(plan: &Plan, ticks: &[Tick]) -> (usize, usize) {
-    let mut fixed = Fixed::new(plan);
-    let commands = ticks.iter().map(|tick| fixed.commands(tick.readings));
-    let different = commands
-        .zip(ticks)
-        .filter(|(commands, tick)| *commands != tick.commands)
-        .count();
+    let mut possible = vec![Fixed::new(plan)];
+    let mut different = 0;
+    for tick in ticks {
+        let all = after(tick, &possible);
+        let mut agreeing: Vec<Fixed> = Vec::new();
+        for (law, commands) in &all {
+            if *commands == tick.commands && !agreeing.contains(law) {
+                agreeing.push(law.clone());
+            }
+        }
+        if agreeing.is_empty() {
+            different += 1;
+            agreeing.extend(all.into_iter().map(|(law, _)| law).take(1));
+        }
+        possible = agreeing;
+    }
     (different, ticks.len())
+}
+
+/// The laws after a tick, each with its commands, for all that the tick may have seen.
+fn after<'a>(tick: &Tick, laws: &[Fixed<'a>]) -> Vec<(Fixed<'a>, [i16; 2])> {
+    let seen = std::iter::once(tick.readings).chain(tick.or);
+    let gone_on = |readings: [i16; 4]| {
+        laws.iter().map(move |law| {
+            let mut law = law.clone();
+            let commands = law.commands(readings);
+            (law, commands)
+        })
+    };
+    seen.flat_map(gone_on).collect()
 }
 
 /// The first link's angle and rate as the law gets them, in steps of [`Attitude`].

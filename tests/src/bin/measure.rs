@@ -1,11 +1,11 @@
-//! The chores of `cargo xtask` that measure, one file each under `src/xtask/`; it runs this program.
+//! The chores of `cargo xtask` that measure, one file each under `src/measure/`; it runs this program.
 
-#[path = "../xtask/mod.rs"]
-mod xtask;
+#[path = "../measure/mod.rs"]
+mod measure;
 
 use clap::Parser as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    xtask::Chores::parse().run()
+    measure::Chores::parse().run()
 }

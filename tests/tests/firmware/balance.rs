@@ -83,6 +83,11 @@ pub fn it_stands(bench: &mut impl Bench, seconds: f64) {
     let run = balance(bench, &plan, &conditions, seconds).expect("it arms");
     assert!(run.stood_s >= seconds - 1e-6, "{:.2} s", run.stood_s);
     assert_eq!(run.condition, Some(Condition::BalanceArmed));
+    let doubtful = run.ticks.iter().filter(|tick| tick.or.is_some()).count();
+    assert!(
+        doubtful <= 10,
+        "{doubtful} ticks may have seen either attitude"
+    );
     let (different, compared) = different(&plan, &run.ticks);
     assert!(
         different == 0 && compared as f64 > 90.0 * seconds,

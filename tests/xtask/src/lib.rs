@@ -3,12 +3,13 @@
 pub mod firmware;
 pub mod program;
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::Command;
 
 /// The folder of the workspace.
-pub fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+pub fn root() -> &'static Path {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.ancestors().nth(2).unwrap_or(own)
 }
 
 /// The cargo that runs this, or the one on the path, in the workspace.
