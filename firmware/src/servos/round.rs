@@ -30,8 +30,8 @@ impl Servos {
     /// Reads all positions, and the slow channels of two servos in turn; whoever answered in the last tick and does not
     /// now is asked once more at the end, if there is time. A silent servo costs its own time only.
     ///
-    /// `meanwhile` is called once per servo, while the bus has 100 us or more to go: bytes that come before it returns
-    /// wait in the interrupt's queue, which holds a whole answer.
+    /// `meanwhile` is called once per servo, while its answer is awaited: bytes that come before it returns wait in the
+    /// interrupt's queue, which holds a whole answer.
     #[inline(never)]
     pub fn read<B: Board>(
         &mut self,
