@@ -171,12 +171,19 @@ impl Balance {
         }
     }
 
-    /// After the commands are on their way: goes on with the estimate, told what was given.
-    #[inline(never)]
+    /// Tells the estimate what was given; [`Balance::go_on`] does the rest.
     pub fn learn(&mut self) {
         if let Law::Observer(observer) = &self.plan.law {
             let given = [self.given[0].input, self.given[1].input];
-            observer.learn(&mut self.estimate, given);
+            observer.tell(&mut self.estimate, given);
+        }
+    }
+
+    /// A step towards the next estimate, if one is left: 60 us on the AVR.
+    #[inline(never)]
+    pub fn go_on(&mut self) {
+        if let Law::Observer(observer) = &self.plan.law {
+            observer.go_on(&mut self.estimate);
         }
     }
 

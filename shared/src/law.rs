@@ -2,12 +2,12 @@
 
 #[cfg(not(target_arch = "avr"))]
 use crate::fixed::{mac, saturate, shift_right};
-use crate::gains::GainTable;
-#[cfg(not(target_arch = "avr"))]
-use crate::gains::Row;
+use crate::gains::{GainTable, Row};
 
 #[cfg(target_arch = "avr")]
 mod avr;
+#[cfg(target_arch = "avr")]
+pub(crate) use avr::departure;
 #[cfg(target_arch = "avr")]
 use avr::{finish, one_sum};
 
@@ -20,15 +20,29 @@ pub fn control<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16
     if let Some(u) = avr::fast(table, x) {
         return u;
     }
-    let mut departure = [0; N];
-    for ((departure, x), x0) in departure.iter_mut().zip(x).zip(&table.x0) {
-        *departure = x.saturating_sub(*x0);
-    }
+    let departure = departure(&table.x0, x);
     let mut u = [0; M];
     for (u, row) in u.iter_mut().zip(&table.rows) {
-        *u = finish(one_sum(row.bias, &row.k, &departure), row);
+        *u = input(row, &departure);
     }
     u
+}
+
+/// How far the states `x` are from the operating point `x0`, saturating.
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+pub(crate) fn departure<const N: usize>(x0: &[i16; N], x: &[i16; N]) -> [i16; N] {
+    let mut departure = [0; N];
+    for ((departure, x), x0) in departure.iter_mut().zip(x).zip(x0) {
+        *departure = x.saturating_sub(*x0);
+    }
+    departure
+}
+
+/// One row's input at this departure.
+#[inline(always)]
+pub(crate) fn input<const N: usize>(row: &Row<N>, departure: &[i16; N]) -> i16 {
+    finish(one_sum(row.bias, &row.k, departure), row)
 }
 
 /// The one rounding and the one saturation.

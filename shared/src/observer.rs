@@ -15,7 +15,7 @@
 //! would grow. Inputs on their way are kept exactly. The estimate is [angles, speeds, angles of balance] of the three joints.
 
 use crate::gains::{GainTable, take};
-use crate::law::control;
+use crate::law::{control, departure, input};
 
 /// Inputs.
 pub const INPUTS: usize = 2;
@@ -54,19 +54,32 @@ pub struct Observer {
     pub balance_places: [u8; JOINTS],
 }
 
-/// What it remembers: estimate, past inputs, and room for surprise and given inputs.
+/// Steps of an update: the departures, then one per estimated state.
+const STEPS: u8 = 1 + ESTIMATED as u8;
+
+/// What it remembers: estimate, past inputs, and room for surprise and given inputs; and the next estimate, while it is
+/// being made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
     all: [i16; WIDTH],
+    departure: [i16; WIDTH],
+    next: [i16; ESTIMATED],
+    /// Steps that are left until the next estimate counts; none if no update is under way.
+    left: u8,
 }
 
 impl Memory {
     /// Of nothing.
-    pub const ZERO: Memory = Memory { all: [0; WIDTH] };
+    pub const ZERO: Memory = Memory::of([0; WIDTH]);
 
     /// Of all this.
     pub const fn of(all: [i16; WIDTH]) -> Self {
-        Memory { all }
+        Memory {
+            all,
+            departure: [0; WIDTH],
+            next: [0; ESTIMATED],
+            left: 0,
+        }
     }
 
     /// Estimate, past inputs, last surprise and last given inputs, in the tables' steps.
@@ -118,7 +131,7 @@ impl Observer {
 
     /// At rest at these readings; `balance` are the angles at which the robot is expected to balance, in the readings' steps.
     pub fn start(&self, memory: &mut Memory, readings: &[i16; READINGS], balance: [i16; JOINTS]) {
-        memory.all = [0; WIDTH];
+        *memory = Memory::ZERO;
         let (angles, rest) = memory.all.split_at_mut(JOINTS);
         let finer_readings = readings.iter().zip(self.reading_places);
         for (to, (from, places)) in angles.iter_mut().zip(finer_readings) {
@@ -130,9 +143,10 @@ impl Observer {
         }
     }
 
-    /// The inputs wished for at these readings.
+    /// The inputs wished for at these readings. Ends an update that is under way.
     #[inline(never)]
     pub fn wish(&self, memory: &mut Memory, readings: &[i16; READINGS]) -> [i16; INPUTS] {
+        self.finish(memory);
         let expected = match memory.all.first_chunk() {
             Some(state) => control(&self.expect, state),
             None => [0; READINGS],
@@ -149,15 +163,55 @@ impl Observer {
     }
 
     /// Goes on by a sample under the inputs that were really given.
-    #[inline(never)]
     pub fn learn(&self, memory: &mut Memory, given: [i16; INPUTS]) {
-        let all = &mut memory.all;
-        let place = all.iter_mut().skip(SEEN);
+        self.tell(memory, given);
+        self.finish(memory);
+    }
+
+    /// Begins to go on by a sample under the inputs that were really given: [`Observer::go_on`] does the work, in steps, for
+    /// whoever has to wait for something else in between.
+    pub fn tell(&self, memory: &mut Memory, given: [i16; INPUTS]) {
+        let place = memory.all.iter_mut().skip(SEEN);
         place.zip(given).for_each(|(to, from)| *to = from);
-        let next = control(&self.update, all);
+        memory.left = STEPS;
+    }
+
+    /// A step of the update that is under way; false if there is none. The last one lets the next estimate count.
+    #[inline(never)]
+    pub fn go_on(&self, memory: &mut Memory) -> bool {
+        let left = memory.left;
+        if left == 0 {
+            return false;
+        }
+        if left == STEPS {
+            memory.departure = departure(&self.update.x0, &memory.all);
+        } else {
+            let at = ESTIMATED - usize::from(left);
+            if let (Some(row), Some(next)) = (self.update.rows.get(at), memory.next.get_mut(at)) {
+                *next = input(row, &memory.departure);
+            }
+        }
+        memory.left = left - 1;
+        if memory.left == 0 {
+            memory.take_next();
+        }
+        true
+    }
+
+    fn finish(&self, memory: &mut Memory) {
+        while self.go_on(memory) {}
+    }
+}
+
+impl Memory {
+    /// The next estimate counts, and the given inputs are the newest past ones.
+    fn take_next(&mut self) {
+        let all = &mut self.all;
         all.copy_within(ESTIMATED..ESTIMATED + PAST - INPUTS, ESTIMATED + INPUTS);
-        let newest = next.into_iter().chain(given);
-        all.iter_mut().zip(newest).for_each(|(to, from)| *to = from);
+        all.copy_within(SEEN..SEEN + INPUTS, ESTIMATED);
+        all.iter_mut()
+            .zip(self.next)
+            .for_each(|(to, from)| *to = from);
     }
 }
 
@@ -223,6 +277,39 @@ mod tests {
         // Surprises saturate.
         observer.wish(&mut memory, &[i16::MIN, i16::MAX, 0, 0]);
         assert_eq!(memory.all()[STATE..STATE + 2], [i16::MIN, i16::MAX - 1000]);
+    }
+
+    #[test]
+    fn the_next_estimate_counts_from_the_last_step_on() {
+        let observer = observer();
+        let mut memory = Memory::ZERO;
+        observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
+        assert!(!observer.go_on(&mut memory));
+        observer.wish(&mut memory, &[11, 22, 33, 44]);
+        let (mut whole, mut left_to_wish) = (memory, memory);
+        observer.learn(&mut whole, [7, 9]);
+        observer.tell(&mut memory, [7, 9]);
+        let before = memory;
+        for _ in 1..STEPS {
+            assert!(observer.go_on(&mut memory));
+            assert_eq!(memory.all(), before.all());
+        }
+        assert!(observer.go_on(&mut memory));
+        assert_ne!(memory.all(), before.all());
+        assert_eq!(memory, whole);
+        assert!(!observer.go_on(&mut memory));
+        // What nobody did meanwhile is done before the next wish.
+        observer.tell(&mut left_to_wish, [7, 9]);
+        let next = [12, 23, 34, 45];
+        assert_eq!(
+            observer.wish(&mut left_to_wish, &next),
+            observer.wish(&mut whole, &next)
+        );
+        assert_eq!(left_to_wish, whole);
+        // A new start forgets an update.
+        observer.tell(&mut memory, [7, 9]);
+        observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
+        assert!(!observer.go_on(&mut memory));
     }
 
     #[test]

@@ -10,8 +10,17 @@ impl App {
     /// Torque off, or about to be: reads and reports.
     #[inline(never)]
     pub(super) fn watch<B: Board>(&mut self, board: &mut B, started: u16) {
-        self.servos.read(board, &mut self.statistics, started);
+        self.read(board, started);
         self.report(board);
+    }
+
+    /// Reads the servos. The estimate goes on while they are waited for: after the commands it would lengthen the tick.
+    #[inline(never)]
+    fn read<B: Board>(&mut self, board: &mut B, started: u16) {
+        let balance = &mut self.balance;
+        let meanwhile = || balance.go_on();
+        self.servos
+            .read(board, &mut self.statistics, started, meanwhile);
     }
 
     /// Torque must stay off: says so ten times a second, for a servo may have missed it.
@@ -44,7 +53,7 @@ impl App {
             self.soften(board, cause, State::Balance);
             return self.watch(board, started);
         }
-        self.servos.read(board, &mut self.statistics, started);
+        self.read(board, started);
         match self.servos.limp {
             None => self.command(board),
             // It leaves the other ones to throw the robot: not one command more.
@@ -66,12 +75,9 @@ impl App {
         };
         let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
-        self.servos.turn(board, commands);
-        // What only the next tick needs delays no command.
-        let learn_started = board.clock();
-        self.balance.learn();
-        let law_us = law_us.saturating_add(since_us(board, learn_started));
         self.longest_law_us = self.longest_law_us.max(law_us);
+        self.servos.turn(board, commands);
+        self.balance.learn();
     }
 
     #[inline(never)]

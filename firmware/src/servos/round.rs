@@ -29,8 +29,17 @@ pub(super) const SILENT: Slow = Slow {
 impl Servos {
     /// Reads all positions, and the slow channels of two servos in turn; whoever answered in the last tick and does not
     /// now is asked once more at the end, if there is time. A silent servo costs its own time only.
+    ///
+    /// `meanwhile` is called once per servo, while its answer is awaited: bytes that come before it returns wait in the
+    /// interrupt's queue, which holds a whole answer.
     #[inline(never)]
-    pub fn read<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics, started: u16) {
+    pub fn read<B: Board>(
+        &mut self,
+        board: &mut B,
+        statistics: &mut Statistics,
+        started: u16,
+        mut meanwhile: impl FnMut(),
+    ) {
         self.begin_round();
         let mut again: Vec<u8, SERVOS, u8> = Vec::new();
         let mut answer = Answer::default();
@@ -39,6 +48,7 @@ impl Servos {
         for place in 0..self.count {
             // Made while this answer is awaited, sent as soon as it is there: it is looked at while that goes out.
             let next = self.request(place + 1);
+            meanwhile();
             self.hear(board, place, &mut answer);
             if place + 1 < self.count {
                 bus::ask(board, &next);

@@ -55,7 +55,7 @@ impl Timing {
     /// 10 deg/s: trusted more, what the linear model makes of one so old fells the robot from 2 deg.
     pub const HOST_ATTITUDE: Timing = Timing {
         effect_s: 0.8e-3,
-        age_s: [8.1e-3, 4.1e-3, 1.8e-3, 8.1e-3],
+        age_s: [8.7e-3, 4.1e-3, 1.8e-3, 8.7e-3],
         deviation: [EXACT_RAD, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
     };
 

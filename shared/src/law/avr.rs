@@ -6,7 +6,7 @@
 
 use crate::gains::{GainTable, Row};
 use core::arch::asm;
-use core::mem::{offset_of, size_of};
+use core::mem::{MaybeUninit, offset_of, size_of};
 
 /// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four registers; r11 is zero, r24 and r25
 /// are spoilt.
@@ -238,6 +238,49 @@ fn two_by_six(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i16; 2] {
         );
     }
     [first, second]
+}
+
+/// How far the states `x` are from the operating point `x0`, saturating: 19 cycles each, where the compiler takes 45.
+#[inline(always)]
+pub fn departure<const N: usize>(x0: &[i16; N], x: &[i16; N]) -> [i16; N] {
+    const { assert!(N > 0 && N < 256) };
+    let mut departure = MaybeUninit::<[i16; N]>::uninit();
+    // SAFETY: reads N words from X and from Z and writes N at Y, which have them; Y is the compiler's own, and as it was at the
+    // end.
+    unsafe {
+        asm!(
+            "movw r24, r28",
+            "movw r28, {to}",
+            "2: ld r20, X+",
+            "ld r21, X+",
+            "ld r22, Z+",
+            "ld r23, Z+",
+            "sub r20, r22",
+            "sbc r21, r23",
+            "brvc 3f",
+            // Beyond 16 bits: 7fff where the unsigned difference borrowed, else 8000.
+            "sbc r20, r20",
+            "mov r21, r20",
+            "subi r21, 0x80",
+            "3: st Y+, r20",
+            "st Y+, r21",
+            "dec {count}",
+            "brne 2b",
+            "movw r28, r24",
+            to = in(reg_pair) departure.as_mut_ptr(),
+            count = inout(reg) N as u8 => _,
+            inout("X") x.as_ptr() => _,
+            inout("Z") x0.as_ptr() => _,
+            out("r20") _,
+            out("r21") _,
+            out("r22") _,
+            out("r23") _,
+            out("r24") _,
+            out("r25") _,
+            options(nostack),
+        );
+        departure.assume_init()
+    }
 }
 
 /// The one rounding and the one saturation.

@@ -123,12 +123,18 @@ pub fn flush() {
 #[inline(always)]
 pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize {
     finish(r);
+    let mut used = 0;
+    // What came meanwhile, while the interrupt still takes the next ones: the receiver itself holds two bytes.
+    while let Some(slot) = out.get_mut(used) {
+        let Some(byte) = IN.pop() else { break };
+        *slot = byte;
+        used += 1;
+    }
     // SAFETY: plain bits; nothing is being sent.
     let receiver = |bits| unsafe { r.USART0.ucsr0b().write(|w| w.bits(bits)) };
     receiver(RECEIVER_ON | TRANSMITTER);
-    let mut limit = first;
-    let mut used = 0;
-    'bytes: for slot in out {
+    let mut limit = if used == 0 { first } else { between };
+    'bytes: for slot in out.iter_mut().skip(used) {
         let start = clock(r);
         *slot = loop {
             // What came before the interrupt was off.

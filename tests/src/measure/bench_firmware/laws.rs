@@ -57,7 +57,7 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
         });
         rows.push(Row {
             name: "law with observer, cycles",
-            measured: format!("{wish} before the commands, {learn} after them"),
+            measured: format!("{wish} before the commands, {learn} while servos are awaited"),
             limit: "part of the tick's 60 %",
             holds: true,
             values: json!({"wish": wish, "learn": learn}),
