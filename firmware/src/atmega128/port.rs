@@ -95,18 +95,11 @@ impl Buttons {
 
     /// Those that are down, as [`crate::panel::button`].
     pub fn down(&mut self) -> u8 {
-        let Buttons {
-            up,
-            down,
-            left,
-            right,
-            start,
-        } = self;
-        held(up, button::UP)
-            | held(down, button::DOWN)
-            | held(left, button::LEFT)
-            | held(right, button::RIGHT)
-            | held(start, button::START)
+        held(&mut self.up, button::UP)
+            | held(&mut self.down, button::DOWN)
+            | held(&mut self.left, button::LEFT)
+            | held(&mut self.right, button::RIGHT)
+            | held(&mut self.start, button::START)
     }
 }
 
@@ -143,22 +136,13 @@ impl Leds {
 
     /// Lights those of [`crate::panel::led`] and no others.
     pub fn show(&mut self, lit: u8) {
-        let Leds {
-            power,
-            txd,
-            rxd,
-            aux,
-            manage,
-            program,
-            play,
-        } = self;
-        shine(power, lit & led::POWER != 0);
-        shine(txd, lit & led::TXD != 0);
-        shine(rxd, lit & led::RXD != 0);
-        shine(aux, lit & led::AUX != 0);
-        shine(manage, lit & led::MANAGE != 0);
-        shine(program, lit & led::PROGRAM != 0);
-        shine(play, lit & led::PLAY != 0);
+        shine(&mut self.power, lit & led::POWER != 0);
+        shine(&mut self.txd, lit & led::TXD != 0);
+        shine(&mut self.rxd, lit & led::RXD != 0);
+        shine(&mut self.aux, lit & led::AUX != 0);
+        shine(&mut self.manage, lit & led::MANAGE != 0);
+        shine(&mut self.program, lit & led::PROGRAM != 0);
+        shine(&mut self.play, lit & led::PLAY != 0);
     }
 }
 

@@ -4,7 +4,8 @@
 //! law's moment is the end of the last answer; the host says the attitude after every report, as in the closed loop.
 
 use super::Bench as _;
-use super::balance::{HOST_MS, arm_balance, plan};
+use super::balance::{arm_balance, plan};
+use super::run::HOST_MS;
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::message::{Attitude, Command, Report};
 use handstand_shared::raw::Position;

@@ -11,13 +11,14 @@ mod loss;
 mod pc;
 mod power;
 mod robot;
+mod run;
 #[cfg(unix)]
 mod serve;
 mod stream;
 
 #[cfg(simavr)]
 pub use ages::{Ages, Spread, ages};
-pub use balance::{Balanced, Conditions, REPORT_MS, Source, Tick, arm_balance, balance, plan};
+pub use balance::{Balanced, Conditions, Source, Tick, arm_balance, balance, plan};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
 pub use law::{CHOSEN, Cycles, LawRun, ObserverRun, SHIFTS, law, observer_law};
@@ -27,6 +28,7 @@ pub use loss::hang;
 pub use loss::{Loss, Worst, arm, link_loss, worst_of};
 pub use pc::PcRig;
 pub use power::{PowerCuts, power_cuts};
+pub use run::REPORT_MS;
 #[cfg(unix)]
 pub use serve::serve;
 pub use stream::{StreamRun, stream};

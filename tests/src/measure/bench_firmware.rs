@@ -48,7 +48,8 @@ struct Row {
     name: &'static str,
     measured: String,
     limit: &'static str,
-    holds: bool,
+    /// Nothing where nothing is promised.
+    holds: Option<bool>,
     values: Value,
 }
 
@@ -80,7 +81,7 @@ pub fn run(args: &Args) -> bool {
     } else {
         println!("{}", table(&rows));
     }
-    rows.iter().all(|row| row.holds)
+    rows.iter().all(|row| row.holds != Some(false))
 }
 
 type Measure = fn(&Args, Option<&Built>) -> Vec<Row>;
@@ -104,7 +105,11 @@ fn table(rows: &[Row]) -> Table {
         .load_preset(UTF8_HORIZONTAL_ONLY)
         .set_header(["", "Measured", "Limit", "Holds"]);
     for row in rows {
-        let holds = if row.holds { "yes" } else { "NO" };
+        let holds = match row.holds {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None => "-",
+        };
         table.add_row([row.name, &row.measured, row.limit, holds]);
     }
     table

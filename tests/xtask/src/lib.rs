@@ -12,7 +12,7 @@ pub fn root() -> &'static Path {
     own.ancestors().nth(2).unwrap_or(own)
 }
 
-/// The cargo that runs this, or the one on the path, in the workspace.
+/// The cargo that runs this, or the one on the path, with these words.
 pub fn cargo(words: &[&str]) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(words);

@@ -10,7 +10,7 @@ pub(super) fn frames(args: &Args, _: Option<&Built>) -> Vec<Row> {
         name,
         measured: format!("{} tried, {} accepted", tally.tried, count),
         limit: "0",
-        holds: count == 0,
+        holds: Some(count == 0),
         values: json!({"tried": tally.tried, "accepted": tally.wrong, "critical": tally.critical}),
     };
     let five = patterns(if args.quick { 4 } else { 5 }, args.seed);
@@ -53,7 +53,7 @@ pub(super) fn frames(args: &Args, _: Option<&Built>) -> Vec<Row> {
         name: "frames lost after garbage",
         measured: format!("at most {lost}"),
         limit: "2",
-        holds: lost <= 2,
+        holds: Some(lost <= 2),
         values: json!({"lost": lost}),
     });
     rows

@@ -24,7 +24,7 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
             name: "law 2 x 6 on the AVR against the host's",
             measured: format!("{} states, {} different", run.states, run.different),
             limit: "0",
-            holds: run.different == 0,
+            holds: Some(run.different == 0 && run.states > 0),
             values: json!({"states": run.states, "different": run.different}),
         },
         Row {
@@ -36,7 +36,7 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
                 text(run.mixed)
             ),
             limit: "500 at every shift",
-            holds: most(all).max(most(run.mixed)) <= 500,
+            holds: Some(most(all).max(most(run.mixed)) <= 500),
             values: json!({"at_0_8_16": chosen, "mixed": run.mixed, "by_shift": run.cycles}),
         },
     ];
@@ -52,14 +52,14 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
             name: "law with observer on the AVR against the host's",
             measured: format!("{states} states, {different} different"),
             limit: "0",
-            holds: different == 0,
+            holds: Some(different == 0 && states > 0),
             values: json!({"states": states, "different": different}),
         });
         rows.push(Row {
             name: "law with observer, cycles",
             measured: format!("{wish} before the commands, {learn} while servos are awaited"),
-            limit: "part of the tick's 60 %",
-            holds: true,
+            limit: "-",
+            holds: None,
             values: json!({"wish": wish, "learn": learn}),
         });
     }

@@ -32,7 +32,7 @@ pub(super) fn loops(args: &Args, built: Option<&Built>) -> Vec<Row> {
             name: "its commands against the fixed host law's on the same readings",
             measured: format!("{compared} ticks, {different} different"),
             limit: "0",
-            holds: different == 0 && compared > 0,
+            holds: Some(different == 0 && compared > 0),
             values: json!({"ticks": compared, "different": different}),
         });
         rows
@@ -101,7 +101,7 @@ fn loop_rows(names: [&'static str; 3], start: &str, sides: &Sides, seconds: f64)
             name,
             measured,
             limit: "stands",
-            holds: stood_s >= seconds - 1e-6,
+            holds: Some(stood_s >= seconds - 1e-6),
             values,
         }
     };
@@ -147,7 +147,7 @@ pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
             100.0 * share
         ),
         limit: "60 %",
-        holds: share <= 0.6 && overruns == 0,
+        holds: Some(share <= 0.6 && overruns == 0),
         values: json!({"longest_tick_us": longest, "longest_law_us": law, "overruns": overruns, "starts": starts}),
     }];
     rows.extend(
