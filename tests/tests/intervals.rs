@@ -5,7 +5,7 @@
 
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};
-use handstand::identify::{Data, FitOptions, Horizon, fit, intervals};
+use handstand::fitting::{Data, FitOptions, Horizon, fit, intervals};
 use handstand::log::{LogRequest, read};
 use std::path::Path;
 

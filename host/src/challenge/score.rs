@@ -3,8 +3,8 @@
 use super::{Answer, unseal};
 use crate::diagnose::Candidate;
 use crate::error::{Error, Result};
-use crate::extend::rms_rad;
-use crate::identify::{Data, Horizon, settle};
+use crate::fitting::rms_rad;
+use crate::fitting::{Data, Horizon, settle};
 use crate::log::{LogRequest, read};
 use crate::model::{EffectInstance, Model};
 use serde::Serialize;

@@ -17,7 +17,7 @@ use super::fitting::Fitting;
 use super::talk::Talk;
 use super::{Outcome, fit, input, name, show};
 use handstand::diagnose::Candidate;
-use handstand::extend::{Extension, extend};
+use handstand::fitting::{Extension, extend};
 use handstand::log::LogRequest;
 use handstand::model::edit::{self, Fitted};
 use handstand::model::{EffectInstance, ParameterPath};

@@ -14,7 +14,7 @@
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
 use handstand::report::{html, json};
 use handstand::{Model, Result, compare};

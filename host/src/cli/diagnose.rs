@@ -18,7 +18,7 @@ use handstand::compare::{Comparison, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL, address};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, Verdict, diagnose};
 use handstand::effects;
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
 use handstand::model::{EffectInstance, ParameterPath};
 use handstand::report::{diagnosis_json, diagnosis_text, html};

@@ -14,7 +14,7 @@
 use super::fitting::Fitting;
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::extend::{Extension, Undetermined, refit};
+use handstand::fitting::{Extension, Undetermined, refit};
 use handstand::log::LogRequest;
 use handstand::model::ParameterPath;
 use handstand::{Error, Model, Result, model::edit, output};

@@ -2,7 +2,7 @@
 
 use super::input;
 use handstand::Result;
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::LogRequest;
 use std::path::PathBuf;
 

@@ -17,7 +17,7 @@ use super::signals::{self, Chosen, Signals};
 use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::log::{LogRequest, Motion};
-use handstand::servo::{
+use handstand::sysid::{
     Known, Record, Structure, Trial, dynamics, record, sampling_period_s, select, structures,
     try_all,
 };

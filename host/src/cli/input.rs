@@ -1,6 +1,6 @@
 //! Arguments that several commands take.
 
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, Split, read};
 use handstand::{Error, Model, Result};
 use std::path::Path;

@@ -16,7 +16,7 @@ use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::LogRequest;
 use handstand::number::exact;
-use handstand::servo::{Block, DeadZone, Known, Side, Supply, blocks};
+use handstand::sysid::{Block, DeadZone, Known, Side, Supply, blocks};
 use handstand::{Error, Result};
 use serde_json::{Value, json};
 

@@ -2,8 +2,8 @@
 
 use comfy_table::{ContentArrangement, Table, TableComponent, presets};
 use handstand::diagnose::FittedValue;
-use handstand::extend::{Extension, Fall, Undetermined};
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
+use handstand::fitting::{Extension, Fall, Undetermined};
 use handstand::number::exact;
 use serde_json::{Value, json};
 

@@ -3,7 +3,7 @@
 use super::input;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::{Column, Dimension, JointColumns, LogColumns, Unit};
-use handstand::servo::Output;
+use handstand::sysid::Output;
 use handstand::{Error, Model, Result};
 use std::path::PathBuf;
 

@@ -14,9 +14,9 @@
 use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::compare::compare;
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, read};
-use handstand::view::{Scene, html};
+use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 

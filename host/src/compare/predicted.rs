@@ -1,6 +1,6 @@
 //! Measured and predicted angles of whole motions, side by side.
 
-use crate::identify::{Data, Node};
+use crate::fitting::{Data, Node};
 use crate::model::Model;
 use crate::sim::{Memory, Plant, predict};
 use rayon::prelude::*;

@@ -4,7 +4,7 @@ use super::failure::failures;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::{Comparison, HorizonError, SignalError, Trace};
-use crate::identify::{Data, Horizon, longest_stable, settle};
+use crate::fitting::{Data, Horizon, longest_stable, settle};
 use crate::log::Motion;
 use crate::model::Model;
 

@@ -6,7 +6,7 @@ use super::moment::{moments, speed_rad_s};
 use super::residual_tests::{independence, linearity, whiteness};
 use super::run::fit_percent;
 use super::*;
-use crate::identify::Horizon;
+use crate::fitting::Horizon;
 use crate::log::{Motion, Source};
 use crate::model::Model;
 use crate::number::mrad_in_column;

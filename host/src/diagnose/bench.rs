@@ -13,7 +13,7 @@ use super::score::AT_FLOOR;
 use super::search::planned_steps;
 use super::trial::Trial;
 use crate::effects::{CONTROLS, SHAM};
-use crate::identify::{Data, Horizon, longest_stable};
+use crate::fitting::{Data, Horizon, longest_stable};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;

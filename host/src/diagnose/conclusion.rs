@@ -8,7 +8,7 @@ use super::score::{Score, fall};
 use super::trial::Trial;
 use super::verdict::Case;
 use super::words;
-use crate::identify::{Data, Horizon, Interval, intervals, profiled};
+use crate::fitting::{Data, Horizon, Interval, intervals, profiled};
 use crate::number::percent;
 
 /// Draws the conclusion.

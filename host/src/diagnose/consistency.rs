@@ -6,7 +6,7 @@
 
 use super::score::AT_FLOOR;
 use super::trial::Trial;
-use crate::identify::{Data, FitOptions, fit};
+use crate::fitting::{Data, FitOptions, fit};
 use rayon::prelude::*;
 
 /// Iterations of a motion's own fit, from the values found for all.

@@ -3,7 +3,7 @@
 use super::bench::Bench;
 use super::score::{Score, fall, surely_worse};
 use super::trial::Trial;
-use crate::identify::Fit;
+use crate::fitting::Fit;
 
 impl Bench<'_> {
     /// The best trial that is surely and usefully better than `reference` where it counts.

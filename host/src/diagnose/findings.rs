@@ -1,6 +1,6 @@
 //! The result of a diagnosis, as plain values for every writer: text, JSON, HTML.
 
-use crate::identify::Interval;
+use crate::fitting::Interval;
 use crate::model::ParameterPath;
 use serde::Serialize;
 

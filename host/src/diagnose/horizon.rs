@@ -1,6 +1,6 @@
 //! Over how long a run candidates are sought, and over how long they are judged.
 
-use crate::identify::{Data, Horizon, settle};
+use crate::fitting::{Data, Horizon, settle};
 use crate::log::Motion;
 use crate::model::Model;
 

@@ -1,7 +1,7 @@
 //! Where to start a candidate: the values that promise most, found by one simulation each.
 
 use super::candidate::Candidate;
-use crate::identify::{Data, Fit, Node, Projector, residuals};
+use crate::fitting::{Data, Fit, Node, Projector, residuals};
 use crate::model::Model;
 
 /// A promising start for a candidate: values, and how much of the squared residual they could remove.

@@ -1,6 +1,6 @@
 //! What a diagnosis may be told.
 
-use crate::identify::Horizon;
+use crate::fitting::Horizon;
 
 /// How to diagnose.
 #[derive(Debug, Clone)]

@@ -9,7 +9,7 @@ use super::opening::change;
 use super::score::{AT_FLOOR, Score, resampled};
 use super::terms::{Term, terms};
 use crate::effects::Along;
-use crate::identify::{self, Data, Fit, FitOptions, Projector, settle};
+use crate::fitting::{self, Data, Fit, FitOptions, Projector, settle};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -72,7 +72,7 @@ fn linearised(fit: &Fit, data: &Data, settled: &Fit) -> Fit {
         iterations: 0,
         ..FitOptions::default()
     };
-    identify::fit(&fit.model, &fit.free, data, Some(&settled.nodes), options)
+    fitting::fit(&fit.model, &fit.free, data, Some(&settled.nodes), options)
 }
 
 /// The residual, less what start states could make of it.

@@ -3,7 +3,7 @@
 use super::bench::{Bench, FINISH};
 use super::opening::Opening;
 use super::trial::Trial;
-use crate::identify::{Data, Fit, FitOptions, fit};
+use crate::fitting::{Data, Fit, FitOptions, fit};
 use crate::model::{EffectInstance, Model, ParameterPath};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

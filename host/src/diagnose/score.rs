@@ -1,6 +1,6 @@
 //! Errors summed in blocks of time, so that their uncertainty can be told by resampling the blocks.
 
-use crate::identify::{Data, Fit};
+use crate::fitting::{Data, Fit};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use crate::effects::Along;
-use crate::identify::Data;
+use crate::fitting::Data;
 use crate::model::{Drive, Model};
 
 /// A probe with the amplitude at which its effect is measured.

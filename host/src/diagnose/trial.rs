@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::score::{AT_FLOOR, Score};
-use crate::identify::{Data, Fit, FitOptions, fit, intervals, settle};
+use crate::fitting::{Data, Fit, FitOptions, fit, intervals, settle};
 
 /// A fitted set of effects.
 ///

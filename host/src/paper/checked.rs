@@ -2,7 +2,7 @@
 
 use super::computed::Computed;
 use super::printed::{PRINTED, Printed, Quantity};
-use crate::servo::Known;
+use crate::sysid::Known;
 use std::fmt;
 
 /// Most digits that may differ for a misprint to be one of digits.

@@ -4,12 +4,12 @@ use super::case::{TS_S, handstand};
 use super::printed::Quantity;
 use crate::error::Result;
 use crate::model::Model;
-use crate::servo::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
-use crate::servo::polynomial::{at_one, roots};
-use crate::servo::{Estimate, Known, Record, Structure, estimate, settling_samples};
 use crate::synth::{
     Continuous, Discrete, Gains, dlqr, linearise, lqr, poles, transmission_zeros, upright, zoh,
 };
+use crate::sysid::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
+use crate::sysid::polynomial::{at_one, roots};
+use crate::sysid::{Estimate, Known, Record, Structure, estimate, settling_samples};
 use nalgebra::{Complex, DMatrix};
 
 /// Samples of the servo record.

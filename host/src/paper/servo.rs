@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::log::{Motion, Source};
 use crate::model::Model;
 use crate::number::interval;
-use crate::servo::generate::{PAPER_TS_S, noise};
-use crate::servo::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
 use crate::sim::{Memory, Plant, Start, predict};
+use crate::sysid::generate::{PAPER_TS_S, noise};
+use crate::sysid::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
 use std::f64::consts::TAU;
 use std::path::Path;
 

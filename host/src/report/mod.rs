@@ -8,6 +8,7 @@ mod json;
 pub(crate) mod page;
 mod panels;
 mod parameters;
+pub mod playback;
 mod provenance;
 mod remains;
 #[cfg(test)]

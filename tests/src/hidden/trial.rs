@@ -2,8 +2,8 @@
 
 use handstand::challenge::{Answer, Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedValue, Verdict, diagnose};
-use handstand::extend::rms_rad;
-use handstand::identify::{Data, Horizon, settle};
+use handstand::fitting::rms_rad;
+use handstand::fitting::{Data, Horizon, settle};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::{Error, Model, Result};
 use serde::Serialize;

@@ -9,7 +9,7 @@ use super::scatter::scatter_rad;
 use comfy_table::{ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand::diagnose::words::address;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, diagnose};
-use handstand::identify::Horizon;
+use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::{Error, Model, Result};
 use serde_json::json;

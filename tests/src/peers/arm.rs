@@ -2,8 +2,8 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::extend::rms_rad;
-use handstand::identify::{
+use handstand::fitting::rms_rad;
+use handstand::fitting::{
     Data, FitOptions, Horizon, approach, fit, fit_staged, longest_stable, settle,
 };
 use handstand::log::{LogRequest, Motion, read};

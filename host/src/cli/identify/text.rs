@@ -3,7 +3,7 @@
 use super::super::show;
 use super::Data;
 use handstand::number::exact;
-use handstand::servo::{Estimate, Fitted, Known, Pole, Record, Trial, dynamics, transfer_function};
+use handstand::sysid::{Estimate, Fitted, Known, Pole, Record, Trial, dynamics, transfer_function};
 
 /// Rows of the table of orders.
 const SHOWN: usize = 12;

@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, diagnose};
-use handstand::identify::{Data, FitOptions, Horizon, Node, fit};
+use handstand::fitting::{Data, FitOptions, Horizon, Node, fit};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
 use handstand::sim::{Memory, Plant, predict};

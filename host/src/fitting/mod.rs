@@ -4,6 +4,7 @@ mod broyden;
 mod cluster;
 mod covariance;
 mod data;
+mod extend;
 mod fit;
 mod horizon;
 mod jacobian;
@@ -20,6 +21,7 @@ mod student;
 
 pub use covariance::{Interval, intervals};
 pub use data::{Data, Horizon, Window};
+pub use extend::{Extension, Fall, Undetermined, extend, refit, rms_rad};
 pub use fit::{Fit, FitOptions, fit, settle};
 pub use horizon::longest_stable;
 pub use node::Node;

@@ -116,8 +116,8 @@ impl TransferModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::servo::generate::{paper_noise_model, pseudo_random};
-    use crate::servo::structure::structures;
+    use crate::sysid::generate::{paper_noise_model, pseudo_random};
+    use crate::sysid::structure::structures;
 
     /// Derivatives by filtering against differences of errors computed anew, for every family.
     #[test]
@@ -166,7 +166,7 @@ mod tests {
         let errors = truth.errors(&Record::new("r", input, output));
         for (found, put) in errors
             .iter()
-            .zip(crate::servo::generate::noise(500, 0.1, 9))
+            .zip(crate::sysid::generate::noise(500, 0.1, 9))
         {
             assert!((found - put).abs() < 1e-12);
         }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Bench, Ran};
-use handstand::servo::generate::{noise, paper_noise_model, pseudo_random};
+use handstand::sysid::generate::{noise, paper_noise_model, pseudo_random};
 use std::fmt::Write as _;
 
 const COLUMNS: &str = "--time t=s --input goal=rad/s --output angle=rad";

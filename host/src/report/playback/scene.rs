@@ -244,7 +244,7 @@ mod tests {
     use std::f64::consts::PI;
     use std::path::Path;
 
-    const MODEL: &str = include_str!("../../models/handstand.toml");
+    const MODEL: &str = include_str!("../../../models/handstand.toml");
 
     fn motion() -> Motion {
         Motion {

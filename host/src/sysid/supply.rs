@@ -2,7 +2,7 @@
 
 use super::blocks::Block;
 use super::dynamics::Known;
-use crate::identify::quantile_975;
+use crate::fitting::quantile_975;
 use serde::Serialize;
 
 /// Share of the largest command below which a block does not count: there the dead zone speaks.
@@ -125,7 +125,7 @@ fn zero(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::servo::generate::noise;
+    use crate::sysid::generate::noise;
 
     fn measured(per_v: f64, right_at_v: f64, seed: u64) -> Vec<Block> {
         let noise = noise(60, 0.02, seed);

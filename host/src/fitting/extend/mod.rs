@@ -8,8 +8,8 @@ mod tests;
 pub use fall::{Fall, rms_rad};
 
 use crate::diagnose::{Candidate, FittedValue};
-use crate::identify::{Data, Fit, FitOptions, Horizon, fit, intervals, longest_stable, settle};
-use crate::identify::{Node, approach, fit_staged, profiled, residuals};
+use crate::fitting::{Data, Fit, FitOptions, Horizon, fit, intervals, longest_stable, settle};
+use crate::fitting::{Node, approach, fit_staged, profiled, residuals};
 use crate::log::Split;
 use crate::model::{Model, ParameterPath};
 use std::fmt;

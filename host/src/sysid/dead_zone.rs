@@ -2,7 +2,7 @@
 
 use super::blocks::Block;
 use super::dynamics::Known;
-use crate::identify::quantile_975;
+use crate::fitting::quantile_975;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
@@ -275,7 +275,7 @@ fn side(curve: &Curve, points: &[(f64, f64)]) -> Option<Side> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::servo::generate::noise;
+    use crate::sysid::generate::noise;
 
     fn measured(edge: f64, slope: f64, limit: f64, deviation: f64, seed: u64) -> Vec<Block> {
         let noise = noise(201, deviation, seed);

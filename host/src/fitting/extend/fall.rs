@@ -1,6 +1,6 @@
 //! Errors in rad: before, after, and what exact knowledge would leave.
 
-use crate::identify::{Data, Fit};
+use crate::fitting::{Data, Fit};
 
 /// How far the error falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
