@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::sim::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
 use std::hint::black_box;
 use std::path::Path;
 

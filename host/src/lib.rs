@@ -6,7 +6,6 @@
 
 pub mod bus_sim;
 pub mod challenge;
-pub mod closed_loop;
 pub mod compare;
 pub mod controllers;
 pub mod diagnose;

@@ -6,7 +6,7 @@
 mod common;
 
 use common::Bench;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::sim::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

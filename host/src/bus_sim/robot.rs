@@ -184,7 +184,7 @@ impl Driven {
             .sum();
         self.duty = sum / set.len().max(1) as f64;
         let supply_v = outputs.first().map_or(0.0, |(_, servo)| servo.supply_v);
-        live.tell(self.joint, energised.then_some(self.duty), supply_v);
+        live.command(self.joint, energised.then_some(self.duty), supply_v);
     }
 
     /// Turns the servos' shafts to where the joint is.

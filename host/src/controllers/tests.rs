@@ -23,7 +23,7 @@ fn tried(id: &str, under: &str) -> Tried {
         seed: 7,
     };
     let condition = condition(under).unwrap();
-    let known = condition.tell(&Known::ideal(&model, &pose, 0.01).unwrap());
+    let known = condition.tell(&DesignModel::ideal(&model, &pose, 0.01).unwrap());
     try_out(&robots, design(id).unwrap(), condition, &known, &|| ()).unwrap()
 }
 
@@ -76,12 +76,12 @@ fn each_remedy_mends_what_it_is_made_for() {
 #[test]
 fn names_are_told_once_and_found() {
     for (index, one) in DESIGNS.iter().enumerate() {
-        let card = one.card();
-        assert_eq!(design(card.id).unwrap().card().title, card.title);
+        let card = one.info();
+        assert_eq!(design(card.id).unwrap().info().title, card.title);
         assert!(
             DESIGNS[..index]
                 .iter()
-                .all(|other| other.card().id != card.id)
+                .all(|other| other.info().id != card.id)
         );
         assert!(!card.law.is_empty() && !card.reference.is_empty());
     }
@@ -119,12 +119,12 @@ fn wrong_masses_fell_the_paper_s_gain_and_not_the_multi_model_one() {
 fn the_longest_delay_is_the_one_of_the_eigenvalues() {
     let model = model();
     let pose = upright(&model);
-    let known = Known::ideal(&model, &pose, 0.01).unwrap();
+    let known = DesignModel::ideal(&model, &pose, 0.01).unwrap();
     let longest = |id: &str, told: Option<f64>| {
         longest_linear(design(id).unwrap(), &known, told, 1e-3, 0.03).unwrap()
     };
     let dlqr_longest = longest("dlqr", Some(0.0));
-    let (q, r) = known.paper_weights();
+    let (q, r) = known.weights();
     let k = dlqr(&zoh(&known.plant, 0.01, 0.0).unwrap(), &q, &r)
         .unwrap()
         .k;
@@ -175,6 +175,6 @@ fn other_drives_are_refused() {
         1,
     );
     let model = Model::parse(&text, Path::new("handstand.toml")).unwrap();
-    let refused = Known::ideal(&model, &upright(&model), 0.01).unwrap_err();
+    let refused = DesignModel::ideal(&model, &upright(&model), 0.01).unwrap_err();
     assert!(refused.to_string().contains("joint 2"), "{refused}");
 }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::log::{Motion, Source};
 use crate::model::Model;
 use crate::number::interval;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
 use std::f64::consts::TAU;
@@ -82,7 +82,7 @@ pub(super) fn simulated(
         &motion,
         0..samples,
         &rest,
-        &mut Memory::default(),
+        &mut SensorState::default(),
         &mut readings,
     );
     let jitter = noise(samples, 0.1 * STEP_RAD, seed);

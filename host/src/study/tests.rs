@@ -1,6 +1,6 @@
 use super::*;
-use crate::closed_loop::Velocity;
 use crate::error::Error;
+use crate::sim::closed_loop::Velocity;
 use std::path::{Path, PathBuf};
 
 const UNCERTAIN: &str = r#"

@@ -1,7 +1,7 @@
 //! Closed-loop runs of the paper's robot, as `closed_loop.py` has them.
 
 use super::dynamics::chain;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::sim::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
 use std::time::Instant;
 
 /// Sampled regulator for Q = 100 I, R = I, 10 ms.

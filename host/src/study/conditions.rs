@@ -1,27 +1,21 @@
-//! What the robot does to its controller, one trouble at a time and all at once.
+//! Non-idealities of the robot, one at a time and all at once.
 
-use super::{Known, ServoLag};
-use crate::closed_loop::{Actuator, Clock, Conditions, Gyro, Sensor, Velocity};
+use super::case::Case;
+use super::quantity::Uncertain;
+use crate::controllers::ServoLag;
+use crate::sim::closed_loop::{Drives, Sensor, Velocity};
 
-/// Step of an AX-12's angle, rad: 300 deg / 1024.
-pub const POSITION_STEP_RAD: f64 = 300.0 / 1024.0 * std::f64::consts::PI / 180.0;
+/// By how much of its dead zone a robot's own may differ.
+const DEAD_ZONE_ERROR: f64 = 0.2;
 
-/// Step of the paper's gyro, rad/s: 10 deg/s.
-pub const GYRO_STEP_RAD_S: f64 = 10.0 * std::f64::consts::PI / 180.0;
-
-/// Dead zone as a share of the full range, and by how much of it a robot's own may differ.
-pub const DEAD_ZONE: f64 = 0.1;
-/// See [`DEAD_ZONE`].
-pub const DEAD_ZONE_ERROR: f64 = 0.2;
-
-/// Full range and limit of the torque, N m.
-pub const LIMIT_NM: f64 = 2.0;
+/// Largest error of a link's mass, a share of it.
+const MASS_ERROR: f64 = 0.1;
 
 /// Largest distance of a link's centre of mass from its line, m: four times what the paper gives as the error of its
 /// drawings.
-pub const ECCENTRIC_M: f64 = 2e-3;
+const ECCENTRIC_M: f64 = 2e-3;
 
-/// A set of troubles.
+/// A set of non-idealities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
     /// Name on the command line.
@@ -138,45 +132,46 @@ pub fn condition(id: &str) -> Option<&'static Condition> {
 }
 
 impl Condition {
-    /// What a designer is told of it: everything but the truth of one robot.
-    pub fn tell(&self, ideal: &Known) -> Known {
-        let when = |on: bool, value: f64| if on { value } else { 0.0 };
-        Known {
-            delay_s: when(self.delay, ideal.period_s),
-            dead_zone_nm: when(self.dead_zone, DEAD_ZONE * LIMIT_NM),
-            limit_nm: if self.saturation {
-                LIMIT_NM
+    /// Puts the case under the condition; the designer knows the nominal values. What is drawn for every robot comes
+    /// back.
+    pub fn apply(&self, case: &mut Case) -> Vec<Uncertain> {
+        let drives = Drives {
+            saturates: self.saturation,
+            dead_zone: if self.dead_zone {
+                Drives::PAPER.dead_zone
             } else {
-                f64::INFINITY
+                0.0
             },
-            position_step_rad: when(self.positions, POSITION_STEP_RAD),
-            gyro_step_rad_s: when(self.gyro, GYRO_STEP_RAD_S),
-            servo: self.servo.then_some(ServoLag::PAPER),
-            ..ideal.clone()
-        }
-    }
-
-    /// The loop's circumstances for a robot whose dead zone is `dead_zone` of the full range.
-    pub fn conditions(&self, known: &Known, dead_zone: f64) -> Conditions {
-        Conditions {
-            sensor: Sensor {
-                position_resolution_rad: known.position_step_rad,
-                position_noise_rad: 0.0,
-                // Who does without the true speeds does not look at them.
-                velocity: Velocity::Direct,
-                gyro: Some(Gyro {
-                    resolution_rad_s: known.gyro_step_rad_s,
-                    noise_rad_s: 0.0,
-                }),
+            delay_periods: if self.delay { 1.0 } else { 0.0 },
+            ..Drives::IDEAL
+        };
+        let sensor = Sensor {
+            position_resolution_rad: match self.positions {
+                true => Sensor::PAPER.position_resolution_rad,
+                false => 0.0,
             },
-            actuator: Actuator {
-                full_torque_nm: LIMIT_NM,
-                saturates: self.saturation,
-                dead_zone: if self.dead_zone { dead_zone } else { 0.0 },
-                delay_periods: known.delay_s / known.period_s,
-                ..Actuator::IDEAL
-            },
-            clock: Clock::every(known.period_s),
-        }
+            // Controllers that estimate the speeds do not look at them.
+            velocity: Velocity::Direct,
+            gyro: Sensor::PAPER.gyro.filter(|_| self.gyro),
+            ..Sensor::EXACT
+        };
+        (case.drives, case.sensor) = (drives, sensor);
+        (case.control.drives, case.control.sensor) = (drives, sensor);
+        case.servo = self.servo.then_some(ServoLag::PAPER);
+        let spreads = [
+            (self.masses, "mass", MASS_ERROR),
+            (self.eccentric, "com-aside", ECCENTRIC_M),
+            (
+                self.dead_zone,
+                "dead-zone",
+                DEAD_ZONE_ERROR * drives.dead_zone,
+            ),
+        ];
+        let links = case.robot.link_count();
+        spreads
+            .iter()
+            .filter(|(on, ..)| *on)
+            .flat_map(|(_, id, size)| Uncertain::uniform(id, *size, links))
+            .collect()
     }
 }

@@ -1,12 +1,16 @@
-//! What a run came to.
+//! A run in figures, and what counts as stabilised.
 
 use serde::Serialize;
 
-/// What counts as fallen and as settled.
+/// What counts as fallen, as stabilised and as settled: one definition for every study.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// A link that leans further off its pose than this has fallen, rad.
     pub fall_rad: f64,
+    /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the end, rad, ..
+    pub stable_rad: f64,
+    /// .. for this long, s; in a shorter run for its second half.
+    pub stable_s: f64,
     /// Settled while every joint stays this near to its pose, rad.
     pub settle_rad: f64,
 }
@@ -15,6 +19,8 @@ impl Default for Limits {
     fn default() -> Self {
         Limits {
             fall_rad: 45f64.to_radians(),
+            stable_rad: 10f64.to_radians(),
+            stable_s: 2.0,
             settle_rad: 0.5f64.to_radians(),
         }
     }
@@ -25,19 +31,21 @@ impl Limits {
     #[inline]
     pub(super) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
         let mut lean = 0.0;
-        let stands = angle_rad.iter().all(|angle| {
+        let upright = angle_rad.iter().all(|angle| {
             lean += angle;
             f64::abs(lean) <= self.fall_rad
         });
-        !stands || !speed_rad_s.iter().all(|speed| speed.is_finite())
+        !upright || !speed_rad_s.iter().all(|speed| speed.is_finite())
     }
 }
 
 /// A run in figures, taken at the samples. Angles are deviations from the pose, joint by joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Outcome {
-    /// When it fell, s; none if it stood to the end.
+    /// When it fell, s; none if it never did.
     pub fell_s: Option<f64>,
+    /// Whether it was stabilised, as [`Limits`] define it.
+    pub stabilised: bool,
     /// Root mean square angle over all joints and samples, rad.
     pub rms_angle_rad: f64,
     /// Root mean square torque over all drives and time, N m: the control effort.
@@ -51,13 +59,6 @@ pub struct Outcome {
     pub settle_s: Option<f64>,
 }
 
-impl Outcome {
-    /// Whether it stood to the end.
-    pub fn survived(&self) -> bool {
-        self.fell_s.is_none()
-    }
-}
-
 /// Gathers a run's figures.
 #[derive(Debug, Clone)]
 pub(super) struct Tally {
@@ -65,7 +66,9 @@ pub(super) struct Tally {
     squares: f64,
     torque_squares_s: f64,
     largest: f64,
+    /// Time of the last sample beyond the settling band, and beyond the stable one, s; below 0 if there was none.
     unsettled_s: f64,
+    unstable_s: f64,
 }
 
 impl Tally {
@@ -76,6 +79,7 @@ impl Tally {
             torque_squares_s: 0.0,
             largest: 0.0,
             unsettled_s: -1.0,
+            unstable_s: -1.0,
         }
     }
 
@@ -85,7 +89,7 @@ impl Tally {
         &mut self,
         time_s: f64,
         angle_rad: &[f64],
-        settle_rad: f64,
+        limits: &Limits,
         late: bool,
         ends: &mut [[f64; 2]],
     ) {
@@ -96,8 +100,11 @@ impl Tally {
         }
         self.samples += angle_rad.len();
         self.largest = self.largest.max(largest);
-        if largest > settle_rad {
+        if largest > limits.settle_rad {
             self.unsettled_s = time_s;
+        }
+        if largest > limits.stable_rad {
+            self.unstable_s = time_s;
         }
         if late {
             for (ends, &angle) in ends.iter_mut().zip(angle_rad) {
@@ -119,11 +126,14 @@ impl Tally {
         end_s: f64,
         fell: bool,
         drives: usize,
+        limits: &Limits,
         ends: &[[f64; 2]],
     ) -> Outcome {
         let swing = ends.iter().map(|[low, high]| high - low);
         let time_s = drives as f64 * end_s;
+        let stable_from_s = (end_s - limits.stable_s).max(end_s / 2.0);
         Outcome {
+            stabilised: !fell && self.unstable_s < stable_from_s,
             fell_s: fell.then_some(end_s),
             rms_angle_rad: (self.squares / self.samples.max(1) as f64).sqrt(),
             rms_torque_nm: if time_s > 0.0 {

@@ -4,7 +4,7 @@
 //! A run comes out the same, bit for bit, whatever runs beside it.
 
 use super::Outcome;
-use super::plant::{Absolute, Equations};
+use super::posed_plant::{Absolute, Equations};
 use super::run::{Next, Run};
 use crate::dynamics::{Dense, Lanes};
 use std::array::from_fn;
@@ -19,7 +19,7 @@ pub(super) fn finish(runs: Vec<Run<'_>>) -> Vec<Outcome> {
         Some(Equations::Two(_)) => in_lanes(runs, Equations::two),
         Some(Equations::Three(_)) => in_lanes(runs, Equations::three),
         Some(Equations::Four(_)) => in_lanes(runs, Equations::four),
-        Some(Equations::Many) | None => alone(runs),
+        Some(Equations::General) | None => alone(runs),
     }
 }
 
@@ -105,7 +105,7 @@ fn in_lanes<'a, const N: usize>(
         for ((lane, state), step_s) in lanes.iter_mut().zip(&mut states).zip(&mut step_s) {
             if let Some(active) = lane {
                 let plant = &active.run.closed.plant;
-                *state = plant.absolute(&mut active.run.body, &active.run.torque);
+                *state = plant.absolute(&active.run.body);
                 *step_s = active.step_s;
             }
         }

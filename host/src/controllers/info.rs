@@ -1,24 +1,24 @@
-//! What a controller tells about itself.
+//! Description of a controller, and the trait of its design.
 
-use super::Known;
-use crate::closed_loop::Controller;
+use super::DesignModel;
 use crate::error::Result;
+use crate::sim::closed_loop::Controller;
 use std::fmt;
 
 /// Where a controller has the speeds of the driven joints from. The arms' speed comes from the gyro.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Speeds {
-    /// It is given the true ones, as in the paper's simulations. No servo tells them.
+    /// It is given the true ones, as in the paper's simulations. No servo measures them.
     True,
     /// Differences of the angles as read, the paper's equation 1.
     Differenced,
-    /// It does without.
+    /// It estimates them.
     Estimated,
 }
 
-/// A controller's page.
+/// Description of a controller.
 #[derive(Debug, Clone, Copy)]
-pub struct Card {
+pub struct ControllerInfo {
     /// Name on the command line.
     pub id: &'static str,
     /// Name for people.
@@ -27,8 +27,8 @@ pub struct Card {
     pub law: &'static str,
     /// Speeds of the driven joints.
     pub speeds: Speeds,
-    /// Whether it is told at which angles the robot balances: the paper's angle compensation, known exactly.
-    pub told_balance: bool,
+    /// Whether it knows the angles at which the robot balances: the paper's angle compensation, known exactly.
+    pub known_equilibrium: bool,
     /// Where the law comes from.
     pub reference: &'static str,
 }
@@ -36,11 +36,11 @@ pub struct Card {
 /// A way to make a controller from what is known.
 pub trait Design: Sync + fmt::Debug {
     /// What it is.
-    fn card(&self) -> &Card;
+    fn info(&self) -> &ControllerInfo;
 
     /// The controller for a robot of which this much is known.
     ///
     /// # Errors
     /// Plants that cannot be held.
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>>;
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>>;
 }

@@ -1,9 +1,15 @@
-//! What the controller gets to see.
+//! Sensors of a loop: resolution, noise, how speeds are had.
 
 use super::random::normal;
 use rand_chacha::ChaCha8Rng;
 
-/// Joint encoders, and what tells the speeds.
+/// Step of an AX-12's angle, rad: 300 deg / 1024.
+pub const AX12_STEP_RAD: f64 = 300.0 / 1024.0 * std::f64::consts::PI / 180.0;
+
+/// Step of the paper's gyro, rad/s: 10 deg/s.
+pub const GYRO_STEP_RAD_S: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// Joint encoders, and where the speeds come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
     /// Smallest step of an angle, rad; 0 reads exactly. The AX-12 has 300 deg / 1024. The pose lies on a step.
@@ -12,7 +18,7 @@ pub struct Sensor {
     pub position_noise_rad: f64,
     /// Where speeds come from.
     pub velocity: Velocity,
-    /// A rate sensor on the first link; it tells that joint's speed instead.
+    /// A rate sensor on the first link; it gives that joint's speed instead.
     pub gyro: Option<Gyro>,
 }
 
@@ -35,6 +41,17 @@ pub struct Gyro {
 }
 
 impl Sensor {
+    /// 10-bit angles, speeds of the driven joints from their differences, a 10 deg/s gyro on the arms: the paper's.
+    pub const PAPER: Sensor = Sensor {
+        position_resolution_rad: AX12_STEP_RAD,
+        position_noise_rad: 0.0,
+        velocity: Velocity::Difference,
+        gyro: Some(Gyro {
+            resolution_rad_s: GYRO_STEP_RAD_S,
+            noise_rad_s: 0.0,
+        }),
+    };
+
     /// Reads everything exactly.
     pub const EXACT: Sensor = Sensor {
         position_resolution_rad: 0.0,
@@ -43,11 +60,12 @@ impl Sensor {
         gyro: None,
     };
 
-    /// Reads angles and speeds. `seen_rad` holds the reading before and takes the new one; `first` says there is none.
+    /// Measures what the encoders read: `angle_rad` and `speed_rad_s`, and `gyro_rad_s` of the first link.
+    /// `measured_rad` holds the measurement before and takes the new one; `first` says there is none.
     #[inline]
     #[expect(
         clippy::too_many_arguments,
-        reason = "the truth, the readings, and the odds"
+        reason = "readings, measurements, and the random numbers"
     )]
     pub(super) fn read(
         &self,
@@ -55,27 +73,26 @@ impl Sensor {
         first: bool,
         angle_rad: &[f64],
         speed_rad_s: &[f64],
-        seen_rad: &mut [f64],
-        seen_rad_s: &mut [f64],
+        gyro_rad_s: f64,
+        measured_rad: &mut [f64],
+        measured_rad_s: &mut [f64],
         rng: &mut ChaCha8Rng,
     ) {
-        let truth = angle_rad.iter().zip(speed_rad_s);
-        for ((&angle, &speed), (seen, seen_speed)) in
-            truth.zip(seen_rad.iter_mut().zip(seen_rad_s.iter_mut()))
-        {
+        let readings = angle_rad.iter().zip(speed_rad_s);
+        let measurements = measured_rad.iter_mut().zip(measured_rad_s.iter_mut());
+        for ((&angle, &speed), (before, measured_speed)) in readings.zip(measurements) {
             let noisy = angle + noise(self.position_noise_rad, rng);
             let reading = rounded(noisy, self.position_resolution_rad);
-            *seen_speed = match self.velocity {
+            *measured_speed = match self.velocity {
                 Velocity::Direct => speed,
                 Velocity::Difference if first => 0.0,
-                Velocity::Difference => (reading - *seen) / period_s,
+                Velocity::Difference => (reading - *before) / period_s,
             };
-            *seen = reading;
+            *before = reading;
         }
-        if let (Some(gyro), Some(seen), Some(speed)) =
-            (self.gyro, seen_rad_s.first_mut(), speed_rad_s.first())
-        {
-            *seen = rounded(speed + noise(gyro.noise_rad_s, rng), gyro.resolution_rad_s);
+        if let (Some(gyro), Some(measured)) = (self.gyro, measured_rad_s.first_mut()) {
+            let noisy = gyro_rad_s + noise(gyro.noise_rad_s, rng);
+            *measured = rounded(noisy, gyro.resolution_rad_s);
         }
     }
 }

@@ -1,8 +1,10 @@
 //! A loop and its runs.
 
+use super::lanes;
 use super::run::{Run, Sample};
-use super::side_by_side;
-use super::{Conditions, Controller, Limits, Outcome, Plant, stream};
+use super::{Clock, Commands, Controller, Limits, Outcome, PosedPlant, Sensor, stream};
+use crate::error::Result;
+use crate::model::Model;
 use rand::Rng as _;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -10,31 +12,38 @@ use rayon::prelude::*;
 /// Runs handed to a thread at a time.
 const BLOCK: usize = 32;
 
-/// A robot under given circumstances, waiting for a controller.
+/// A plant with sensors and clock, waiting for a controller.
 #[derive(Debug, Clone)]
 pub struct ClosedLoop {
-    /// The robot.
-    pub plant: Plant,
-    /// Its sensor, its drives and the clock.
-    pub conditions: Conditions,
-    /// What counts as fallen and as settled.
+    /// The plant with all its effects.
+    pub plant: PosedPlant,
+    /// How it is measured.
+    pub sensor: Sensor,
+    /// When the controller is called.
+    pub clock: Clock,
+    /// What counts as fallen, stabilised and settled.
     pub limits: Limits,
+    /// Smallest step of a command, in its unit; 0 takes every value.
+    pub command_step: f64,
 }
 
 /// Where a run begins: deviations from the pose.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Start {
+pub struct InitialState {
     /// Angle of each joint, rad.
     pub angle_rad: Vec<f64>,
     /// Speed of each joint, rad/s.
     pub speed_rad_s: Vec<f64>,
+    /// What each drive obeys before the first command arrives; 0 where missing.
+    pub command: Vec<f64>,
 }
 
-impl Start {
+impl InitialState {
     /// At rest at these angles, rad.
     pub fn at(angle_rad: impl Into<Vec<f64>>) -> Self {
         let angle_rad = angle_rad.into();
-        Start {
+        InitialState {
+            command: Vec::new(),
             speed_rad_s: vec![0.0; angle_rad.len()],
             angle_rad,
         }
@@ -43,7 +52,7 @@ impl Start {
     /// At rest, each joint evenly anywhere within `spread_rad` of its pose.
     pub fn random(joints: usize, spread_rad: f64, rng: &mut ChaCha8Rng) -> Self {
         let angle = |_| spread_rad * rng.random_range(-1.0..=1.0);
-        Start::at((0..joints).map(angle).collect::<Vec<f64>>())
+        InitialState::at((0..joints).map(angle).collect::<Vec<f64>>())
     }
 }
 
@@ -55,10 +64,10 @@ pub struct Job<'a> {
     /// What closes it.
     pub controller: &'a dyn Controller,
     /// Where it begins.
-    pub start: Start,
+    pub start: InitialState,
     /// How long it lasts at most, s.
     pub seconds: f64,
-    /// Its chances, from [`stream`].
+    /// Its random numbers, from [`stream`].
     pub rng: ChaCha8Rng,
 }
 
@@ -66,35 +75,52 @@ pub struct Job<'a> {
 pub fn run_jobs<'a>(jobs: impl IntoIterator<Item = Job<'a>>) -> Vec<Outcome> {
     let start =
         |job: Job<'a>| Run::new(job.closed, job.controller, &job.start, job.seconds, job.rng);
-    side_by_side::finish(jobs.into_iter().map(start).collect())
+    lanes::finish(jobs.into_iter().map(start).collect())
 }
 
 impl ClosedLoop {
-    /// A loop under ideal circumstances.
-    pub fn ideal(plant: Plant, period_s: f64) -> Self {
+    /// A loop with exact sensors and a perfect clock around the plant of `model` at `pose_rad`, rad in the model's
+    /// own convention. The model's effects are all in it.
+    ///
+    /// # Errors
+    /// As [`PosedPlant::new`].
+    pub fn new(
+        model: &Model,
+        pose_rad: &[f64],
+        commands: Commands,
+        period_s: f64,
+    ) -> Result<ClosedLoop> {
+        let plant = PosedPlant::new(model, pose_rad, commands)?;
+        Ok(ClosedLoop::around(plant, period_s))
+    }
+
+    /// The same around a plant.
+    pub fn around(plant: PosedPlant, period_s: f64) -> ClosedLoop {
         ClosedLoop {
             plant,
-            conditions: Conditions::ideal(period_s),
+            sensor: Sensor::EXACT,
+            clock: Clock::every(period_s),
             limits: Limits::default(),
+            command_step: 0.0,
         }
     }
 
-    /// Runs for `seconds` or until it falls; drives give no torque before the first command arrives.
+    /// Runs for `seconds` or until it falls.
     pub fn run(
         &self,
         controller: &dyn Controller,
-        start: &Start,
+        start: &InitialState,
         seconds: f64,
         rng: ChaCha8Rng,
     ) -> Outcome {
         self.watch(controller, start, seconds, rng, |_| ())
     }
 
-    /// As [`ClosedLoop::run`], showing every sample to `see`.
+    /// Runs as [`ClosedLoop::run`] does and shows every sample to `see`.
     pub fn watch(
         &self,
         controller: &dyn Controller,
-        start: &Start,
+        start: &InitialState,
         seconds: f64,
         rng: ChaCha8Rng,
         see: impl FnMut(Sample<'_>),
@@ -102,15 +128,15 @@ impl ClosedLoop {
         Run::new(self, controller, start, seconds, rng).finish(see)
     }
 
-    /// Runs from every start, on all cores; run `i` has the chances of [`stream`]`(seed, i)`.
+    /// Runs from every start, on all cores; run `i` has the random numbers of [`stream`]`(seed, i)`.
     pub fn run_all(
         &self,
         controller: &dyn Controller,
-        starts: &[Start],
+        starts: &[InitialState],
         seconds: f64,
         seed: u64,
     ) -> Vec<Outcome> {
-        let job = |(index, start): (usize, &Start)| Job {
+        let job = |(index, start): (usize, &InitialState)| Job {
             closed: self,
             controller,
             start: start.clone(),
