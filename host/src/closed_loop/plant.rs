@@ -1,7 +1,7 @@
 //! The robot that is held up.
 
 use crate::dynamics::{self, Chain, Dense};
-use crate::effects::{Rig, Site};
+use crate::effects::Site;
 use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 
@@ -86,7 +86,7 @@ impl Plant {
                 "take it out of the model: dead zone, delay, saturation, resolution are conditions of the loop",
             ));
         }
-        let rig = Rig::of(model, false);
+        let rig = model.rig(false);
         let driven: Vec<usize> = (0..model.joints.len())
             .filter(|&joint| model.joints[joint].drive.is_driven())
             .collect();
