@@ -1,8 +1,9 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
-//! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing depends on it.
+//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances, TOML)
+//! -> `sim`; `sim` + `log` -> `fitting` -> `diagnose` -> `report`; `model` -> `synth`, `closed_loop`;
+//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing
+//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for people.
 
 pub mod bus_sim;
 pub mod challenge;

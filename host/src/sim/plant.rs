@@ -63,7 +63,7 @@ impl Plant {
             .iter()
             .map(|j| JointPlan::ideal(&j.drive))
             .collect();
-        let mut rig = Rig::of(model, motion.turned);
+        let mut rig = model.rig(motion.turned);
         if motion.payload_kg > 0.0 {
             rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
         }

@@ -81,7 +81,6 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Continuous> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::Rig;
     use crate::synth::{Equations, balanced};
     use std::path::Path;
 
@@ -194,7 +193,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         ];
         let mut hanging = q.clone();
         hanging[0] += std::f64::consts::PI;
-        let equations = Equations::of(&Rig::of(model, false));
+        let equations = Equations::of(&model.rig(false));
         let left = torque
             - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
             - equations.gravity(&hanging);

@@ -2,7 +2,6 @@
 
 use super::equations::Equations;
 use super::rest::At;
-use crate::effects::Rig;
 use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 use nalgebra::DVector;
@@ -36,7 +35,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
     let passive: Vec<usize> = (0..model.link_count())
         .filter(|&joint| !model.joints[joint].drive.is_driven())
         .collect();
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = Equations::of(&model.rig(false));
     let mut angle_rad = relative(model, pose_rad);
     for _ in 0..MOST_STEPS {
         let pose_rad = convention(model, &angle_rad);

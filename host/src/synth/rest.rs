@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::pose::{check_size, relative};
-use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Rig, Site, Slope};
+use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
 use crate::error::{Error, Result};
 use crate::model::{Drive, EffectInstance, Model};
 
@@ -67,7 +67,7 @@ impl Rest {
         check_size(model, pose_rad)?;
         let n = model.link_count();
         let relative_rad = relative(model, pose_rad);
-        let equations = Equations::of(&Rig::of(model, false));
+        let equations = Equations::of(&model.rig(false));
         let gravity_nm = equations.gravity(&relative_rad);
         let scale_nm = (0..n).fold(0.0, |most: f64, joint| {
             let mut level = relative_rad.clone();

@@ -5,7 +5,6 @@
 
 use super::{OnBoard, Timing};
 use crate::controllers::DesignModel;
-use crate::effects::Rig;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::synth::{Equations, Format, Ranges, quantise, upright};
@@ -267,7 +266,7 @@ const SURELY: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 fn moments(model: &Model) -> [Moment; JOINTS] {
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = Equations::of(&model.rig(false));
     let moments = equations.moments_kg_m();
     let most = moments
         .iter()
