@@ -58,7 +58,7 @@ impl Known {
         Ok(Known {
             model: model.clone(),
             pose_rad: pose_rad.to_vec(),
-            plant: linearise(model, pose_rad)?,
+            plant: linearise(model, pose_rad)?.plant,
             driven: driven.collect(),
             period_s,
             delay_s: 0.0,

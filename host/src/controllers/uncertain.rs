@@ -37,7 +37,7 @@ impl Uncertain {
     /// # Errors
     /// A pose that is no equilibrium.
     pub fn plant(&self, model: &Model, pose_rad: &[f64], share: &[f64]) -> Result<Discrete> {
-        let plant = linearise(&self.model(model, share), pose_rad)?;
+        let plant = linearise(&self.model(model, share), pose_rad)?.plant;
         zoh(&plant, self.period_s, self.delay_s)
     }
 

@@ -63,7 +63,7 @@ impl Case {
     /// # Errors
     /// Robots that cannot be linearised or stabilised.
     pub fn gains(&self) -> Result<DMatrix<f64>> {
-        let plant = synth::linearise(&self.nominal, &synth::upright(&self.nominal))?;
+        let plant = synth::linearise(&self.nominal, &synth::upright(&self.nominal))?.plant;
         let period_s = self.conditions.clock.period_s;
         let sampled = synth::zoh(&plant, period_s, self.design.delay_periods * period_s)?;
         let (n, m) = (plant.a.nrows(), plant.b.ncols());
@@ -126,7 +126,7 @@ impl Case {
                 crate::model::Angles::Absolute => turned,
             };
         }
-        let plant = synth::linearise(&self.robot, &pose).ok()?;
+        let plant = synth::linearise(&self.robot, &pose).ok()?.plant;
         let (n, m) = (plant.a.nrows(), plant.b.ncols());
         let Conditions {
             clock, actuator, ..
