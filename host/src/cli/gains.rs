@@ -1,14 +1,16 @@
 //! `handstand gains MODEL`: gains that balance a model at a pose, and the files that carry them on.
 //!
 //! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati equation, rounds the
-//! gains to fixed point with a proof against overflow. Weights are one number (times the identity), a diagonal
+//! gains to fixed point with a proof against overflow. Any model that `handstand add` writes will do: effects without a
+//! derivative (Coulomb friction, dead zones, ..) are left out of the design, which says so; `--without` takes one out
+//! of the model altogether. Weights are one number (times the identity), a diagonal
 //! `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
 //! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
 //! ```
 //!
-//! `--json` prints everything: `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
+//! `--json` prints everything: `omitted_effects`, `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
 //! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
@@ -50,7 +52,7 @@ pub struct Args {
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
     balance: bool,
-    /// Design without this effect of the model
+    /// Take this effect out of the model altogether
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// For continuous time: no sampling, no fixed point
@@ -129,6 +131,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     } else {
         talk.print(&export::text(&design))?;
     }
+    // The loop of the whole model, omitted effects included, is simulated from here.
     write(args, &design, &made, talk)?;
     Ok(Outcome::Done)
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Model;
 use crate::sim::bare_motors;
 use crate::sim::closed_loop::Drives;
-use crate::synth::{Continuous, linearise};
+use crate::synth::{Continuous, OmittedEffect, linearise};
 use nalgebra::DMatrix;
 
 /// What a controller may be designed with.
@@ -17,6 +17,8 @@ pub struct DesignModel {
     pub pose_rad: Vec<f64>,
     /// The nominal plant, linear at the pose; its state is [angles, speeds], its inputs are torques, N m.
     pub plant: Continuous,
+    /// Effects that the linear plant leaves out.
+    pub omitted: Vec<OmittedEffect>,
     /// Joints that are driven, counted from 0.
     pub driven: Vec<usize>,
     /// Sampling time, s.
@@ -53,7 +55,8 @@ impl DesignModel {
             .filter(|&joint| model.joints[joint].drive.is_driven())
             .collect();
         let full_nm = |joint: usize| model.joints[joint].drive.motor().map(|m| m.stall_torque_nm);
-        let mut plant = linearise(&model, pose_rad)?;
+        let linearised = linearise(&model, pose_rad)?;
+        let mut plant = linearised.plant;
         // Per N m instead of per duty.
         for (input, &joint) in driven.iter().enumerate() {
             let mut column = plant.b.column_mut(input);
@@ -87,6 +90,7 @@ impl DesignModel {
             q: 100.0,
             r: 1.0,
             word_bits: 0,
+            omitted: linearised.omitted,
             model,
         })
     }

@@ -306,7 +306,7 @@ fn centroids(computed: &Computed) -> Result<(String, Shown)> {
                 -CENTROID_M
             };
         }
-        let off = zoh(&linearise(&model, &upright(&model))?, TS_S, 0.0)?;
+        let off = zoh(&linearise(&model, &upright(&model))?.plant, TS_S, 0.0)?;
         let closed = &off.a - &off.b * &computed.dlqr.k;
         worst = poles(&closed)?
             .iter()
