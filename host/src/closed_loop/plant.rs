@@ -75,9 +75,9 @@ impl Plant {
         if let Some(other) = model
             .effects
             .iter()
-            .find(|e| e.effect.card().site != Site::Body)
+            .find(|e| e.effect.info().site != Site::Body)
         {
-            let title = other.effect.card().title;
+            let title = other.effect.info().title;
             return Err(Error::design(
                 format!(
                     "the closed loop of `{}` cannot have this effect: {title}",

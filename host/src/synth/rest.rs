@@ -118,7 +118,7 @@ impl<'a> At<'a> {
             effects.extend(model.effects.iter().filter(here));
         }
         effects
-            .retain(|e| !matches!(e.effect.card().site, Site::Body | Site::Timing) && !vanishes(e));
+            .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         let zero = if joint == 0 {
             model.angle_zero.from_hanging_rad()
         } else {
@@ -134,22 +134,22 @@ impl<'a> At<'a> {
     }
 
     fn of(&self, site: Site) -> impl Iterator<Item = (&'static dyn Effect, &'a [f64])> + '_ {
-        let there = move |e: &&&EffectInstance| e.effect.card().site == site;
+        let there = move |e: &&&EffectInstance| e.effect.info().site == site;
         let effects = self.effects.iter().filter(there);
         effects.map(|e| (e.effect, e.values.as_slice()))
     }
 
     fn slope(&self, effect: &dyn Effect, values: &[f64], at: &AtRest) -> Result<Slope> {
         effect.slope(values, at).ok_or_else(|| {
-            let card = effect.card();
+            let info = effect.info();
             Error::design(
                 format!(
                     "{} at joint {} has no slope at rest: {}",
-                    card.title,
+                    info.title,
                     self.joint + 1,
-                    card.law
+                    info.law
                 ),
-                format!("design without it: --without {}", card.id),
+                format!("design without it: --without {}", info.id),
             )
         })
     }
@@ -291,7 +291,7 @@ impl<'a> At<'a> {
 fn vanishes(instance: &EffectInstance) -> bool {
     let mut off = instance
         .effect
-        .card()
+        .info()
         .parameters
         .iter()
         .zip(&instance.values);
