@@ -205,9 +205,9 @@ pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)>
 fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
     for id in without {
         let before = model.effects.len();
-        model.effects.retain(|e| e.effect.card().id != id);
+        model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
-            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.card().id).collect();
+            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
             return Err(Error::usage(
                 format!("`{}` holds no effect `{id}`", model.name),
                 match held.is_empty() {

@@ -64,7 +64,7 @@ impl DesignModel {
         }
         let values = |id: &str, joint: usize| {
             let of = model.effects.iter();
-            let mut of = of.filter(move |e| e.effect.card().id == id && e.joint == Some(joint));
+            let mut of = of.filter(move |e| e.effect.info().id == id && e.joint == Some(joint));
             of.next().map(|e| e.values[0])
         };
         let largest = |of: &dyn Fn(usize) -> Option<f64>| {

@@ -1,12 +1,12 @@
 //! Dead zone: the drive swallows small commands.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full range.
 #[derive(Debug)]
 pub struct DeadZone;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "dead_zone",
     title: "dead zone of the drive",
     site: Site::Command,
@@ -57,8 +57,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for DeadZone {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn difference(&self) -> f64 {

@@ -75,7 +75,7 @@ impl Plant {
                     continue;
                 };
                 joint.add(*effect, &instance.values);
-                needs.push(effect.card().needs);
+                needs.push(effect.info().needs);
             }
         }
         let senses = joints.iter().any(|j| !j.sense.is_empty());
@@ -254,7 +254,7 @@ impl JointPlan {
             count: values.len(),
         };
         active.values[..values.len()].copy_from_slice(values);
-        match effect.card().site {
+        match effect.info().site {
             Site::Timing => self.delay_s += effect.delay_s(values),
             Site::Command => self.command.push(active),
             Site::Drive => self.output.push(active),
@@ -269,7 +269,7 @@ impl JointPlan {
 
 /// Measured speeds of a motion, turned in time by a bit more than a third of it.
 fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
-    if !model.effects.iter().any(|e| e.effect.card().id == SHAM) {
+    if !model.effects.iter().any(|e| e.effect.info().id == SHAM) {
         return Vec::new();
     }
     motion

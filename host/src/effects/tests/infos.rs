@@ -1,32 +1,32 @@
-//! Cards are complete and agree with one another.
+//! Descriptions are complete and agree with one another.
 
 use super::*;
 
 #[test]
 fn ids_are_unique_and_snake_case() {
     let mut seen = HashSet::new();
-    for card in cards() {
-        assert!(seen.insert(card.id), "{} twice", card.id);
+    for info in infos() {
+        assert!(seen.insert(info.id), "{} twice", info.id);
         let snake = |sign: char| sign.is_ascii_lowercase() || sign == '_';
-        assert!(card.id.chars().all(snake), "{}", card.id);
+        assert!(info.id.chars().all(snake), "{}", info.id);
     }
 }
 
 #[test]
 fn sites_follow_the_chain_in_the_list() {
-    let order = |card: &Card| card.site as usize;
-    assert!(cards().is_sorted_by_key(order));
+    let order = |info: &EffectInfo| info.site as usize;
+    assert!(infos().is_sorted_by_key(order));
 }
 
 #[test]
 fn keys_are_unique_and_say_their_unit() {
-    for card in cards() {
-        let keys: HashSet<_> = card
+    for info in infos() {
+        let keys: HashSet<_> = info
             .parameters
             .iter()
             .map(|parameter| parameter.key)
             .collect();
-        assert_eq!(keys.len(), card.parameters.len(), "{}", card.id);
+        assert_eq!(keys.len(), info.parameters.len(), "{}", info.id);
     }
     for (id, parameter) in parameters() {
         let ending = SUFFIXES
@@ -56,59 +56,59 @@ fn values_lie_within_bounds() {
 
 #[test]
 fn every_effect_can_be_switched_off() {
-    for card in cards() {
+    for info in infos() {
         assert!(
-            card.parameters
+            info.parameters
                 .iter()
                 .any(|parameter| parameter.off.is_some()),
             "{}",
-            card.id
+            info.id
         );
     }
 }
 
 #[test]
 fn a_fit_does_not_start_at_off() {
-    for card in cards() {
-        let main = &card.parameters[0];
+    for info in infos() {
+        let main = &info.parameters[0];
         assert!(
             main.starts.iter().all(|start| Some(*start) != main.off),
             "{}",
-            card.id
+            info.id
         );
     }
 }
 
 #[test]
 fn confusions_are_known_and_mutual() {
-    for card in cards() {
-        for confusion in card.confused_with {
-            assert_ne!(confusion.with, card.id);
-            let other = named(confusion.with).expect(confusion.with).card();
+    for info in infos() {
+        for confusion in info.confused_with {
+            assert_ne!(confusion.with, info.id);
+            let other = named(confusion.with).expect(confusion.with).info();
             let back = other
                 .confused_with
                 .iter()
-                .any(|confusion| confusion.with == card.id);
-            assert!(back, "{} names {}, not the reverse", card.id, other.id);
+                .any(|confusion| confusion.with == info.id);
+            assert!(back, "{} names {}, not the reverse", info.id, other.id);
         }
     }
 }
 
 #[test]
 fn every_text_is_filled_in() {
-    for card in cards() {
+    for info in infos() {
         let texts = [
-            card.title,
-            card.law,
-            card.looks_like,
-            card.experiment,
-            card.reference,
+            info.title,
+            info.law,
+            info.looks_like,
+            info.experiment,
+            info.reference,
         ];
-        assert!(texts.iter().all(|text| text.len() > 3), "{}", card.id);
+        assert!(texts.iter().all(|text| text.len() > 3), "{}", info.id);
         assert!(
             !texts.iter().any(|text| text.contains("  ")),
             "{}: two blanks",
-            card.id
+            info.id
         );
     }
 }

@@ -77,7 +77,7 @@ pub struct Confusion {
 
 /// The whole description of an effect.
 #[derive(Debug, Clone, Copy)]
-pub struct Card {
+pub struct EffectInfo {
     /// Name in commands and model files: `coulomb`.
     pub id: &'static str,
     /// Name for people.
