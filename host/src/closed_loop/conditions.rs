@@ -1,6 +1,7 @@
 //! The circumstances of a run, together.
 
 use super::{Actuator, Clock, Gyro, Sensor, Velocity};
+use handstand_shared::raw::Position;
 
 /// Sensor, actuator and clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,9 +13,6 @@ pub struct Conditions {
     /// When it is called.
     pub clock: Clock,
 }
-
-/// Step of an AX-12's angle, rad: 300 deg / 1024.
-pub const AX12_STEP_RAD: f64 = 300.0 / 1024.0 * std::f64::consts::PI / 180.0;
 
 impl Conditions {
     /// Everything exact, unlimited and on time.
@@ -31,7 +29,7 @@ impl Conditions {
     pub fn measured(period_s: f64) -> Self {
         Conditions {
             sensor: Sensor {
-                position_resolution_rad: AX12_STEP_RAD,
+                position_resolution_rad: Position::LSB_RAD,
                 position_noise_rad: 0.0,
                 velocity: Velocity::Difference,
                 gyro: Some(Gyro {

@@ -28,7 +28,7 @@ mod tests;
 pub use actuator::Actuator;
 pub use clock::Clock;
 pub use closed::{ClosedLoop, Job, Start, run_jobs};
-pub use conditions::{AX12_STEP_RAD, Conditions};
+pub use conditions::Conditions;
 pub use controller::{Controller, Seen};
 pub use outcome::{Limits, Outcome};
 pub use plant::Plant;

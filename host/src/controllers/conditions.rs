@@ -2,9 +2,7 @@
 
 use super::{Known, ServoLag};
 use crate::closed_loop::{Actuator, Clock, Conditions, Gyro, Sensor, Velocity};
-
-/// Step of an AX-12's angle, rad: 300 deg / 1024.
-pub const POSITION_STEP_RAD: f64 = 300.0 / 1024.0 * std::f64::consts::PI / 180.0;
+use handstand_shared::raw::Position;
 
 /// Step of the paper's gyro, rad/s: 10 deg/s.
 pub const GYRO_STEP_RAD_S: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -149,7 +147,7 @@ impl Condition {
             } else {
                 f64::INFINITY
             },
-            position_step_rad: when(self.positions, POSITION_STEP_RAD),
+            position_step_rad: when(self.positions, Position::LSB_RAD),
             gyro_step_rad_s: when(self.gyro, GYRO_STEP_RAD_S),
             servo: self.servo.then_some(ServoLag::PAPER),
             ..ideal.clone()
