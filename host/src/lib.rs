@@ -2,9 +2,8 @@
 //!
 //! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
 //! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing depends on it.
+//! `synth` + `closed_loop` -> `study`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing depends on it.
 
-pub mod bus_sim;
 pub mod challenge;
 pub mod closed_loop;
 pub mod compare;
@@ -26,6 +25,8 @@ pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod sysid;
+#[cfg(feature = "virtual-cm5")]
+pub mod virtual_cm5;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

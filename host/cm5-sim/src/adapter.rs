@@ -1,30 +1,25 @@
-//! The simulated bus as a port, in simulated time: nothing waits, and the same requests get the same answers.
+//! An adapter on the simulated bus, as a USB2Dynamixel is one.
 
-use super::port::Link;
-use crate::bus_sim::Bus;
-use crate::error::Result;
+use super::bus::Bus;
+use super::port::{SimulatedPort, fill, nanoseconds};
 use std::time::Duration;
 
-/// An adapter on the simulated bus.
-pub struct InProcess {
+/// The serial port of an adapter on the bus; its speed is the bus's.
+#[derive(Debug)]
+pub struct AdapterPort {
     bus: Bus,
-    now: u64,
+    now_ns: u64,
 }
 
-impl InProcess {
-    /// On this bus, at its speed.
+impl AdapterPort {
+    /// An adapter on this bus.
     pub fn new(bus: Bus) -> Self {
-        InProcess { bus, now: 0 }
-    }
-
-    /// The bus, to look at and to disturb.
-    pub fn bus(&mut self) -> &mut Bus {
-        &mut self.bus
+        AdapterPort { bus, now_ns: 0 }
     }
 }
 
-impl Link for InProcess {
-    fn name(&self) -> &str {
+impl SimulatedPort for AdapterPort {
+    fn name(&self) -> &'static str {
         "sim"
     }
 
@@ -32,60 +27,43 @@ impl Link for InProcess {
         self.bus.line_baud
     }
 
-    fn set_baud(&mut self, baud: u32) -> Result<()> {
+    fn set_baud(&mut self, baud: u32) {
         self.bus.line_baud = baud.max(1);
-        Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<()> {
+    fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.now += 10_000_000_000 / u64::from(self.bus.line_baud);
-            self.bus.hear(self.now, *byte);
+            self.now_ns += 10_000_000_000 / u64::from(self.bus.line_baud);
+            self.bus.receive(self.now_ns, *byte);
         }
-        Ok(())
     }
 
-    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize> {
-        let until = self.now + nanoseconds(wait);
+    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> usize {
+        let until_ns = self.now_ns + nanoseconds(wait);
         match self.bus.next_ns() {
-            Some(ends) if ends <= until => self.now = self.now.max(ends),
+            Some(end_ns) if end_ns <= until_ns => self.now_ns = self.now_ns.max(end_ns),
             _ => {
-                self.now = until;
-                return Ok(0);
+                self.now_ns = until_ns;
+                return 0;
             }
         }
-        let mut count = 0;
-        while let Some((slot, (_, byte))) = bytes
-            .get_mut(count)
-            .and_then(|slot| Some((slot, self.bus.take(self.now)?)))
-        {
-            *slot = byte;
-            count += 1;
-        }
-        Ok(count)
+        fill(bytes, || self.bus.take(self.now_ns))
     }
 
-    fn clear(&mut self) -> Result<()> {
-        while self.bus.take(self.now).is_some() {}
-        Ok(())
+    fn clear(&mut self) {
+        while self.bus.take(self.now_ns).is_some() {}
     }
 
     fn now(&self) -> Duration {
-        Duration::from_nanos(self.now)
+        Duration::from_nanos(self.now_ns)
     }
 
     fn pause(&mut self, time: Duration) {
-        self.now += nanoseconds(time);
-        self.bus.advance(self.now);
+        self.now_ns += nanoseconds(time);
+        self.bus.advance(self.now_ns);
     }
 
     fn latency(&self) -> Duration {
         Duration::from_micros(100)
     }
-}
-
-fn nanoseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_nanos())
-        .unwrap_or(u64::MAX / 2)
-        .min(u64::MAX / 2)
 }

@@ -1,36 +1,32 @@
-//! The bus: hears requests, and puts the servos' answers on the line in time.
+//! The half-duplex bus: receives requests, and puts the servos' replies on the line in time.
 
-use super::BYTE_NS;
-use super::collision::{Spoken, heard};
-use super::ear::Ear;
+use super::bad_checksum::BadChecksum;
+use super::collision::{Sent, received};
 use super::robot::Robot;
 use super::servo::Servo;
+use handstand_shared::control_table::TORQUE_ENABLE;
+use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS, REPLY_NS, byte_start_ns};
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
-use handstand_shared::timed_bus::TimedBus;
 use std::collections::VecDeque;
-
-/// From the request's last stop bit to the answer's first start bit with return delay 0, ns: a ping is quicker than the rest.
-const PING_NS: u64 = 18_000;
-const OTHER_NS: u64 = 22_000;
 
 /// Servos on one line.
 #[derive(Debug)]
 pub struct Bus {
-    /// The servos, in no order.
+    /// The servos, in any order.
     pub servos: Vec<Servo>,
     robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
-    ear: Ear,
+    bad_checksum: BadChecksum,
     line: VecDeque<(u64, u8)>,
     now_ns: u64,
-    /// Broadcasts that switched torque off, and when the last one ended, ns: what a safety test looks for.
+    /// Ends of the broadcasts that switched torque off, ns: what a safety test looks for.
     pub torque_offs: Vec<u64>,
-    /// Speed at which the controller speaks and listens, baud; servos set to another do not understand it.
+    /// Speed of the controller, baud; servos set to another speed do not understand it.
     pub line_baud: u32,
 }
 
 impl Bus {
-    /// Factory-new servos with these ids, except that they answer at once (return delay 0). An id may come twice, as two
+    /// Factory-new servos with these ids, except that they reply at once (return delay 0). An id may come twice, as two
     /// servos fresh from the factory have it.
     pub fn new(ids: impl IntoIterator<Item = u8>) -> Self {
         let mut servos: Vec<Servo> = Vec::new();
@@ -44,7 +40,7 @@ impl Bus {
             servos,
             robot: None,
             parser: Box::default(),
-            ear: Ear::default(),
+            bad_checksum: BadChecksum::default(),
             line: VecDeque::new(),
             now_ns: 0,
             torque_offs: Vec::new(),
@@ -57,8 +53,8 @@ impl Bus {
         self.servos.iter_mut().find(|servo| servo.id() == id)
     }
 
-    /// Hangs a robot on the servos; those it does not hang on stay free.
-    pub fn hang(&mut self, mut robot: Robot) {
+    /// Attach a robot to its servos; the others stay free.
+    pub fn attach(&mut self, mut robot: Robot) {
         let ids: Vec<u8> = robot.ids().collect();
         for servo in &mut self.servos {
             if ids.contains(&servo.id()) {
@@ -70,12 +66,12 @@ impl Bus {
         self.robot = Some(robot);
     }
 
-    /// The robot that hangs on the servos.
+    /// The attached robot.
     pub fn robot(&mut self) -> Option<&mut Robot> {
         self.robot.as_mut()
     }
 
-    /// Lets the servos' own motors, and the robot, run until `now_ns`.
+    /// Advance the servos' motors, and the robot, to `now_ns`.
     pub fn advance(&mut self, now_ns: u64) {
         const STEP_NS: u64 = 1_000_000;
         while self.now_ns + STEP_NS <= now_ns {
@@ -89,18 +85,14 @@ impl Bus {
         }
     }
 
-    /// A byte from the controller, whose last stop bit ended at `now_ns`.
-    pub fn hear(&mut self, now_ns: u64, byte: u8) {
+    /// Receive a byte from the controller, whose stop bit ended at `now_ns`.
+    pub fn receive(&mut self, now_ns: u64, byte: u8) {
         self.advance(now_ns);
-        for servo in &mut self.servos {
-            if servo.faults.echo {
-                self.line.push_back((now_ns, byte));
-                break;
-            }
+        if self.servos.iter().any(|servo| servo.faults.echo) {
+            self.line.push_back((now_ns, byte));
         }
-        if let Some(id) = self.ear.push(byte) {
-            let answers = answers(&mut self.servos, self.line_baud, |servo| servo.mishear(id));
-            put(&mut self.line, now_ns + OTHER_NS, &answers);
+        if let Some(id) = self.bad_checksum.push(byte) {
+            self.reply(now_ns + REPLY_NS, |servo| servo.reject_checksum(id));
         }
         let Some(packet) = self.parser.push(byte) else {
             return;
@@ -113,20 +105,27 @@ impl Bus {
             self.torque_offs.push(now_ns);
         }
         let wait_ns = match request {
-            Request::Ping => PING_NS,
-            _ => OTHER_NS,
+            Request::Ping => PING_REPLY_NS,
+            _ => REPLY_NS,
         };
-        let hear = |servo: &mut Servo| servo.hear(now_ns, id, request);
-        let answers = answers(&mut self.servos, self.line_baud, hear);
-        put(&mut self.line, now_ns + wait_ns, &answers);
+        // The request borrows the parser, so the line is filled from the other fields.
+        let replies = replies(&mut self.servos, self.line_baud, |servo| {
+            servo.execute(now_ns, id, request)
+        });
+        put(&mut self.line, now_ns + wait_ns, &replies);
     }
 
-    /// When the next byte from the servos has arrived, if one is on its way, ns.
+    fn reply(&mut self, from_ns: u64, of: impl FnMut(&mut Servo) -> Option<(Vec<u8>, u64)>) {
+        let replies = replies(&mut self.servos, self.line_baud, of);
+        put(&mut self.line, from_ns, &replies);
+    }
+
+    /// End of the next byte from the servos, ns, if one is pending.
     pub fn next_ns(&self) -> Option<u64> {
         self.line.front().map(|(end, _)| *end)
     }
 
-    /// The next byte from the servos that has arrived by `now_ns`, and when.
+    /// The next byte from the servos that has ended by `now_ns`, and its end, ns.
     pub fn take(&mut self, now_ns: u64) -> Option<(u64, u8)> {
         self.next_ns().filter(|end| *end <= now_ns)?;
         self.line.pop_front()
@@ -137,19 +136,13 @@ impl Bus {
         self.servos.iter().any(Servo::torque_is_on)
     }
 
-    /// Sends a request outright and returns the answer's bytes, without time passing: for setting up.
-    pub fn ask(&mut self, id: u8, request: Request) -> Vec<u8> {
+    /// Send a request and return the parameters of its reply, without time passing: for setting up.
+    pub fn transact(&mut self, id: u8, request: Request) -> Vec<u8> {
         let mut out = [0; MAX_PACKET];
         let length = request.emit(id, &mut out).unwrap_or(0);
         let now_ns = self.now_ns;
-        out[..length]
-            .iter()
-            .for_each(|byte| self.hear(now_ns, *byte));
-        let bytes = self
-            .line
-            .drain(..)
-            .map(|(_, byte)| byte)
-            .collect::<Vec<_>>();
+        (out[..length].iter()).for_each(|byte| self.receive(now_ns, *byte));
+        let bytes: Vec<u8> = self.line.drain(..).map(|(_, byte)| byte).collect();
         match Packet::new(&bytes) {
             Ok(packet) => Status::of(packet).data.to_vec(),
             Err(_) => Vec::new(),
@@ -157,116 +150,80 @@ impl Bus {
     }
 }
 
-impl TimedBus for Bus {
-    fn hear(&mut self, now_ns: u64, byte: u8) {
-        Bus::hear(self, now_ns, byte);
-    }
-
-    fn take(&mut self, now_ns: u64) -> Option<(u64, u8)> {
-        Bus::take(self, now_ns)
-    }
-
-    fn next_ns(&self) -> Option<u64> {
-        Bus::next_ns(self)
-    }
-
-    fn advance(&mut self, now_ns: u64) {
-        Bus::advance(self, now_ns);
-    }
-
-    fn rate_rad_s(&mut self) -> Option<f64> {
-        self.robot().map(|robot| robot.rate_rad_s())
-    }
-}
-
 fn is_torque_off(id: u8, request: Request) -> bool {
-    id == BROADCAST
-        && matches!(
+    const ADDRESS: u8 = TORQUE_ENABLE.address;
+    let off = |request| {
+        matches!(
             request,
             Request::Write {
-                address: 24,
+                address: ADDRESS,
                 data: [0, ..]
             }
         )
+    };
+    id == BROADCAST && off(request)
 }
 
-/// What a servo says.
-struct Answer {
+/// A servo's reply.
+struct Reply {
     bytes: Vec<u8>,
     delay_ns: u64,
     serial: u64,
 }
 
-/// What the servos that run at this speed say to something.
-fn answers(
+/// Replies of the servos that run at this speed.
+fn replies(
     servos: &mut [Servo],
     line_baud: u32,
-    mut ask: impl FnMut(&mut Servo) -> Option<(Vec<u8>, u64)>,
-) -> Vec<Answer> {
+    mut of: impl FnMut(&mut Servo) -> Option<(Vec<u8>, u64)>,
+) -> Vec<Reply> {
     let servos = servos.iter_mut();
     let servos = servos.filter(|servo| servo.understands(line_baud));
-    let answers = servos.filter_map(|servo| {
-        let (bytes, delay_ns) = ask(servo)?;
+    let replies = servos.filter_map(|servo| {
+        let (bytes, delay_ns) = of(servo)?;
         let serial = servo.serial;
-        Some(Answer {
+        Some(Reply {
             bytes,
             delay_ns,
             serial,
         })
     });
-    answers.collect()
+    replies.collect()
 }
 
-/// Puts answers on the line, from `begin_ns` on or when it is free.
-fn put(line: &mut VecDeque<(u64, u8)>, begin_ns: u64, answers: &[Answer]) {
+/// Put replies on the line, from `from_ns` on or when it is free.
+fn put(line: &mut VecDeque<(u64, u8)>, from_ns: u64, replies: &[Reply]) {
     let free_ns = line.back().map_or(0, |(end, _)| *end);
-    match answers {
+    match replies {
         [] => {}
         [one] => {
-            let spoken = spoken(one, begin_ns, free_ns).into_iter();
-            line.extend(spoken.map(|(begin, byte)| (begin + BYTE_NS, byte)));
+            let sent = sent(one, from_ns, free_ns).into_iter();
+            line.extend(sent.map(|(begin, byte)| (begin + BYTE_NS, byte)));
         }
         several => {
-            let late = |answer: &Answer| spoken(answer, begin_ns + late_ns(answer.serial), free_ns);
+            let late = |reply: &Reply| sent(reply, from_ns + late_ns(reply.serial), free_ns);
             let all = several.iter().flat_map(late);
-            line.extend(heard(&all.collect::<Vec<_>>()));
+            line.extend(received(&all.collect::<Vec<_>>()));
         }
     }
 }
 
-/// When each byte of an answer begins.
-fn spoken(answer: &Answer, from_ns: u64, free_ns: u64) -> Vec<Spoken> {
-    let mut end_ns = free_ns.max(from_ns + answer.delay_ns);
-    let begins = answer.bytes.iter().map(|byte| {
-        let begin_ns = after_stall(end_ns, stall_phase_ns(answer.serial));
-        end_ns = begin_ns + BYTE_NS;
-        (begin_ns, *byte)
+/// When each byte of a reply starts.
+fn sent(reply: &Reply, from_ns: u64, free_ns: u64) -> Vec<Sent> {
+    let mut end_ns = free_ns.max(from_ns + reply.delay_ns);
+    let starts = reply.bytes.iter().map(|byte| {
+        let start_ns = byte_start_ns(end_ns, reply.serial);
+        end_ns = start_ns + BYTE_NS;
+        (start_ns, *byte)
     });
-    begins.collect()
+    starts.collect()
 }
 
-/// How much later than its twin a servo begins: no two clocks are the same. Scattered by a hash, below a byte's time.
+/// How much later a servo replies than another one of its id: no two clocks are the same. Scattered by a hash, below a
+/// byte's time.
 fn late_ns(serial: u64) -> u64 {
     match serial / 256 {
         0 => 0,
         twin => 700 + twin * 2_654_435_761 % (BYTE_NS - 1_000),
-    }
-}
-
-/// When within each millisecond a servo's motor interrupt comes, ns: in each servo at another moment, scattered by a hash,
-/// for servos started together would all stall a regular reader alike.
-fn stall_phase_ns(serial: u64) -> u64 {
-    ((serial * 2_654_435_761) >> 8) % 1_000_000
-}
-
-/// The motor's interrupt takes 130 us of every millisecond and holds back a byte that would begin in it.
-fn after_stall(at_ns: u64, phase_ns: u64) -> u64 {
-    const PERIOD_NS: u64 = 1_000_000;
-    const LENGTH_NS: u64 = 130_000;
-    let into = (at_ns + PERIOD_NS - phase_ns % PERIOD_NS) % PERIOD_NS;
-    if into < LENGTH_NS {
-        at_ns + LENGTH_NS - into
-    } else {
-        at_ns
     }
 }

@@ -1,34 +1,43 @@
-//! A bus of simulated AX-12 servos, in pure Rust: for tests, for the bench, and behind a virtual serial port.
+//! Simulated CM-5: AX-12 servos, their half-duplex bus, and the firmware's logic on a host board.
 //!
-//! Time is whatever the caller says it is, in nanoseconds: the simulation has no clock of its own. [`Bus::hear`] takes the
-//! controller's bytes with the moment their last stop bit ended; [`Bus::take`] gives the servos' bytes back, each with
-//! its own. Timing, registers and faults are those of the data sheet and of published measurements; every constant says which.
+//! Simulated time only, in nanoseconds since power-on: nothing here reads a clock. [`Bus`] takes the controller's bytes
+//! with the end of their stop bits and returns the servos' bytes the same way. [`VirtualCm5`] runs the firmware's
+//! logic on a [`HostBoard`] in front of it; [`SimulatedCm5`] is the interface that the ELF in simavr implements
+//! too. [`AdapterPort`] and [`Cm5Port`] are serial ports of both kinds. The robot behind the servos is a [`Plant`], which
+//! the caller provides.
 
+mod adapter;
+mod bad_checksum;
 mod bus;
+mod cm5;
 mod collision;
-mod ear;
 mod fault;
-mod motor;
-mod obey;
-mod output;
-mod overload;
+mod host_board;
+mod pc;
+mod plant;
+mod port;
+mod protection;
+mod regulator;
+mod requests;
 mod robot;
 mod servo;
+mod shaft;
+mod spec;
 
+pub use adapter::AdapterPort;
 pub use bus::Bus;
+pub use cm5::{SimulatedCm5, VirtualCm5};
 pub use fault::Faults;
-pub use motor::Motor;
-pub use output::Output;
-pub use overload::Protection;
-pub use robot::{DriveState, Robot, State};
+pub use host_board::HostBoard;
+pub use pc::Pc;
+pub use plant::{Plant, Start};
+pub use port::{Cm5Port, SimulatedPort};
+pub use protection::Protection;
+pub use regulator::Regulator;
+pub use robot::{DrivenJoint, Robot, RobotState};
 pub use servo::Servo;
+pub use shaft::Shaft;
+pub use spec::{BusSpec, RobotSpec, SpecError};
 
-/// A bit at 1 Mbps, ns.
-pub const BIT_NS: u64 = 1000;
-/// A byte of 8N1 at 1 Mbps, ns.
-pub const BYTE_NS: u64 = 10 * BIT_NS;
-
-#[cfg(test)]
-mod robot_tests;
 #[cfg(test)]
 mod tests;

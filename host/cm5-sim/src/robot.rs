@@ -1,198 +1,177 @@
-//! A robot that hangs on the servos: a model's chain of links, whose driven joints are the servos' shafts.
+//! A robot on simulated servos: a plant whose driven joints are the servos' shafts.
 //!
-//! The servos regulate (goal, compliance, wheel mode, torque limit) and say the duty; motor, gear, friction and links are the
-//! model's. A model that says nothing of its motors, because its joints are driven by torques, gets the paper's limit.
+//! The servos regulate (goal, compliance, wheel mode, torque limit) and set the duty cycle; motor, gear, friction and
+//! links are the plant's.
 
-use super::output::Output;
+use super::plant::Plant;
+use super::regulator::Regulator;
 use super::servo::Servo;
-use crate::error::{Error, Result};
-use crate::model::{Drive, Model, Motor};
-use crate::sim::Live;
 use handstand_shared::control_table::GOAL_POSITION;
 use handstand_shared::raw::Position;
 use std::collections::VecDeque;
 use std::sync::mpsc::Sender;
 
-/// Torque of a joint at full duty, N m, where the model says none: the paper's limit.
-const FULL_NM: f64 = 2.0;
-/// Times between two states told.
-const TELL_EVERY_S: f64 = 0.01;
+/// Period of the states sent to a listener, s.
+const STATE_PERIOD_S: f64 = 0.01;
 
-/// The robot at one moment.
+/// True state of the robot at one moment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct State {
+pub struct RobotState {
     /// Since it was set up, s.
     pub time_s: f64,
-    /// Of each joint, rad, in the model's convention.
+    /// Angle of each joint, rad, in the model's convention.
     pub angle_rad: Vec<f64>,
-    /// Of each joint, rad/s.
+    /// Speed of each joint, rad/s.
     pub speed_rad_s: Vec<f64>,
-    /// What drives each joint; none where nothing does.
-    pub drive: Vec<Option<DriveState>>,
+    /// Drive of each joint; `None` where it is passive.
+    pub drive: Vec<Option<DrivenJoint>>,
     /// Supply of the servos, V.
     pub supply_v: f64,
 }
 
-/// What drives a joint.
+/// Drive of a joint at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DriveState {
-    /// Goal in the joint's angle, rad, as the registers have it.
+pub struct DrivenJoint {
+    /// Goal register as the joint's angle, rad.
     pub goal_rad: f64,
-    /// Duty at the motor, -1 to 1.
+    /// Duty cycle at the motor, -1 to 1.
     pub duty: f64,
     /// Whether torque is on.
     pub torque_on: bool,
 }
 
-/// A joint and the servos in it.
+/// A driven joint and its servos.
 #[derive(Debug)]
-struct Driven {
+struct JointServos {
     joint: usize,
-    /// Those after the first face the other way.
     ids: Vec<u8>,
     delay_s: f64,
-    /// What the servos were set to, and when: the motors obey late.
-    history: VecDeque<(f64, Vec<Output>)>,
+    /// Regulators over the delay: the motors follow late.
+    history: VecDeque<(f64, Vec<Regulator>)>,
     duty: f64,
 }
 
-/// A chain of links on servos.
+/// A plant on servos.
 #[derive(Debug)]
 pub struct Robot {
-    live: Live,
-    driven: Vec<Driven>,
-    joints: usize,
+    plant: Box<dyn Plant>,
+    driven: Vec<JointServos>,
     time_s: f64,
-    told_s: f64,
-    hear: Option<Sender<State>>,
+    sent_s: f64,
+    listener: Option<Sender<RobotState>>,
 }
 
 impl Robot {
-    /// At rest at these angles, rad in the model's convention. `servos` are the ids of each driven joint, from the base
-    /// outwards; a second servo in a joint faces the other way.
-    ///
-    /// # Errors
-    /// Another number of angles or driven joints, or a joint without a servo.
-    pub fn new(model: &Model, servos: &[Vec<u8>], angle_rad: &[f64]) -> Result<Robot> {
-        let joints = (0..model.joints.len()).filter(|at| model.joints[*at].drive.is_driven());
-        let joints: Vec<usize> = joints.collect();
-        if joints.len() != servos.len() || servos.iter().any(Vec::is_empty) {
-            return Err(Error::usage(
-                format!(
-                    "`{}` has {} driven joints, and servos are given for {}",
-                    model.name,
-                    joints.len(),
-                    servos.iter().filter(|ids| !ids.is_empty()).count()
-                ),
-                "say which servos move each, from the base outwards: joints=1+2/11+12",
-            ));
-        }
-        let live = Live::new(&with_motors(model), angle_rad)?;
-        let driven = joints.into_iter().zip(servos).map(|(joint, ids)| Driven {
+    /// `servos` are the driven joints of the plant with their servos' ids; a servo after the first faces the other way.
+    pub fn new(plant: Box<dyn Plant>, servos: impl IntoIterator<Item = (usize, Vec<u8>)>) -> Self {
+        let driven = servos.into_iter().map(|(joint, ids)| JointServos {
             joint,
-            ids: ids.clone(),
-            delay_s: live.delay_s(joint),
+            ids,
+            delay_s: plant.delay_s(joint),
             history: VecDeque::new(),
             duty: 0.0,
         });
-        Ok(Robot {
+        Robot {
             driven: driven.collect(),
-            joints: model.joints.len(),
-            live,
+            plant,
             time_s: 0.0,
-            told_s: f64::NEG_INFINITY,
-            hear: None,
-        })
+            sent_s: f64::NEG_INFINITY,
+            listener: None,
+        }
     }
 
-    /// Tells `hear` the state a hundred times a second.
-    pub fn watch(&mut self, hear: Sender<State>) {
-        self.hear = Some(hear);
+    /// Send the state to `listener` a hundred times a second.
+    pub fn watch(&mut self, listener: Sender<RobotState>) {
+        self.listener = Some(listener);
     }
 
-    /// Ids of the servos it hangs on.
+    /// Ids of its servos.
     pub fn ids(&self) -> impl Iterator<Item = u8> + '_ {
         self.driven.iter().flat_map(|driven| driven.ids.clone())
     }
 
-    /// Turning rate of the first link, rad/s, as a gyro on it has it.
+    /// Angular rate of the first link, rad/s, as a gyro on it measures it.
     pub fn rate_rad_s(&self) -> f64 {
-        self.live.speed_rad_s(0)
+        self.plant.speed_rad_s(0)
     }
 
-    /// Goes on by `dt_s` under what the servos do, and turns their shafts.
+    /// Advance by `dt_s` under the servos' regulators, and turn their shafts.
     pub fn step(&mut self, servos: &mut [Servo], dt_s: f64) {
         self.time_s += dt_s;
         for driven in &mut self.driven {
-            driven.push(&mut self.live, servos, self.time_s);
+            driven.drive(self.plant.as_mut(), servos, self.time_s);
         }
-        self.live.advance(dt_s);
+        self.plant.advance(dt_s);
         for driven in &self.driven {
-            driven.place(&self.live, servos);
+            driven.turn_shafts(self.plant.as_ref(), servos);
         }
-        if self.time_s - self.told_s >= TELL_EVERY_S - 1e-9
-            && let Some(hear) = &self.hear
+        if self.time_s - self.sent_s >= STATE_PERIOD_S - 1e-9
+            && let Some(listener) = &self.listener
         {
-            self.told_s = self.time_s;
-            // Who has stopped listening does not want to know.
-            let _ = hear.send(self.state(servos));
+            self.sent_s = self.time_s;
+            // A listener that is gone needs no state.
+            let _ = listener.send(self.state(servos));
         }
     }
 
-    fn state(&self, servos: &[Servo]) -> State {
-        let mut drive = vec![None; self.joints];
+    fn state(&self, servos: &[Servo]) -> RobotState {
+        let joints = self.plant.joint_count();
+        let mut drive = vec![None; joints];
         for driven in &self.driven {
             drive[driven.joint] = driven.state(servos);
         }
         let first = self.driven.first().and_then(|driven| driven.first(servos));
-        State {
+        RobotState {
             time_s: self.time_s,
-            angle_rad: (0..self.joints).map(|at| self.live.angle_rad(at)).collect(),
-            speed_rad_s: (0..self.joints)
-                .map(|at| self.live.speed_rad_s(at))
-                .collect(),
+            angle_rad: (0..joints).map(|at| self.plant.angle_rad(at)).collect(),
+            speed_rad_s: (0..joints).map(|at| self.plant.speed_rad_s(at)).collect(),
             drive,
             supply_v: first.map_or(0.0, |servo| servo.supply_v),
         }
     }
 }
 
-impl Driven {
+impl JointServos {
     fn first<'a>(&self, servos: &'a [Servo]) -> Option<&'a Servo> {
         let id = *self.ids.first()?;
         servos.iter().find(|servo| servo.id() == id)
     }
 
-    /// Tells the motor what the servos said a delay ago: the mean of their duties.
-    fn push(&mut self, live: &mut Live, servos: &[Servo], now_s: f64) {
-        let all = servos.iter().filter(|servo| self.ids.contains(&servo.id()));
-        let outputs: Vec<(f64, &Servo)> = all
-            .map(|servo| (sign(&self.ids, servo.id()), servo))
-            .collect();
-        let set = outputs.iter().map(|(_, servo)| servo.output()).collect();
-        self.history.push_back((now_s, set));
+    /// 1 for the first servo of the joint, -1 for those that face it.
+    fn sign(&self, id: u8) -> f64 {
+        if self.ids.first() == Some(&id) {
+            1.0
+        } else {
+            -1.0
+        }
+    }
+
+    /// Drive the joint with the mean duty cycle of its servos, one delay late.
+    fn drive(&mut self, plant: &mut dyn Plant, servos: &[Servo], now_s: f64) {
+        let own = servos.iter().filter(|servo| self.ids.contains(&servo.id()));
+        let own: Vec<&Servo> = own.collect();
+        let regulators = own.iter().map(|servo| servo.regulator()).collect();
+        self.history.push_back((now_s, regulators));
         while self.history.len() > 1 && self.history[1].0 <= now_s - self.delay_s + 1e-9 {
             self.history.pop_front();
         }
-        let Some((_, set)) = self.history.front() else {
+        let Some((_, regulators)) = self.history.front() else {
             return;
         };
-        let energised = set.iter().any(Output::is_on);
-        let duties = set.iter().zip(&outputs);
-        let sum: f64 = duties
-            .map(|(output, (sign, servo))| sign * output.duty_in_motion(&servo.shaft))
-            .sum();
-        self.duty = sum / set.len().max(1) as f64;
-        let supply_v = outputs.first().map_or(0.0, |(_, servo)| servo.supply_v);
-        live.tell(self.joint, energised.then_some(self.duty), supply_v);
+        let energised = regulators.iter().any(Regulator::is_on);
+        let duties = regulators.iter().zip(&own).map(|(regulator, servo)| {
+            self.sign(servo.id()) * regulator.duty_in_motion(&servo.shaft)
+        });
+        self.duty = duties.sum::<f64>() / regulators.len().max(1) as f64;
+        let supply_v = own.first().map_or(0.0, |servo| servo.supply_v);
+        plant.set_duty(self.joint, energised.then_some(self.duty), supply_v);
     }
 
-    /// Turns the servos' shafts to where the joint is.
-    fn place(&self, live: &Live, servos: &mut [Servo]) {
-        let (angle_rad, speed_rad_s) = live.shaft(self.joint);
+    fn turn_shafts(&self, plant: &dyn Plant, servos: &mut [Servo]) {
+        let (angle_rad, speed_rad_s) = plant.shaft(self.joint);
         for servo in servos.iter_mut() {
             if self.ids.contains(&servo.id()) {
-                let sign = sign(&self.ids, servo.id());
+                let sign = self.sign(servo.id());
                 servo.shaft.angle_rad = sign * angle_rad;
                 servo.shaft.speed_rad_s = sign * speed_rad_s;
                 servo.load = sign * self.duty;
@@ -200,31 +179,12 @@ impl Driven {
         }
     }
 
-    fn state(&self, servos: &[Servo]) -> Option<DriveState> {
+    fn state(&self, servos: &[Servo]) -> Option<DrivenJoint> {
         let servo = self.first(servos)?;
-        Some(DriveState {
+        Some(DrivenJoint {
             goal_rad: Position(servo.get(GOAL_POSITION)).to_rad(),
             duty: self.duty,
             torque_on: servo.torque_is_on(),
         })
     }
-}
-
-/// 1 for the first servo of a joint, -1 for those that face it.
-fn sign(ids: &[u8], id: u8) -> f64 {
-    if ids.first() == Some(&id) { 1.0 } else { -1.0 }
-}
-
-fn with_motors(model: &Model) -> Model {
-    let mut model = model.clone();
-    for joint in &mut model.joints {
-        if joint.drive == Drive::Torque {
-            joint.drive = Drive::Duty(Motor {
-                stall_torque_nm: FULL_NM,
-                no_load_speed_rad_s: f64::INFINITY,
-                nominal_supply_v: None,
-            });
-        }
-    }
-    model
 }

@@ -1,18 +1,20 @@
-//! A simulated bus in words: `ids=1-18,delay=0,dead=3`.
+//! A simulated bus as text: `ids=1-18,delay=0,dead=3,robot=MODEL.toml,joints=1+2/11+12,start=hanging`.
 
-use super::sim_robot::SimRobot;
-use crate::bus_sim::{Bus, Faults};
-use crate::error::Result as Done;
+use super::bus::Bus;
+use super::fault::Faults;
+use super::plant::Start;
 use handstand_shared::control_table::{BAUD, RETURN_DELAY, Register, STATUS_LEVEL};
+use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
+use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Which servos there are, how they are set, and what goes wrong. Without words: 1 to 18, factory settings, all well.
+/// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with factory settings.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SimWords {
-    /// Their ids.
+pub struct BusSpec {
+    /// Ids of the servos.
     pub ids: Vec<u8>,
-    /// What hangs on them.
-    pub robot: Option<SimRobot>,
+    /// The robot on them.
+    pub robot: Option<RobotSpec>,
     registers: Vec<(Register, u16)>,
     drop: f64,
     flip: f64,
@@ -23,14 +25,53 @@ pub struct SimWords {
     hot: Vec<u8>,
     overload: Vec<u8>,
     jam: Vec<u8>,
-    mishear: f64,
+    corrupt_request: f64,
     supply_v: f64,
     seed: u64,
 }
 
-impl Default for SimWords {
+/// A robot on simulated servos.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RobotSpec {
+    /// Its model file.
+    pub model: PathBuf,
+    /// Servos of each driven joint, from the base outwards; without it those of the Bioloid's shoulders and hips, or
+    /// servo 1 where only one joint is driven.
+    pub joints: Option<Vec<Vec<u8>>>,
+    /// Initial pose.
+    pub start: Start,
+}
+
+/// Text that describes no simulated bus.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SpecError {
+    /// A key that does not exist.
+    #[error("`{0}` is no key of a simulated bus; there are: {KEYS}")]
+    UnknownKey(String),
+    /// A list of ids that names none.
+    #[error("`{0}` names no ids: {ID_LIST_SYNTAX}")]
+    Ids(String),
+    /// A value outside its range.
+    #[error("{key}={value}: give {expected}")]
+    Value {
+        /// The key.
+        key: String,
+        /// The value found.
+        value: String,
+        /// What the key takes.
+        expected: String,
+    },
+    /// Keys of a robot without its model.
+    #[error("joints and start are a robot's: name its model, robot=MODEL.toml")]
+    NoModel,
+}
+
+const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
+                    dead, hot, overload, jam, supply, robot, joints, start, seed";
+
+impl Default for BusSpec {
     fn default() -> Self {
-        SimWords {
+        BusSpec {
             ids: (1..=18).collect(),
             robot: None,
             registers: vec![(RETURN_DELAY, RETURN_DELAY.default)],
@@ -43,29 +84,15 @@ impl Default for SimWords {
             hot: Vec::new(),
             overload: Vec::new(),
             jam: Vec::new(),
-            mishear: 0.0,
+            corrupt_request: 0.0,
             supply_v: 11.1,
             seed: 1,
         }
     }
 }
 
-const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, mishear, echo, dead, hot, overload, jam, supply, robot, joints, start, seed";
-
-impl SimWords {
-    /// The bus they describe, with the robot on it.
-    ///
-    /// # Errors
-    /// The robot's model cannot be read, does not fit, or hangs on servos that are not there.
-    pub fn set_up(&self) -> Done<Bus> {
-        let mut bus = self.bus();
-        if let Some(robot) = &self.robot {
-            bus.hang(robot.set_up(&self.ids)?);
-        }
-        Ok(bus)
-    }
-
-    /// The bus they describe, the servos free.
+impl BusSpec {
+    /// The bus it describes, without the robot.
     pub fn bus(&self) -> Bus {
         let mut bus = Bus::new(self.ids.iter().copied());
         for (place, servo) in (0..).zip(&mut bus.servos) {
@@ -79,7 +106,7 @@ impl SimWords {
             faults.flip = self.flip;
             faults.late = self.late;
             faults.wrong_id = self.wrong_id;
-            faults.mishear = self.mishear;
+            faults.corrupt_request = self.corrupt_request;
             faults.echo = self.echo;
             servo.faults = faults;
             servo.supply_v = self.supply_v;
@@ -93,96 +120,76 @@ impl SimWords {
         }
         bus
     }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), SpecError> {
+        let wrong = |expected: &str| SpecError::Value {
+            key: key.into(),
+            value: value.into(),
+            expected: expected.into(),
+        };
+        let number = |most: f64| {
+            let number = value.parse().ok();
+            let number = number.filter(|number| (0.0..=most).contains(number));
+            number.ok_or_else(|| wrong(&format!("a number from 0 to {most}")))
+        };
+        let code = |most: u16| {
+            let code = value.parse().ok().filter(|code| *code <= most);
+            code.ok_or_else(|| wrong(&format!("a code from 0 to {most}")))
+        };
+        match key {
+            "ids" => self.ids = id_list(value)?,
+            "delay" => self.registers.push((RETURN_DELAY, code(254)?)),
+            "level" => self.registers.push((STATUS_LEVEL, code(2)?)),
+            "baud" => self.registers.push((BAUD, code(254)?)),
+            "drop" => self.drop = number(1.0)?,
+            "flip" => self.flip = number(1.0)?,
+            "late" => self.late = number(1.0)?,
+            "wrong_id" => self.wrong_id = number(1.0)?,
+            "corrupt_request" => self.corrupt_request = number(1.0)?,
+            "echo" => self.echo = true,
+            "dead" => self.dead = id_list(value)?,
+            "hot" => self.hot = id_list(value)?,
+            "overload" => self.overload = id_list(value)?,
+            "jam" => self.jam = id_list(value)?,
+            "supply" => self.supply_v = number(20.0)?,
+            "seed" => self.seed = value.parse().map_err(|_| wrong("a whole number"))?,
+            "robot" => self.robot.get_or_insert_default().model = value.into(),
+            "joints" => {
+                let joints = value.split('/').map(id_list).collect::<Result<_, _>>()?;
+                self.robot.get_or_insert_default().joints = Some(joints);
+            }
+            "start" => {
+                self.robot.get_or_insert_default().start = match value {
+                    "hanging" => Start::Hanging,
+                    "upright" => Start::Upright,
+                    _ => return Err(wrong("hanging or upright")),
+                }
+            }
+            _ => return Err(SpecError::UnknownKey(key.into())),
+        }
+        Ok(())
+    }
 }
 
-impl FromStr for SimWords {
-    type Err = String;
+impl FromStr for BusSpec {
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let mut words = SimWords::default();
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let mut spec = BusSpec::default();
         for part in text.split(',').filter(|part| !part.is_empty()) {
             let (key, value) = part.split_once('=').unwrap_or((part, ""));
-            match key {
-                "ids" => words.ids = ids(value)?,
-                "delay" => words.registers.push((RETURN_DELAY, code(key, value, 254)?)),
-                "level" => words.registers.push((STATUS_LEVEL, code(key, value, 2)?)),
-                "baud" => words.registers.push((BAUD, code(key, value, 254)?)),
-                "drop" => words.drop = number(key, value, 1.0)?,
-                "flip" => words.flip = number(key, value, 1.0)?,
-                "late" => words.late = number(key, value, 1.0)?,
-                "wrong_id" => words.wrong_id = number(key, value, 1.0)?,
-                "mishear" => words.mishear = number(key, value, 1.0)?,
-                "echo" => words.echo = true,
-                "dead" => words.dead = ids(value)?,
-                "hot" => words.hot = ids(value)?,
-                "overload" => words.overload = ids(value)?,
-                "jam" => words.jam = ids(value)?,
-                "robot" => words.robot().model = value.into(),
-                "joints" => words.robot().joints = Some(SimRobot::joints(value)?),
-                "start" => words.robot().start = value.parse()?,
-                "supply" => words.supply_v = number(key, value, 20.0)?,
-                "seed" => {
-                    words.seed = value
-                        .parse()
-                        .map_err(|_| format!("seed={value}: give a whole number"))?
-                }
-                _ => {
-                    return Err(format!(
-                        "`{key}` is no key of a simulated bus; there are: {KEYS}"
-                    ));
-                }
-            }
+            spec.set(key, value)?;
         }
-        match &words.robot {
-            Some(robot) if robot.model.as_os_str().is_empty() => {
-                Err("joints and start are a robot's: name its model, robot=MODEL.toml".to_string())
-            }
-            _ => Ok(words),
+        match &spec.robot {
+            Some(robot) if robot.model.as_os_str().is_empty() => Err(SpecError::NoModel),
+            _ => Ok(spec),
         }
     }
 }
 
-impl SimWords {
-    fn robot(&mut self) -> &mut SimRobot {
-        self.robot.get_or_insert_default()
-    }
-}
-
-/// Ids as in `1-4+9` or `1-4,9`.
-///
-/// # Errors
-/// What is no id, and how to write them.
-pub fn ids(text: &str) -> Result<Vec<u8>, String> {
-    let wrong = || format!("`{text}` names no ids: write 1-18 or 1-4+9, each 0 to 253");
-    let mut ids = Vec::new();
-    for part in text.split(['+', ',']) {
-        let (first, last) = part.split_once('-').unwrap_or((part, part));
-        let first: u8 = first.trim().parse().map_err(|_| wrong())?;
-        let last: u8 = last.trim().parse().map_err(|_| wrong())?;
-        if first > last || last > 253 {
-            return Err(wrong());
-        }
-        ids.extend(first..=last);
-    }
-    Ok(ids)
-}
-
-fn code(key: &str, value: &str, most: u16) -> Result<u16, String> {
-    let wrong = || format!("{key}={value}: give a code from 0 to {most}");
-    value
-        .parse()
-        .ok()
-        .filter(|code| *code <= most)
-        .ok_or_else(wrong)
-}
-
-fn number(key: &str, value: &str, most: f64) -> Result<f64, String> {
-    let wrong = || format!("{key}={value}: give a number from 0 to {most}");
-    value
-        .parse()
-        .ok()
-        .filter(|number| (0.0..=most).contains(number))
-        .ok_or_else(wrong)
+fn id_list(text: &str) -> Result<Vec<u8>, SpecError> {
+    let ids: Option<_> = ids(text).collect();
+    ids.ok_or_else(|| SpecError::Ids(text.into()))
 }
 
 #[cfg(test)]
@@ -190,14 +197,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_read_and_wrong_ones_named() {
-        let words: SimWords = "ids=1-3+7,delay=0,dead=2,echo,drop=0.5".parse().unwrap();
-        assert_eq!(words.ids, [1, 2, 3, 7]);
-        assert!(words.echo && words.dead == [2] && words.drop == 0.5);
-        let bus = words.bus();
+    fn text_is_read_and_errors_are_named() {
+        let spec: BusSpec = "ids=1-3+7,delay=0,dead=2,echo,drop=0.5".parse().unwrap();
+        assert_eq!(spec.ids, [1, 2, 3, 7]);
+        assert!(spec.echo && spec.dead == [2] && spec.drop == 0.5);
+        let bus = spec.bus();
         assert_eq!(bus.servos[3].get(RETURN_DELAY), 0);
         assert!(bus.servos[1].faults.dead && !bus.servos[0].faults.dead);
-        assert_eq!("".parse(), Ok(SimWords::default()));
+        assert_eq!("".parse(), Ok(BusSpec::default()));
         for (wrong, said) in [
             ("idz=1", "`idz`"),
             ("ids=5-2", "1-18"),
@@ -207,7 +214,7 @@ mod tests {
             ("joints=1+2", "robot=MODEL.toml"),
             ("robot=a.toml,start=lying", "hanging or upright"),
         ] {
-            let error = wrong.parse::<SimWords>().unwrap_err();
+            let error = wrong.parse::<BusSpec>().unwrap_err().to_string();
             assert!(error.contains(said), "{wrong}: {error}");
         }
     }

@@ -1,11 +1,11 @@
 //! How long the way from a sample to a torque takes: over the servo bus, and over the PC's serial line and back.
 //!
-//! The paper asks whether the delays of serial line, CM-5 and RS485 go with the sampling time. The bus is simulated
-//! byte by byte; the frames are the project's own.
+//! The paper asks whether the delays of serial line, CM-5 and RS485 go with the sampling time. The servos' replies are
+//! timed byte by byte; the frames are the project's own.
 
-use crate::bus_sim::{BYTE_NS, Bus};
-use handstand_shared::control_table::{GOAL_POSITION, PRESENT_POSITION, RETURN_DELAY};
-use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Request};
+use handstand_shared::control_table::{GOAL_POSITION, PRESENT_POSITION};
+use handstand_shared::dynamixel::timing::{BYTE_NS, REPLY_NS, byte_start_ns};
+use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Request, status_length};
 use handstand_shared::frame::MAX_FRAME;
 use handstand_shared::message::{Command, Condition, Report, StreamReport, encode};
 use handstand_shared::packed::{Positions, SERVOS};
@@ -41,25 +41,16 @@ pub fn timing() -> Timing {
 
 /// Asking servos for their positions, one after the other, s.
 fn read_s(servos: u8, delay: ReturnDelay) -> f64 {
-    let mut bus = Bus::new(1..=servos);
-    for servo in &mut bus.servos {
-        servo.set(RETURN_DELAY, u16::from(delay.0));
-    }
     let request = Request::Read {
         address: PRESENT_POSITION.address,
         count: 2,
     };
     let mut now_ns = 0;
     for id in 1..=servos {
-        let mut packet = [0; MAX_PACKET];
-        let length = request.emit(id, &mut packet).unwrap_or(0);
-        for byte in &packet[..length] {
-            now_ns += BYTE_NS;
-            bus.hear(now_ns, *byte);
-        }
-        while let Some(at_ns) = bus.next_ns() {
-            bus.take(at_ns);
-            now_ns = at_ns;
+        let length = request.emit(id, &mut [0; MAX_PACKET]).unwrap_or(0);
+        now_ns += length as u64 * BYTE_NS + REPLY_NS + u64::from(delay.to_us()) * 1000;
+        for _ in 0..status_length(2) {
+            now_ns = byte_start_ns(now_ns, u64::from(id)) + BYTE_NS;
         }
     }
     now_ns as f64 * 1e-9
