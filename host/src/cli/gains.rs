@@ -260,7 +260,9 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
         r: weighed(&args.r, 1.0)?,
         time,
         sensors: args.lqg.then_some(Sensors {
-            position_step_rad: args.position_step.unwrap_or(300.0 / 1024.0 * degree),
+            position_step_rad: args
+                .position_step
+                .unwrap_or(handstand_shared::raw::Position::LSB_RAD),
             gyro_step_rad_s: args.gyro_step.unwrap_or(10.0 * degree),
             process,
         }),

@@ -13,11 +13,12 @@ use super::observed::{Options, regulator};
 use super::plant::{Parts, continuous, plant};
 use super::{DesignModel, best};
 use crate::error::{Error, Result};
-use crate::sim::closed_loop::{AX12_STEP_RAD, GYRO_STEP_RAD_S};
+use crate::sim::closed_loop::GYRO_STEP_RAD_S;
 use crate::synth::{Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
+use handstand_shared::raw::Position;
 use nalgebra::DMatrix;
 
 mod fixed;
@@ -45,7 +46,7 @@ const NONE: f64 = 0.1;
 const EXACT_RAD: f64 = 1e-4;
 
 /// Of readings rounded to a step: step / sqrt(12).
-const POSITION_RAD: f64 = AX12_STEP_RAD * 0.288_675_134_594_812_9;
+const POSITION_RAD: f64 = Position::LSB_RAD * 0.288_675_134_594_812_9;
 const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
 
 impl Timing {

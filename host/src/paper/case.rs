@@ -181,7 +181,7 @@ pub(super) fn sampled(computed: &Computed) -> Case {
 /// As [`sampled`], angles in the servo's steps.
 pub(super) fn stepped(computed: &Computed) -> Case {
     let mut case = sampled(computed);
-    case.sensor.position_resolution_rad = super::servo::STEP_RAD;
+    case.sensor.position_resolution_rad = handstand_shared::raw::Position::LSB_RAD;
     case
 }
 

@@ -85,6 +85,11 @@ impl Live {
         }
     }
 
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.inputs.len()
+    }
+
     /// How late the drive of a joint obeys, s.
     pub fn delay_s(&self, joint: usize) -> f64 {
         self.plant.joints[joint].delay_s

@@ -33,5 +33,5 @@ pub use outcome::{Limits, Outcome};
 pub use posed_plant::{Commands, PosedPlant};
 pub use random::{normal, stream};
 pub use run::Sample;
-pub use sensor::{AX12_STEP_RAD, GYRO_STEP_RAD_S, Gyro, Sensor, Velocity};
+pub use sensor::{GYRO_STEP_RAD_S, Gyro, Sensor, Velocity};
 pub use state_feedback::StateFeedback;

@@ -1,10 +1,8 @@
 //! Sensors of a loop: resolution, noise, how speeds are had.
 
 use super::random::normal;
+use handstand_shared::raw::Position;
 use rand_chacha::ChaCha8Rng;
-
-/// Step of an AX-12's angle, rad: 300 deg / 1024.
-pub const AX12_STEP_RAD: f64 = 300.0 / 1024.0 * std::f64::consts::PI / 180.0;
 
 /// Step of the paper's gyro, rad/s: 10 deg/s.
 pub const GYRO_STEP_RAD_S: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -43,7 +41,7 @@ pub struct Gyro {
 impl Sensor {
     /// 10-bit angles, speeds of the driven joints from their differences, a 10 deg/s gyro on the arms: the paper's.
     pub const PAPER: Sensor = Sensor {
-        position_resolution_rad: AX12_STEP_RAD,
+        position_resolution_rad: Position::LSB_RAD,
         position_noise_rad: 0.0,
         velocity: Velocity::Difference,
         gyro: Some(Gyro {

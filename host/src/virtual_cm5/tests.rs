@@ -1,23 +1,19 @@
-//! A robot on simulated servos.
+//! A model on simulated servos.
 
 use super::*;
 use handstand_shared::control_table::{GOAL_POSITION, PRESENT_POSITION};
 use handstand_shared::dynamixel::{BROADCAST, Request};
 
 /// The humanoid on the bar, as `virtual --robot` hangs it.
-fn robot(words: &str) -> Bus {
+fn robot(more: &str) -> Bus {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");
-    let words = format!("ids=1-18,delay=0,robot={model}{words}");
-    words
-        .parse::<crate::link::SimWords>()
-        .unwrap()
-        .set_up()
-        .unwrap()
+    let text = format!("ids=1-18,delay=0,robot={model}{more}");
+    set_up(&spec(&text).unwrap()).unwrap()
 }
 
 fn goal(bus: &mut Bus, id: u8, code: u16) {
     let data = code.to_le_bytes();
-    bus.ask(
+    bus.transact(
         id,
         Request::Write {
             address: GOAL_POSITION.address,
@@ -42,7 +38,7 @@ fn goals_of_the_servos_move_the_robot_s_joints_and_their_twins() {
         assert!((at(id) + at(id + 1) - 1024).abs() <= 1, "its twin faces it");
     }
     assert_eq!(at(5), 512, "a servo it does not hang on is free");
-    bus.ask(
+    bus.transact(
         BROADCAST,
         Request::Write {
             address: 24,
@@ -62,9 +58,9 @@ fn a_robot_that_stands_falls_without_torque() {
     goal(&mut bus, 1, 530);
     goal(&mut bus, 2, 494);
     bus.advance(3_000_000_000);
-    let states: Vec<State> = states.try_iter().collect();
+    let states: Vec<RobotState> = states.try_iter().collect();
     assert_eq!(states.len(), 300);
-    let up = |state: &State| (state.angle_rad[0] - std::f64::consts::PI).abs();
+    let up = |state: &RobotState| (state.angle_rad[0] - std::f64::consts::PI).abs();
     assert!(up(&states[0]) < 0.01);
     let farthest = states.iter().map(up).fold(0.0, f64::max);
     assert!(farthest > 1.0, "{farthest}");
@@ -74,7 +70,7 @@ fn a_robot_that_stands_falls_without_torque() {
 #[test]
 fn a_robot_that_fits_no_servos_is_refused() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");
-    for (words, said) in [
+    for (text, said) in [
         (
             format!("ids=1-3,robot={model}"),
             "servo 11, which is not there",
@@ -82,8 +78,8 @@ fn a_robot_that_fits_no_servos_is_refused() {
         (format!("robot={model},joints=1+2"), "2 driven joints"),
         ("robot=absent.toml".to_string(), "cannot read"),
     ] {
-        let words: crate::link::SimWords = words.parse().unwrap();
-        let error = words.set_up().unwrap_err().to_string();
+        let spec = spec(&text).unwrap();
+        let error = set_up(&spec).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");
     }
 }

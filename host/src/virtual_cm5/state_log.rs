@@ -1,26 +1,26 @@
-//! What a simulated robot truly does: to a file, and in a few words.
+//! Write the true state of a simulated robot to a file, and show it in one line.
 
-use handstand::bus_sim::{Bus, State};
-use handstand::{Error, Result};
+use crate::error::{Error, Result};
+use handstand_cm5_sim::{Bus, RobotState};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-/// Hears the robot's states and writes them down.
-pub struct Watch {
-    states: Option<Receiver<State>>,
+/// Receives the robot's states and writes them to a file.
+pub struct StateLog {
+    states: Option<Receiver<RobotState>>,
     log: Option<(PathBuf, BufWriter<File>)>,
     has_header: bool,
 }
 
-impl Watch {
-    /// On the robot that hangs on this bus.
+impl StateLog {
+    /// Watch the robot on this bus; write to `log`, a new file, if one is named.
     ///
     /// # Errors
     /// A file is wanted and there is no robot, or it exists, or the system refuses it.
-    pub fn of(bus: &mut Bus, log: Option<&Path>) -> Result<Watch> {
+    pub fn of(bus: &mut Bus, log: Option<&Path>) -> Result<StateLog> {
         let states = bus.robot().map(|robot| {
             let (tell, states) = channel();
             robot.watch(tell);
@@ -36,14 +36,14 @@ impl Watch {
             let file = File::create_new(path).map_err(|error| refused(path, error))?;
             Ok((path.to_path_buf(), BufWriter::new(file)))
         };
-        Ok(Watch {
+        Ok(StateLog {
             states,
             log: log.map(create).transpose()?,
             has_header: false,
         })
     }
 
-    /// Writes down what came since the last time; the newest state in words, if any came.
+    /// Write the states since the last call; returns the newest one in words, if there is one.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -79,7 +79,7 @@ fn refused(path: &Path, error: std::io::Error) -> Error {
 }
 
 // Writing to a string does not fail.
-fn header(state: &State, out: &mut String) {
+fn header(state: &RobotState, out: &mut String) {
     out.push_str("time_s");
     for (joint, drive) in (1..).zip(&state.drive) {
         let _ = write!(out, ",q{joint}_rad,dq{joint}_rad_s");
@@ -90,7 +90,7 @@ fn header(state: &State, out: &mut String) {
     out.push_str(",supply_v\n");
 }
 
-fn row(state: &State, out: &mut String) {
+fn row(state: &RobotState, out: &mut String) {
     let _ = write!(out, "{:.3}", state.time_s);
     for (joint, drive) in state.drive.iter().enumerate() {
         let (angle, speed) = (state.angle_rad[joint], state.speed_rad_s[joint]);
@@ -103,7 +103,7 @@ fn row(state: &State, out: &mut String) {
     let _ = writeln!(out, ",{:.2}", state.supply_v);
 }
 
-fn words(state: &State) -> String {
+fn words(state: &RobotState) -> String {
     let angles = state
         .angle_rad
         .iter()

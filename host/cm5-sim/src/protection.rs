@@ -1,23 +1,23 @@
-//! A motor that pushes in vain protects itself.
+//! Overload protection of a servo.
 //!
 //! The e-manual: when the load can't be held, error bit 5 is set, and if the shutdown register has that bit, the torque
-//! limit falls to 0 until it is written anew. Share and time are not published; those here are ours.
+//! limit falls to 0 until it is written again. Duty and time are not published; those here are assumed.
 
 use super::servo::Servo;
 use handstand_shared::control_table::{SHUTDOWN, TORQUE_ENABLE, TORQUE_LIMIT};
 use handstand_shared::dynamixel::ErrorBits;
 
-/// Output above which the motor counts as labouring, of full output.
-const LABOUR: f64 = 0.8;
-/// Speed below which it labours in vain, rad/s.
-const STANDSTILL_RAD_S: f64 = 0.1;
-/// How long it bears that, s.
-const PATIENCE_S: f64 = 1.0;
+/// Duty cycle from which a stalled motor is overloaded.
+const OVERLOAD_DUTY: f64 = 0.8;
+/// Speed below which the motor is stalled, rad/s.
+const STALL_RAD_S: f64 = 0.1;
+/// Time in overload until the protection trips, s.
+const TRIP_S: f64 = 1.0;
 
-/// What the servo's protection remembers.
+/// State of the overload protection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Protection {
-    in_vain_s: f64,
+    overloaded_s: f64,
     tripped: bool,
 }
 
@@ -29,17 +29,18 @@ impl Protection {
 }
 
 impl Servo {
-    /// Watches the motor for another `dt_s`.
+    /// Update the protection after another `dt_s`.
     pub(super) fn protect(&mut self, dt_s: f64) {
-        let output = self.output().duty(self.shaft.angle_rad);
-        let in_vain = output.abs() >= LABOUR && self.shaft.speed_rad_s.abs() < STANDSTILL_RAD_S;
+        let duty = self.regulator().duty(self.shaft.angle_rad);
+        let is_overloaded =
+            duty.abs() >= OVERLOAD_DUTY && self.shaft.speed_rad_s.abs() < STALL_RAD_S;
         let protection = &mut self.protection;
-        protection.in_vain_s = if in_vain {
-            protection.in_vain_s + dt_s
+        protection.overloaded_s = if is_overloaded {
+            protection.overloaded_s + dt_s
         } else {
             0.0
         };
-        if protection.in_vain_s >= PATIENCE_S {
+        if protection.overloaded_s >= TRIP_S {
             self.overload();
         }
     }
@@ -47,7 +48,7 @@ impl Servo {
     /// Trips the protection.
     pub fn overload(&mut self) {
         self.protection = Protection {
-            in_vain_s: 0.0,
+            overloaded_s: 0.0,
             tripped: true,
         };
         if ErrorBits(self.get(SHUTDOWN) as u8).has(ErrorBits::OVERLOAD) {
@@ -56,7 +57,7 @@ impl Servo {
         }
     }
 
-    /// The torque limit was written: it is ready again, unless that was 0.
+    /// The torque limit was written: the servo recovers unless it was 0.
     pub(super) fn recover(&mut self) {
         if self.get(TORQUE_LIMIT) > 0 {
             self.protection = Protection::default();

@@ -1,15 +1,18 @@
-//! The controller, its servos and its PC, in one time: cycles of the controller.
+//! The ELF on the simulated ATmega128, with servos and PC, in one time: cycles of the controller.
 
 use crate::core::{CPU_HZ, Core, Event};
-use handstand::bus_sim::Bus;
-use handstand_shared::frame::{Decoder, MAX_FRAME};
-use handstand_shared::message::{Command, Report, decode, encode};
+use handstand_cm5_sim::{Bus, Pc, SimulatedCm5};
+use handstand_shared::dynamixel::timing::BYTE_NS;
 use std::collections::VecDeque;
 use std::path::Path;
 
 /// 62.5 ns.
 fn to_ns(cycle: u64) -> u64 {
     cycle * 1_000_000_000 / CPU_HZ
+}
+
+fn to_ms(cycle: u64) -> f64 {
+    cycle as f64 / (CPU_HZ as f64 / 1000.0)
 }
 
 fn to_cycle(ns: u64) -> u64 {
@@ -19,41 +22,29 @@ fn to_cycle(ns: u64) -> u64 {
 const TRANSMIT: u8 = 1 << 2;
 const RECEIVE: u8 = 1 << 3;
 
-/// What was noticed while running.
+/// Observations beside what arrives at the PC.
 #[derive(Debug, Clone, Default)]
-pub struct Seen {
-    /// Reports that arrived whole, each with the cycle of its last stop bit.
-    pub reports: Vec<(u64, Report)>,
-    /// Frames that arrived damaged.
-    pub bad_frames: usize,
+pub struct Observed {
     /// Cycles in which the controller was reset.
     pub resets: Vec<u64>,
     /// Direction changes before the last stop bit, and bytes sent while not transmitting: always a fault.
     pub direction_faults: usize,
     /// The most bytes that ever waited unread at the bus's receiver; the hardware holds two.
     pub most_waiting: usize,
-    /// Bytes on the bus in either direction.
-    pub bus_bytes: u64,
-    /// Bytes to the PC.
-    pub link_bytes: u64,
     /// Port B's charger pin was driven low.
     pub charged: bool,
-    /// Raw bytes to the PC, for the transparent adapter.
-    pub raw: Vec<u8>,
-    /// Marks on port A.
-    pub marks: Vec<(u64, u8)>,
 }
 
-/// The bench.
-pub struct Rig {
+/// A CM-5 that executes the ELF.
+pub struct ElfCm5 {
     /// The controller.
     pub core: Core,
     /// The servos.
     pub bus: Bus,
     /// By how much the servos' clock is ahead of the controller's, ns: it decides when their motor interrupts come.
     pub bus_ahead_ns: u64,
-    /// What was noticed.
-    pub seen: Seen,
+    /// Observations.
+    pub seen: Observed,
     /// Bytes on the bus with the cycles their stop bits end, whoever sent them; kept where there is a list.
     pub trace: Option<Vec<(u64, u8)>>,
     port_e: u8,
@@ -64,16 +55,15 @@ pub struct Rig {
     link_free: u64,
     /// Bytes from the PC, each with the cycle its stop bit ends.
     to_link: VecDeque<(u64, u8)>,
-    decoder: Decoder,
-    sequence: u8,
+    pc: Pc,
 }
 
-impl Rig {
+impl ElfCm5 {
     /// A controller that just got power, with 18 servos.
     ///
     /// # Errors
     /// The ELF cannot be loaded.
-    pub fn new(elf: &Path) -> Result<Rig, String> {
+    pub fn new(elf: &Path) -> Result<ElfCm5, String> {
         let mut core = Core::load(elf)?;
         // Buttons up, link plugged in, gyro at rest.
         (4..8).for_each(|pin| core.pin('E', pin, true));
@@ -82,31 +72,19 @@ impl Rig {
         core.adc(3, 2500);
         // Erased, not zero.
         core.eeprom().fill(0xff);
-        Ok(Rig {
+        Ok(ElfCm5 {
             core,
             bus: Bus::new(1..=18),
             bus_ahead_ns: 0,
-            seen: Seen::default(),
+            seen: Observed::default(),
             trace: None,
             port_e: 0,
             turned: 0,
             bus_free: 0,
             link_free: 0,
             to_link: VecDeque::new(),
-            decoder: Decoder::default(),
-            sequence: 0,
+            pc: Pc::default(),
         })
-    }
-
-    /// Milliseconds since power-on.
-    pub fn now_ms(&self) -> f64 {
-        self.core.cycle() as f64 / (CPU_HZ as f64 / 1000.0)
-    }
-
-    /// Runs on for this long, ms.
-    pub fn run_ms(&mut self, ms: f64) {
-        let until = self.core.cycle() + (ms * CPU_HZ as f64 / 1000.0) as u64;
-        self.run_until(until);
     }
 
     /// Runs until this cycle.
@@ -143,12 +121,11 @@ impl Rig {
             let Some((_, byte)) = self.bus.take(to_ns(end) + self.bus_ahead_ns) else {
                 break;
             };
-            self.seen.bus_bytes += 1;
             self.trace
                 .iter_mut()
                 .for_each(|trace| trace.push((end, byte)));
             // Only a bus that listens from the start bit on hears.
-            let begin = end.saturating_sub(to_cycle(handstand::bus_sim::BYTE_NS));
+            let begin = end.saturating_sub(to_cycle(BYTE_NS));
             if self.port_e & (TRANSMIT | RECEIVE) == RECEIVE && self.turned <= begin {
                 self.core.uart_in(0, byte);
             }
@@ -166,14 +143,13 @@ impl Rig {
             Event::Bus(cycle, byte) => {
                 let begin = cycle.max(self.bus_free);
                 self.bus_free = begin + self.core.byte_cycles(0);
-                self.seen.bus_bytes += 1;
                 let end = self.bus_free;
                 self.trace
                     .iter_mut()
                     .for_each(|trace| trace.push((end, byte)));
                 if self.port_e & (TRANSMIT | RECEIVE) == TRANSMIT {
                     let end_ns = to_ns(self.bus_free) + self.bus_ahead_ns;
-                    self.bus.hear(end_ns, byte);
+                    self.bus.receive(end_ns, byte);
                 } else {
                     self.seen.direction_faults += 1;
                 }
@@ -181,19 +157,7 @@ impl Rig {
             Event::Link(cycle, byte) => {
                 let begin = cycle.max(self.link_free);
                 self.link_free = begin + self.core.byte_cycles(1);
-                self.seen.link_bytes += 1;
-                self.seen.raw.push(byte);
-                match self
-                    .decoder
-                    .push(byte)
-                    .map(|body| body.map(decode::<Report>))
-                {
-                    Some(Ok(Ok(report))) => {
-                        self.seen.reports.push((self.link_free, report.message))
-                    }
-                    Some(_) => self.seen.bad_frames += 1,
-                    None => {}
-                }
+                self.pc.receive(to_ms(self.link_free), byte);
             }
             Event::PortE(cycle, value) => {
                 let turned = (self.port_e ^ value) & TRANSMIT != 0;
@@ -208,7 +172,7 @@ impl Rig {
             }
             Event::PortB(_, value) => self.seen.charged |= value & 1 << 5 == 0,
             Event::PortC(..) => {}
-            Event::Mark(cycle, value) => self.seen.marks.push((cycle, value)),
+            Event::Mark(..) => {}
             Event::Reset(cycle) => {
                 self.seen.resets.push(cycle);
                 self.port_e = 0;
@@ -218,33 +182,47 @@ impl Rig {
         }
     }
 
-    /// Queues raw bytes from the PC, at the line's own pace; when the last will have arrived, cycles.
-    pub fn type_bytes(&mut self, bytes: &[u8]) -> u64 {
+    /// When the last byte queued by the PC arrives, ms since power-on.
+    pub fn arrival_ms(&self) -> f64 {
+        let last = self.to_link.back().map(|(end, _)| *end);
+        to_ms(last.unwrap_or_else(|| self.core.cycle()))
+    }
+}
+
+impl SimulatedCm5 for ElfCm5 {
+    fn run_ms(&mut self, ms: f64) {
+        let until = self.core.cycle() + (ms * CPU_HZ as f64 / 1000.0) as u64;
+        self.run_until(until);
+    }
+
+    fn now_ms(&self) -> f64 {
+        to_ms(self.core.cycle())
+    }
+
+    fn send_bytes(&mut self, bytes: &[u8]) {
         const BYTE: u64 = CPU_HZ * 10 / 57_600;
-        let mut end = self.core.cycle();
-        if let Some((last, _)) = self.to_link.back() {
-            end = end.max(*last);
-        }
+        let last = self.to_link.back().map_or(0, |(end, _)| *end);
+        let mut end = self.core.cycle().max(last);
         for byte in bytes {
             end += BYTE;
             self.to_link.push_back((end, *byte));
         }
-        end
     }
 
-    /// Queues a command in its frame; when its last byte will have arrived, cycles.
-    pub fn say(&mut self, command: &Command) -> u64 {
-        let mut frame = [0; MAX_FRAME + 1];
-        let body: &mut [u8; MAX_FRAME] = (&mut frame[1..]).try_into().expect("its length");
-        let length = encode(self.sequence, command, body).expect("every command fits");
-        self.sequence = self.sequence.wrapping_add(1);
-        // The zero in front ends whatever noise came before, and tells a frame from a servo's packet.
-        let from = usize::from(!matches!(command, Command::Hello { .. } | Command::Mode(_)));
-        self.type_bytes(&frame[from..=length])
+    fn pc(&self) -> &Pc {
+        &self.pc
     }
 
-    /// Sequence number of the command said last.
-    pub fn last_sequence(&self) -> u8 {
-        self.sequence.wrapping_sub(1)
+    fn pc_mut(&mut self) -> &mut Pc {
+        &mut self.pc
+    }
+
+    fn bus(&mut self) -> &mut Bus {
+        &mut self.bus
+    }
+
+    fn set_gyro(&mut self, code: u16) {
+        // The least voltage of that code.
+        self.core.adc(3, (u32::from(code) * 5000).div_ceil(1023));
     }
 }

@@ -1,10 +1,10 @@
-//! A servo's own motor with nothing hanging on it: the default when no robot is simulated.
+//! An unloaded servo shaft: the default when no robot is simulated.
 
-use super::output::Output;
+use super::regulator::Regulator;
 
-/// Angle and speed of an unloaded shaft.
+/// Angle and speed of a servo shaft.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motor {
+pub struct Shaft {
     /// Angle from the middle of the range, rad.
     pub angle_rad: f64,
     /// Speed, rad/s.
@@ -18,13 +18,13 @@ const TIME_CONSTANT_S: f64 = 0.04;
 /// Smallest output that moves it, of full output: the paper's dead zone of 7 to 10 %.
 const DEAD_ZONE: f64 = 0.08;
 
-impl Motor {
-    /// Goes on by `dt_s` under an output of the servo's regulator.
-    pub fn step(&mut self, output: &Output, dt_s: f64) {
-        let duty = output.duty(self.angle_rad);
+impl Shaft {
+    /// Advance the unloaded shaft by `dt_s` under the regulator's output.
+    pub fn step(&mut self, regulator: &Regulator, dt_s: f64) {
+        let duty = regulator.duty(self.angle_rad);
         let moving = if duty.abs() > DEAD_ZONE { duty } else { 0.0 };
         let wanted = moving * FULL_SPEED_RAD_S;
-        let wanted = wanted.clamp(-output.speed_limit_rad_s, output.speed_limit_rad_s);
+        let wanted = wanted.clamp(-regulator.speed_limit_rad_s, regulator.speed_limit_rad_s);
         self.speed_rad_s += (wanted - self.speed_rad_s) * (dt_s / TIME_CONSTANT_S).min(1.0);
         let next = self.angle_rad + self.speed_rad_s * dt_s;
         self.angle_rad = next.clamp(-2.617, 2.617);

@@ -1,18 +1,16 @@
-//! A CM-5 without hardware, on a PC: queues, simulated servos and a simulated clock.
+//! A CM-5 board in process: queues, simulated servos and a simulated clock.
 //!
 //! Time passes on the lines alone: the logic itself takes none here, as it does on the chip, so tick times are those of the bus.
 
-use crate::app::App;
-use crate::board::Board;
-use crate::design::{LINK_BAUD, TICK_US};
+use super::bus::Bus;
+use handstand_firmware::app::App;
+use handstand_firmware::board::Board;
+use handstand_firmware::design::{LINK_BAUD, TICK_US};
+use handstand_shared::dynamixel::timing::BYTE_NS;
 use handstand_shared::message::ResetCause;
-use handstand_shared::timed_bus::TimedBus;
 use std::collections::VecDeque;
-use std::vec::Vec;
 
 const TICK_NS: u64 = TICK_US as u64 * 1000;
-/// A byte of 8N1 at 1 Mbaud, ns.
-const BUS_BYTE_NS: u64 = 10_000;
 /// A byte of 8N1 on the PC line, ns.
 const LINK_BYTE_NS: u64 = 10_000_000_000 / LINK_BAUD as u64;
 /// The chip's queue towards the PC, bytes.
@@ -21,30 +19,30 @@ const EEPROM_BYTE_NS: u64 = 8_500_000;
 /// Bytes of EEPROM.
 const EEPROM_SIZE: usize = 4096;
 
-/// The board: [`App`] runs on it as on the chip.
+/// The board on which [`App`] runs as on the chip.
 #[derive(Debug)]
-pub struct Desk<S> {
+pub struct HostBoard {
     now_ns: u64,
     next_tick_ns: u64,
     /// The servos.
-    pub bus: S,
+    pub bus: Bus,
     /// Bytes on a line, each with the moment its stop bit ends.
     from_pc: VecDeque<(u64, u8)>,
     to_pc: VecDeque<(u64, u8)>,
     /// When the line to the PC is free.
     free_ns: u64,
-    /// Buttons held down, see [`crate::panel::button`].
+    /// Buttons held down, see [`handstand_firmware::panel::button`].
     pub buttons: u8,
-    /// LEDs lit, see [`crate::panel::led`].
+    /// LEDs lit, see [`handstand_firmware::panel::led`].
     pub leds: u8,
-    /// The gyro's code, 0..=1023, if there is no robot it is fixed to.
+    /// ADC code of the gyro, 0..=1023, used where no robot is attached.
     pub gyro: u16,
-    /// The plan that was compiled in.
+    /// The plan compiled into the program.
     pub compiled: Vec<u8>,
     /// Contents of the EEPROM.
     pub eeprom: Vec<u8>,
     eeprom_ready_ns: u64,
-    /// How many more bytes of EEPROM are written before the power fails, and what the torn byte becomes.
+    /// Bytes of EEPROM written until the power fails, and the value of the torn byte.
     pub cut: Option<(u32, u8)>,
     /// The power has failed.
     pub dead: bool,
@@ -52,10 +50,10 @@ pub struct Desk<S> {
     pub reset_cause: ResetCause,
 }
 
-impl<S: TimedBus> Desk<S> {
-    /// Just switched on, the EEPROM erased.
-    pub fn new(bus: S) -> Self {
-        Desk {
+impl HostBoard {
+    /// Power on in front of these servos, the EEPROM erased.
+    pub fn new(bus: Bus) -> Self {
+        HostBoard {
             now_ns: 0,
             next_tick_ns: TICK_NS,
             bus,
@@ -66,7 +64,7 @@ impl<S: TimedBus> Desk<S> {
             leds: 0,
             gyro: GYRO_AT_REST,
             compiled: Vec::new(),
-            eeprom: std::vec![0xff; EEPROM_SIZE],
+            eeprom: vec![0xff; EEPROM_SIZE],
             eeprom_ready_ns: 0,
             cut: None,
             dead: false,
@@ -79,33 +77,33 @@ impl<S: TimedBus> Desk<S> {
         self.now_ns
     }
 
-    /// Queues bytes from the PC, at the line's own pace.
-    pub fn type_bytes(&mut self, bytes: &[u8]) {
+    /// Queue bytes from the PC, at the line's own pace.
+    pub fn send_bytes(&mut self, bytes: &[u8]) {
         let last_ns = self.from_pc.back().map_or(0, |(ends, _)| *ends);
         let ends = (1..).map(|count| last_ns.max(self.now_ns) + count * LINK_BYTE_NS);
         self.from_pc.extend(ends.zip(bytes.iter().copied()));
     }
 
-    /// The next byte that has arrived at the PC, and when.
-    pub fn arrived(&mut self) -> Option<(u64, u8)> {
+    /// The next byte that has arrived at the PC, and the end of its stop bit, ns.
+    pub fn take(&mut self) -> Option<(u64, u8)> {
         let (ends, _) = self.to_pc.front()?;
         (*ends <= self.now_ns).then(|| self.to_pc.pop_front())?
     }
 
-    /// Runs until `until_ns`, or until a byte for the PC has arrived if `listening`.
-    pub fn run(&mut self, app: &mut App, until_ns: u64, listening: bool) {
+    /// Runs until `until_ns`, or until a byte has arrived at the PC if `until_byte`.
+    pub fn run(&mut self, app: &mut App, until_ns: u64, until_byte: bool) {
         while !self.dead {
             app.run(self);
             self.bus.advance(self.now_ns);
             let to_pc = self.to_pc.front().map(|(ends, _)| *ends);
             let has_arrived = to_pc.is_some_and(|ends| ends <= self.now_ns);
-            if self.now_ns >= until_ns || (listening && has_arrived) {
+            if self.now_ns >= until_ns || (until_byte && has_arrived) {
                 return;
             }
             let next = [
                 Some(self.next_tick_ns),
                 self.from_pc.front().map(|(ends, _)| *ends),
-                to_pc.filter(|_| listening),
+                to_pc.filter(|_| until_byte),
                 self.bus.next_ns(),
             ];
             // What lies in the past was offered and not taken.
@@ -115,7 +113,7 @@ impl<S: TimedBus> Desk<S> {
     }
 }
 
-impl<S: TimedBus> Board for Desk<S> {
+impl Board for HostBoard {
     fn clock(&self) -> u16 {
         (self.now_ns / 500) as u16
     }
@@ -133,11 +131,11 @@ impl<S: TimedBus> Board for Desk<S> {
 
     fn bus_send(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.now_ns += BUS_BYTE_NS;
-            self.bus.hear(self.now_ns, *byte);
+            self.now_ns += BYTE_NS;
+            self.bus.receive(self.now_ns, *byte);
         }
         // Who drives the bus does not hear it: a byte that began meanwhile is missed.
-        while self.bus.take(self.now_ns + BUS_BYTE_NS - 1).is_some() {}
+        while self.bus.take(self.now_ns + BYTE_NS - 1).is_some() {}
     }
 
     fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
@@ -189,7 +187,8 @@ impl<S: TimedBus> Board for Desk<S> {
     }
 
     fn gyro(&mut self) -> u16 {
-        self.bus.rate_rad_s().map_or(self.gyro, gyro_code)
+        let robot = self.bus.robot();
+        robot.map_or(self.gyro, |robot| gyro_code(robot.rate_rad_s()))
     }
 
     fn compiled_plan(&self, at: u16) -> Option<u8> {

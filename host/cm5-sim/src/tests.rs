@@ -1,10 +1,11 @@
 use super::*;
 use handstand_shared::control_table::*;
+use handstand_shared::dynamixel::timing::BYTE_NS;
 use handstand_shared::dynamixel::{BROADCAST, Request};
 use handstand_shared::raw::Position;
 
 fn send(bus: &mut Bus, now_ns: u64, bytes: &[u8]) -> Vec<(u64, u8)> {
-    bytes.iter().for_each(|byte| bus.hear(now_ns, *byte));
+    bytes.iter().for_each(|byte| bus.receive(now_ns, *byte));
     std::iter::from_fn(|| bus.take(u64::MAX)).collect()
 }
 
@@ -31,9 +32,9 @@ fn an_eeprom_write_silences_a_servo_and_a_ram_write_does_not() {
         address: register.address,
         data,
     };
-    bus.ask(1, write(LED, &[1]));
+    bus.transact(1, write(LED, &[1]));
     assert_eq!(
-        bus.ask(
+        bus.transact(
             1,
             Request::Read {
                 address: 25,
@@ -42,9 +43,9 @@ fn an_eeprom_write_silences_a_servo_and_a_ram_write_does_not() {
         ),
         [1]
     );
-    bus.ask(1, write(MAX_TEMPERATURE, &[80]));
+    bus.transact(1, write(MAX_TEMPERATURE, &[80]));
     assert_eq!(
-        bus.ask(
+        bus.transact(
             1,
             Request::Read {
                 address: 11,
@@ -55,7 +56,7 @@ fn an_eeprom_write_silences_a_servo_and_a_ram_write_does_not() {
     );
     bus.advance(7_000_000);
     assert_eq!(
-        bus.ask(
+        bus.transact(
             1,
             Request::Read {
                 address: 11,
@@ -69,7 +70,7 @@ fn an_eeprom_write_silences_a_servo_and_a_ram_write_does_not() {
 #[test]
 fn a_value_out_of_range_changes_nothing() {
     let mut bus = Bus::new([1]);
-    bus.ask(
+    bus.transact(
         1,
         Request::Write {
             address: TORQUE_ENABLE.address,
@@ -77,7 +78,7 @@ fn a_value_out_of_range_changes_nothing() {
         },
     );
     assert!(!bus.any_torque());
-    bus.ask(
+    bus.transact(
         1,
         Request::Write {
             address: PRESENT_POSITION.address,
@@ -92,7 +93,7 @@ fn a_value_out_of_range_changes_nothing() {
 fn a_goal_moves_the_shaft_near_it_and_torque_off_stops_it() {
     let mut bus = Bus::new([1, 2]);
     let goal = 700u16.to_le_bytes();
-    bus.ask(
+    bus.transact(
         1,
         Request::Write {
             address: GOAL_POSITION.address,
@@ -106,7 +107,7 @@ fn a_goal_moves_the_shaft_near_it_and_torque_off_stops_it() {
         (1..=4).contains(&error),
         "the dead zone leaves a few codes, not {error}"
     );
-    bus.ask(
+    bus.transact(
         BROADCAST,
         Request::Write {
             address: 24,
@@ -125,7 +126,7 @@ fn wheel_mode_turns_by_its_command() {
     bus.servos[0].set(CCW_LIMIT, 0);
     bus.servos[0].set(TORQUE_ENABLE, 1);
     bus.servos[0].set(MOVING_SPEED, 1024 + 512);
-    assert!((bus.servos[0].output().duty(0.0) + 0.5).abs() < 1e-3);
+    assert!((bus.servos[0].regulator().duty(0.0) + 0.5).abs() < 1e-3);
     bus.advance(200_000_000);
     assert!(bus.servos[0].shaft.angle_rad < -0.2);
     assert!(Position(bus.servos[0].get(PRESENT_POSITION)) < Position::CENTRE);
@@ -149,12 +150,12 @@ fn faults_do_what_their_names_say() {
         .sum();
     assert_eq!(wrong, 1);
     assert_eq!(answers(|f| f.echo = true)[..6], ping);
-    let misheard = answers(|f| f.mishear = 1.0);
-    assert_eq!(misheard, [0xff, 0xff, 1, 2, 16, 0xec]);
+    let corrupted = answers(|f| f.corrupt_request = 1.0);
+    assert_eq!(corrupted, [0xff, 0xff, 1, 2, 16, 0xec]);
 }
 
 #[test]
-fn a_wrong_checksum_is_complained_of_and_not_obeyed() {
+fn a_wrong_checksum_is_reported_and_not_executed() {
     let mut bus = Bus::new([1, 2]);
     // WRITE torque enable 1 to servo 1, its sum one too large.
     let answer = send(&mut bus, 0, &[0xff, 0xff, 1, 4, 3, 24, 1, 0xdf]);
@@ -190,7 +191,7 @@ fn an_overloaded_servo_lets_go_until_its_torque_limit_is_written() {
         data,
     };
     bus.servos[0].jammed = true;
-    bus.ask(
+    bus.transact(
         1,
         Request::Write {
             address: GOAL_POSITION.address,
@@ -201,27 +202,27 @@ fn an_overloaded_servo_lets_go_until_its_torque_limit_is_written() {
     assert!(bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 1023);
     bus.advance(1_100_000_000);
     assert!(!bus.any_torque() && bus.servos[0].get(TORQUE_LIMIT) == 0);
-    assert_eq!(bus.servos[0].output().duty(0.0), 0.0);
+    assert_eq!(bus.servos[0].regulator().duty(0.0), 0.0);
     let ping = |bus: &mut Bus| send(bus, 1_200_000_000, &[0xff, 0xff, 1, 2, 1, 0xfb])[4].1;
     assert_eq!(ping(&mut bus), 32);
-    bus.ask(1, write(TORQUE_ENABLE, &[1]));
+    bus.transact(1, write(TORQUE_ENABLE, &[1]));
     assert_eq!(
-        bus.servos[0].output().duty(0.0),
+        bus.servos[0].regulator().duty(0.0),
         0.0,
         "that alone is not enough"
     );
     bus.servos[0].jammed = false;
-    bus.ask(1, write(TORQUE_LIMIT, &[0xff, 3]));
+    bus.transact(1, write(TORQUE_LIMIT, &[0xff, 3]));
     assert_eq!(ping(&mut bus), 0);
     bus.advance(2_000_000_000);
     assert!(bus.servos[0].get(PRESENT_POSITION) > 850);
 }
 
 #[test]
-fn only_the_servo_addressed_answers_and_nobody_a_broadcast() {
+fn only_the_servo_addressed_replies_and_none_to_a_broadcast() {
     let mut bus = Bus::new([1, 2, 3]);
     assert_eq!(
-        bus.ask(
+        bus.transact(
             2,
             Request::Read {
                 address: ID.address,
@@ -230,7 +231,7 @@ fn only_the_servo_addressed_answers_and_nobody_a_broadcast() {
         ),
         [2]
     );
-    assert_eq!(bus.ask(BROADCAST, Request::Ping), [0u8; 0]);
-    assert_eq!(bus.ask(9, Request::Ping), [0u8; 0]);
+    assert_eq!(bus.transact(BROADCAST, Request::Ping), [0u8; 0]);
+    assert_eq!(bus.transact(9, Request::Ping), [0u8; 0]);
     assert_eq!(bus.next_ns(), None);
 }

@@ -1,15 +1,15 @@
-//! Requests that arrive with a wrong checksum.
+//! Detect requests that arrive with a wrong checksum.
 
 use handstand_shared::dynamixel::WHOLE_SUM;
 
-/// Follows the packets on the line as a servo does, whatever their sum.
+/// Follows the packets on the line as a servo does, whatever their checksum.
 #[derive(Debug, Default)]
-pub(super) struct Ear {
+pub(super) struct BadChecksum {
     bytes: Vec<u8>,
 }
 
-impl Ear {
-    /// Takes the next byte; the id a packet was for, if it ends one whose checksum is wrong.
+impl BadChecksum {
+    /// Take the next byte; returns the addressed id when it ends a packet with a wrong checksum.
     pub fn push(&mut self, byte: u8) -> Option<u8> {
         self.bytes.push(byte);
         let whole = match self.bytes[..] {

@@ -1,8 +1,8 @@
-//! One AX-12: its control table and what it measures.
+//! One AX-12: control table and measured values.
 
 use super::fault::Faults;
-use super::motor::Motor;
-use super::overload::Protection;
+use super::protection::Protection;
+use super::shaft::Shaft;
 use handstand_shared::control_table::*;
 use handstand_shared::raw::{Position, Signed};
 
@@ -17,12 +17,12 @@ pub struct Servo {
     pub(super) silent_until_ns: u64,
     /// Overload protection.
     pub protection: Protection,
-    /// Tells servos of one id apart: the first of an id has the id itself.
+    /// Distinguishes servos with the same id: the first one has the id itself.
     pub(super) serial: u64,
     /// What goes wrong with its answers.
     pub faults: Faults,
-    /// The shaft. Set it from outside to hang a robot on it; `free` then has to be false.
-    pub shaft: Motor,
+    /// The shaft. A plant that moves it sets it from outside; `free` is then false.
+    pub shaft: Shaft,
     /// Whether the shaft moves on its own, without load.
     pub free: bool,
     /// Whether something blocks the shaft.
@@ -33,7 +33,7 @@ pub struct Servo {
     pub supply_v: f64,
     /// Temperature, degrees Celsius.
     pub temperature: f64,
-    /// Requests heard while silent after an EEPROM write, or dead.
+    /// Requests ignored while silent after an EEPROM write, or dead.
     pub ignored: u64,
 }
 
@@ -47,7 +47,7 @@ impl Servo {
             protection: Protection::default(),
             serial: u64::from(id),
             faults: Faults::none(u64::from(id)),
-            shaft: Motor {
+            shaft: Shaft {
                 angle_rad: 0.0,
                 speed_rad_s: 0.0,
             },
@@ -99,22 +99,22 @@ impl Servo {
         self.get(TORQUE_ENABLE) != 0
     }
 
-    /// Whether it runs at the line's speed; a UART bears 3 %.
+    /// Whether it runs at the line's speed; a UART tolerates 3 %.
     pub(super) fn understands(&self, line_baud: u32) -> bool {
         let own = f64::from(baud_of(self.get(BAUD) as u8));
         (f64::from(line_baud) / own - 1.0).abs() < 0.03
     }
 
-    /// Goes on by `dt_s`, if the shaft is its own, and measures.
+    /// Advance by `dt_s`, the shaft too if it is free, and measure.
     pub fn step(&mut self, dt_s: f64) {
-        let output = self.output();
+        let regulator = self.regulator();
         if self.jammed {
             self.shaft.speed_rad_s = 0.0;
         } else if self.free {
-            self.shaft.step(&output, dt_s);
+            self.shaft.step(&regulator, dt_s);
         }
         if self.free {
-            self.load = output.duty(self.shaft.angle_rad);
+            self.load = regulator.duty(self.shaft.angle_rad);
         }
         self.protect(dt_s);
         self.measure();

@@ -1,15 +1,14 @@
-//! The position regulator and wheel mode: what drives a servo's motor.
+//! Position regulator and wheel mode of a servo: from registers to duty cycle.
 
-use super::motor::Motor;
 use super::servo::Servo;
+use super::shaft::Shaft;
 use handstand_shared::control_table::*;
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
 
-/// What the regulator makes of the registers.
+/// The regulator as the registers set it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Output {
-    /// Share of full output, with torque off nothing.
-    drive: Drive,
+pub struct Regulator {
+    mode: Regulation,
     /// Torque limit, of full output.
     pub limit: f64,
     /// Largest speed, rad/s.
@@ -17,7 +16,7 @@ pub struct Output {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Drive {
+enum Regulation {
     Off,
     Wheel(f64),
     Joint {
@@ -28,13 +27,13 @@ enum Drive {
     },
 }
 
-impl Output {
-    /// Share of full output at this angle, counter-clockwise positive.
+impl Regulator {
+    /// Duty cycle at this angle, -1 to 1, counter-clockwise positive.
     pub fn duty(&self, angle_rad: f64) -> f64 {
-        let duty = match self.drive {
-            Drive::Off => 0.0,
-            Drive::Wheel(output) => output,
-            Drive::Joint {
+        let duty = match self.mode {
+            Regulation::Off => 0.0,
+            Regulation::Wheel(output) => output,
+            Regulation::Joint {
                 goal_rad,
                 margin_rad,
                 slope_rad,
@@ -53,8 +52,8 @@ impl Output {
         duty.clamp(-self.limit, self.limit)
     }
 
-    /// The same where the shaft moves: nothing that would speed it up beyond the largest speed.
-    pub fn duty_in_motion(&self, shaft: &Motor) -> f64 {
+    /// The same for a moving shaft: no duty that accelerates it beyond its speed limit.
+    pub fn duty_in_motion(&self, shaft: &Shaft) -> f64 {
         let duty = self.duty(shaft.angle_rad);
         let is_fast = shaft.speed_rad_s.abs() > self.speed_limit_rad_s;
         match is_fast && duty * shaft.speed_rad_s > 0.0 {
@@ -65,25 +64,25 @@ impl Output {
 
     /// Whether torque is on.
     pub fn is_on(&self) -> bool {
-        self.drive != Drive::Off
+        self.mode != Regulation::Off
     }
 }
 
 impl Servo {
-    /// What drives its motor now.
-    pub fn output(&self) -> Output {
+    /// The regulator now.
+    pub fn regulator(&self) -> Regulator {
         let wheel = self.get(CW_LIMIT) == 0 && self.get(CCW_LIMIT) == 0;
-        let drive = if !self.torque_is_on() {
-            Drive::Off
+        let mode = if !self.torque_is_on() {
+            Regulation::Off
         } else if wheel {
             let command = Signed(self.get(MOVING_SPEED)).get();
-            Drive::Wheel(f64::from(command) * Signed::OUTPUT_LSB)
+            Regulation::Wheel(f64::from(command) * Signed::OUTPUT_LSB)
         } else {
             self.joint()
         };
         let speed = MovingSpeed(self.get(MOVING_SPEED));
-        Output {
-            drive,
+        Regulator {
+            mode,
             limit: f64::from(self.get(TORQUE_LIMIT)) / 1023.0,
             speed_limit_rad_s: if wheel {
                 f64::INFINITY
@@ -93,7 +92,7 @@ impl Servo {
         }
     }
 
-    fn joint(&self) -> Drive {
+    fn joint(&self) -> Regulation {
         let goal = Position(self.get(GOAL_POSITION));
         let ccw = goal.to_rad() > self.shaft.angle_rad;
         let (margin, slope) = if ccw {
@@ -103,7 +102,7 @@ impl Servo {
         };
         // The slope snaps to the next lower power of two: 2, 4, .. 128.
         let slope = 1 << self.get(slope).clamp(2, 128).ilog2();
-        Drive::Joint {
+        Regulation::Joint {
             goal_rad: goal.to_rad(),
             margin_rad: f64::from(self.get(margin)) * Position::LSB_RAD,
             slope_rad: f64::from(slope) * Position::LSB_RAD,

@@ -1,33 +1,33 @@
-//! What can go wrong with a servo's answers.
+//! Faults of a simulated servo's replies.
 
 use rand::Rng as _;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-/// Faults of one servo; probabilities are per answer. None at first.
+/// Faults of one servo; probabilities are per reply, 0 to 1.
 #[derive(Debug, Clone)]
 pub struct Faults {
-    /// It is not there at all.
+    /// The servo is absent.
     pub dead: bool,
-    /// An answer does not come.
+    /// A reply is lost.
     pub drop: f64,
-    /// One bit of an answer is wrong.
+    /// One bit of a reply is flipped.
     pub flip: f64,
-    /// An answer comes late ...
+    /// A reply is late ...
     pub late: f64,
     /// ... by this much, ns.
     pub late_ns: u64,
-    /// An answer carries another servo's id.
+    /// A reply carries another servo's id.
     pub wrong_id: f64,
-    /// It hears a request with a wrong bit: it does nothing, and complains of the checksum.
-    pub mishear: f64,
+    /// A request reaches it corrupted: it does nothing and reports a checksum error.
+    pub corrupt_request: f64,
     /// The wiring sends the controller's own bytes back.
     pub echo: bool,
     rng: ChaCha8Rng,
 }
 
 impl Faults {
-    /// No faults; those switched on later happen by this seed.
+    /// No faults; `seed` draws those that are switched on later.
     pub fn none(seed: u64) -> Self {
         Faults {
             dead: false,
@@ -36,13 +36,13 @@ impl Faults {
             late: 0.0,
             late_ns: 1_000_000,
             wrong_id: 0.0,
-            mishear: 0.0,
+            corrupt_request: 0.0,
             echo: false,
             rng: ChaCha8Rng::seed_from_u64(seed),
         }
     }
 
-    /// What becomes of an answer, and how much later it comes, ns.
+    /// Apply the faults to a reply: its bytes and extra delay, ns; `None` when it is lost.
     pub fn pass(&mut self, mut answer: Vec<u8>) -> Option<(Vec<u8>, u64)> {
         if self.dead || self.happens(self.drop) {
             return None;
@@ -68,9 +68,9 @@ impl Faults {
         Some((answer, late_ns))
     }
 
-    /// Whether the next request is heard with a wrong bit.
-    pub(super) fn mishears(&mut self) -> bool {
-        self.happens(self.mishear)
+    /// Whether the next request arrives corrupted.
+    pub(super) fn corrupts_request(&mut self) -> bool {
+        self.happens(self.corrupt_request)
     }
 
     fn happens(&mut self, probability: f64) -> bool {

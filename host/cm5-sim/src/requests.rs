@@ -1,15 +1,18 @@
-//! What a servo does with requests.
+//! Execute Dynamixel requests on a servo's control table.
 
 use super::servo::Servo;
 use handstand_shared::control_table::*;
+use handstand_shared::dynamixel::timing::EEPROM_NS;
 use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request, Status};
 
-/// An EEPROM write keeps a servo silent, per byte, ns.
-const EEPROM_NS: u64 = 6_000_000;
-
 impl Servo {
-    /// Obeys a request heard at `now_ns`; the answer and its delay in ns.
-    pub(super) fn hear(&mut self, now_ns: u64, id: u8, request: Request) -> Option<(Vec<u8>, u64)> {
+    /// Execute a request received at `now_ns`; returns the reply's bytes and its delay, ns.
+    pub(super) fn execute(
+        &mut self,
+        now_ns: u64,
+        id: u8,
+        request: Request,
+    ) -> Option<(Vec<u8>, u64)> {
         if id != self.id() && id != BROADCAST {
             return None;
         }
@@ -17,14 +20,14 @@ impl Servo {
             self.ignored += 1;
             return None;
         }
-        if self.faults.mishears() {
-            return self.mishear(id);
+        if self.faults.corrupts_request() {
+            return self.reject_checksum(id);
         }
         self.measure();
         let (me, delay_ns) = (self.id(), self.delay_ns());
         let mut error = ErrorBits(self.alarm());
         let mut data = Vec::new();
-        let answers_from = match request {
+        let replies_from = match request {
             Request::Ping => 0,
             Request::Read { address, count } => {
                 let to = usize::from(address) + usize::from(count);
@@ -68,27 +71,27 @@ impl Servo {
                 return None;
             }
         };
-        if id == BROADCAST || self.get(STATUS_LEVEL) < answers_from {
+        if id == BROADCAST || self.get(STATUS_LEVEL) < replies_from {
             return None;
         }
-        self.answer(me, error, &data, delay_ns)
+        self.reply(me, error, &data, delay_ns)
     }
 
-    /// Answers a packet for `id` whose checksum was wrong; it obeys nothing.
-    pub(super) fn mishear(&mut self, id: u8) -> Option<(Vec<u8>, u64)> {
+    /// Reply to a packet for `id` with a wrong checksum; nothing is executed.
+    pub(super) fn reject_checksum(&mut self, id: u8) -> Option<(Vec<u8>, u64)> {
         if id != self.id() || self.faults.dead || self.get(STATUS_LEVEL) == 0 {
             return None;
         }
         self.measure();
         let error = ErrorBits(self.alarm()).with(ErrorBits::CHECKSUM);
-        self.answer(id, error, &[], self.delay_ns())
+        self.reply(id, error, &[], self.delay_ns())
     }
 
     fn delay_ns(&self) -> u64 {
         u64::from(self.get(RETURN_DELAY)) * 2000
     }
 
-    fn answer(
+    fn reply(
         &mut self,
         id: u8,
         error: ErrorBits,
