@@ -2,7 +2,7 @@
 //!
 //! `parse` (a file) or `conditions` (a named set) -> `case` (one robot, one controller) -> `judge` (robots drawn around it, in
 //! figures). On top of that: `sweep` (a [`quantity`] at every level), `region` (of starts), `longest_delay`, `mass_errors`
-//! (in the linear loop), and `monte_carlo` (chunks of runs) -> `journal` (on disk) -> `merge` -> `summary`.
+//! (in the linear loop), `verify` (a design, with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk) -> `merge` -> `summary`.
 
 mod case;
 mod conditions;
@@ -20,6 +20,7 @@ mod region;
 mod shard;
 mod summary;
 mod sweep;
+mod verify;
 
 #[cfg(test)]
 mod tests;
@@ -42,3 +43,4 @@ pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;
 pub use summary::{Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
+pub use verify::{LeftOut, Verification, Without, left_out, verify};
