@@ -22,9 +22,6 @@ mod robust;
 mod servo;
 mod sliding;
 
-#[cfg(test)]
-mod tests;
-
 pub use design_model::DesignModel;
 pub use info::{ControllerInfo, Design, Speeds};
 pub use known_equilibrium::KnownEquilibrium;

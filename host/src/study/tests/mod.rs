@@ -1,3 +1,5 @@
+mod controllers;
+
 use super::*;
 use crate::error::Error;
 use crate::sim::closed_loop::Velocity;
@@ -37,10 +39,10 @@ fn header(study: &Study) -> Header {
 
 /// Writes a shard's journal as the command does.
 fn shard(study: &Study, shard: Shard, file: &Path) {
-    let gains = study.case.gains().unwrap();
+    let designed = study.case.designed().unwrap();
     let mut journal = Journal::open(file, &header(study)).unwrap();
     for chunk in (0..chunks(study)).filter(|&chunk| shard.holds(chunk)) {
-        let rows = chunk_rows(study, &gains, chunk).unwrap();
+        let rows = chunk_rows(study, &designed, chunk).unwrap();
         journal.add(chunk, &rows).unwrap();
     }
 }
@@ -68,17 +70,11 @@ size = 5e-4
 "#,
     )
     .unwrap();
-    let conditions = study.case.conditions;
-    assert_eq!(
-        (study.case.design.q, study.case.design.word_bits),
-        (1.0, 16)
-    );
-    assert_eq!(
-        (conditions.clock.period_s, conditions.actuator.dead_zone),
-        (0.02, 0.07)
-    );
-    assert_eq!(conditions.sensor.velocity, Velocity::Direct);
-    assert!(conditions.sensor.gyro.is_some() && conditions.actuator.saturates);
+    let case = &study.case;
+    assert_eq!((case.control.q, case.control.word_bits), (1.0, 16));
+    assert_eq!((case.clock.period_s, case.drives.dead_zone), (0.02, 0.07));
+    assert_eq!(case.sensor.velocity, Velocity::Direct);
+    assert!(case.sensor.gyro.is_some() && case.drives.saturates);
     assert_eq!((study.judging.runs, study.judging.seed), (10, 7));
     assert_eq!(study.uncertain[0].column(), "com:2");
 }
@@ -185,12 +181,12 @@ fn a_torn_end_is_cut_off_and_done_again() {
 }
 
 fn shard_rest(study: &Study, file: &Path) {
-    let gains = study.case.gains().unwrap();
+    let designed = study.case.designed().unwrap();
     let mut journal = Journal::open(file, &header(study)).unwrap();
     for chunk in 0..chunks(study) {
         if !journal.done.contains(&chunk) {
             journal
-                .add(chunk, &chunk_rows(study, &gains, chunk).unwrap())
+                .add(chunk, &chunk_rows(study, &designed, chunk).unwrap())
                 .unwrap();
         }
     }
@@ -215,7 +211,7 @@ fn what_does_not_belong_together_is_not_merged() {
 
     // One digit changed, its sum made to fit.
     let mut journal = Journal::open(&path("c.journal"), &header(&one)).unwrap();
-    let rows = chunk_rows(&one, &one.case.gains().unwrap(), 1).unwrap();
+    let rows = chunk_rows(&one, &one.case.designed().unwrap(), 1).unwrap();
     journal.add(1, &rows.replacen("0.0", "0.1", 1)).unwrap();
     let error = merge(&[path("a.journal"), path("c.journal")]).unwrap_err();
     assert!(error.to_string().contains("chunk 1 differs"), "{error}");
@@ -237,21 +233,21 @@ fn spectral_radius_tells_who_stands_in_the_small() {
         for (link, changed) in case.robot.links.iter_mut().enumerate() {
             changed.mass_kg *= if corner >> link & 1 == 1 { 1.1 } else { 0.9 };
         }
-        let gains = case.gains().unwrap();
-        let closed = case.closed_loop(0.01).unwrap();
-        let radius = case.spectral_radius(&gains, &closed).unwrap();
+        let designed = case.designed().unwrap();
+        case.limits.fall_rad = 0.01;
+        let closed = case.closed_loop().unwrap();
+        let radius = case.spectral_radius(&designed, &closed).unwrap();
         if (radius - 1.0).abs() < 0.002 {
             continue; // too slow to be seen in time
         }
         let judging = Judging {
             runs: 8,
-            fall_rad: 0.01,
             seconds: 60.0,
             ..study.judging
         };
-        let figures = judge(&case, &judging).unwrap();
+        let figures = judge(&case, &[], &judging, &|| ()).unwrap();
         assert_eq!(
-            figures.stood == 8,
+            figures.fallen_share == 0.0,
             radius < 1.0,
             "{corner} {radius} {figures:?}"
         );
@@ -268,18 +264,21 @@ fn every_sweep_runs_and_says_what_it_is() {
         seconds: 0.05,
         ..study.judging
     };
-    for one in SWEEPS {
-        let card = one.card();
-        let ends = [card.levels[0], card.levels[card.levels.len() - 1]];
-        let ran = sweep(*one, &ends, &study.case, &judging, || ()).unwrap();
+    for one in sweeps() {
+        let (quantity, levels) = one;
+        let ends = [levels.values[0], levels.values[levels.values.len() - 1]];
+        let ran = sweep(one, &ends, &study.case, &judging, || ()).unwrap();
         assert!(ran.levels.iter().all(|l| l.figures.is_some()), "{ran:?}");
         assert_ne!(
             ran.levels[0].figures, ran.levels[1].figures,
             "{} changes nothing",
-            card.id
+            quantity.id
         );
-        let beyond = sweep(*one, &[-1.0], &study.case, &judging, || ());
-        assert_eq!(beyond.unwrap_err().exit_code(), 2, "{}", card.id);
-        assert_eq!(named(card.id).map(|s| s.card().id), Some(card.id));
+        let beyond = sweep(one, &[-1.0], &study.case, &judging, || ());
+        assert_eq!(beyond.unwrap_err().exit_code(), 2, "{}", quantity.id);
+        assert!(std::ptr::eq(
+            super::quantity(quantity.id).unwrap(),
+            quantity
+        ));
     }
 }
