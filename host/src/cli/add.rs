@@ -25,7 +25,7 @@ use handstand::{Model, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Add an effect to a model, its values fitted to logs.
+/// Add an effect to a model, its parameters fitted to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 /// Share of the robots that a robust gain may lose.
 const LOST: f64 = 0.02;
 
-/// See what gains make of robots whose masses are not the model's.
+/// Verify the robustness of gains to errors of the masses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

@@ -1,9 +1,13 @@
 //! One sample as numbers in SI.
 
-use super::header::{Cell, Header, fields, number};
+use super::header::{Cell, LogHeader, fields, number};
+use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
 use crate::model::{Column, LogColumns};
 use std::path::{Path, PathBuf};
+
+/// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take ages.
+const LONGEST_GAP_S: f64 = 100.0;
 
 /// Columns of the file, counted from 1, where a place is to be shown.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,10 +26,10 @@ pub struct Fields {
 
 /// One sample.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Row {
+pub struct LogRow {
     /// The file.
     pub path: PathBuf,
-    /// Line in the file, counted from 1; 0 in a JSON log.
+    /// Cells in the file, counted from 1; 0 in a JSON log.
     pub line: usize,
     /// Data row, counted from 0.
     pub number: usize,
@@ -51,12 +55,30 @@ pub struct Row {
     pub turned: bool,
 }
 
-impl Row {
+/// What the next row of a motion is held against.
+pub(super) struct Before<'a> {
+    pub segment: Option<&'a str>,
+    pub time_s: f64,
+    pub payload_kg: f64,
+    pub turned: bool,
+}
+
+impl LogRow {
+    /// This row as the one before the next.
+    pub(super) fn before(&self) -> Before<'_> {
+        Before {
+            segment: self.segment.as_deref(),
+            time_s: self.time_s,
+            payload_kg: self.payload_kg,
+            turned: self.turned,
+        }
+    }
+
     /// Sample `index` of a motion that came from no CSV.
-    pub(super) fn of(motion: &super::Motion, index: usize) -> Row {
+    pub(super) fn of(motion: &super::Motion, index: usize) -> LogRow {
         let joints = motion.position_rad.len();
         let at = |series: &Option<Vec<f64>>| series.as_ref().map(|values| values[index]);
-        Row {
+        LogRow {
             path: motion.source.path.clone(),
             number: index,
             fields: Fields {
@@ -76,8 +98,44 @@ impl Row {
             torque_on: motion.torque_on.as_ref().map(|values| values[index]),
             payload_kg: motion.payload_kg,
             turned: motion.turned,
-            ..Row::default()
+            ..LogRow::default()
         }
+    }
+
+    /// Why this row cannot follow `previous` within a motion, with the field that shows it; `None` if a new
+    /// motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
+    pub(super) fn follows(
+        &self,
+        previous: &Before,
+        split_at_gap_s: Option<f64>,
+    ) -> Option<Vec<(usize, LogReason)>> {
+        let (time_s, previous_s) = (self.time_s, previous.time_s);
+        let split = split_at_gap_s.is_some_and(|gap_s| time_s - previous_s > gap_s);
+        if self.segment.as_deref() != previous.segment || split {
+            return None;
+        }
+        let mut wrong = Vec::new();
+        if time_s <= previous_s {
+            let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
+            wrong.push((self.fields.time, reason));
+        }
+        if time_s - previous_s > LONGEST_GAP_S {
+            wrong.push((
+                self.fields.time,
+                LogReason::TimeJumps { time_s, previous_s },
+            ));
+        }
+        if self.payload_kg != previous.payload_kg {
+            let reason = LogReason::PayloadChanges {
+                payload_kg: self.payload_kg,
+                previous_kg: previous.payload_kg,
+            };
+            wrong.push((self.fields.payload, reason));
+        }
+        if self.turned != previous.turned {
+            wrong.push((self.fields.turned, LogReason::TurnedRound));
+        }
+        Some(wrong)
     }
 
     /// The place of a field of this row, counted from 1.
@@ -90,7 +148,7 @@ impl Row {
 }
 
 /// Turns lines of one file into rows.
-pub(super) struct Reader<'a> {
+pub(super) struct RowReader<'a> {
     columns: &'a LogColumns,
     path: &'a Path,
     separator: u8,
@@ -106,17 +164,17 @@ pub(super) struct Reader<'a> {
     input: Vec<Option<Cell>>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> RowReader<'a> {
     /// Finds every column the model names.
     ///
     /// # Errors
     /// A column that is missing or ambiguous.
-    pub fn new(path: &'a Path, columns: &'a LogColumns, header: &Header) -> Result<Self> {
+    pub fn new(path: &'a Path, columns: &'a LogColumns, header: &LogHeader) -> Result<Self> {
         let cell = |column: &Column| header.cell(&column.name);
         let maybe = |column: &Option<Column>| column.as_ref().map(cell).transpose();
         let flag = |name: &Option<String>| name.as_ref().map(|n| header.cell(n)).transpose();
         let joints = &columns.joints;
-        Ok(Reader {
+        Ok(RowReader {
             columns,
             path,
             separator: header.separator,
@@ -158,21 +216,17 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// Too few or too many fields, and needed fields that hold no finite number.
-    pub fn fill(&self, line: &str, at: usize, row: &mut Row) -> Result<()> {
+    pub fn fill(&self, line: &str, at: usize, row: &mut LogRow) -> Result<()> {
         let fields = fields(line, self.separator);
         if fields.len() != self.names.len() {
-            let column = fields.len().min(self.names.len()) + 1;
-            return Err(Error::data(
-                Place::at(self.path, at, column),
-                format!(
-                    "{} fields where the header has {}",
-                    fields.len(),
-                    self.names.len()
-                ),
-                "the line is broken off or joined with another: delete it, or record again",
+            let (found, expected) = (fields.len(), self.names.len());
+            let place = Place::at(self.path, at, found.min(expected) + 1);
+            return Err(Error::refused(
+                place,
+                LogReason::FieldCount { found, expected },
             ));
         }
-        let line = Line {
+        let line = Cells {
             reader: self,
             fields: &fields,
             at,
@@ -206,13 +260,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-struct Line<'a> {
-    reader: &'a Reader<'a>,
+struct Cells<'a> {
+    reader: &'a RowReader<'a>,
     fields: &'a [std::borrow::Cow<'a, str>],
     at: usize,
 }
 
-impl Line<'_> {
+impl Cells<'_> {
     fn maybe(&self, cell: &Option<Cell>, column: &Option<Column>) -> Result<Option<f64>> {
         match (cell, column) {
             (Some(cell), Some(column)) => self.value(cell, column).map(Some),
@@ -257,20 +311,16 @@ impl Line<'_> {
         }
     }
 
-    fn refuse(&self, cell: &Cell, wanted: &str) -> Error {
-        let (line, name) = match cell {
+    fn refuse(&self, cell: &Cell, expected: &'static str) -> Error {
+        let (line, column) = match cell {
             Cell::Field(index) => (self.at, self.reader.names[*index].as_str()),
             Cell::Constant(_, line) => (*line, "a constant"),
         };
-        let text: String = self.text(cell).chars().take(40).collect();
-        let found = match text.as_str() {
-            "" => "nothing".to_string(),
-            text => format!("'{text}'"),
+        let reason = LogReason::WrongField {
+            column: column.to_string(),
+            found: self.text(cell),
+            expected,
         };
-        Error::data(
-            Place::at(self.reader.path, line, cell.column()),
-            format!("{name}: {found} is not {wanted}"),
-            "the model reads this column: delete the line, or leave it out by a row range such as log.csv:26-139",
-        )
+        Error::refused(Place::at(self.reader.path, line, cell.column()), reason)
     }
 }

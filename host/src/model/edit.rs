@@ -89,7 +89,10 @@ fn checked(document: DocumentMut, path: &Path) -> Result<String> {
     match Model::parse(&text, path) {
         Ok(_) => Ok(text),
         // Its line is one of a text that will not be written.
-        Err(Error::Data { what, remedy, .. }) => Err(Error::data(Place::file(path), what, remedy)),
+        Err(Error::Data { reason, .. }) => Err(Error::Data {
+            place: Place::file(path),
+            reason,
+        }),
         Err(error) => Err(error),
     }
 }

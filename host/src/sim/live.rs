@@ -5,7 +5,7 @@ use super::plant::Plant;
 use super::rows::Many;
 use super::stepper::Stepper;
 use crate::error::{Error, Result};
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::{Angles, Drive, Model};
 use std::path::PathBuf;
 
@@ -133,7 +133,7 @@ pub fn hanging(model: &Model) -> Vec<f64> {
 fn nothing() -> Motion {
     Motion {
         name: String::new(),
-        source: Source {
+        source: MotionSource {
             path: PathBuf::new(),
             sha256: String::new(),
             lines: (0, 0),

@@ -4,11 +4,11 @@ use super::case::{Case, Design};
 use super::judge::Judging;
 use super::uncertain::{Distribution, Place, QUANTITIES, Uncertain};
 use crate::closed_loop::{Conditions, Gyro, Velocity};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, words};
+use crate::model::Limits;
 use crate::model::Model;
-use crate::model::limits::Limits;
 use crate::model::reader::Table;
-use crate::model::source::Source;
+use crate::model::source::TomlSource;
 use crate::model::suggest::suggest;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
@@ -71,7 +71,7 @@ impl Study {
     pub fn load(path: &Path) -> Result<Study> {
         let text =
             std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))?;
-        let source = Source {
+        let source = TomlSource {
             text: &text,
             file: path,
         };
@@ -138,18 +138,6 @@ fn set(table: &Table<'_>, key: &str, limits: Limits, place: &mut f64) -> Result<
     Ok(())
 }
 
-/// The whole number under `key`, if there is one.
-fn whole(table: &Table<'_>, key: &str, limits: Limits) -> Result<Option<f64>> {
-    match table.number(key, limits)? {
-        Some(number) if number.fract() != 0.0 => Err(table.bad(
-            key,
-            format!("`{key}` = {number} is not whole"),
-            "give a whole number",
-        )),
-        number => Ok(number),
-    }
-}
-
 fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
     table.only(&["q", "r", "delay_periods", "word_bits", "period_s"])?;
     let design = &mut case.design;
@@ -161,7 +149,7 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
         Limits::within(0.0, 20.0),
         &mut design.delay_periods,
     )?;
-    if let Some(bits) = whole(table, "word_bits", Limits::within(8.0, 32.0))? {
+    if let Some(bits) = table.whole("word_bits", Limits::within(8.0, 32.0))? {
         design.word_bits = bits as u32;
     }
     let period_s = &mut case.conditions.clock.period_s;
@@ -248,7 +236,7 @@ fn conditions(table: &Table<'_>, conditions: &mut Conditions) -> Result<()> {
 
 fn runs(table: &Table<'_>, judging: &mut Judging) -> Result<()> {
     table.only(&["count", "length_s", "start_rad", "fall_rad", "seed"])?;
-    if let Some(count) = whole(table, "count", Limits::within(1.0, 1e12))? {
+    if let Some(count) = table.whole("count", Limits::within(1.0, 1e12))? {
         judging.runs = count as usize;
     }
     set(
@@ -269,7 +257,7 @@ fn runs(table: &Table<'_>, judging: &mut Judging) -> Result<()> {
         Limits::above(0.0, 1e3),
         &mut judging.fall_rad,
     )?;
-    if let Some(seed) = whole(table, "seed", Limits::within(0.0, 9e15))? {
+    if let Some(seed) = table.whole("seed", Limits::within(0.0, 9e15))? {
         judging.seed = seed as u64;
     }
     Ok(())
@@ -281,7 +269,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     let Some(quantity) = QUANTITIES.iter().find(|quantity| quantity.id == what) else {
         let known: Vec<&str> = QUANTITIES.iter().map(|quantity| quantity.id).collect();
         let said = format!("nothing called `{what}` can be uncertain");
-        return Err(table.bad("what", said, suggest(what, &known)));
+        return Err(table.bad("what", words(said, suggest(what, &known))));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -296,7 +284,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         (Place::Whole, None) => vec![None],
         (Place::Whole, Some(_)) => {
             let said = format!("`{what}` belongs to the whole robot");
-            return Err(table.bad("link", said, "leave `link` out"));
+            return Err(table.bad("link", words(said, "leave `link` out")));
         }
         (Place::Link, Some(link)) => vec![Some(link)],
         (Place::Link, None) => (0..links).map(Some).collect(),
@@ -310,7 +298,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         };
         if all.iter().any(|other| other.column() == new.column()) {
             let said = format!("{} is drawn twice", new.column());
-            return Err(table.bad("what", said, "say it once"));
+            return Err(table.bad("what", words(said, "say it once")));
         }
         all.push(new);
     }

@@ -105,7 +105,7 @@ pub fn sweep(
         sweep.set(level, &mut case);
         let (figures, refused) = match judge(&case, judging) {
             Ok(figures) => (Some(figures), None),
-            Err(Error::Design { what, .. }) => (None, Some(what)),
+            Err(Error::Design(reason)) => (None, Some(reason.to_string())),
             Err(error) => return Err(error),
         };
         done();

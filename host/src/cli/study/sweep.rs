@@ -14,7 +14,7 @@ use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Vary one thing and see what the loop bears.
+/// Sweep one parameter of the closed loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Sweeps, or `all`

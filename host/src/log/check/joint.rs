@@ -1,8 +1,10 @@
 //! One joint's columns by themselves: range, end stops, steps, standing still.
 
-use super::finding::{Findings, Severity};
+use super::extremes::Extremes;
+use super::finding::Findings;
 use crate::error::Place;
-use crate::log::row::Row;
+use crate::log::LogReason;
+use crate::log::row::LogRow;
 use crate::model::{Drive, JointColumns};
 use std::f64::consts::{PI, TAU};
 
@@ -10,47 +12,6 @@ use std::f64::consts::{PI, TAU};
 const STUCK_S: f64 = 2.0;
 /// Stuck runs remembered.
 const RUNS: usize = 20;
-
-/// Lowest and highest value, and how often each occurs.
-#[derive(Debug, Clone, Copy)]
-struct Extremes {
-    low: (f64, usize),
-    high: (f64, usize),
-    count: usize,
-}
-
-impl Extremes {
-    const NONE: Extremes = Extremes {
-        low: (f64::INFINITY, 0),
-        high: (f64::NEG_INFINITY, 0),
-        count: 0,
-    };
-
-    fn take(&mut self, value: f64) {
-        self.count += 1;
-        let (below, above) = (value < self.low.0, value > self.high.0);
-        for (extreme, beyond) in [(&mut self.low, below), (&mut self.high, above)] {
-            if beyond {
-                *extreme = (value, 1);
-            } else if value == extreme.0 {
-                extreme.1 += 1;
-            }
-        }
-    }
-
-    fn range(&self) -> f64 {
-        (self.high.0 - self.low.0).max(0.0)
-    }
-
-    /// The extremes at which more than 5 % of the samples sit, with their share.
-    fn crowded(&self) -> impl Iterator<Item = (f64, f64)> {
-        let count = self.count.max(1) as f64;
-        [self.low, self.high]
-            .into_iter()
-            .map(move |(value, times)| (value, times as f64 / count))
-            .filter(|(_, share)| *share > 0.05)
-    }
-}
 
 /// The smallest change seen from sample to sample, and how often.
 #[derive(Debug, Default)]
@@ -124,7 +85,7 @@ impl JointCheck {
         }
     }
 
-    pub fn take(&mut self, row: &Row, joint: usize, fresh: bool, findings: &mut Findings) {
+    pub fn take(&mut self, row: &LogRow, joint: usize, fresh: bool, findings: &mut Findings) {
         let angle = row.position_rad[joint];
         let place = row.place(row.fields.position[joint]);
         if fresh {
@@ -135,9 +96,9 @@ impl JointCheck {
         if let Some(previous) = self.position_steps.previous {
             let jump = (angle - previous).abs();
             if (jump - TAU).abs() < 0.5 {
-                let what = format!("{} jumps by a whole turn", self.position_name);
-                let remedy = "the angle wraps round: log it unwrapped, or add the turns";
-                findings.add("wrap", Severity::Refuse, place.clone(), what, remedy);
+                let column = self.position_name.clone();
+                let reason = LogReason::AngleWraps { column };
+                findings.refuse("wrap", place.clone(), &reason);
             }
         }
         let moved = self.position_steps.previous != Some(angle);
@@ -189,7 +150,7 @@ impl JointCheck {
             let range = self.position.range();
             let what = format!("{name} ranges over {range:.0} rad: degrees declared as rad?");
             let remedy = "check the column's unit in the model's [log]";
-            findings.add("unit", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("unit", place.clone(), (what, remedy));
         }
     }
 
@@ -208,34 +169,31 @@ impl JointCheck {
                 still.input.range()
             );
             let remedy = "an end stop, a dead encoder, or stiction: leave the rows out unless stiction is the question";
-            findings.add("stuck", Severity::Warn, still.begin, what, remedy);
+            findings.warn("stuck", still.begin, (what, remedy));
         }
     }
 
     fn judge_extremes(&self, place: &Place, drive: &Drive, findings: &mut Findings) {
-        let wide = |extremes: &Extremes, steps: &Steps| extremes.range() > 20.0 * steps.smallest;
-        if wide(&self.position, &self.position_steps) {
-            for (value, share) in self.position.crowded() {
-                let what = format!(
-                    "{} sits at its extreme, {value:.4} rad, for {:.0} % of the samples",
-                    self.position_name,
-                    100.0 * share
-                );
-                let remedy =
-                    "an end stop, a hold, or a joint at rest: leave an end stop out by a row range";
-                findings.add("extreme", Severity::Warn, place.clone(), what, remedy);
+        let mut warn = |name: &str, unit: &str, (value, share): (f64, f64), remedy: &str| {
+            let share = 100.0 * share;
+            let what = format!(
+                "{name} sits at its extreme, {value:.4}{unit}, for {share:.0} % of the samples"
+            );
+            findings.warn("extreme", place.clone(), (what, remedy));
+        };
+        if self.position.range() > 20.0 * self.position_steps.smallest {
+            let remedy =
+                "an end stop, a hold, or a joint at rest: leave an end stop out by a row range";
+            for extreme in self.position.crowded() {
+                warn(&self.position_name, " rad", extreme, remedy);
             }
         }
         let drawn = matches!(drive, Drive::Torque | Drive::Duty(_));
-        if drawn && wide(&self.input, &self.input_steps) {
-            for (value, share) in self.input.crowded().filter(|(value, _)| *value != 0.0) {
-                let what = format!(
-                    "{} sits at its extreme, {value:.4}, for {:.0} % of the samples",
-                    self.input_name,
-                    100.0 * share
-                );
-                let remedy = "if the drive was saturated, the log may hold what was asked, not what was done";
-                findings.add("extreme", Severity::Warn, place.clone(), what, remedy);
+        if drawn && self.input.range() > 20.0 * self.input_steps.smallest {
+            let remedy =
+                "if the drive was saturated, the log may hold what was asked, not what was done";
+            for extreme in self.input.crowded().filter(|(value, _)| *value != 0.0) {
+                warn(&self.input_name, "", extreme, remedy);
             }
         }
     }
@@ -245,17 +203,19 @@ impl JointCheck {
         let Some(found) = self.position_steps.grid() else {
             return;
         };
+        let steps = format!("{name} moves in steps of {found:.3e} rad");
         let remedy =
             format!("set the resolution of {name} to {found:.3e} rad if that is the sensor's");
+        let place = place.clone();
         match self.declared {
-            None => {
-                let what = format!("{name} moves in steps of {found:.3e} rad; none is declared");
-                findings.add("step", Severity::Note, place.clone(), what, remedy);
-            }
+            None => findings.note(
+                "step",
+                place,
+                (format!("{steps}; none is declared"), &remedy),
+            ),
             Some(declared) if !(0.67..1.5).contains(&(found / declared)) => {
-                let what =
-                    format!("{name} moves in steps of {found:.3e} rad; {declared:.3e} is declared");
-                findings.add("step", Severity::Warn, place.clone(), what, remedy);
+                let what = format!("{steps}; {declared:.3e} is declared");
+                findings.warn("step", place, (what, &remedy));
             }
             Some(_) => {}
         }

@@ -35,13 +35,9 @@ fn rows(header: &str, separator: char) -> String {
 
 fn refused(text: &str, columns: &LogColumns) -> (Option<usize>, Option<usize>, String) {
     match read_text(text, columns).unwrap_err() {
-        Error::Data {
-            place,
-            what,
-            remedy,
-        } => {
-            assert!(!remedy.is_empty());
-            (place.line, place.column, what)
+        Error::Data { place, reason } => {
+            assert!(!reason.remedy().is_empty());
+            (place.line, place.column, reason.to_string())
         }
         other => panic!("{other}"),
     }
