@@ -62,18 +62,18 @@ pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
 
 /// A reason that nobody matches on.
 #[derive(Debug)]
-struct Words {
+struct PlainReason {
     what: String,
     remedy: String,
 }
 
-impl fmt::Display for Words {
+impl fmt::Display for PlainReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)
     }
 }
 
-impl Reason for Words {
+impl Reason for PlainReason {
     fn remedy(&self) -> Cow<'_, str> {
         Cow::Borrowed(&self.remedy)
     }
@@ -81,7 +81,7 @@ impl Reason for Words {
 
 /// A reason in words alone.
 pub(crate) fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
-    Words {
+    PlainReason {
         what: what.into(),
         remedy: remedy.into(),
     }

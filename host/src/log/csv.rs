@@ -2,7 +2,8 @@
 
 use super::header::LogHeader;
 use super::lines::Lines;
-use super::row::{LogRow, RowReader};
+use super::row::LogRow;
+use super::row_reader::RowReader;
 use crate::error::Result;
 use crate::model::LogColumns;
 use std::path::Path;

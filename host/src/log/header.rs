@@ -23,19 +23,19 @@ pub(super) struct LogHeader {
 
 /// Where a quantity's value comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cell {
+pub(super) enum LogCell {
     /// Field of each row, counted from 0.
     Field(usize),
     /// One number for the whole file, from the comment on this line.
     Constant(f64, usize),
 }
 
-impl Cell {
+impl LogCell {
     /// The field counted from 1, as places count; 1 for a constant.
     pub fn column(&self) -> usize {
         match self {
-            Cell::Field(index) => index + 1,
-            Cell::Constant(..) => 1,
+            LogCell::Field(index) => index + 1,
+            LogCell::Constant(..) => 1,
         }
     }
 }
@@ -85,7 +85,7 @@ impl LogHeader {
     ///
     /// # Errors
     /// No such column, with those found and the likeliest meant; a name that stands there twice.
-    pub fn cell(&self, name: &str) -> Result<Cell> {
+    pub fn cell(&self, name: &str) -> Result<LogCell> {
         let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
         match (found.next(), found.next()) {
             (Some(_), Some(second)) => {
@@ -93,9 +93,9 @@ impl LogHeader {
                 let place = Place::at(&self.path, self.line, second + 1);
                 Err(Error::refused(place, LogReason::ColumnTwice { column }))
             }
-            (Some(index), None) => Ok(Cell::Field(index)),
+            (Some(index), None) => Ok(LogCell::Field(index)),
             (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
-                Some((_, value, line)) => Ok(Cell::Constant(*value, *line)),
+                Some((_, value, line)) => Ok(LogCell::Constant(*value, *line)),
                 None => Err(self.missing(name)),
             },
         }

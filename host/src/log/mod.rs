@@ -11,12 +11,9 @@ mod read;
 mod reason;
 mod request;
 mod row;
+mod row_reader;
 mod write;
 
-#[cfg(test)]
-mod fixture;
-#[cfg(test)]
-mod real;
 #[cfg(test)]
 mod tests;
 

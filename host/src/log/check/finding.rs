@@ -63,7 +63,7 @@ impl fmt::Display for LogFinding {
 }
 
 /// What was found, and what to do about it.
-pub(super) type Words<'a> = (String, &'a str);
+pub(super) type Advice<'a> = (String, &'a str);
 
 /// Findings so far, a bounded number of each kind per file.
 #[derive(Debug, Default)]
@@ -75,12 +75,12 @@ pub(super) struct Findings {
 
 impl Findings {
     /// Something worth knowing.
-    pub fn note(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Words) {
+    pub fn note(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Advice) {
         self.add(kind, Severity::Note, place.into(), words);
     }
 
     /// Something that may mislead, or leaves a question open.
-    pub fn warn(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Words) {
+    pub fn warn(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Advice) {
         self.add(kind, Severity::Warn, place.into(), words);
     }
 
@@ -91,7 +91,7 @@ impl Findings {
     }
 
     /// Adds a finding, or counts it if its kind has been shown often enough.
-    fn add(&mut self, kind: &'static str, severity: Severity, place: Option<Place>, words: Words) {
+    fn add(&mut self, kind: &'static str, severity: Severity, place: Option<Place>, words: Advice) {
         let finding = LogFinding {
             kind,
             severity,

@@ -22,7 +22,7 @@ pub(super) struct Relations {
     zero: AngleZero,
     angles: Angles,
     /// Per joint: how the input drives it.
-    drives: Vec<Kind>,
+    drives: Vec<InputKind>,
     /// Recent samples' inputs, newest first.
     recent: VecDeque<Vec<Option<f64>>>,
     /// Per joint and lag: measured against goal.
@@ -36,7 +36,7 @@ pub(super) struct Relations {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum InputKind {
     None,
     Push,
     Angle,
@@ -47,10 +47,10 @@ impl Relations {
     pub fn new(model: &Model) -> Self {
         let n = model.log.joints.len();
         let kind = |drive: &Drive| match drive {
-            Drive::Passive => Kind::None,
-            Drive::Torque | Drive::Duty(_) => Kind::Push,
-            Drive::Position { .. } => Kind::Angle,
-            Drive::Speed { .. } => Kind::Speed,
+            Drive::Passive => InputKind::None,
+            Drive::Torque | Drive::Duty(_) => InputKind::Push,
+            Drive::Position { .. } => InputKind::Angle,
+            Drive::Speed { .. } => InputKind::Speed,
         };
         Relations {
             zero: model.angle_zero,
@@ -77,15 +77,15 @@ impl Relations {
         if let Some(volts) = row.supply_v {
             self.supply_v.take(volts);
         }
-        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != Kind::None) {
+        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != InputKind::None) {
             return;
         }
         self.recent.push_front(row.input.clone());
         self.recent.truncate(LAGS[LAGS.len() - 1] + 1);
         for joint in 0..self.drives.len() {
             let measured = match self.drives[joint] {
-                Kind::Angle => Some(row.position_rad[joint]),
-                Kind::Speed => row.velocity_rad_s[joint],
+                InputKind::Angle => Some(row.position_rad[joint]),
+                InputKind::Speed => row.velocity_rad_s[joint],
                 _ => None,
             };
             let Some(measured) = measured else { continue };
@@ -115,7 +115,7 @@ impl Relations {
                 Angles::Absolute => self.zero.from_hanging_rad() + stretch.position_rad[i],
             };
             let speed = relative(&stretch.speed_rad_s, i);
-            let input = if self.drives[i] == Kind::Push {
+            let input = if self.drives[i] == InputKind::Push {
                 stretch.input[i]
             } else {
                 0.0
@@ -137,7 +137,7 @@ impl Relations {
         for joint in 0..self.drives.len() {
             let columns = &model.log.joints[joint];
             let measured = match (self.drives[joint], &columns.velocity) {
-                (Kind::Speed, Some(speed)) => &speed.name,
+                (InputKind::Speed, Some(speed)) => &speed.name,
                 _ => &columns.position.name,
             };
             if let Some(input) = &columns.input {
@@ -198,7 +198,7 @@ impl Relations {
                 format!("{measured} moves {slope:.3} times as far as {goal}: {guess}"),
                 "check both columns' units in the model's [log]",
             )
-        } else if self.drives[joint] == Kind::Angle && offset.abs() > 0.1 {
+        } else if self.drives[joint] == InputKind::Angle && offset.abs() > 0.1 {
             (
                 format!("{measured} lies {offset:.3} rad from {goal} on the mean: a wrong zero?"),
                 "set the offset of one of them, unless the load really makes the joint sag so far",
@@ -210,7 +210,7 @@ impl Relations {
     }
 
     fn judge_push(&self, joint: usize, input: &str, place: &Place, findings: &mut Findings) {
-        if self.drives[joint] != Kind::Push {
+        if self.drives[joint] != InputKind::Push {
             return;
         }
         let Some(own) = self.push[joint].solve().map(|all| all[5 * joint]) else {
@@ -228,7 +228,7 @@ impl Relations {
 
     /// A single link must be pulled towards hanging.
     fn judge_gravity(&self, model: &Model, place: &Place, findings: &mut Findings) {
-        if self.drives.len() != 1 || matches!(self.drives[0], Kind::Angle | Kind::Speed) {
+        if self.drives.len() != 1 || matches!(self.drives[0], InputKind::Angle | InputKind::Speed) {
             return;
         }
         let Some(all) = self.push[0].solve() else {

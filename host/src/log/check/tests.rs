@@ -1,7 +1,7 @@
 //! Each fault is found, and a good log is left in peace.
 
 use super::*;
-use crate::log::fixture::{columns, model, motion, position_drive};
+use crate::log::tests::fixture::{columns, model, motion, position_drive};
 use crate::log::{Motion, to_csv};
 use crate::model::{Drive, LogColumns};
 

@@ -1,6 +1,6 @@
 //! Dialects, refusals, the round trip, hostile bytes, and the real logs.
 
-use super::fixture::{column, columns, model, motion, position_drive};
+use self::fixture::{column, columns, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
 use crate::model::{Column, LogColumns};
@@ -8,7 +8,9 @@ use proptest::prelude::*;
 
 mod bam;
 mod dialects;
+pub mod fixture;
 mod motions;
+mod real;
 mod refusals;
 mod survival;
 mod written;
