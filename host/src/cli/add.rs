@@ -19,13 +19,13 @@ use super::{Outcome, fit, input, name, show};
 use handstand::diagnose::Candidate;
 use handstand::fitting::{Extension, extend};
 use handstand::log::LogRequest;
-use handstand::model::edit::{self, Fitted};
+use handstand::model::edit::{self, FitRecord};
 use handstand::model::{EffectInstance, ParameterPath};
 use handstand::{Model, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Add an effect to a model, its values fitted to logs.
+/// Add an effect to a model, its parameters fitted to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -94,13 +94,13 @@ fn instance(extension: &Extension, candidate: Candidate) -> EffectInstance {
     candidate.instance(&values)
 }
 
-fn fitted(extension: &Extension, candidate: Candidate, logs: Vec<(String, String)>) -> Fitted {
+fn fitted(extension: &Extension, candidate: Candidate, logs: Vec<(String, String)>) -> FitRecord {
     let own: Vec<String> = candidate.paths().map(|path| path.to_string()).collect();
     let values = extension
         .values
         .iter()
         .filter(|value| own.contains(&value.path));
-    Fitted {
+    FitRecord {
         intervals: values
             .map(|value| (value.key.clone(), value.low, value.high))
             .collect(),

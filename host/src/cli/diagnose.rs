@@ -19,13 +19,13 @@ use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL, address};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, Verdict, diagnose};
 use handstand::effects;
 use handstand::fitting::Horizon;
-use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
+use handstand::log::{LogFinding, LogRequest, Severity, Split, read, split};
 use handstand::model::{EffectInstance, ParameterPath};
 use handstand::report::{diagnosis_json, diagnosis_text, html};
 use handstand::{Model, Result};
 use std::path::PathBuf;
 
-/// Find the physical effect that is missing from a model.
+/// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -78,7 +78,7 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     let warned = findings
         .iter()
         .filter(|finding| finding.severity == Severity::Warn);
-    diagnosis.warnings.extend(warned.map(Finding::statement));
+    diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
         *line = with_names(line, args);
     }
@@ -187,13 +187,13 @@ fn mended(model: &Model, diagnosis: &Diagnosis) -> Model {
 }
 
 /// What is said of logs that were refused.
-fn unfit(findings: &[Finding]) -> Diagnosis {
+fn unfit(findings: &[LogFinding]) -> Diagnosis {
     let refused = || {
         findings
             .iter()
             .filter(|finding| finding.severity == Severity::Refuse)
     };
-    let reasons = refused().map(Finding::statement);
+    let reasons = refused().map(LogFinding::statement);
     let said = "The logs cannot be learned from.".to_string();
     Diagnosis {
         verdict: Verdict::Unfit,

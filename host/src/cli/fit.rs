@@ -21,7 +21,7 @@ use handstand::{Error, Model, Result, model::edit, output};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Fit a model's free values to logs.
+/// Fit a model's free parameters to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

@@ -23,9 +23,9 @@ use serde_json::{Value, json};
 /// What can be mapped.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Dead zone, slope and limit from command to speed or torque, and the map turned round
+    /// Estimate dead zone, slope and limit from command to speed or torque, and the inverse map
     DeadZone(Args),
-    /// Relative speed error over the supply voltage
+    /// Estimate the relative speed error over the supply voltage
     Supply(Args),
 }
 

@@ -2,6 +2,8 @@
 
 use handstand::diagnose::Candidate;
 use handstand::effects::{EFFECTS, Effect, Scope};
+use handstand::model::ModelReason;
+use handstand::model::suggest::nearest;
 use handstand::{Error, Model, Result};
 
 /// The effect of this name.
@@ -14,20 +16,13 @@ pub fn effect(name: &str) -> Result<&'static dyn Effect> {
         .copied()
         .find(|effect| effect.info().id == name);
     found.ok_or_else(|| {
-        let remedy = match nearest(name) {
+        let ids = EFFECTS.iter().map(|effect| effect.info().id);
+        let remedy = match nearest(name, ids) {
             Some(near) => format!("did you mean `{near}`? `handstand effects` lists all"),
             None => "`handstand effects` lists all".to_string(),
         };
         Error::usage(format!("there is no effect `{name}`"), remedy)
     })
-}
-
-fn nearest(name: &str) -> Option<&'static str> {
-    let ids = EFFECTS.iter().map(|effect| effect.info().id);
-    ids.map(|id| (strsim::jaro_winkler(name, id), id))
-        .filter(|(likeness, _)| *likeness > 0.7)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, id)| id)
 }
 
 /// The effect at the joint that `name` says, if the model has room for it. Where there is only one joint it
@@ -60,10 +55,7 @@ fn joint(effect: &dyn Effect, at: Option<&str>, model: &Model) -> Result<Option<
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),
         (Scope::WholeRig, Some(_)) => {
-            return Err(Error::usage(
-                format!("`{id}` acts on the whole rig, not on one joint"),
-                format!("write `{id}`"),
-            ));
+            return Err(Error::Usage(Box::new(ModelReason::WholeRig { id })));
         }
         (_, None) if count == 1 => 0,
         (_, None) => {
@@ -82,21 +74,8 @@ fn joint(effect: &dyn Effect, at: Option<&str>, model: &Model) -> Result<Option<
             }
         },
     };
-    let driven = model.joints[joint].drive.is_driven();
-    match scope {
-        Scope::DrivenJoint if !driven => Err(unsuited(id, "driven", joint, model)),
-        Scope::PassiveJoint if driven => Err(unsuited(id, "passive", joint, model)),
-        _ => Ok(Some(joint)),
+    match ModelReason::unsuited(effect, joint, &model.joints[joint]) {
+        Some(reason) => Err(Error::Usage(Box::new(reason))),
+        None => Ok(Some(joint)),
     }
-}
-
-fn unsuited(id: &str, wanted: &str, joint: usize, model: &Model) -> Error {
-    let drive = model.joints[joint].drive.name();
-    Error::usage(
-        format!(
-            "`{id}` acts on {wanted} joints only, and joint {} is `{drive}`",
-            joint + 1
-        ),
-        format!("name a {wanted} joint, or another effect"),
-    )
 }

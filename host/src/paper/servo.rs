@@ -3,7 +3,7 @@
 use super::computed::servo_estimate;
 use super::figure::{Curve, Figure, Holds, Ink, Panel};
 use crate::error::Result;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::interval;
 use crate::sim::{Plant, SensorState, Start, predict};
@@ -38,7 +38,7 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
     let samples = command.len();
     Motion {
         name: "simulated".to_string(),
-        source: Source {
+        source: MotionSource {
             path: "simulated".into(),
             sha256: String::new(),
             lines: (1, samples),

@@ -77,7 +77,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Source;
+    use crate::log::MotionSource;
 
     #[test]
     fn blocks_after_a_step_are_left_out() {
@@ -89,7 +89,7 @@ mod tests {
         }
         let motion = Motion {
             name: String::new(),
-            source: Source {
+            source: MotionSource {
                 path: "a.csv".into(),
                 sha256: String::new(),
                 lines: (1, 1),
