@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// For `freedom` >= 1, not only whole numbers. Hill (1970), CACM algorithm 396; relative error below 1e-3.
 pub(crate) fn quantile_975(freedom: f64) -> f64 {
     const TAILS: f64 = 0.05;
-    /// Normal quantile of 97.5 %.
+    /// NormalEquations quantile of 97.5 %.
     const NORMAL: f64 = 1.959964;
     let n = freedom.max(1.0);
     if n < 1.0 + 1e-9 {

@@ -13,7 +13,7 @@ pub(super) struct Told {
     pub supply_ratio: f64,
     /// Whether the drive is energised.
     pub energised: bool,
-    /// Measured speed of another moment, rad/s, for a sham.
+    /// Measured speed of another moment, rad/s, for a placebo.
     pub shuffled_rad_s: f64,
 }
 

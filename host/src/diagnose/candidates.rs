@@ -1,76 +1,9 @@
 //! Which effects could be missing, and where.
 
-use crate::effects::{EFFECTS, Effect, Needs, SMOOTH_DIFFERENCE, Scope};
+use crate::effects::{EFFECTS, Needs, Scope};
+use crate::fitting::Candidate;
 use crate::log::Motion;
-use crate::model::{Drive, EffectInstance, Model, ParameterPath};
-use std::fmt;
-
-/// An effect of the library at a joint, or on the whole rig.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// Joint index from 0; `None` for the whole rig.
-    pub joint: Option<usize>,
-}
-
-impl fmt::Display for Candidate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.joint {
-            Some(joint) => write!(f, "{}@{}", self.effect.card().id, joint + 1),
-            None => write!(f, "{}", self.effect.card().id),
-        }
-    }
-}
-
-impl Candidate {
-    /// Whether the model holds it already.
-    pub fn in_model(&self, model: &Model) -> bool {
-        model.has_effect(self.effect.card().id, self.joint)
-    }
-
-    /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
-    pub fn jumps(&self) -> bool {
-        self.effect.difference() > SMOOTH_DIFFERENCE
-    }
-
-    /// The effect with these values, to be added to a model.
-    pub fn instance(&self, values: &[f64]) -> EffectInstance {
-        EffectInstance {
-            effect: self.effect,
-            joint: self.joint,
-            values: values.to_vec(),
-        }
-    }
-
-    /// Addresses of its values.
-    pub fn paths(&self) -> impl Iterator<Item = ParameterPath> + '_ {
-        let card = self.effect.card();
-        (0..card.parameters.len()).map(move |parameter| ParameterPath::Effect {
-            id: card.id,
-            joint: self.joint,
-            parameter,
-        })
-    }
-
-    /// Every combination of the card's start values.
-    pub fn starts(&self) -> Vec<Vec<f64>> {
-        let mut combinations = vec![Vec::new()];
-        for parameter in self.effect.card().parameters {
-            combinations = combinations
-                .iter()
-                .flat_map(|head: &Vec<f64>| {
-                    parameter.starts.iter().map(move |start| {
-                        let mut next = head.clone();
-                        next.push(*start);
-                        next
-                    })
-                })
-                .collect();
-        }
-        combinations
-    }
-}
+use crate::model::{Drive, Model};
 
 /// Every effect at every place where it can act on this model and be seen in these motions, except those the
 /// model holds and those named in `without`.
