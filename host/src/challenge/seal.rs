@@ -4,9 +4,9 @@
 
 use super::ChallengeAnswer;
 use super::error::SealError;
+use crate::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 
 const NOTE: &str = "The answer, sealed. It keeps honest people from peeking, no more.";
 
@@ -57,13 +57,6 @@ fn masked(bytes: &[u8]) -> Vec<u8> {
         out.extend(block.iter().zip(key).map(|(byte, key)| byte ^ key));
     }
     out
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 fn unhex(text: &str) -> Option<Vec<u8>> {

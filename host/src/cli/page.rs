@@ -5,6 +5,7 @@ use super::talk::Talk;
 use handstand::compare::Comparison;
 use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
+use handstand::number::hex;
 use handstand::report::{LogFile, ModelFile, Provenance, Report};
 use handstand::{Error, Result, output};
 use sha2::{Digest as _, Sha256};
@@ -92,10 +93,9 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
 /// [`Error::File`] if it cannot be read.
 pub fn hashed(file: &Path) -> Result<ModelFile> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
-    let hash = Sha256::digest(&bytes);
     Ok(ModelFile {
         name: file_name(file),
-        sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+        sha256: hex(&Sha256::digest(&bytes)),
     })
 }
 

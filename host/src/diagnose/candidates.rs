@@ -9,44 +9,43 @@ use crate::model::{Drive, Model};
 /// model holds and those named in `without`.
 pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<Candidate> {
     let mut found = Vec::new();
-    for &effect in EFFECTS {
+    for &effect in EFFECTS
+        .iter()
+        .filter(|e| !without.iter().any(|id| id == e.card().id))
+    {
         let card = effect.card();
-        if without.iter().any(|id| id == card.id) {
-            continue;
-        }
         let joints: Vec<Option<usize>> = match card.scope {
             Scope::WholeRig => vec![None],
-            Scope::AnyJoint => (0..model.link_count()).map(Some).collect(),
-            Scope::DrivenJoint => driven(model, motions),
-            Scope::PassiveJoint => (0..model.link_count())
-                .filter(|&joint| model.joints[joint].drive == Drive::Passive)
+            scope => (0..model.link_count())
+                .filter(|&joint| suits(scope, model, motions, joint))
                 .map(Some)
                 .collect(),
         };
-        for joint in joints {
-            let candidate = Candidate { effect, joint };
-            if !candidate.in_model(model) && visible(card.needs, model, motions, joint) {
-                found.push(candidate);
-            }
-        }
+        let at_joints = joints.into_iter().map(|joint| Candidate { effect, joint });
+        found.extend(at_joints.filter(|candidate| {
+            !candidate.in_model(model) && visible(card.needs, model, motions, candidate.joint)
+        }));
     }
     found
 }
 
-/// Joints whose drive does something in these motions.
-fn driven(model: &Model, motions: &[Motion]) -> Vec<Option<usize>> {
-    (0..model.link_count())
-        .filter(|&joint| {
-            model.joints[joint].drive.is_driven()
-                && motions.iter().any(|m| {
-                    m.torque_on.as_ref().is_none_or(|on| on.contains(&true))
-                        && m.input[joint]
-                            .as_ref()
-                            .is_some_and(|input| input.iter().any(|x| *x != input[0]))
-                })
-        })
-        .map(Some)
-        .collect()
+/// Whether an effect of this scope may act at a joint: on a driven joint only if its drive does something in these
+/// motions.
+fn suits(scope: Scope, model: &Model, motions: &[Motion], joint: usize) -> bool {
+    let drive = &model.joints[joint].drive;
+    let varies = |input: &Vec<f64>| input.iter().any(|x| *x != input[0]);
+    let drives = |motion: &Motion| {
+        motion
+            .torque_on
+            .as_ref()
+            .is_none_or(|on| on.contains(&true))
+            && motion.input[joint].as_ref().is_some_and(varies)
+    };
+    match scope {
+        Scope::WholeRig | Scope::AnyJoint => true,
+        Scope::PassiveJoint => *drive == Drive::Passive,
+        Scope::DrivenJoint => drive.is_driven() && motions.iter().any(drives),
+    }
 }
 
 fn visible(needs: Needs, model: &Model, motions: &[Motion], joint: Option<usize>) -> bool {

@@ -7,6 +7,7 @@ use super::read::LEAST_ROWS;
 use super::request::LogRequest;
 use super::{Motion, Source};
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -72,10 +73,7 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
         name: request.name(),
         source: Source {
             path: path.clone(),
-            sha256: Sha256::digest(&bytes)
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
+            sha256: hex(&Sha256::digest(&bytes)),
             lines: (first + 1, last + 1),
         },
         position_rad: vec![entries.numbers("position")?],

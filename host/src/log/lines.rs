@@ -1,6 +1,7 @@
 //! A file line by line, hashed on the way; holds one line at a time.
 
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -78,10 +79,6 @@ impl Lines {
 
     /// SHA-256 of all bytes read, lower-case hexadecimal.
     pub fn sha256(self) -> String {
-        self.hash
-            .finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hex(&self.hash.finalize())
     }
 }
