@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 pub struct HiddenEffect {
     /// Id in the library of effects.
     pub kind: &'static str,
-    /// Keys and values, as the effect's card has them.
+    /// Keys and values of the effect's parameters.
     pub parameters: Vec<(&'static str, f64)>,
 }
 

@@ -74,16 +74,16 @@ pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore, ChallengeError
 
 /// Effects of `model` that `base` has not.
 fn beyond<'a>(model: &'a Model, base: &Model) -> Vec<&'a EffectInstance> {
-    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.card().id, effect.joint);
+    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.info().id, effect.joint);
     model.effects.iter().filter(new).collect()
 }
 
 fn values(answer: &ChallengeAnswer, added: &[&EffectInstance]) -> Vec<ScoredValue> {
-    let id = |effect: &EffectInstance| effect.effect.card().id;
+    let id = |effect: &EffectInstance| effect.effect.info().id;
     let mut added = added.iter();
     let found = added.find(|effect| Some(id(effect)) == answer.kind.as_deref());
     let estimate = |key: &str| {
-        let parameters = found?.effect.card().parameters;
+        let parameters = found?.effect.info().parameters;
         let at = parameters
             .iter()
             .position(|parameter| parameter.key == key)?;

@@ -2,8 +2,8 @@
 
 use super::bench_arm::{BenchArm, Friction, NOMINAL_SUPPLY_V, STALL_NM};
 use super::hidden_effect::HiddenEffect;
-use super::motion::RESOLUTION_RAD;
 use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
+use handstand_shared::raw::Position;
 use std::fmt::Write;
 
 /// The rig as a model file, with `friction` and, if given, the secret.
@@ -47,9 +47,10 @@ payload = {{ column = "payload_kg", unit = "kg", at_m = {PAYLOAD_AT_M} }}
 turned = "turned"
 
 [[log.joint]]
-position = {{ column = "position_rad", unit = "rad", resolution_rad = {RESOLUTION_RAD:.7} }}
+position = {{ column = "position_rad", unit = "rad", resolution_rad = {:.7} }}
 input = {{ column = "duty", unit = "1" }}
-"#
+"#,
+        Position::LSB_RAD
     );
     text
 }

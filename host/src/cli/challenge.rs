@@ -96,7 +96,7 @@ fn hidden(named: Option<&str>) -> Result<Hidden> {
     if named == "none" {
         return Ok(Hidden::Nothing);
     }
-    let id = effect_named(named)?.card().id;
+    let id = effect_named(named)?.info().id;
     kind_named(id).map(Hidden::Effect).ok_or_else(|| {
         Error::usage(
             format!("`{id}` cannot be hidden in the bench arm"),

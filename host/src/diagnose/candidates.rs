@@ -11,10 +11,10 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
     let mut found = Vec::new();
     for &effect in EFFECTS
         .iter()
-        .filter(|e| !without.iter().any(|id| id == e.card().id))
+        .filter(|e| !without.iter().any(|id| id == e.info().id))
     {
-        let card = effect.card();
-        let joints: Vec<Option<usize>> = match card.scope {
+        let info = effect.info();
+        let joints: Vec<Option<usize>> = match info.scope {
             Scope::WholeRig => vec![None],
             scope => (0..model.link_count())
                 .filter(|&joint| suits(scope, model, motions, joint))
@@ -23,7 +23,7 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
         };
         let at_joints = joints.into_iter().map(|joint| Candidate { effect, joint });
         found.extend(at_joints.filter(|candidate| {
-            !candidate.in_model(model) && visible(card.needs, model, motions, candidate.joint)
+            !candidate.in_model(model) && visible(info.needs, model, motions, candidate.joint)
         }));
     }
     found

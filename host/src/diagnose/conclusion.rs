@@ -84,12 +84,12 @@ fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
 /// The effects of a hypothesis with their values, which come in the order of the set.
 fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEffect> {
     let effect = |candidate: &crate::fitting::Candidate| {
-        let card = candidate.effect.card();
-        let (own, rest) = values.split_at(card.parameters.len());
+        let info = candidate.effect.info();
+        let (own, rest) = values.split_at(info.parameters.len());
         values = rest;
         FittedEffect {
-            kind: card.id.to_string(),
-            title: card.title.to_string(),
+            kind: info.id.to_string(),
+            title: info.title.to_string(),
             joint: candidate.joint.map(|j| j + 1),
             parameters: own.to_vec(),
         }

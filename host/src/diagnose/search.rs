@@ -59,7 +59,7 @@ pub fn diagnose(
 impl Evaluator<'_> {
     /// A placebo regressor at each joint, fitted and evaluated like a candidate.
     fn try_placebos(&self) -> Vec<Hypothesis> {
-        let placebo = CONTROLS.iter().filter(|e| e.card().id == PLACEBO);
+        let placebo = CONTROLS.iter().filter(|e| e.info().id == PLACEBO);
         let at_joints = |&effect| {
             let joints = (0..self.start.link_count()).map(Some);
             joints.map(move |joint| Candidate { effect, joint })

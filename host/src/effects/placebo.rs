@@ -3,7 +3,7 @@
 //! Placebos run along with the real candidates. Whatever a placebo gains, chance gains: if one ranks, nothing is
 //! named (permutation control).
 
-use super::{Card, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
 
 /// tau = c * (measured speed, turned in time by `shift` of the motion).
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub struct Placebo;
 /// Id of the placebo regressor.
 pub const PLACEBO: &str = "placebo";
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: PLACEBO,
     title: "placebo (shuffled speed)",
     site: Site::Joint,
@@ -35,8 +35,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Placebo {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -17,8 +17,8 @@ pub struct Candidate {
 impl fmt::Display for Candidate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.joint {
-            Some(joint) => write!(f, "{}@{}", self.effect.card().id, joint + 1),
-            None => write!(f, "{}", self.effect.card().id),
+            Some(joint) => write!(f, "{}@{}", self.effect.info().id, joint + 1),
+            None => write!(f, "{}", self.effect.info().id),
         }
     }
 }
@@ -54,7 +54,7 @@ impl Candidate {
 
     /// Whether the model holds it already.
     pub fn in_model(&self, model: &Model) -> bool {
-        model.has_effect(self.effect.card().id, self.joint)
+        model.has_effect(self.effect.info().id, self.joint)
     }
 
     /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
@@ -64,7 +64,7 @@ impl Candidate {
 
     /// What the effect's values are, in their order.
     pub fn parameters(&self) -> &'static [Parameter] {
-        self.effect.card().parameters
+        self.effect.info().parameters
     }
 
     /// The effect with these values, to be added to a model.
@@ -78,15 +78,15 @@ impl Candidate {
 
     /// Addresses of its values.
     pub fn paths(&self) -> impl Iterator<Item = ParameterPath> + '_ {
-        let card = self.effect.card();
-        (0..card.parameters.len()).map(move |parameter| ParameterPath::Effect {
-            id: card.id,
+        let info = self.effect.info();
+        (0..info.parameters.len()).map(move |parameter| ParameterPath::Effect {
+            id: info.id,
             joint: self.joint,
             parameter,
         })
     }
 
-    /// Every combination of the card's start values.
+    /// Every combination of the parameters' start values.
     pub fn starts(&self) -> Vec<Vec<f64>> {
         let mut combinations = vec![Vec::new()];
         for parameter in self.parameters() {
@@ -183,7 +183,7 @@ impl From<CandidateError> for Error {
 /// # Errors
 /// [`CandidateError::UnknownEffect`] with the nearest name.
 pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
-    let ids = || EFFECTS.iter().map(|effect| effect.card().id);
+    let ids = || EFFECTS.iter().map(|effect| effect.info().id);
     let effect = EFFECTS
         .iter()
         .copied()
@@ -204,7 +204,7 @@ fn joint(
     at: Option<&str>,
     model: &Model,
 ) -> Result<Option<usize>, CandidateError> {
-    let (id, scope, count) = (effect.card().id, effect.card().scope, model.link_count());
+    let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),
         (Scope::WholeRig, Some(_)) => return Err(CandidateError::WholeRig { id }),

@@ -3,7 +3,7 @@
 use super::data::FitData;
 use super::node::Node;
 use crate::model::Model;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, SensorState, predict};
 use rayon::prelude::*;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, joint after joint.
@@ -54,7 +54,7 @@ pub fn predicted_rad(
 ) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
+    let mut memory = SensorState::default();
     let windows = data.windows_of(motion);
     windows
         .map(|(index, window)| {
