@@ -11,10 +11,10 @@
 //! `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`), `confused_with` (`with`, `why`).
 
 use super::Outcome;
-use super::name;
 use super::talk::Talk;
 use handstand::Result;
 use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope, glossary};
+use handstand::fitting::effect_named;
 use serde_json::{Value, json};
 
 /// List and explain the physical effects of the library.
@@ -28,7 +28,7 @@ pub struct Args {
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     match &args.name {
         Some(name) => {
-            let effect = name::effect(name)?;
+            let effect = effect_named(name)?;
             if talk.json {
                 talk.data(&info(effect.info()))?;
             } else {

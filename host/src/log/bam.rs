@@ -3,12 +3,12 @@
 //! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and `entries`, each
 //! with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`, `input_volts`, `torque_enable`.
 
-use super::lines::hex;
 use super::read::LEAST_ROWS;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -58,7 +58,7 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
         name: request.name(),
         source: MotionSource {
             path: path.clone(),
-            sha256: hex(Sha256::new_with_prefix(&bytes)),
+            sha256: hex(&Sha256::digest(&bytes)),
             lines: (first + 1, last + 1),
         },
         position_rad: vec![entries.numbers("position")?],

@@ -2,6 +2,7 @@
 
 use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -74,12 +75,6 @@ impl Lines {
 
     /// SHA-256 of all bytes read, lower-case hexadecimal.
     pub fn sha256(self) -> String {
-        hex(self.hash)
+        hex(&self.hash.finalize())
     }
-}
-
-/// The hash in lower-case hexadecimal.
-pub(super) fn hex(hash: Sha256) -> String {
-    let bytes = hash.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

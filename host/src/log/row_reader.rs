@@ -43,7 +43,7 @@ impl<'a> RowReader<'a> {
         let cell = |name: &Option<String>| name.as_ref().map(|name| header.cell(name)).transpose();
         let quantity = |column: &'a Column| {
             let cell = header.cell(&column.name)?;
-            Ok(LogQuantity { cell, column })
+            Ok::<_, Error>(LogQuantity { cell, column })
         };
         let maybe = |column: &'a Option<Column>| column.as_ref().map(quantity).transpose();
         let joints = columns.joints.iter().map(|joint| {

@@ -1,4 +1,4 @@
-//! What a joint is doing at each sample, on scales that need no units: the stuff conditions are made of.
+//! Features of each sample of a joint's motion, on scales that need no units; conditions are made of them.
 
 use super::order::{quantile, ranks};
 use crate::log::Motion;
@@ -11,7 +11,7 @@ pub(super) const STILL_SHARE: f64 = 0.05;
 
 /// One sample of one joint. What is unknown is not a number and meets no condition.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Moment {
+pub(super) struct SampleFeatures {
     /// Measured angle, rad.
     pub angle_rad: f64,
     /// Speed over the 95th percentile of its magnitude.
@@ -22,7 +22,7 @@ pub(super) struct Moment {
     pub since_reversal_s: f64,
     /// How long the joint is still in all, s; 0 while it moves.
     pub still_s: f64,
-    /// Rank of the torque's magnitude: told where a torque is, else that of gravity.
+    /// Rank of the torque's magnitude: of the input where it is a torque, else of gravity.
     pub load_rank: f64,
     /// Whether gravity brakes the motion (1), drives it (-1), or neither (0).
     pub against_gravity: f64,
@@ -42,8 +42,8 @@ pub(super) struct Moment {
     pub turned: bool,
 }
 
-/// Moments of one joint over all motions, end to end.
-pub(super) fn moments(model: &Model, motions: &[Motion], joint: usize) -> Vec<Moment> {
+/// Features of one joint over all motions, end to end.
+pub(super) fn features(model: &Model, motions: &[Motion], joint: usize) -> Vec<SampleFeatures> {
     let collect =
         |of: &dyn Fn(&Motion) -> Vec<f64>| -> Vec<f64> { motions.iter().flat_map(of).collect() };
     let speed = collect(&|m| speed_rad_s(&m.time_s, &m.position_rad[joint]));
@@ -69,7 +69,7 @@ pub(super) fn moments(model: &Model, motions: &[Motion], joint: usize) -> Vec<Mo
         for k in 0..motion.len() {
             let i = begin + k;
             let moves = shares[k].abs() > STILL_SHARE;
-            all.push(Moment {
+            all.push(SampleFeatures {
                 angle_rad: motion.position_rad[joint][k],
                 speed: shares[k],
                 speed_rank: speed_rank[i],

@@ -1,19 +1,20 @@
-//! A regressor that can't be the cause: the measured speed of another moment.
+//! A placebo regressor, which can't be the cause: the measured speed of another moment.
 //!
-//! Shams run along with the real candidates. Whatever a sham gains, chance gains: if one ranks, nothing is named.
+//! Placebos run along with the real candidates. Whatever a placebo gains, chance gains: if one ranks, nothing is
+//! named (permutation control).
 
 use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
 
 /// tau = c * (measured speed, turned in time by `shift` of the motion).
 #[derive(Debug)]
-pub struct Sham;
+pub struct Placebo;
 
-/// Id of the sham.
-pub const SHAM: &str = "sham";
+/// Id of the placebo regressor.
+pub const PLACEBO: &str = "placebo";
 
 static INFO: EffectInfo = EffectInfo {
-    id: SHAM,
-    title: "sham (shuffled speed)",
+    id: PLACEBO,
+    title: "placebo (shuffled speed)",
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
@@ -33,7 +34,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "permutation control; Good, Permutation, Parametric and Bootstrap Tests of Hypotheses, 3rd ed. (2005)",
 };
 
-impl Effect for Sham {
+impl Effect for Placebo {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

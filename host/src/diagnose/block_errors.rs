@@ -1,12 +1,12 @@
-//! Errors summed in blocks of time, so that their uncertainty can be told by resampling the blocks.
+//! Errors summed in blocks of time, so that their uncertainty can be estimated by resampling the blocks.
 
-use crate::fitting::{Data, Fit};
+use crate::fitting::{FitData, Residuals};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Weighted squared errors of one fit, block by block.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Score {
+pub(super) struct BlockErrors {
     /// Sum of squared weighted residuals per block.
     pub sums: Vec<f64>,
     /// Residuals per block.
@@ -20,23 +20,18 @@ const BLOCK_S: f64 = 0.8;
 /// A motion gives at least this many blocks.
 const LEAST_BLOCKS: f64 = 8.0;
 /// A root-mean-square weighted residual up to this counts as nothing but noise.
-pub(super) const AT_FLOOR: f64 = 1.2;
+pub(super) const AT_NOISE_FLOOR: f64 = 1.2;
 const RESAMPLES: usize = 600;
 
-impl Score {
-    /// Sums a fit's residuals.
-    pub fn of(fit: &Fit, data: &Data) -> Score {
-        Score::of_windows(&fit.residuals.windows, data)
-    }
-
-    /// Sums weighted residuals given window by window.
-    pub fn of_windows(windows: &[Vec<f64>], data: &Data) -> Score {
-        let mut score = Score {
+impl BlockErrors {
+    /// Sums weighted residuals.
+    pub fn of(residuals: &Residuals, data: &FitData) -> BlockErrors {
+        let mut errors = BlockErrors {
             motions: vec![(0.0, 0); data.motions.len()],
-            ..Score::default()
+            ..BlockErrors::default()
         };
-        let joints = data.sigma_rad.len();
-        for (window, residuals) in data.windows.iter().zip(windows) {
+        let joints = data.joints();
+        for (window, residuals) in data.windows.iter().zip(&residuals.windows) {
             let motion = &data.motions[window.motion];
             let time = &motion.time_s[window.samples.clone()];
             let block_s = BLOCK_S.min(motion.duration_s() / LEAST_BLOCKS);
@@ -48,39 +43,39 @@ impl Score {
                     end += 1;
                 }
                 let mut sum = 0.0;
+                let total = &mut errors.motions[window.motion];
                 for (joint, sigma) in data.sigma_rad.iter().enumerate() {
                     for r in &residuals[joint * samples + begin..joint * samples + end] {
                         sum += r * r;
-                        score.motions[window.motion].0 += (r * sigma).powi(2);
+                        total.0 += (r * sigma).powi(2);
                     }
                 }
-                score.motions[window.motion].1 += (end - begin) * joints;
-                score.sums.push(sum);
-                score.counts.push((end - begin) * joints);
+                total.1 += (end - begin) * joints;
+                errors.sums.push(sum);
+                errors.counts.push((end - begin) * joints);
                 begin = end;
             }
         }
-        score
+        errors
     }
 
-    /// Blocks of several data sets together.
-    pub fn joined(parts: &[&Score]) -> Score {
-        Score {
-            sums: parts.iter().flat_map(|s| s.sums.iter().copied()).collect(),
-            counts: parts
-                .iter()
-                .flat_map(|s| s.counts.iter().copied())
-                .collect(),
-            motions: parts
-                .iter()
-                .flat_map(|s| s.motions.iter().copied())
-                .collect(),
+    /// Appends the blocks of other motions.
+    pub fn extend<'a>(&mut self, others: impl IntoIterator<Item = &'a BlockErrors>) {
+        for other in others {
+            self.sums.extend(&other.sums);
+            self.counts.extend(&other.counts);
+            self.motions.extend(&other.motions);
         }
+    }
+
+    /// Number of residuals.
+    pub fn count(&self) -> usize {
+        self.counts.iter().sum()
     }
 
     /// Mean squared weighted residual; 1 is the noise.
     pub fn mean(&self) -> f64 {
-        self.sums.iter().sum::<f64>() / self.counts.iter().sum::<usize>().max(1) as f64
+        self.sums.iter().sum::<f64>() / self.count().max(1) as f64
     }
 
     /// Root-mean-square error of all motions, rad.
@@ -96,16 +91,16 @@ impl Score {
     }
 }
 
-/// 95 % interval of a statistic of paired blocks: `statistic` gets the two sums of a resample.
-pub(super) fn resampled(
-    a: &Score,
-    b: &Score,
+/// 95 % interval of a statistic of paired blocks by bootstrap: `statistic` gets the two sums of a resample.
+pub(super) fn bootstrap(
+    a: &BlockErrors,
+    b: &BlockErrors,
     seed: u64,
     statistic: impl Fn(f64, f64) -> f64,
-) -> (f64, f64) {
+) -> [f64; 2] {
     let blocks = a.sums.len();
     if blocks == 0 {
-        return (f64::NEG_INFINITY, f64::INFINITY);
+        return [f64::NEG_INFINITY, f64::INFINITY];
     }
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut values: Vec<f64> = (0..RESAMPLES)
@@ -120,20 +115,17 @@ pub(super) fn resampled(
         })
         .collect();
     values.sort_by(f64::total_cmp);
-    (
-        values[RESAMPLES / 40],
-        values[RESAMPLES - 1 - RESAMPLES / 40],
-    )
+    [RESAMPLES / 40, RESAMPLES - 1 - RESAMPLES / 40].map(|k| values[k])
 }
 
-/// 95 % interval of the relative fall of the root-mean-square error from `before` to `after`.
-pub(super) fn fall(before: &Score, after: &Score, seed: u64) -> (f64, f64) {
-    resampled(before, after, seed, |before, after| {
+/// 95 % interval of the relative reduction of the root-mean-square error from `before` to `after`.
+pub(super) fn reduction(before: &BlockErrors, after: &BlockErrors, seed: u64) -> [f64; 2] {
+    bootstrap(before, after, seed, |before, after| {
         1.0 - (after / before.max(1e-300)).sqrt()
     })
 }
 
-/// Whether `worse` is really worse than `better`: the lower 95 % limit of the difference is above zero.
-pub(super) fn surely_worse(worse: &Score, better: &Score, seed: u64) -> bool {
-    resampled(worse, better, seed, |worse, better| worse - better).0 > 0.0
+/// Whether `worse` is significantly worse than `better`: the lower 95 % limit of the difference is above zero.
+pub(super) fn significantly_worse(worse: &BlockErrors, better: &BlockErrors, seed: u64) -> bool {
+    bootstrap(worse, better, seed, |worse, better| worse - better)[0] > 0.0
 }

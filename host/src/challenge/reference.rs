@@ -37,16 +37,16 @@ struct Segment {
     shape: Shape,
 }
 
-/// Goal angles over time.
+/// Reference angles over time.
 #[derive(Debug, Clone)]
-pub struct Goal {
+pub struct Reference {
     segments: Vec<Segment>,
     scale: f64,
 }
 
 /// What is asked of the arm at an instant.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked {
+pub struct Setpoint {
     /// Angle, rad.
     pub angle: f64,
     /// Speed to feed forward, rad/s.
@@ -57,9 +57,9 @@ pub struct Asked {
     pub torque_on: bool,
 }
 
-impl Goal {
+impl Reference {
     /// Every kind of movement once, in random order, lasting 2.7 to 4 s each.
-    pub fn random(rng: &mut ChaCha8Rng) -> Goal {
+    pub fn random(rng: &mut ChaCha8Rng) -> Reference {
         let mut shapes = vec![
             Shape::Triangle {
                 amplitude: rng.random_range(0.2..0.5),
@@ -98,22 +98,22 @@ impl Goal {
                 segment
             })
             .collect();
-        Goal {
+        Reference {
             segments,
             scale: 1.0,
         }
     }
 
     /// The same goal with all angles `scale` times as wide.
-    pub fn scaled(&self, scale: f64) -> Goal {
-        Goal {
+    pub fn scaled(&self, scale: f64) -> Reference {
+        Reference {
             segments: self.segments.clone(),
             scale,
         }
     }
 
     /// What is asked at `time_s`.
-    pub fn at(&self, time_s: f64) -> Asked {
+    pub fn at(&self, time_s: f64) -> Setpoint {
         let index = self
             .segments
             .iter()
@@ -134,7 +134,7 @@ impl Goal {
         }
         let dropping =
             matches!(segment.shape, Shape::Drop { .. }) && since_s > segment.length_s - DROP_S;
-        Asked {
+        Setpoint {
             angle: now,
             speed,
             acceleration,
@@ -144,7 +144,7 @@ impl Goal {
 }
 
 impl Segment {
-    /// Goal angle, rad, at `since_s` from its start; near 0 at both ends.
+    /// Reference angle, rad, at `since_s` from its start; near 0 at both ends.
     fn angle(&self, since_s: f64) -> f64 {
         let since_s = since_s.clamp(0.0, self.length_s);
         let left_s = self.length_s - since_s;

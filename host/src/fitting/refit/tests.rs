@@ -82,18 +82,18 @@ fn swings(truth: &Model) -> Split {
 }
 
 #[test]
-fn an_added_effect_gets_its_true_value_and_new_motions_are_foretold() {
+fn an_added_effect_gets_its_true_value_and_new_motions_are_predicted() {
     let mut truth = pendulum();
     truth.effects.push(candidate("coulomb").instance(&[0.004]));
     let split = swings(&truth);
-    let extension = extend(&pendulum(), candidate("coulomb"), &split, None, &|_, _| {}).unwrap();
-    let value = &extension.values[0];
+    let refitted = refit_with(&pendulum(), candidate("coulomb"), &split, None, &|_, _| {}).unwrap();
+    let value = &refitted.values[0];
     assert_eq!(value.path, "coulomb@1.torque_nm");
-    assert_eq!(extension.model.free, extension.free);
-    assert_eq!(extension.free.len(), 1);
+    assert_eq!(refitted.model.free, refitted.free);
+    assert_eq!(refitted.free.len(), 1);
     assert!((value.value - 0.004).abs() < 4e-5, "{value:?}");
     assert!(value.low <= value.value && value.value <= value.high);
-    let error = extension.error;
+    let error = refitted.error;
     assert!(error.held_out && error.before_rad > 0.05, "{error:?}");
     assert!(error.after_rad < 2.0 * error.floor_rad, "{error:?}");
 }
