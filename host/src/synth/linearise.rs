@@ -99,8 +99,8 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::Rig;
-    use crate::synth::{Equations, NonSmooth, balanced, upright};
+    use crate::synth::operating_point::equations;
+    use crate::synth::{NonSmooth, balanced, upright};
     use std::path::Path;
 
     /// Three links with drives and effects of every kind that has a slope.
@@ -212,7 +212,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         ];
         let mut hanging = q.clone();
         hanging[0] += std::f64::consts::PI;
-        let equations = Equations::of(&Rig::of(model, false));
+        let equations = equations(model);
         let left = torque
             - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
             - equations.gravity(&hanging);

@@ -1,6 +1,6 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
-//! `equations` -> `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
+//! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
 //! `zeros` look at plants; `quantise` -> `fixed_law` is what
 //! ships; `design` is all of it as one value, `export` writes that;
 //! `robust` makes one gain for many plants.
@@ -8,7 +8,6 @@
 mod design;
 mod discretise;
 mod eigen;
-mod equations;
 mod estimator;
 pub mod export;
 mod fixed_law;
@@ -34,7 +33,6 @@ mod zeros;
 pub use design::{Design, Estimation, Fixed};
 pub use discretise::zoh;
 pub use eigen::{Mode, poles};
-pub use equations::Equations;
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, dlqr, lqr};

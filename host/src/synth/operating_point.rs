@@ -1,9 +1,9 @@
 //! The operating point of a linear model: what holds the robot in a pose, and how each joint answers small changes.
 
-use super::equations::Equations;
 use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::{check_size, relative};
+use crate::dynamics::EquationsOfMotion;
 use crate::effects::Rig;
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -18,7 +18,7 @@ pub(super) struct OperatingPoint {
     pub inputs: Vec<f64>,
     /// Relative angles, the first from hanging, rad.
     pub relative_rad: Vec<f64>,
-    pub equations: Equations,
+    pub equations: EquationsOfMotion,
     /// One per joint.
     pub joints: Vec<JointSlope>,
     /// Effects without a derivative here; they count neither in `inputs` nor in `joints`.
@@ -33,7 +33,7 @@ impl OperatingPoint {
     pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint> {
         check_size(model, pose_rad)?;
         let relative_rad = relative(model, pose_rad);
-        let equations = Equations::of(&Rig::of(model, false));
+        let equations = equations(model);
         let gravity_nm = equations.gravity(&relative_rad);
         let mut level_rad = relative_rad.clone();
         level_rad[0] += std::f64::consts::FRAC_PI_2;
@@ -54,6 +54,12 @@ impl OperatingPoint {
         }
         Ok(point)
     }
+}
+
+/// The equations of motion of a model's chain, body effects included.
+pub(super) fn equations(model: &Model) -> EquationsOfMotion {
+    let rig = Rig::of(model, false);
+    EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
 }
 
 /// The delay of the drives, s: the same for all of them.

@@ -1,8 +1,7 @@
 //! Poses in a model's own convention of angles, and the equilibrium next to one.
 
-use super::equations::Equations;
 use super::joint_slope::JointAt;
-use crate::effects::Rig;
+use super::operating_point::equations;
 use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 use nalgebra::DVector;
@@ -37,7 +36,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
     let passive: Vec<usize> = (0..model.link_count())
         .filter(|&joint| !model.joints[joint].drive.is_driven())
         .collect();
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = equations(model);
     let mut angle_rad = relative(model, pose_rad);
     for _ in 0..MOST_STEPS {
         let pose_rad = convention(model, &angle_rad);
