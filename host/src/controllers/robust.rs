@@ -5,7 +5,7 @@ use super::{Card, Design, Known, Speeds, Uncertain};
 use crate::closed_loop::{Controller, StateFeedback};
 use crate::error::Result;
 use crate::model::Model;
-use crate::synth::grown;
+use crate::synth::multi_model_continuation;
 use nalgebra::DMatrix;
 
 /// Mass error the gain is designed for: a little more than the 10 % it is judged with.
@@ -47,7 +47,7 @@ pub fn gain(
         .iter()
         .filter(|joint| joint.drive.is_driven())
         .count();
-    grown(spread, STAGES, q, &DMatrix::identity(drives, drives))
+    multi_model_continuation(spread, STAGES, q, &DMatrix::identity(drives, drives))
 }
 
 impl Design for Robust {

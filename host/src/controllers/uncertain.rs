@@ -38,7 +38,7 @@ impl Uncertain {
     /// A pose that is no equilibrium.
     pub fn plant(&self, model: &Model, pose_rad: &[f64], share: &[f64]) -> Result<Discrete> {
         let plant = linearise(&self.model(model, share), pose_rad)?.plant;
-        zoh(&plant, self.period_s, self.delay_s)
+        Ok(zoh(&plant, self.period_s, self.delay_s)?)
     }
 
     /// The model itself, then every combination of lightest and heaviest links, at `part` of the errors.

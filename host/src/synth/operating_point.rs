@@ -1,11 +1,11 @@
 //! The operating point of a linear model: what holds the robot in a pose, and how each joint answers small changes.
 
+use super::error::DesignError;
 use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::{check_size, relative};
 use crate::dynamics::EquationsOfMotion;
 use crate::effects::Rig;
-use crate::error::{Error, Result};
 use crate::model::Model;
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
@@ -30,7 +30,7 @@ impl OperatingPoint {
     ///
     /// # Errors
     /// A pose that is no equilibrium of the smooth effects, or that asks more of a drive than it can give.
-    pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint> {
+    pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint, DesignError> {
         check_size(model, pose_rad)?;
         let relative_rad = relative(model, pose_rad);
         let equations = equations(model);
@@ -66,7 +66,7 @@ pub(super) fn equations(model: &Model) -> EquationsOfMotion {
 ///
 /// # Errors
 /// Drives that differ in delay.
-pub fn input_delay_s(model: &Model) -> Result<f64> {
+pub fn input_delay_s(model: &Model) -> Result<f64, DesignError> {
     let delay = |joint: usize| -> f64 {
         let at = model.effects.iter().filter(|e| e.joint == Some(joint));
         // An empty sum would be -0.
@@ -77,9 +77,9 @@ pub fn input_delay_s(model: &Model) -> Result<f64> {
     let first = delays.first().copied().unwrap_or(0.0);
     match delays.iter().find(|&&delay| delay != first) {
         None => Ok(first),
-        Some(other) => Err(Error::design(
-            format!("the drives differ in delay: {first} s and {other} s"),
-            "give every driven joint the same delay, or choose one with --delay",
-        )),
+        Some(other) => Err(DesignError::DelaysDiffer {
+            first_s: first,
+            other_s: *other,
+        }),
     }
 }
