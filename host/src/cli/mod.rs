@@ -7,7 +7,6 @@
 mod add;
 mod bus;
 mod challenge;
-mod cm5;
 mod compare;
 mod controllers;
 mod delays;
@@ -35,11 +34,11 @@ mod robot;
 mod robust;
 mod servo_columns;
 mod show;
+mod simulated;
 mod study;
 mod talk;
 mod view;
 mod virtual_robot;
-mod watch;
 mod weight_arg;
 
 use clap::{Parser, Subcommand};
@@ -114,7 +113,7 @@ pub enum Command {
     Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
-    /// Speak with servos: scan, read, write, set up, watch, save, restore, find what is wrong
+    /// Communicate with servos: scan, read, write, set up, monitor, back up, restore, find faults
     #[command(subcommand)]
     Bus(bus::Command),
     /// Record what servos do

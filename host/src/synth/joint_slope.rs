@@ -69,7 +69,7 @@ impl<'a> JointAt<'a> {
             effects.extend(model.effects.iter().filter(here));
         }
         effects
-            .retain(|e| !matches!(e.effect.card().site, Site::Body | Site::Timing) && !vanishes(e));
+            .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         let zero = match joint {
             0 => model.angle_zero.from_hanging_rad(),
             _ => 0.0,
@@ -91,7 +91,7 @@ impl<'a> JointAt<'a> {
         omitted: &mut Vec<OmittedEffect>,
     ) -> Vec<(&'static dyn Effect, &'a [f64], Slope)> {
         let mut slopes = Vec::new();
-        for e in self.effects.iter().filter(|e| e.effect.card().site == site) {
+        for e in self.effects.iter().filter(|e| e.effect.info().site == site) {
             match e.effect.slope(&e.values, &at) {
                 Some(slope) => slopes.push((e.effect, e.values.as_slice(), slope)),
                 None => omitted.push(OmittedEffect::new(e.effect, self.joint)),
@@ -207,7 +207,7 @@ impl<'a> JointAt<'a> {
         for e in self
             .effects
             .iter()
-            .filter(|e| e.effect.card().site == Site::Drive)
+            .filter(|e| e.effect.info().site == Site::Drive)
         {
             let slope = e.effect.slope(&e.values, &at).unwrap_or_else(|| {
                 omitted.push(OmittedEffect::new(e.effect, self.joint));
@@ -251,7 +251,7 @@ impl<'a> JointAt<'a> {
 fn vanishes(instance: &EffectInstance) -> bool {
     let mut off = instance
         .effect
-        .card()
+        .info()
         .parameters
         .iter()
         .zip(&instance.values);

@@ -282,7 +282,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         let listed: Vec<_> = found
             .omitted
             .iter()
-            .map(|o| (o.effect.card().id, o.joint, o.why))
+            .map(|o| (o.effect.info().id, o.joint, o.why))
             .collect();
         assert_eq!(
             listed,

@@ -31,7 +31,7 @@ pub enum NonSmooth {
 
 impl OmittedEffect {
     pub(super) fn new(effect: &'static dyn Effect, joint: usize) -> OmittedEffect {
-        let why = match effect.card().site {
+        let why = match effect.info().site {
             Site::Friction => NonSmooth::JumpsAtStandstill,
             Site::Command => NonSmooth::DeadAtZero,
             Site::Drive => NonSmooth::AtLimit,

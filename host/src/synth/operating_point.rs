@@ -5,7 +5,6 @@ use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::{check_size, relative};
 use crate::dynamics::EquationsOfMotion;
-use crate::effects::Rig;
 use crate::model::Model;
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
@@ -58,7 +57,7 @@ impl OperatingPoint {
 
 /// The equations of motion of a model's chain, body effects included.
 pub(super) fn equations(model: &Model) -> EquationsOfMotion {
-    let rig = Rig::of(model, false);
+    let rig = model.rig(false);
     EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
 }
 

@@ -4,9 +4,8 @@
 //! step of attitude, speeds in 5e-4 rad/s, angles of balance four times as fine as angles, torques in 2^-13 N m.
 
 use super::{OnBoard, Timing};
-use crate::controllers::Known;
+use crate::controllers::DesignModel;
 use crate::dynamics::EquationsOfMotion;
-use crate::effects::Rig;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::synth::{Format, Ranges, quantise, upright};
@@ -101,9 +100,9 @@ impl Fitting {
 /// # Errors
 /// As [`OnBoard::new`]; limits that do not fit the words.
 pub fn plan(model: &Model, fitting: &Fitting, timing: &Timing) -> Result<(OnBoard, Plan)> {
-    let known = Known {
+    let known = DesignModel {
         limit_nm: fitting.most_nm,
-        ..Known::ideal(model, &upright(model), fitting.period_s)?
+        ..DesignModel::new(model, &upright(model), fitting.period_s)?
     };
     let machine = OnBoard::new(&known, timing)?;
     let law = Law::Observer(observer(&machine, fitting.most_nm)?);
@@ -268,7 +267,7 @@ const SURELY: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 fn moments(model: &Model) -> [Moment; JOINTS] {
-    let rig = Rig::of(model, false);
+    let rig = model.rig(false);
     let equations = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad);
     let moments = equations.moments_kg_m();
     let most = moments

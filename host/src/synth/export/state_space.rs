@@ -65,7 +65,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
 
 fn omitted(omitted: &OmittedEffect) -> Value {
     json!({
-        "effect": omitted.effect.card().id,
+        "effect": omitted.effect.info().id,
         "joint": omitted.joint + 1,
         "why": omitted.why.to_string(),
     })

@@ -63,7 +63,7 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
         let joints: Vec<String> = joints.map(|joint| joint.to_string()).collect();
         lines.push(format!(
             "The design leaves out {} at joint{} {}: {why}",
-            effect.card().title,
+            effect.info().title,
             if joints.len() > 1 { "s" } else { "" },
             joints.join(", ")
         ));
