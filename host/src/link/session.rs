@@ -40,7 +40,7 @@ impl<L: Link> Session<L> {
             version: 0,
             token: 0,
             condition: Condition::Bridge,
-            gains: 0,
+            plan: 0,
         };
         let mut session = Session {
             link,
@@ -123,7 +123,7 @@ impl<L: Link> Session<L> {
             // Gains are answered when EEPROM is written: 8.5 ms a byte, a byte a tick.
             let slow = matches!(
                 command,
-                Command::GainChunk { .. } | Command::GainStore { .. }
+                Command::PlanChunk { .. } | Command::PlanStore { .. }
             );
             let turn = self.turn()
                 + if slow {
@@ -254,15 +254,15 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
             "a servo it needs does not answer",
             "`handstand bus scan` shows who does",
         ),
-        Refusal::NoGains => (
+        Refusal::NoPlan => (
             "there are no gains on it",
             "`handstand deploy` puts them there",
         ),
-        Refusal::BadGains => (
+        Refusal::BadPlan => (
             "the gain table is unsound",
             "make it anew; if it stays so, firmware and program do not belong together",
         ),
-        Refusal::Roster => (
+        Refusal::ServoList => (
             "the list of servos is empty, too long, or names an id twice",
             "give 1 to 18 different ids",
         ),

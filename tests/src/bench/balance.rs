@@ -7,7 +7,7 @@ use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
-    Attitude, Command, Condition, GAIN_CHUNK, Hello, Mode, Refusal, Report, Subject, Telemetry,
+    Attitude, Command, Condition, Hello, Mode, PLAN_CHUNK, Refusal, Report, Subject, Telemetry,
     VERSION,
 };
 use handstand_shared::plan::{Gyro, Plan};
@@ -119,7 +119,7 @@ pub fn ready(
     }
     bench.run_ms(10.0);
     let hello = greet(bench)?;
-    if hello.gains != plan.fingerprint() {
+    if hello.plan != plan.fingerprint() {
         upload(bench, plan)?;
     }
     command(bench, &Command::Mode(Mode::Balance))?;
@@ -233,11 +233,11 @@ fn upload(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refus
     plan.bytes(|byte| table.push(byte));
     // As an adapter it takes our frames after a zero only; another mode needs none.
     command(bench, &Command::Mode(Mode::Stream))?;
-    for (offset, piece) in (0..).step_by(GAIN_CHUNK).zip(table.chunks(GAIN_CHUNK)) {
-        let mut bytes = [0; GAIN_CHUNK];
+    for (offset, piece) in (0..).step_by(PLAN_CHUNK).zip(table.chunks(PLAN_CHUNK)) {
+        let mut bytes = [0; PLAN_CHUNK];
         bytes[..piece.len()].copy_from_slice(piece);
-        command(bench, &Command::GainChunk { offset, bytes })?;
+        command(bench, &Command::PlanChunk { offset, bytes })?;
     }
     let (length, check) = (table.len() as u16, crc32(&table));
-    command(bench, &Command::GainStore { length, check })
+    command(bench, &Command::PlanStore { length, check })
 }

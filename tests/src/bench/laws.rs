@@ -7,7 +7,7 @@ use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
 use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
-use handstand_shared::plan::{Given, Law, Plan};
+use handstand_shared::plan::{AppliedInput, Law, Plan};
 use handstand_shared::raw::{Position, Signed};
 
 /// A law of the host, between readings in steps and commands in codes.
@@ -21,7 +21,7 @@ pub trait HostLaw {
 pub struct Fixed<'a> {
     plan: &'a Plan,
     memory: Option<Memory>,
-    given: [Given; 2],
+    applied: [AppliedInput; 2],
 }
 
 /// The machine as it was designed, with the plan's servos.
@@ -37,7 +37,7 @@ impl<'a> Fixed<'a> {
         Fixed {
             plan,
             memory: None,
-            given: [Given::NOTHING; 2],
+            applied: [AppliedInput::NOTHING; 2],
         }
     }
 }
@@ -64,11 +64,11 @@ impl HostLaw for Fixed<'_> {
             observer.start(&mut memory, &readings, [0; 3]);
             memory
         });
-        let wish = observer.wish(memory, &readings);
+        let raw_command = observer.raw_command(memory, &readings);
         let joints = &self.plan.joints;
-        let given = [0, 1].map(|i| joints[i].give(&mut self.given[i], wish[i]));
-        observer.learn(memory, given);
-        [0, 1].map(|i| joints[i].command(given[i]))
+        let applied = [0, 1].map(|i| joints[i].apply(&mut self.applied[i], raw_command[i]));
+        observer.update(memory, applied);
+        [0, 1].map(|i| joints[i].command(applied[i]))
     }
 }
 
@@ -83,10 +83,10 @@ impl HostLaw for Float<'_> {
             memory[..3].copy_from_slice(&readings[..3]);
             memory
         });
-        let wish = self.machine.wish(memory, &readings);
-        let given = wish.map(|torque| torque.clamp(-FULL_NM, FULL_NM));
-        self.machine.learn(memory, given);
-        [0, 1].map(|i| self.plan.joints[i].command((given[i] / step[WIDTH - 1]).round() as i16))
+        let raw_command = self.machine.raw_command(memory, &readings);
+        let applied = raw_command.map(|torque| torque.clamp(-FULL_NM, FULL_NM));
+        self.machine.update(memory, applied);
+        [0, 1].map(|i| self.plan.joints[i].command((applied[i] / step[WIDTH - 1]).round() as i16))
     }
 }
 

@@ -268,7 +268,7 @@ fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut Steps) -> Result<Ve
     // It starts within its first second.
     std::thread::sleep(std::time::Duration::from_secs(1));
     let mut session = Session::open(args.port.open()?)?;
-    let (theirs, ours) = (session.hello.gains, plan.fingerprint());
+    let (theirs, ours) = (session.hello.plan, plan.fingerprint());
     if theirs != ours {
         return Err(Error::device(
             format!(

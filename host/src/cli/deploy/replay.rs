@@ -20,7 +20,7 @@ pub fn replay(law: &Law, states: u64, seed: u64, talk: &Talk) -> Result<()> {
         match law {
             Law::State { table, .. } => same(table, &mut random)?,
             Law::Observer(observer) => {
-                same(&observer.expect, &mut random)?;
+                same(&observer.predict, &mut random)?;
                 same(&observer.feedback, &mut random)?;
                 same(&observer.update, &mut random)?;
             }

@@ -5,18 +5,18 @@ use super::super::talk::Talk;
 use handstand::link::Session;
 use handstand::{Error, Result};
 use handstand_shared::crc::crc32;
-use handstand_shared::message::{Command, GAIN_CHUNK, Report};
+use handstand_shared::message::{Command, PLAN_CHUNK, Report};
 
 /// Sends a plan; the CM-5 answers when it is in EEPROM.
 pub fn upload(session: &mut Session<AnyLink>, bytes: &[u8], talk: &Talk) -> Result<()> {
     let bar = talk.bar();
     bar.set_length(bytes.len() as u64);
-    for (place, piece) in bytes.chunks(GAIN_CHUNK).enumerate() {
-        let mut chunk = [0; GAIN_CHUNK];
+    for (place, piece) in bytes.chunks(PLAN_CHUNK).enumerate() {
+        let mut chunk = [0; PLAN_CHUNK];
         chunk[..piece.len()].copy_from_slice(piece);
-        let offset = (place * GAIN_CHUNK) as u16;
+        let offset = (place * PLAN_CHUNK) as u16;
         session.obey(
-            &Command::GainChunk {
+            &Command::PlanChunk {
                 offset,
                 bytes: chunk,
             },
@@ -25,7 +25,7 @@ pub fn upload(session: &mut Session<AnyLink>, bytes: &[u8], talk: &Talk) -> Resu
         bar.inc(piece.len() as u64);
     }
     bar.finish_and_clear();
-    let store = Command::GainStore {
+    let store = Command::PlanStore {
         length: bytes.len() as u16,
         check: crc32(bytes),
     };
@@ -39,9 +39,9 @@ pub fn read_back(session: &mut Session<AnyLink>) -> Result<Vec<u8>> {
         let wanted = back.len() as u16;
         let (length, bytes) =
             session.fetch(
-                &Command::GainRead { offset: wanted },
+                &Command::PlanRead { offset: wanted },
                 |report| match *report {
-                    Report::GainChunk {
+                    Report::PlanChunk {
                         offset,
                         length,
                         bytes,
@@ -71,12 +71,12 @@ pub fn verify(session: &mut Session<AnyLink>, ours: &[u8], fingerprint: u32) -> 
         ));
     }
     session.greet()?;
-    match session.hello.gains == fingerprint {
+    match session.hello.plan == fingerprint {
         true => Ok(theirs),
         false => Err(Error::device(
             format!(
                 "the CM-5 says its gains are {:08X}, not {fingerprint:08X}",
-                session.hello.gains
+                session.hello.plan
             ),
             "its firmware does not take this plan: flash the firmware that belongs to this program, docs/flash.md",
         )),

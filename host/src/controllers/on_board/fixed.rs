@@ -135,13 +135,13 @@ pub fn si() -> [f64; WIDTH] {
     let mut step = [INPUT_STEP_NM; WIDTH];
     let reading = reading_steps();
     let finer = |reading: f64, places: u8| reading / f64::from(1 << places);
-    let surprise: [f64; READINGS] = std::array::from_fn(|i| finer(reading[i], READING_PLACES[i]));
+    let innovation: [f64; READINGS] = std::array::from_fn(|i| finer(reading[i], READING_PLACES[i]));
     for joint in 0..JOINTS {
-        step[joint] = surprise[joint];
-        step[JOINTS + joint] = surprise[JOINTS];
+        step[joint] = innovation[joint];
+        step[JOINTS + joint] = innovation[JOINTS];
         step[2 * JOINTS + joint] = finer(reading[joint], BALANCE_PLACES[joint]);
     }
-    step[STATE..SEEN].copy_from_slice(&surprise);
+    step[STATE..SEEN].copy_from_slice(&innovation);
     step
 }
 
@@ -165,9 +165,9 @@ fn observer(machine: &OnBoard, limit_nm: f64) -> Result<Observer> {
         limit_nm / INPUT_STEP_NM,
     )?;
     let update = rounded(&machine.update, &step, &step[..ESTIMATED], WORD)?;
-    let expect = rounded(&machine.expect, &step[..STATE], &step[STATE..SEEN], WORD)?;
+    let predict = rounded(&machine.predict, &step[..STATE], &step[STATE..SEEN], WORD)?;
     Ok(Observer {
-        expect: table(&expect)?,
+        predict: table(&predict)?,
         feedback: table(&feedback)?,
         update: table(&update)?,
         reading_places: READING_PLACES,
