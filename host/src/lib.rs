@@ -8,6 +8,7 @@ pub mod challenge;
 pub mod closed_loop;
 pub mod compare;
 pub mod controllers;
+pub mod deploy;
 pub mod diagnose;
 pub mod dynamics;
 pub mod effects;

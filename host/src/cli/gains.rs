@@ -123,7 +123,8 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let (design, made) = designed(args, talk)?;
+    let (model, request, made) = requested(args, talk)?;
+    let design = Design::of(&model, &request)?;
     if talk.json {
         talk.data(&export::json(&design, &made))?;
     } else {
@@ -134,21 +135,6 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 impl Args {
-    /// The same with steps that somebody else prescribes: of the states, and where given of the inputs.
-    pub(super) fn in_steps(&self, steps: Given, input: Option<Given>) -> Result<Args> {
-        match self.state_step {
-            Some(_) => Err(Error::usage(
-                "--state-step has no place here: the firmware measures in steps of its own",
-                "leave it out",
-            )),
-            None => Ok(Args {
-                state_step: Some(steps),
-                input_step: input.or_else(|| self.input_step.clone()),
-                ..self.clone()
-            }),
-        }
-    }
-
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
@@ -187,16 +173,16 @@ impl Args {
     }
 }
 
-/// The design, and where it came from.
-pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)> {
+/// The model without the effects left out, what is asked of its design, and where it came from.
+pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
         input::vacant(file, args.force)?;
     }
     let mut model = Model::load(&args.model)?;
     leave_out(&mut model, &args.without, talk)?;
-    let design = Design::of(&model, &request(args, &model, talk)?)?;
-    Ok((design, provenance(&args.model, talk)?))
+    let request = request(args, &model, talk)?;
+    Ok((model, request, provenance(&args.model, talk)?))
 }
 
 fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {

@@ -33,10 +33,7 @@ pub use chain::{CHAINS, Chain, SERVO_DEAD_TIME_S};
 pub use conditions::{CONDITIONS, Condition, condition};
 pub use delay::{Longest, longest_held, longest_linear};
 pub use known::Known;
-pub use on_board::{
-    Fitting, OnBoard, Servo, Timing, plan as board_plan, plan_file, reading_steps, regulator_plan,
-    si as board_steps,
-};
+pub use on_board::{OnBoard, Timing};
 pub use picture::picture;
 pub use robust::{SHARE, WEIGHTS, gain as robust_gain};
 pub use servo::ServoLag;

@@ -21,12 +21,6 @@ use handstand_shared::observer::{
 use handstand_shared::raw::Position;
 use nalgebra::DMatrix;
 
-mod fixed;
-mod rust_file;
-
-pub use fixed::{Fitting, Servo, plan, reading_steps, regulator_plan, si};
-pub use rust_file::plan_file;
-
 /// When things happen in a period, and how well the readings tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {

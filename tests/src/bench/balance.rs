@@ -3,7 +3,8 @@
 use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
 use super::run::Run;
-use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
+use handstand::controllers::{OnBoard, Timing};
+use handstand::deploy::{self, Board, BoardLaw};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
@@ -31,18 +32,18 @@ impl Source {
     }
 
     /// The servos, and the gyro as it is wired.
-    pub fn fitting(self) -> Fitting {
+    pub fn board(self) -> Board {
         let gyro = match self {
-            Source::Host => Fitting::BIOLOID.gyro,
+            Source::Host => Board::BIOLOID.gyro,
             Source::Gyro => Gyro {
                 from_host: false,
                 zero: GYRO_ZERO,
                 scale: (GYRO_STEP_RAD_S / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
             },
         };
-        Fitting {
+        Board {
             gyro,
-            ..Fitting::BIOLOID
+            ..Board::BIOLOID
         }
     }
 
@@ -51,7 +52,11 @@ impl Source {
     /// # Panics
     /// The repository's own model cannot be read or designed for: a bug.
     pub fn plan(self) -> (OnBoard, Plan) {
-        board_plan(&model(), &self.fitting(), &self.timing()).expect("a plan can be made")
+        let (model, board) = (model(), self.board());
+        let machine = deploy::observer_design(&model, &board, &self.timing());
+        let machine = machine.expect("an observer can be designed");
+        let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board);
+        (machine, plan.expect("a plan can be made"))
     }
 }
 

@@ -4,7 +4,8 @@
 use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
 use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
-use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
+use handstand::controllers::{OnBoard, Timing};
+use handstand::deploy::{reading_steps, state_steps};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
 use handstand_shared::plan::{AppliedInput, Law, Plan};
@@ -74,7 +75,7 @@ impl HostLaw for Fixed<'_> {
 
 impl HostLaw for Float<'_> {
     fn commands(&mut self, [angle, q2, q3, rate]: [i16; 4]) -> [i16; 2] {
-        let step = board_steps();
+        let step = state_steps();
         let readings = [angle, q2 << FINE, q3 << FINE, rate];
         let reading_step = reading_steps();
         let readings: [f64; 4] = std::array::from_fn(|i| f64::from(readings[i]) * reading_step[i]);
@@ -254,7 +255,7 @@ pub fn side_by_side(
 mod tests {
     use super::*;
     use crate::bench::robot::model;
-    use handstand::controllers::{Fitting, board_plan};
+    use handstand::deploy::{self, Board, BoardLaw};
 
     const TWO: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
@@ -262,7 +263,9 @@ mod tests {
     #[test]
     fn both_laws_of_the_host_stand() {
         for timing in [Timing::HOST_ATTITUDE, Timing::GYRO] {
-            let (machine, plan) = board_plan(&model(), &Fitting::BIOLOID, &timing).unwrap();
+            let (model, board) = (model(), Board::BIOLOID);
+            let machine = deploy::observer_design(&model, &board, &timing).unwrap();
+            let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board).unwrap();
             for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
                 let conditions = Conditions {
                     dead_zone: 0.08,
