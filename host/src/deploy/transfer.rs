@@ -31,7 +31,7 @@ pub fn upload<L: Link>(
         length: bytes.len() as u16,
         check: crc32(bytes),
     };
-    session.obey(&store, "keep the gains")
+    Ok(session.obey(&store, "keep the gains")?)
 }
 
 /// Read the plan that the CM-5 has.

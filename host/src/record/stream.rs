@@ -140,7 +140,7 @@ impl<L: Link> Source for Stream<L> {
 
     fn disarm(&mut self) -> Result<()> {
         self.armed = false;
-        self.session.obey(&Command::Disarm, "switch torque off")
+        Ok(self.session.obey(&Command::Disarm, "switch torque off")?)
     }
 
     fn let_go(&mut self) -> Option<LetGo> {

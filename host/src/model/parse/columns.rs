@@ -21,7 +21,7 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
         "split_at_gap_s",
         "joint",
     ])?;
-    let name = |key: &str| Ok(log.text(key)?.map(str::to_string));
+    let name = |key: &str| -> Result<_> { Ok(log.text(key)?.map(str::to_string)) };
     let payload = log.table("payload")?;
     Ok(LogColumns {
         time: column(&log.required_table("time")?, "time", Dimension::Time)?,
