@@ -1,9 +1,11 @@
-//! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
+//! Model a chain of links, compare it with measured logs, and find the physical effect that is
+//! missing.
 //!
-//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances, TOML)
-//! -> `sim`; `sim` + `log` -> `fitting` -> `diagnose` -> `report`; `model` -> `synth`, `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing
-//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for people.
+//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
+//! TOML) -> `sim`; `sim` + `log` -> `fitting` -> `diagnose` -> `report`; `model` -> `synth`,
+//! `closed_loop`; `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits
+//! on top and nothing depends on it. Every layer may read `error`, `output` and `number`, which
+//! writes numbers for people.
 
 pub mod bus_sim;
 pub mod challenge;

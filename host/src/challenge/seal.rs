@@ -4,9 +4,9 @@
 
 use super::Answer;
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::path::Path;
 
 const NOTE: &str = "The answer, sealed. It keeps honest people from peeking, no more.";
@@ -25,8 +25,8 @@ pub fn seal(answer: &Answer) -> String {
     let plain = serde_json::to_vec(answer).expect("an answer is plain data");
     let sealed = Sealed {
         note: NOTE.to_owned(),
-        sha256: hex(&Sha256::digest(&plain)),
-        sealed: hex(&masked(&plain)),
+        sha256: hex(Sha256::digest(&plain)),
+        sealed: hex(masked(&plain)),
     };
     let mut text = serde_json::to_string_pretty(&sealed).expect("strings are plain data");
     text.push('\n');
@@ -46,7 +46,7 @@ pub fn unseal(text: &str, file: &Path) -> Result<Answer> {
     let bytes =
         unhex(&sealed.sealed).ok_or_else(|| refuse("the sealed answer is not hexadecimal"))?;
     let plain = masked(&bytes);
-    if hex(&Sha256::digest(&plain)) != sealed.sha256 {
+    if hex(Sha256::digest(&plain)) != sealed.sha256 {
         return Err(refuse(
             "the sealed answer was changed: its SHA-256 does not match",
         ));
@@ -65,13 +65,6 @@ fn masked(bytes: &[u8]) -> Vec<u8> {
         out.extend(block.iter().zip(key).map(|(byte, key)| byte ^ key));
     }
     out
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 fn unhex(text: &str) -> Option<Vec<u8>> {

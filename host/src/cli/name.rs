@@ -1,4 +1,4 @@
-//! Effects as people name them: `coulomb`, `coulomb@2`.
+//! Reads an effect's name, with its joint: `coulomb`, `coulomb@2`.
 
 use handstand::diagnose::Candidate;
 use handstand::effects::{EFFECTS, Effect, Scope};
@@ -25,12 +25,12 @@ pub fn effect(name: &str) -> Result<&'static dyn Effect> {
     })
 }
 
-/// The effect at the joint that `name` says, if the model has room for it. Where there is only one joint it
-/// need not be named.
+/// The effect at the joint that `name` says, if the model has room for it. Where there is only one
+/// joint it need not be named.
 ///
 /// # Errors
-/// [`Error::Usage`] for an unknown effect, a joint that is not there or does not suit it, or an effect the
-/// model holds already.
+/// [`Error::Usage`] for an unknown effect, a joint that is not there or does not suit it, or an
+/// effect the model holds already.
 pub fn candidate(name: &str, model: &Model) -> Result<Candidate> {
     let (id, at) = match name.split_once('@') {
         Some((id, at)) => (id, Some(at)),

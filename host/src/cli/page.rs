@@ -92,10 +92,9 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
 /// [`Error::File`] if it cannot be read.
 pub fn hashed(file: &Path) -> Result<ModelFile> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
-    let hash = Sha256::digest(&bytes);
     Ok(ModelFile {
         name: name(file),
-        sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+        sha256: handstand::number::hex(Sha256::digest(&bytes)),
     })
 }
 

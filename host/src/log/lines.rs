@@ -1,7 +1,8 @@
-//! A file line by line, hashed on the way; holds one line at a time.
+//! Reads a file line by line and hashes it; holds one line at a time.
 
 use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -74,12 +75,6 @@ impl Lines {
 
     /// SHA-256 of all bytes read, lower-case hexadecimal.
     pub fn sha256(self) -> String {
-        hex(self.hash)
+        hex(self.hash.finalize())
     }
-}
-
-/// The hash in lower-case hexadecimal.
-pub(super) fn hex(hash: Sha256) -> String {
-    let bytes = hash.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
