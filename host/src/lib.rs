@@ -2,14 +2,13 @@
 //! missing.
 //!
 //! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
-//! TOML) -> `sim`; `sim` + `log` -> `fitting` -> `diagnose` -> `report`; `model` -> `synth`,
-//! `closed_loop`; `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits
-//! on top and nothing depends on it. Every layer may read `error`, `output` and `number`, which
-//! writes numbers for people.
+//! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
+//! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
+//! `paper`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing
+//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for
+//! people.
 
-pub mod bus_sim;
 pub mod challenge;
-pub mod closed_loop;
 pub mod compare;
 pub mod controllers;
 pub mod diagnose;
@@ -29,6 +28,8 @@ pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod sysid;
+#[cfg(feature = "virtual-cm5")]
+pub mod virtual_cm5;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

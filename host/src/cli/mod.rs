@@ -7,7 +7,6 @@
 mod add;
 mod bus;
 mod challenge;
-mod cm5;
 mod compare;
 mod controllers;
 mod delays;
@@ -36,11 +35,11 @@ mod robot;
 mod robust;
 mod show;
 mod signals;
+mod simulated;
 mod study;
 mod talk;
 mod view;
 mod virtual_robot;
-mod watch;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;

@@ -14,9 +14,9 @@ pub fn effect(name: &str) -> Result<&'static dyn Effect> {
     let found = EFFECTS
         .iter()
         .copied()
-        .find(|effect| effect.card().id == name);
+        .find(|effect| effect.info().id == name);
     found.ok_or_else(|| {
-        let ids = EFFECTS.iter().map(|effect| effect.card().id);
+        let ids = EFFECTS.iter().map(|effect| effect.info().id);
         let remedy = match nearest(name, ids) {
             Some(near) => format!("did you mean `{near}`? `handstand effects` lists all"),
             None => "`handstand effects` lists all".to_string(),
@@ -51,7 +51,7 @@ pub fn candidate(name: &str, model: &Model) -> Result<Candidate> {
 }
 
 fn joint(effect: &dyn Effect, at: Option<&str>, model: &Model) -> Result<Option<usize>> {
-    let (id, scope, count) = (effect.card().id, effect.card().scope, model.link_count());
+    let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),
         (Scope::WholeRig, Some(_)) => {

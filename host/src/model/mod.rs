@@ -187,14 +187,14 @@ pub struct EffectInstance {
     pub effect: &'static dyn crate::effects::Effect,
     /// Joint index from 0; `None` acts on the whole rig.
     pub joint: Option<usize>,
-    /// Values in the order of the effect's card.
+    /// Values in the order of the effect's parameters.
     pub values: Vec<f64>,
 }
 
 impl EffectInstance {
     /// Whether it is the effect of this id at this joint.
     fn is(&self, id: &str, joint: Option<usize>) -> bool {
-        self.joint == joint && self.effect.card().id == id
+        self.joint == joint && self.effect.info().id == id
     }
 }
 

@@ -119,13 +119,13 @@ use ModelReason::*;
 impl ModelReason {
     /// Why the effect cannot act on this joint, if it cannot.
     pub fn unsuited(effect: &dyn Effect, index: usize, joint: &Joint) -> Option<ModelReason> {
-        let wanted = match (effect.card().scope, joint.drive.is_driven()) {
+        let wanted = match (effect.info().scope, joint.drive.is_driven()) {
             (Scope::DrivenJoint, false) => "driven",
             (Scope::PassiveJoint, true) => "passive",
             _ => return None,
         };
         Some(UnsuitedJoint {
-            id: effect.card().id,
+            id: effect.info().id,
             wanted,
             joint: index,
             drive: joint.drive.name(),

@@ -29,7 +29,7 @@ impl Model {
             turned,
         };
         for instance in &self.effects {
-            if instance.effect.card().site == Site::Body {
+            if instance.effect.info().site == Site::Body {
                 let joint = instance.joint.unwrap_or(0);
                 instance.effect.body(&instance.values, joint, &mut rig);
             }

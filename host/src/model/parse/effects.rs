@@ -11,7 +11,7 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
         let effect = effect(&table, joints)?;
-        let id = effect.effect.card().id;
+        let id = effect.effect.info().id;
         if effects.iter().any(|other| other.is(id, effect.joint)) {
             return Err(table.bad("kind", ModelReason::EffectTwice { id }));
         }
@@ -21,19 +21,19 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
 }
 
 fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
-    let kinds = EFFECTS.iter().map(|effect| (effect.card().id, *effect));
+    let kinds = EFFECTS.iter().map(|effect| (effect.info().id, *effect));
     let kinds: Vec<(&str, &'static dyn Effect)> = kinds.collect();
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
-    let card = effect.card();
+    let info = effect.info();
 
     let mut known = vec!["kind", "joint", "fitted"];
-    known.extend(card.parameters.iter().map(|parameter| parameter.key));
+    known.extend(info.parameters.iter().map(|parameter| parameter.key));
     table.only(&known)?;
     // Where its values came from: for people and reports, so any content will do.
     table.table("fitted")?;
 
     let joint = at(table, effect, joints)?;
-    let values = card.parameters.iter().map(|parameter| {
+    let values = info.parameters.iter().map(|parameter| {
         let (low, high) = parameter.bounds;
         table.required_number(parameter.key, Limits::within(low, high))
     });
@@ -46,8 +46,8 @@ fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
 
 /// The joint it acts on, if it acts on one.
 fn at(table: &Table, effect: &dyn Effect, joints: &[Joint]) -> Result<Option<usize>> {
-    if effect.card().scope == Scope::WholeRig {
-        let id = effect.card().id;
+    if effect.info().scope == Scope::WholeRig {
+        let id = effect.info().id;
         return match table.has("joint") {
             true => Err(table.bad_key("joint", ModelReason::WholeRig { id })),
             false => Ok(None),
