@@ -24,8 +24,8 @@ pub fn seal(answer: &ChallengeAnswer) -> String {
     let plain = serde_json::to_vec(answer).expect("an answer is plain data");
     let sealed = Sealed {
         note: NOTE.to_owned(),
-        sha256: hex(&Sha256::digest(&plain)),
-        sealed: hex(&masked(&plain)),
+        sha256: hex(Sha256::digest(&plain)),
+        sealed: hex(masked(&plain)),
     };
     let mut text = serde_json::to_string_pretty(&sealed).expect("strings are plain data");
     text.push('\n');
@@ -40,7 +40,7 @@ pub fn unseal(text: &str) -> Result<ChallengeAnswer, SealError> {
     let sealed: Sealed = serde_json::from_str(text).map_err(|_| SealError::NotSealed)?;
     let bytes = unhex(&sealed.sealed).ok_or(SealError::NotHexadecimal)?;
     let plain = masked(&bytes);
-    if hex(&Sha256::digest(&plain)) != sealed.sha256 {
+    if hex(Sha256::digest(&plain)) != sealed.sha256 {
         return Err(SealError::Changed);
     }
     serde_json::from_slice(&plain).map_err(|_| SealError::OtherVersion)

@@ -236,7 +236,10 @@ fn the_general_simulation_agrees_where_its_effects_vanish() {
         let theirs = one(&loop_of(&with(&effects)), &paper_gains(), &start, 2.0);
         let angle = ours.rms_angle_rad - theirs.rms_angle_rad;
         let torque = ours.rms_torque_nm - theirs.rms_torque_nm;
-        assert!(angle.abs() < tolerance && torque.abs() < 10.0 * tolerance, "{angle} {torque}");
+        assert!(
+            angle.abs() < tolerance && torque.abs() < 10.0 * tolerance,
+            "{angle} {torque}"
+        );
     }
 }
 
