@@ -1,20 +1,22 @@
 //! `handstand effects [NAME]`: the physical effects the library knows.
 //!
-//! Without a name, a line for each; with one, its page: law, values, what a log shows, what it is taken for,
-//! and the experiment that tells.
+//! Without a name, a line for each; with one, its page: law, values, what a log shows, what it is
+//! taken for, and the experiment that tells.
 //!
 //! ```console
 //! $ handstand effects coulomb
 //! ```
 //!
-//! `--json` prints the descriptions: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`, `reference`,
-//! `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`), `confused_with` (`with`, `why`).
+//! `--json` prints the descriptions: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`,
+//! `reference`, `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`),
+//! `confused_with` (`with`, `why`).
 
 use super::Outcome;
 use super::name;
 use super::talk::Talk;
 use handstand::Result;
-use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope, glossary};
+use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope};
+use handstand::report::effect_page;
 use serde_json::{Value, json};
 
 /// Explain the physical effects the library knows.
@@ -32,7 +34,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             if talk.json {
                 talk.data(&info(effect.info()))?;
             } else {
-                talk.print(&glossary::page(effect))?;
+                talk.print(&effect_page::page(effect))?;
             }
         }
         None if talk.json => {
@@ -40,7 +42,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             talk.data(&infos)?;
         }
         None => {
-            talk.print(&glossary::overview().to_string())?;
+            talk.print(&effect_page::overview())?;
             talk.say("`handstand effects NAME` explains one of them");
         }
     }
@@ -69,7 +71,8 @@ fn info(info: &EffectInfo) -> Value {
     })
 }
 
-/// JSON knows no infinity: an effect that is off at infinity has `off: null`, as a shape parameter has.
+/// JSON knows no infinity: an effect that is off at infinity has `off: null`, as a shape parameter
+/// has.
 fn parameter(parameter: &Parameter) -> Value {
     json!({
         "key": parameter.key,

@@ -117,7 +117,8 @@ fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
     }
 }
 
-fn name(file: &Path) -> String {
+/// A file's name without its folder.
+pub fn name(file: &Path) -> String {
     file.file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy()

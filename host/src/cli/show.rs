@@ -1,21 +1,16 @@
 //! Tables and figures as every command shows them.
 
-use comfy_table::{ContentArrangement, Table, TableComponent, presets};
+use comfy_table::{ContentArrangement, Table};
 use handstand::diagnose::FittedValue;
 use handstand::fitting::Horizon;
 use handstand::fitting::{Extension, Fall, Undetermined};
 use handstand::number::exact;
+use handstand::report::plain_table;
 use serde_json::{Value, json};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
+    let mut table = plain_table(header);
     if table.width().is_none() {
         table.set_width(100);
     }

@@ -17,7 +17,6 @@ mod observed;
 mod offset;
 mod on_board;
 mod paper;
-mod picture;
 mod plant;
 mod robust;
 mod servo;
@@ -37,7 +36,6 @@ pub use on_board::{
     Fitting, OnBoard, Servo, Timing, plan as board_plan, plan_file, reading_steps, regulator_plan,
     si as board_steps,
 };
-pub use picture::picture;
 pub use robust::{SHARE, WEIGHTS, gain as robust_gain};
 pub use servo::ServoLag;
 pub use trial::{REGION_RUNS, Region, Robots, Tried, region, try_out};

@@ -1,8 +1,9 @@
-//! What became of the robots: tables, CSV, JSON, a picture.
+//! What became of the robots: tables, CSV, JSON, a plot.
 
 use super::super::show;
 use super::Row;
-use handstand::controllers::{Condition, Design, Region, picture};
+use handstand::controllers::{Condition, Design, Region};
+use handstand::plot::heat_map;
 use serde_json::{Value, json};
 
 /// Three tables: who is held, from how far, and how well under the last condition.
@@ -82,7 +83,7 @@ fn degrees(region: Region) -> String {
     format!("{sign}{:.1}", region.spread_rad.to_degrees())
 }
 
-/// The shares that were held, as a picture.
+/// The shares that were held, as a plot.
 pub fn plot(
     rows: &[Row],
     designs: &[&'static dyn Design],
@@ -97,7 +98,7 @@ pub fn plot(
             own.map(|row| row.tried.held).collect()
         })
         .collect();
-    picture(
+    heat_map(
         "Robots held by each controller under each condition",
         &ids,
         &titles,
