@@ -128,7 +128,7 @@ impl Chart {
 
     /// Axes and curves in a rectangle with this upper left corner and this size, px.
     pub(super) fn drawn(&self, (left, top): (f64, f64), (width, height): (f64, f64)) -> Markup {
-        let [x, y] = self.spans(0.06);
+        let [x, y] = self.spans(0.04);
         let axes = Axes {
             x: Scale::new(x, (left + 56.0, left + width - 12.0)),
             y: Scale::new(y, (top + height - 38.0, top + 26.0)),
