@@ -15,9 +15,8 @@ use super::Outcome;
 use super::name;
 use super::talk::Talk;
 use handstand::Result;
-use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope};
+use handstand::effects::EFFECTS;
 use handstand::report::effect_page;
-use serde_json::{Value, json};
 
 /// Explain the physical effects the library knows.
 #[derive(Debug, clap::Args)]
@@ -32,14 +31,14 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         Some(name) => {
             let effect = name::effect(name)?;
             if talk.json {
-                talk.data(&info(effect.info()))?;
+                talk.data(effect.info())?;
             } else {
                 talk.print(&effect_page::page(effect))?;
             }
         }
         None if talk.json => {
-            let infos: Vec<Value> = EFFECTS.iter().map(|effect| info(effect.info())).collect();
-            talk.data(&infos)?;
+            let infos = EFFECTS.iter().map(|effect| effect.info());
+            talk.data(&infos.collect::<Vec<_>>())?;
         }
         None => {
             talk.print(&effect_page::overview())?;
@@ -47,39 +46,4 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
-}
-
-fn info(info: &EffectInfo) -> Value {
-    let confusions = info.confused_with.iter();
-    json!({
-        "id": info.id,
-        "title": info.title,
-        "law": info.law,
-        "scope": match info.scope {
-            Scope::AnyJoint => "any_joint",
-            Scope::DrivenJoint => "driven_joint",
-            Scope::PassiveJoint => "passive_joint",
-            Scope::WholeRig => "whole_rig",
-        },
-        "parameters": info.parameters.iter().map(parameter).collect::<Vec<_>>(),
-        "looks_like": info.looks_like,
-        "confused_with": confusions
-            .map(|other| json!({ "with": other.with, "why": other.why }))
-            .collect::<Vec<_>>(),
-        "experiment": info.experiment,
-        "reference": info.reference,
-    })
-}
-
-/// JSON knows no infinity: an effect that is off at infinity has `off: null`, as a shape parameter
-/// has.
-fn parameter(parameter: &Parameter) -> Value {
-    json!({
-        "key": parameter.key,
-        "unit": parameter.unit,
-        "meaning": parameter.meaning,
-        "off": parameter.off,
-        "typical": [parameter.typical.0, parameter.typical.1],
-        "bounds": [parameter.bounds.0, parameter.bounds.1],
-    })
 }

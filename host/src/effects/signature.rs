@@ -77,134 +77,90 @@ fn parted(signature: &Signature) -> f64 {
 
 fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
     let off = off_values(effect);
-    let law = law(effect, &values, &off);
+    let (x_label, y_label, range, y) = law(effect, &values, &off);
+    let points = |values: &[f64]| match effect.info().site {
+        Site::Encoder | Site::Sensor => reading(effect, values),
+        _ => over(&range, |x| y(effect, values, x)),
+    };
     Signature {
-        x_label: law.x_label,
-        y_label: law.y_label,
-        without: law.points(effect, &off),
-        with: law.points(effect, &values),
+        x_label,
+        y_label,
+        without: points(&off),
+        with: points(&values),
         values,
     }
 }
 
-/// What to plot over what.
-struct Law {
-    x_label: &'static str,
-    y_label: &'static str,
-    /// Ends of the x axis; `None` for a reading, which its past decides.
-    range: Option<Range<f64>>,
-    y: Height,
+/// `y` at evenly spaced places.
+fn over(range: &Range<f64>, y: impl Fn(f64) -> f64) -> Points {
+    let (wide, last) = (range.end - range.start, (POINTS - 1) as f64);
+    let places = (0..POINTS).map(|index| range.start + wide * index as f64 / last);
+    places.map(|x| (x, y(x))).collect()
 }
 
-/// y of an effect with these values at an x.
+/// What to plot over what: labels of x and y, range of x, and y of the effect with its values at
+/// an x.
+type Law = (&'static str, &'static str, Range<f64>, Height);
 type Height = fn(&dyn Effect, &[f64], f64) -> f64;
-
-impl Law {
-    fn new(x_label: &'static str, y_label: &'static str, range: Range<f64>, y: Height) -> Law {
-        Law {
-            x_label,
-            y_label,
-            range: Some(range),
-            y,
-        }
-    }
-
-    fn points(&self, effect: &dyn Effect, values: &[f64]) -> Points {
-        let Some(Range { start, end }) = self.range else {
-            return reading(effect, values);
-        };
-        let x = |index| start + (end - start) * index as f64 / (POINTS - 1) as f64;
-        let points = (0..POINTS).map(x);
-        points.map(|x| (x, (self.y)(effect, values, x))).collect()
-    }
-}
 
 /// Each site has its plot; where a law may depend on more than one quantity, the law itself is
 /// asked.
 fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Law {
-    match effect.info().site {
-        Site::Timing => Law::new(
-            "time, s",
-            "input that acts, 1",
-            -0.1..0.3,
-            |e, v, time_s| f64::from(time_s >= e.delay_s(v)),
-        ),
-        Site::Command => {
-            let command: Height = |e, v, duty| e.command(v, duty);
-            Law::new("commanded duty, 1", "applied duty, 1", -0.5..0.5, command)
-        }
-        Site::Drive => drive_law(effect, values),
-        Site::Friction => friction_law(effect),
-        Site::Joint => joint_law(effect, values),
-        Site::Body if gravity_nm(effect, values, 1.0) == gravity_nm(effect, off, 1.0) => {
-            let (x_label, y_label) = ("acceleration, rad/s^2", "torque it takes, N m");
-            Law::new(x_label, y_label, -50.0..50.0, inertia_nm)
-        }
-        Site::Body => {
-            let (x_label, y_label) = ("angle from hanging, rad", "torque of gravity, N m");
-            Law::new(x_label, y_label, -1.6..1.6, gravity_nm)
-        }
-        Site::Encoder | Site::Sensor => Law {
-            range: None,
-            ..Law::new(
-                "angle, to and fro, rad",
-                "reading, rad",
-                0.0..0.0,
-                |_, _, x| x,
-            )
-        },
-    }
-}
-
-fn drive_law(effect: &dyn Effect, values: &[f64]) -> Law {
-    let at_full = "torque at full duty, N m";
-    if effect.info().needs == Needs::Supply {
-        return Law::new(
-            "supply over nominal, 1",
-            at_full,
-            0.7..1.3,
-            |e, v, supply| drive(e, v, 1.0, 0.0, supply),
-        );
-    }
-    if drive(effect, values, 1.0, 0.0, 1.0) != drive(effect, values, 1.0, 1.0, 1.0) {
-        let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
-        return Law::new("speed, rad/s", at_full, 0.0..4.0, over_speed);
-    }
+    let full = 0.0..FULL_TORQUE_NM;
+    let over_delay: Height = |e, v, time_s| f64::from(time_s >= e.delay_s(v));
+    let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);
+    let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
     let over_duty: Height = |e, v, duty| drive(e, v, duty, 0.0, 1.0);
-    Law::new("duty, 1", "torque at rest, N m", -1.0..1.0, over_duty)
-}
-
-fn friction_law(effect: &dyn Effect) -> Law {
-    let (y_label, full) = ("friction, N m", 0.0..FULL_TORQUE_NM);
-    match effect.info().needs {
-        Needs::GearLoad => Law::new(
+    let by_gear: Height = |e, v, load_nm| friction(e, v, 1.0, load_nm, 0.0);
+    let by_bearing: Height = |e, v, load_n| friction(e, v, 1.0, 0.0, load_n);
+    let by_speed: Height = |e, v, speed| friction(e, v, speed, 0.0, 0.0);
+    let at_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
+    let at_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
+    let command: Height = |e, v, duty| e.command(v, duty);
+    let encode: Height = |e, v, angle_rad| e.encode(v, angle_rad);
+    let varies = |y: Height, a: f64, b: f64| y(effect, values, a) != y(effect, values, b);
+    let weightless = gravity_nm(effect, values, 1.0) == gravity_nm(effect, off, 1.0);
+    let (at_full, joint) = ("torque at full duty, N m", "torque on the joint, N m");
+    match (effect.info().site, effect.info().needs) {
+        (Site::Timing, _) => ("time, s", "input that acts, 1", -0.1..0.3, over_delay),
+        (Site::Command, _) => ("commanded duty, 1", "applied duty, 1", -0.5..0.5, command),
+        (Site::Drive, Needs::Supply) => ("supply over nominal, 1", at_full, 0.7..1.3, over_supply),
+        (Site::Drive, _) if varies(over_speed, 0.0, 1.0) => {
+            ("speed, rad/s", at_full, 0.0..4.0, over_speed)
+        }
+        (Site::Drive, _) => ("duty, 1", "torque at rest, N m", -1.0..1.0, over_duty),
+        (Site::Friction, Needs::GearLoad) => (
             "torque through the gear, N m",
-            y_label,
+            "friction, N m",
             full,
-            |e, v, load| friction(e, v, 1.0, load, 0.0),
+            by_gear,
         ),
-        Needs::BearingLoad => Law::new(
+        (Site::Friction, Needs::BearingLoad) => (
             "force in the bearing, N",
-            y_label,
+            "friction, N m",
             0.0..30.0,
-            |e, v, load| friction(e, v, 1.0, 0.0, load),
+            by_bearing,
         ),
-        _ => Law::new(
-            "speed, rad/s",
-            "resisting torque, N m",
-            -2.0..2.0,
-            |e, v, speed| friction(e, v, speed, 0.0, 0.0),
+        (Site::Friction, _) => ("speed, rad/s", "resisting torque, N m", -2.0..2.0, by_speed),
+        (Site::Joint, _) if varies(at_angle, 0.1, 0.2) => {
+            ("angle, rad", joint, -1.6..1.6, at_angle)
+        }
+        (Site::Joint, _) => ("speed, rad/s", joint, -6.0..6.0, at_speed),
+        (Site::Body, _) if weightless => (
+            "acceleration, rad/s^2",
+            "torque it takes, N m",
+            -50.0..50.0,
+            inertia_nm,
         ),
-    }
-}
-
-fn joint_law(effect: &dyn Effect, values: &[f64]) -> Law {
-    let y_label = "torque on the joint, N m";
-    let over_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
-    let over_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
-    match over_angle(effect, values, 0.1) == over_angle(effect, values, 0.2) {
-        true => Law::new("speed, rad/s", y_label, -6.0..6.0, over_speed),
-        false => Law::new("angle, rad", y_label, -1.6..1.6, over_angle),
+        (Site::Body, _) => (
+            "angle from hanging, rad",
+            "torque of gravity, N m",
+            -1.6..1.6,
+            gravity_nm,
+        ),
+        (Site::Encoder | Site::Sensor, _) => {
+            ("angle, to and fro, rad", "reading, rad", -0.2..0.2, encode)
+        }
     }
 }
 
