@@ -2,7 +2,7 @@
 
 use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
-/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed, never beyond full range.
+/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full range.
 #[derive(Debug)]
 pub struct DeadZone;
 
@@ -70,7 +70,9 @@ impl Effect for DeadZone {
         if duty.abs() <= *width {
             0.0
         } else {
-            (duty.abs() + punch).clamp(0.0, 1.0).copysign(duty)
+            (duty.abs() + punch)
+                .clamp(0.0, duty.abs().max(1.0))
+                .copysign(duty)
         }
     }
 }

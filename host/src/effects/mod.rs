@@ -42,7 +42,6 @@ pub use probe::{Along, Probe};
 pub use sham::SHAM;
 
 use crate::dynamics::Chain;
-use crate::model::Model;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
@@ -222,24 +221,6 @@ pub struct Rig {
     pub gravity_turn_rad: f64,
     /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
     pub turned: bool,
-}
-
-impl Rig {
-    /// The rig of a model, its body effects applied; `turned` as in [`Rig::turned`].
-    pub fn of(model: &Model, turned: bool) -> Rig {
-        let mut rig = Rig {
-            chain: Chain::of(model),
-            gravity_turn_rad: 0.0,
-            turned,
-        };
-        for instance in &model.effects {
-            if instance.effect.info().site == Site::Body {
-                let joint = instance.joint.unwrap_or(0);
-                instance.effect.body(&instance.values, joint, &mut rig);
-            }
-        }
-        rig
-    }
 }
 
 /// The motor at an instant.

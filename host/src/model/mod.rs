@@ -11,6 +11,7 @@ pub(crate) mod limits;
 mod parse;
 mod path;
 pub(crate) mod reader;
+mod rig;
 pub(crate) mod source;
 pub(crate) mod suggest;
 mod unit;

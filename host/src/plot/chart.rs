@@ -5,8 +5,9 @@ use super::scale::{Scale, span};
 use super::text;
 use maud::{Markup, html};
 
-/// Ticks wanted on an axis.
-const TICKS: usize = 5;
+/// Ticks wanted across and up.
+const COLUMNS: usize = 6;
+const ROWS: usize = 5;
 
 /// One chart.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,10 +139,10 @@ impl Chart {
             .map(|(place, label)| (place as f64, label))
             .collect();
         html! {
-            @if categories.is_empty() { (axes.columns(TICKS)) }
-            (axes.rows(TICKS, &self.y_label))
+            @if categories.is_empty() { (axes.columns(COLUMNS)) }
+            (axes.rows(ROWS, &self.y_label))
             @match categories.is_empty() {
-                true => (axes.x_labels(TICKS, &self.x_label)),
+                true => (axes.x_labels(COLUMNS, &self.x_label)),
                 false => (axes.x_texts(&categories, &self.x_label)),
             }
             @for curve in &self.curves { (self.mark(curve, &axes)) }

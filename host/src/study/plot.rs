@@ -1,7 +1,8 @@
 //! Studies as SVG files.
 
 use super::merge::Merged;
-use super::sweep::{Level, Ran, Sweep};
+use super::quantity::{Levels, Quantity};
+use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::number::given;
@@ -11,30 +12,33 @@ use std::path::Path;
 /// Colours of a chart's curves.
 const TONES: [Tone; 2] = [Tone::Blue, Tone::Orange];
 
-/// A sweep: survival, region of attraction, angles and effort over the levels.
-pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
-    let card = sweep.card();
-    let across = match card.unit {
-        "" => card.title.to_string(),
-        unit => format!("{}, {unit}", card.title),
+/// A sweep: share stabilised, region of attraction, angles and effort over the levels.
+pub fn sweep_svg((quantity, levels): (&Quantity, &Levels), ran: &Sweep, robot: &str) -> String {
+    let across = match levels.unit {
+        "" => quantity.title.to_string(),
+        unit => format!("{}, {unit}", quantity.title),
     };
     let chart = |y_label: &str, curves| Chart {
         categories: ran.levels.iter().map(|level| level.label.clone()).collect(),
         ..Chart::new("", &across, y_label, curves)
     };
     let degrees = |angle_rad: Option<f64>| angle_rad.map(f64::to_degrees);
-    let mut survival = curve(ran, "", TONES[0], |f| Some(100.0 * f.survival));
-    survival.intervals = ran.levels.iter().map(survival_percent).collect();
-    let border = curve(ran, "", TONES[0], |f| Some(f.tilt_border_rad.to_degrees()));
+    let mut stabilised = curve(ran, "", TONES[0], |f| Some(100.0 * f.stabilised_share));
+    stabilised.intervals = ran.levels.iter().map(stabilised_percent).collect();
+    let borders = ran
+        .levels
+        .iter()
+        .map(|level| degrees(level.tilt_border_rad));
+    let border = Curve::by_category("", TONES[0], borders);
     let angles = vec![
         curve(ran, "rms", TONES[0], |f| degrees(f.rms_angle_rad)),
         curve(ran, "limit cycle", TONES[1], |f| degrees(f.limit_cycle_rad)),
     ];
     let torque = curve(ran, "", TONES[0], |f| f.rms_torque_nm);
     svg_file(
-        &format!("{robot}: sweep of the {}", card.title),
+        &format!("{robot}: sweep of the {}", quantity.title),
         &[
-            chart("runs that stand, %, with 95 % interval", vec![survival]),
+            chart("stabilised runs, %, with 95 % interval", vec![stabilised]),
             chart("largest tilt it recovers from, deg", vec![border]),
             chart("angles, deg", angles),
             chart("rms torque, N m", vec![torque]),
@@ -42,26 +46,21 @@ pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
     )
 }
 
-fn survival_percent(level: &Level) -> [f64; 2] {
-    let ends = level
-        .figures
-        .as_ref()
-        .map(|f| [f.survival_low, f.survival_high]);
+fn stabilised_percent(level: &Level) -> [f64; 2] {
+    let figures = level.figures.as_ref();
+    let ends = figures.map(|f| [f.stabilised_low, f.stabilised_high]);
     ends.map_or([0.0; 2], |ends| ends.map(|end| 100.0 * end))
 }
 
-fn curve(ran: &Ran, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f64>) -> Curve {
-    let values = ran
-        .levels
-        .iter()
-        .map(|level| level.figures.as_ref().and_then(&of));
-    Curve::by_category(name, tone, values)
+fn curve(ran: &Sweep, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f64>) -> Curve {
+    let figures = ran.levels.iter().map(|level| level.figures.as_ref());
+    Curve::by_category(name, tone, figures.map(|figures| figures.and_then(&of)))
 }
 
 /// Parts into which an uncertain value's range is cut.
 const PARTS: usize = 6;
 
-/// A Monte Carlo study: who stands, and who is unstable in the small, over every uncertain value.
+/// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain value.
 ///
 /// # Errors
 /// As [`Merged::values`].
@@ -69,15 +68,15 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let columns = &merged.header.columns;
     let rows = merged.values(file)?;
     let place = |name: &str| columns.iter().position(|column| column == name);
-    let (Some(fell), Some(radius)) = (place("fell_s"), place("spectral_radius")) else {
+    let (Some(stabilised), Some(radius)) = (place("stabilised"), place("spectral_radius")) else {
         return Ok(svg_file("no runs", &[]));
     };
-    let stands = |row: &[f64]| row[fell].is_nan();
+    let is_stabilised = |row: &[f64]| row[stabilised] == 1.0;
     let unstable = |row: &[f64]| row[radius] >= 1.0;
     let chart = |(value, name): (usize, &String)| {
         let parts = Parts::of(&rows, value);
         let curves = vec![
-            parts.share("stand", TONES[0], &rows, stands),
+            parts.share("stabilised", TONES[0], &rows, is_stabilised),
             parts.share("unstable in the small", TONES[1], &rows, unstable),
         ];
         Chart {
@@ -85,10 +84,8 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
             ..Chart::new("", name, "share of runs, %, with 95 % interval", curves)
         }
     };
-    let uncertain = columns
-        .iter()
-        .enumerate()
-        .filter(|(_, name)| name.contains(':'));
+    let uncertain = columns.iter().enumerate();
+    let uncertain = uncertain.filter(|(_, name)| name.contains(':'));
     let charts: Vec<Chart> = uncertain.map(chart).collect();
     Ok(svg_file("Stability over every uncertain value", &charts))
 }
