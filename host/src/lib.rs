@@ -23,6 +23,7 @@ pub mod model;
 pub mod number;
 pub mod output;
 pub mod paper;
+pub mod plot;
 pub mod record;
 pub mod report;
 pub mod sim;

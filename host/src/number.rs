@@ -34,10 +34,16 @@ pub fn hex(bytes: impl AsRef<[u8]>) -> String {
 /// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
 pub(crate) fn given(value: f64) -> String {
     let text = short(value);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
+    let (digits, power) = text.split_at(text.find('e').unwrap_or(text.len()));
+    match digits.contains('.') {
+        true => {
+            digits
+                .trim_end_matches('0')
+                .trim_end_matches('.')
+                .to_string()
+                + power
+        }
+        false => text,
     }
 }
 
@@ -144,6 +150,11 @@ mod tests {
         assert_eq!(short(1.5e-9), "1.50e-9");
         assert_eq!(given(0.1), "0.1");
         assert_eq!(given(100.0), "100");
+        assert_eq!(given(0.0), "0");
+        assert_eq!(given(-1.5), "-1.5");
+        assert_eq!(given(0.012345), "0.0123");
+        assert_eq!(given(50.0), "50");
+        assert_eq!(given(1e-5), "1e-5");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
         assert_eq!(exact(0.0123456), "0.01235");

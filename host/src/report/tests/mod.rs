@@ -1,5 +1,7 @@
 //! The page as a whole.
 
+pub(super) mod sample;
+
 use super::*;
 use crate::diagnose::Verdict;
 use proptest::prelude::*;
