@@ -83,19 +83,8 @@ impl Chain {
 
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
-            let LinkMotion {
-                moment,
-                speed_squared,
-                ..
-            } = s.motion;
             tree.shift(s.motion.lever, s.motion.centripetal);
-            tree.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
-            tree.b[0] += moment[0];
-            tree.b[1] += moment[1];
-            tree.mass[0] += link.mass_kg;
-            tree.mass[2] += link.mass_kg;
-            tree.force[0] -= speed_squared * moment[1];
-            tree.force[1] += speed_squared * moment[0];
+            tree.add(link, &s.motion);
             let torque = torque_nm[i] - tree.moment;
             if held[i] {
                 // A held joint carries whatever moment comes.
@@ -158,6 +147,18 @@ impl Subtree {
         self.b = [b[0] + ml[0], b[1] + ml[1]];
         self.moment += (b[0] * c[0] + b[1] * c[1]) + (l[0] * force[0] + l[1] * force[1]);
         self.force = force;
+    }
+
+    /// The link itself.
+    #[inline(always)]
+    fn add(&mut self, link: &ChainLink, at: &LinkMotion) {
+        self.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
+        self.b[0] += at.moment[0];
+        self.b[1] += at.moment[1];
+        self.mass[0] += link.mass_kg;
+        self.mass[2] += link.mass_kg;
+        self.force[0] -= at.speed_squared * at.moment[1];
+        self.force[1] += at.speed_squared * at.moment[0];
     }
 
     /// What is left for the link before when the joint gives way: `carried` of the inertia, the armature's share.

@@ -2,6 +2,9 @@
 //!
 //! Cody and Waite's reduction to an eighth of a turn, then the polynomials of FreeBSD's msun (k_sin.c, k_cos.c).
 //! Within 1e-15 of the truth up to a hundred thousand turns; beyond, the system's own functions.
+//!
+//! Kept beside `wide` 0.7, which is as accurate: with it a step of three links takes 222 ns instead of 158 ns, in four lanes
+//! 432 ns instead of 345 ns, and 30 links by recursion a tenth longer.
 
 use std::array::from_fn;
 
