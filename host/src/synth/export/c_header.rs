@@ -25,7 +25,8 @@ static inline void gains_control(const int16_t x[GAINS_STATES], int16_t u[GAINS_
     }
 }";
 
-/// `gains.h`: C99; right shifts of negative values must be arithmetic, as they are with gcc and clang.
+/// `gains.h`: C99; right shifts of negative values must be arithmetic, as they are with gcc and
+/// clang.
 pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
     let law = &fixed.law;
     let (m, n) = law.k.shape();
