@@ -140,15 +140,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     leave_out(&mut part, &args.without)?;
     let left_out = left_out(&whole, &part, &design);
     let verified = verify(&whole, &design, &request(args, &part)?.0, &left_out)?;
+    let mut data = export::json(&design, &made);
+    data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
     if talk.json {
-        let mut data = export::json(&design, &made);
-        data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
         talk.data(&data)?;
     } else {
         talk.print(&export::text(&design))?;
         talk.print(&verification::text(&verified))?;
     }
-    write(args, &design, &made, talk)?;
+    write(args, &design, &made, &data, talk)?;
     Ok(match verified.stabilised {
         true => Outcome::Done,
         false => Outcome::Refused,
@@ -323,7 +323,14 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
     })
 }
 
-pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
+/// Writes the files that the options ask for; `data` is what the JSON file holds.
+pub(super) fn write(
+    args: &Args,
+    design: &Design,
+    made: &Provenance,
+    data: &serde_json::Value,
+    talk: &Talk,
+) -> Result<()> {
     let put = |file: &Path, text: &str| -> Result<()> {
         write_new(file, text, args.force)?;
         talk.say(&format!("wrote {}", file.display()));
@@ -343,7 +350,7 @@ pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk
     if let Some(file) = &args.state_space {
         let text = match file.extension().is_some_and(|ending| ending == "m") {
             true => export::matlab(design, made),
-            false => format!("{:#}\n", export::json(design, made)),
+            false => format!("{data:#}\n"),
         };
         put(file, &text)?;
     }

@@ -1,7 +1,8 @@
 //! The linear model about a pose at rest, exact: no differences are taken.
 //!
-//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so dq''/dq = M^-1 (dtorque/dq
-//! - dG/dq). The Coriolis torques are quadratic in the speeds and leave nothing.
+//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so
+//! dq''/dq = M^-1 (dtorque/dq - dG/dq). The Coriolis torques are quadratic in the speeds and
+//! leave nothing.
 
 use super::error::DesignError;
 use super::joint_slope::JointSlope;

@@ -172,7 +172,8 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
         )
     })?;
     let plan = args.rig.regulating(&model, &design, &fixed.law)?;
-    gains::write(&given, &design, &made, talk)?;
+    let data = handstand::synth::export::json(&design, &made);
+    gains::write(&given, &design, &made, &data, talk)?;
     Ok(plan)
 }
 
