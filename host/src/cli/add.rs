@@ -21,7 +21,7 @@ use handstand::model::edit;
 use handstand::{Model, Result};
 use std::path::PathBuf;
 
-/// Add an effect to a model, its values fitted to logs.
+/// Add an effect to a model, its parameters fitted to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

@@ -23,13 +23,13 @@ use std::path::PathBuf;
 /// What can be done with challenges.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Make a virtual bench with a hidden effect
+    /// Create a virtual bench with a hidden effect
     New(New),
-    /// Open the answer and set a model beside it
+    /// Score a model against the hidden effect
     Score(ScoreArgs),
 }
 
-/// Make a virtual bench with a hidden effect.
+/// Create a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct New {
     /// Seed: the same one makes the same bench
@@ -43,7 +43,7 @@ pub struct New {
     output: PathBuf,
 }
 
-/// Open the answer and set a model beside it.
+/// Score a model against the hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct ScoreArgs {
     /// Folder of the challenge

@@ -20,7 +20,7 @@ use handstand::report::{html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
-/// Compare models with logs.
+/// Compare a model's simulation with measured logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

@@ -18,12 +18,12 @@ use handstand::compare::{Comparison, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
 use handstand::fitting::{Horizon, effect_named};
-use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
+use handstand::log::{LogFinding, LogRequest, Severity, Split, read, split};
 use handstand::report::{diagnosis_json, diagnosis_text, html};
 use handstand::{Model, Result};
 use std::path::PathBuf;
 
-/// Find the physical effect that is missing from a model.
+/// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -78,7 +78,7 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     let warned = findings
         .iter()
         .filter(|finding| finding.severity == Severity::Warn);
-    diagnosis.warnings.extend(warned.map(Finding::statement));
+    diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
         *line = with_names(line, args);
     }

@@ -17,7 +17,7 @@ use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope, glossary};
 use handstand::fitting::effect_named;
 use serde_json::{Value, json};
 
-/// Explain the physical effects the library knows.
+/// List and explain the physical effects of the library.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// One effect, such as `coulomb`; all of them without it

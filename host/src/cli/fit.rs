@@ -19,7 +19,7 @@ use handstand::{Model, Result, model::edit, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Fit a model's free values to logs.
+/// Fit a model's free parameters to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

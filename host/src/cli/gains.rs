@@ -17,8 +17,8 @@
 //! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
-use super::given::{Given, weight};
 use super::talk::Talk;
+use super::weight_arg::{WeightArg, weight};
 use super::{Outcome, input, page};
 use handstand::model::Model;
 use handstand::output::write_new;
@@ -37,10 +37,10 @@ pub struct Args {
     model: PathBuf,
     /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    q: Option<Given>,
+    q: Option<WeightArg>,
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    r: Option<Given>,
+    r: Option<WeightArg>,
     /// Sampling time, s
     #[arg(
         long,
@@ -75,19 +75,19 @@ pub struct Args {
     gyro_step: Option<f64>,
     /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their limit]
     #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
-    process: Option<Given>,
+    process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    range: Option<Given>,
+    range: Option<WeightArg>,
     /// Largest inputs, SI [default: the drives' own; 2 N m for a torque]
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    limit: Option<Given>,
+    limit: Option<WeightArg>,
     /// SI value of one step of each state, where sensors set it [default: powers of two]
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    state_step: Option<Given>,
+    state_step: Option<WeightArg>,
     /// SI value of one step of each input, where drives set it
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    input_step: Option<Given>,
+    input_step: Option<WeightArg>,
     /// Write the fixed-point law as a Rust file
     #[arg(long, value_name = "FILE.rs")]
     rust: Option<PathBuf>,
@@ -131,12 +131,11 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let (design, made) = designed(args, talk)?;
+    let (part, request, made) = requested(args, talk)?;
+    let design = Design::of(&part, &request)?;
     let whole = Model::load(&args.model)?;
-    let mut part = whole.clone();
-    leave_out(&mut part, &args.without)?;
     let left_out = left_out(&whole, &part, &design);
-    let verified = verify(&whole, &design, &request(args, &part)?.0, &left_out)?;
+    let verified = verify(&whole, &design, &request, &left_out)?;
     if talk.json {
         let mut data = export::json(&design, &made);
         data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
@@ -153,21 +152,6 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 impl Args {
-    /// The same with steps that somebody else prescribes: of the states, and where given of the inputs.
-    pub(super) fn in_steps(&self, steps: Given, input: Option<Given>) -> Result<Args> {
-        match self.state_step {
-            Some(_) => Err(Error::usage(
-                "--state-step has no place here: the firmware measures in steps of its own",
-                "leave it out",
-            )),
-            None => Ok(Args {
-                state_step: Some(steps),
-                input_step: input.or_else(|| self.input_step.clone()),
-                ..self.clone()
-            }),
-        }
-    }
-
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
@@ -206,8 +190,8 @@ impl Args {
     }
 }
 
-/// The design, and where it came from.
-pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)> {
+/// The model without the effects left out, what is asked of its design, and where it came from.
+pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
         input::vacant(file, args.force)?;
@@ -220,8 +204,7 @@ pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)>
     if let Some(said) = balance {
         talk.say(&said);
     }
-    let design = Design::of(&model, &request)?;
-    Ok((design, provenance(&args.model, talk)?))
+    Ok((model, request, provenance(&args.model, talk)?))
 }
 
 /// Takes these effects out of the model; which ones they were.
@@ -268,13 +251,13 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         .iter()
         .filter(|joint| joint.drive.is_driven())
         .count();
-    let list = |given: &Option<Given>, name, size| {
+    let list = |given: &Option<WeightArg>, name, size| {
         given
             .as_ref()
             .map(|given| given.list(name, size))
             .transpose()
     };
-    let process = args.process.as_ref().map(Given::read).transpose()?;
+    let process = args.process.as_ref().map(WeightArg::read).transpose()?;
     let degree = std::f64::consts::PI / 180.0;
     let request = Request {
         pose_rad,
@@ -293,7 +276,7 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
             // Half a radian, ten radians per second: more than a balancing robot ever comes back from.
             None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
         },
-        input_range: args.limit.as_ref().map(Given::read).transpose()?,
+        input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
         format: Format {
             bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
@@ -303,10 +286,10 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
     Ok((request, moved))
 }
 
-fn weighed(given: &Option<Given>, default: f64) -> Result<Weight> {
+fn weighed(given: &Option<WeightArg>, default: f64) -> Result<Weight> {
     given
         .as_ref()
-        .map_or(Ok(Weight::Scalar(default)), Given::read)
+        .map_or(Ok(Weight::Scalar(default)), WeightArg::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {

@@ -19,7 +19,7 @@ use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 
-/// Play a motion on a page.
+/// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file: lengths to draw, columns of the log

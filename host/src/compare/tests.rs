@@ -7,7 +7,7 @@ use super::run::fit_percent;
 use super::sample_features::{features, speed_rad_s};
 use super::*;
 use crate::fitting::Horizon;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::mrad_in_column;
 use proptest::prelude::*;
@@ -42,7 +42,7 @@ fn pendulum() -> Model {
 fn motion(time_s: Vec<f64>, position_rad: Vec<f64>) -> Motion {
     Motion {
         name: "hand-made".into(),
-        source: Source {
+        source: MotionSource {
             path: "hand-made".into(),
             sha256: String::new(),
             lines: (2, time_s.len() + 1),

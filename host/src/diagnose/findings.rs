@@ -2,7 +2,7 @@
 
 use crate::effects;
 use crate::fitting::{Candidate, ErrorReduction, FittedValue};
-use crate::log::{Finding, Severity};
+use crate::log::{LogFinding, Severity};
 use crate::model::{Model, ParameterPath};
 use serde::Serialize;
 
@@ -150,7 +150,7 @@ impl Diagnosis {
     }
 
     /// The diagnosis of logs that were refused: the findings say why.
-    pub fn unfit(findings: &[Finding]) -> Diagnosis {
+    pub fn unfit(findings: &[LogFinding]) -> Diagnosis {
         let refused = || findings.iter().filter(|f| f.severity == Severity::Refuse);
         let said = "The logs cannot be learned from.".to_string();
         Diagnosis {
@@ -170,7 +170,7 @@ impl Diagnosis {
             motions: Vec::new(),
             collinear: Vec::new(),
             summary: std::iter::once(said)
-                .chain(refused().map(Finding::statement))
+                .chain(refused().map(LogFinding::statement))
                 .collect(),
             next: refused().map(|finding| finding.remedy.clone()).collect(),
             warnings: Vec::new(),

@@ -14,7 +14,7 @@ use super::solve::{fit, fit_start_states};
 use super::staged::{fit_staged, initial_guess};
 use crate::fitting::Candidate;
 use crate::log::Split;
-use crate::model::edit::Fitted;
+use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, Model, ParameterPath};
 
 /// Iterations that tell a promising start from a hopeless one.
@@ -71,7 +71,7 @@ impl Refitted {
         &self,
         candidate: Candidate,
         logs: Vec<(String, String)>,
-    ) -> (EffectInstance, Fitted) {
+    ) -> (EffectInstance, FitRecord) {
         let (mut values, mut intervals) = (Vec::new(), Vec::new());
         for path in candidate.paths() {
             let at = self.free.iter().position(|free| *free == path);
@@ -80,7 +80,7 @@ impl Refitted {
                 intervals.push((value.key.clone(), value.low, value.high));
             }
         }
-        let fitted = Fitted {
+        let fitted = FitRecord {
             intervals,
             logs,
             error_before: self.error.before_rad,

@@ -1,7 +1,7 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
 use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::{Angles, Drive, Model};
 use std::path::PathBuf;
 
@@ -97,7 +97,7 @@ impl Plant {
     pub fn without_log(model: &Model) -> Plant {
         let motion = Motion {
             name: String::new(),
-            source: Source {
+            source: MotionSource {
                 path: PathBuf::new(),
                 sha256: String::new(),
                 lines: (0, 0),

@@ -131,8 +131,8 @@ fn report_bytes() -> usize {
         obeyed: 0,
         positions: Positions::pack([512; SERVOS]),
         missing: [0; 3],
-        slow_from: 0,
-        slow: Default::default(),
+        housekeeping_from: 0,
+        housekeeping: Default::default(),
     };
     encode(0, &Report::Stream(report), &mut [0; MAX_FRAME]).unwrap_or(MAX_FRAME)
 }

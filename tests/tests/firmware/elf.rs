@@ -6,7 +6,7 @@ use crate::condition;
 use crate::faults::*;
 use crate::safety::lets_down;
 use crate::stream::streams;
-use handstand::controllers::plan_file;
+use handstand::deploy::plan_file;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use handstand_shared::message::*;

@@ -4,6 +4,7 @@ use super::super::Outcome;
 use super::super::port::Port;
 use super::super::show::table;
 use super::super::talk::Talk;
+use handstand::model::suggest::suggest;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
@@ -43,14 +44,7 @@ pub fn register(text: &str) -> Result<Register, String> {
     };
     found.copied().ok_or_else(|| {
         let names: Vec<&str> = REGISTERS.iter().map(|r| r.name).collect();
-        let near = names
-            .iter()
-            .max_by(|a, b| strsim::jaro_winkler(a, text).total_cmp(&strsim::jaro_winkler(b, text)));
-        format!(
-            "no such register; did you mean `{}`? There are: {}",
-            near.unwrap_or(&""),
-            names.join(", ")
-        )
+        format!("no such register; {}", suggest(text, &names))
     })
 }
 
@@ -65,9 +59,7 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
     let mut rows = Vec::new();
     let mut shown = table(["Address", "Register", "Code", "Means", "Default"]);
     for register in wanted {
-        let code = servos
-            .get(args.id, *register)
-            .map_err(|failure| failure.of(args.id))?;
+        let code = servos.get(args.id, *register)?;
         let meaning = meaning(*register, code);
         shown.add_row([
             register.address.to_string(),
@@ -107,12 +99,8 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
         ));
     }
     let mut servos = args.port.servos()?;
-    let before = servos
-        .get(*id, *register)
-        .map_err(|failure| failure.of(*id))?;
-    servos
-        .set(*id, *register, *code)
-        .map_err(|failure| failure.of(*id))?;
+    let before = servos.get(*id, *register)?;
+    servos.set(*id, *register, *code)?;
     if talk.json {
         talk.data(&json!({ "id": id, "register": register.name, "before": before, "code": code }))?;
     } else {

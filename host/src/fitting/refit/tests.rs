@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::effects;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::sim::{Plant, SensorState, Start, predict};
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn swing(model: &Model, angle: f64) -> Motion {
     let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.01).collect();
     let mut motion = Motion {
         name: format!("from {angle}"),
-        source: Source {
+        source: MotionSource {
             path: "swing.csv".into(),
             sha256: "0".into(),
             lines: (1, 300),

@@ -1,8 +1,9 @@
 //! Time: does it increase, evenly, in the unit declared?
 
-use super::finding::{Findings, Severity};
+use super::finding::Findings;
 use crate::error::Place;
-use crate::log::row::Row;
+use crate::log::LogReason;
+use crate::log::row::LogRow;
 
 /// Bins per e-fold of the interval: 2 % each.
 const BINS_PER_E: f64 = 50.0;
@@ -14,16 +15,16 @@ const LARGEST: usize = 20;
 const GAP: f64 = 5.0;
 
 /// Intervals between samples of one file, in a histogram.
-pub(super) struct Timing {
+pub(super) struct Sampling {
     bins: Vec<u64>,
     previous_s: Option<f64>,
     /// Longest first.
     largest: Vec<(f64, Place)>,
 }
 
-impl Default for Timing {
+impl Default for Sampling {
     fn default() -> Self {
-        Timing {
+        Sampling {
             bins: vec![0; BINS],
             previous_s: None,
             largest: Vec::new(),
@@ -31,9 +32,9 @@ impl Default for Timing {
     }
 }
 
-impl Timing {
+impl Sampling {
     /// Takes a sample; false if its time does not lie after the previous one's.
-    pub fn take(&mut self, row: &Row, fresh: bool, findings: &mut Findings) -> bool {
+    pub fn take(&mut self, row: &LogRow, fresh: bool, findings: &mut Findings) -> bool {
         let previous = self.previous_s.filter(|_| !fresh);
         let Some(previous) = previous else {
             self.previous_s = Some(row.time_s);
@@ -42,12 +43,11 @@ impl Timing {
         let interval = row.time_s - previous;
         let place = || row.place(row.fields.time);
         if interval <= 0.0 {
-            let what = match interval < 0.0 {
-                true => format!("time goes back: {} s after {previous} s", row.time_s),
-                false => format!("time stands still at {previous} s"),
+            let reason = LogReason::TimeNotIncreasing {
+                time_s: row.time_s,
+                previous_s: previous,
             };
-            let remedy = "delete repeated samples; mark separate recordings in a segment column";
-            findings.add("time", Severity::Refuse, place(), what, remedy);
+            findings.refuse("time", place(), &reason);
             // After a restart the new time counts, so that it is told once.
             self.previous_s = Some(row.time_s);
             return false;
@@ -86,11 +86,11 @@ impl Timing {
         if median > 1.0 {
             let what = format!("samples {median:.3} s apart: milliseconds declared as seconds?");
             let remedy = "check the time column's unit in the model's [log]";
-            findings.add("unit", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("unit", place.clone(), (what, remedy));
         } else if median < 50e-6 {
             let what = format!("samples {shown} apart: seconds declared as milliseconds?");
             let remedy = "check the time column's unit in the model's [log]";
-            findings.add("unit", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("unit", place.clone(), (what, remedy));
         }
         let (mut regular, mut squares, mut gaps) = (0.0, 0.0, 0);
         for (bin, count) in self
@@ -114,7 +114,7 @@ impl Timing {
                 100.0 * jitter
             );
             let remedy = "simulation follows the logged times; are they the times of measuring?";
-            findings.add("jitter", Severity::Note, place.clone(), what, remedy);
+            findings.note("jitter", place.clone(), (what, remedy));
         }
         self.gaps(median, gaps, findings);
     }
@@ -135,7 +135,7 @@ impl Timing {
                 milliseconds(median)
             );
             let remedy = "set split_at_gap_s in the model's [log] to begin a new motion there";
-            findings.add("gap", Severity::Warn, place, what, remedy);
+            findings.warn("gap", place, (what, remedy));
         }
     }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// A weight as given: numbers, or a file to be read.
 #[derive(Debug, Clone)]
-pub enum Given {
+pub enum WeightArg {
     /// As they stand.
     Numbers(Weight),
     /// A matrix to be read.
@@ -17,36 +17,36 @@ pub enum Given {
 }
 
 /// Numbers between commas, or a CSV file.
-pub fn weight(text: &str) -> Result<Given, String> {
+pub fn weight(text: &str) -> Result<WeightArg, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match numbers {
-        Ok(numbers) => Ok(Given::Numbers(match numbers[..] {
+        Ok(numbers) => Ok(WeightArg::Numbers(match numbers[..] {
             [one] => Weight::Scalar(one),
             _ => Weight::Diagonal(numbers),
         })),
-        Err(_) if Path::new(text).is_file() => Ok(Given::File(text.into())),
+        Err(_) if Path::new(text).is_file() => Ok(WeightArg::File(text.into())),
         Err(_) => Err("give a number, numbers between commas, or a CSV file that exists".into()),
     }
 }
 
-impl Given {
+impl WeightArg {
     /// The weight, its file read.
     ///
     /// # Errors
     /// A file that cannot be read or is no matrix.
     pub fn read(&self) -> Result<Weight> {
         match self {
-            Given::Numbers(weight) => Ok(weight.clone()),
-            Given::File(path) => matrix(path).map(Weight::Matrix),
+            WeightArg::Numbers(weight) => Ok(weight.clone()),
+            WeightArg::File(path) => matrix(path).map(Weight::Matrix),
         }
     }
 
     /// One number for each of so many.
     ///
     /// # Errors
-    /// As [`Given::read`], or another number of them.
-    pub fn list(&self, name: &str, size: usize) -> Result<Vec<f64>> {
-        self.read()?.diagonal(name, size)
+    /// As [`WeightArg::read`], or another number of them.
+    pub fn list(&self, name: &'static str, size: usize) -> Result<Vec<f64>> {
+        Ok(self.read()?.diagonal(name, size)?)
     }
 }
 

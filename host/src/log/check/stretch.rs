@@ -1,13 +1,13 @@
 //! Short stretches of a motion, long enough to differentiate a coarse encoder twice.
 
-use crate::log::row::Row;
+use crate::log::row::LogRow;
 
-/// Half a block's least duration, s.
+/// Half a stretch's least duration, s.
 const HALF_S: f64 = 0.02;
 
 /// Means and differences over one stretch.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Block {
+pub(super) struct Stretch {
     /// Mean angle per joint, rad.
     pub position_rad: Vec<f64>,
     /// Difference quotient of the angle per joint, rad/s.
@@ -20,25 +20,25 @@ pub(super) struct Block {
     pub input: Vec<f64>,
 }
 
-/// Gathers samples into blocks that share their end samples.
+/// Gathers samples into stretches that share their end samples.
 #[derive(Debug, Default)]
-pub(super) struct Blocks {
+pub(super) struct Stretches {
     begin: Option<(f64, Vec<f64>)>,
     middle: Option<(f64, Vec<f64>)>,
-    sums: Block,
+    sums: Stretch,
     /// Duration of the sums, s.
     weight: f64,
-    previous: Option<Row>,
+    previous: Option<LogRow>,
 }
 
-impl Blocks {
-    /// Forgets a block begun.
+impl Stretches {
+    /// Forgets a stretch begun.
     pub fn reset(&mut self) {
-        *self = Blocks::default();
+        *self = Stretches::default();
     }
 
-    /// Takes a sample; a block if it completes one.
-    pub fn take(&mut self, row: &Row) -> Option<Block> {
+    /// Takes a sample; a stretch if it completes one.
+    pub fn take(&mut self, row: &LogRow) -> Option<Stretch> {
         let here = (row.time_s, row.position_rad.clone());
         let Some((begin, _)) = self.begin else {
             self.begin = Some(here);
@@ -57,18 +57,18 @@ impl Blocks {
             self.middle = Some(here);
             return None;
         }
-        let block = self.finish(&here);
+        let stretch = self.finish(&here);
         let previous = self.previous.take();
-        *self = Blocks {
+        *self = Stretches {
             begin: Some(here),
             previous,
-            ..Blocks::default()
+            ..Stretches::default()
         };
-        block
+        stretch
     }
 
     /// Adds the stretch from the previous sample to `row`; inputs hold, the rest is joined by lines.
-    fn sum(&mut self, row: &Row) {
+    fn sum(&mut self, row: &LogRow) {
         let Some(previous) = &mut self.previous else {
             return;
         };
@@ -92,28 +92,28 @@ impl Blocks {
         previous.clone_from(row);
     }
 
-    fn finish(&mut self, end: &(f64, Vec<f64>)) -> Option<Block> {
+    fn finish(&mut self, end: &(f64, Vec<f64>)) -> Option<Stretch> {
         let (Some(begin), Some(middle)) = (&self.begin, &self.middle) else {
             return None;
         };
-        let mut block = std::mem::take(&mut self.sums);
+        let mut stretch = std::mem::take(&mut self.sums);
         for sum in [
-            &mut block.position_rad,
-            &mut block.logged_speed_rad_s,
-            &mut block.input,
+            &mut stretch.position_rad,
+            &mut stretch.logged_speed_rad_s,
+            &mut stretch.input,
         ] {
             sum.iter_mut().for_each(|value| *value /= self.weight);
         }
         for i in 0..end.1.len() {
             let first = (middle.1[i] - begin.1[i]) / (middle.0 - begin.0);
             let second = (end.1[i] - middle.1[i]) / (end.0 - middle.0);
-            block
+            stretch
                 .speed_rad_s
                 .push((end.1[i] - begin.1[i]) / (end.0 - begin.0));
-            block
+            stretch
                 .acceleration_rad_s2
                 .push(2.0 * (second - first) / (end.0 - begin.0));
         }
-        Some(block)
+        Some(stretch)
     }
 }

@@ -1,35 +1,35 @@
-//! Whether inputs reach every mode, and outputs show every mode.
+//! Controllability and observability, by rank and by mode.
 
 use super::eigen::{Mode, modes};
-use crate::error::Result;
+use super::error::DesignError;
 use nalgebra::DMatrix;
 
 /// Singular values below this share of the largest count as zero.
 const ZERO: f64 = 1e-10;
 
-/// Controllability, or observability.
+/// Controllability of a plant's modes by its inputs; of the transposed plant, observability by its outputs.
 #[derive(Debug, Clone)]
-pub struct Reach {
+pub struct Controllability {
     /// Rank of [B, AB, A^2 B, ..], its blocks scaled to equal size.
     pub rank: usize,
     /// Its singular values, the largest first.
     pub singular_values: Vec<f64>,
-    /// Every mode's own measure; the rank says nothing of which mode is out of reach.
+    /// Every mode with its margin; the rank does not tell which mode is uncontrollable.
     pub modes: Vec<Mode>,
 }
 
-impl Reach {
-    /// Whether every mode is reached.
+impl Controllability {
+    /// Whether every mode is controllable.
     pub fn is_full(&self) -> bool {
-        self.modes.iter().all(|mode| mode.measure > ZERO)
+        self.modes.iter().all(|mode| mode.margin > ZERO)
     }
 }
 
-/// Which modes of A the inputs reach.
+/// Controllability of A's modes through B.
 ///
 /// # Errors
 /// Entries that are no numbers.
-pub fn controllability(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Reach> {
+pub fn controllability(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Controllability, DesignError> {
     let modes = modes(a, b)?;
     let (n, m) = b.shape();
     let scale = a.norm() / (n as f64).sqrt();
@@ -43,18 +43,18 @@ pub fn controllability(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Reach> {
     let mut singular_values: Vec<f64> = matrix.singular_values().iter().copied().collect();
     singular_values.sort_by(|a, b| b.total_cmp(a));
     let least = ZERO * singular_values.first().copied().unwrap_or(0.0);
-    Ok(Reach {
+    Ok(Controllability {
         rank: singular_values.iter().filter(|s| **s > least).count(),
         singular_values,
         modes,
     })
 }
 
-/// Which modes of A the outputs show.
+/// Observability of A's modes through C.
 ///
 /// # Errors
 /// Entries that are no numbers.
-pub fn observability(a: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<Reach> {
+pub fn observability(a: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<Controllability, DesignError> {
     controllability(&a.transpose(), &c.transpose())
 }
 
@@ -70,7 +70,7 @@ mod tests {
         assert_eq!(reach.rank, 2);
         assert!(!reach.is_full());
         for mode in &reach.modes {
-            assert_eq!(mode.measure < 1e-12, mode.pole.re == -2.0, "{mode:?}");
+            assert_eq!(mode.margin < 1e-12, mode.pole.re == -2.0, "{mode:?}");
         }
         assert_eq!(reach.modes[2].state, 2);
         let shown = observability(&a, &DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 1.0])).unwrap();

@@ -3,13 +3,13 @@
 use super::input;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::{Column, Dimension, JointColumns, LogColumns, Unit};
-use handstand::sysid::Output;
+use handstand::sysid::OutputQuantity;
 use handstand::{Error, Model, Result};
 use std::path::PathBuf;
 
 /// Flags that say where input and output are.
 #[derive(Debug, clap::Args)]
-pub struct Signals {
+pub struct ServoColumns {
     /// Model file whose [log] names the columns
     #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["time", "input", "output", "supply"])]
     model: Option<PathBuf>,
@@ -19,10 +19,10 @@ pub struct Signals {
     /// Column of the time, without a model file
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = time)]
     time: Option<Column>,
-    /// Column of what the servo was told, such as `goal=rad/s`
+    /// Column of the command, such as `goal=rad/s`
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = column)]
     input: Option<Column>,
-    /// Column of what it did, such as `angle=deg` or `position=ticks/1228.8`
+    /// Column of the measured output, such as `angle=deg` or `position=ticks/1228.8`
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = column)]
     output: Option<Column>,
     /// Column of the supply voltage
@@ -35,25 +35,25 @@ pub struct Signals {
 
 /// Where input and output are.
 #[derive(Debug)]
-pub struct Chosen {
+pub struct ChosenColumns {
     /// Columns to read.
     pub columns: LogColumns,
     /// Joint counted from 0.
     pub joint: usize,
     /// What of the measured column is the output.
-    pub output: Output,
+    pub output: OutputQuantity,
     /// SI unit of the input.
     pub input_unit: &'static str,
     /// SI unit of the output.
     pub output_unit: &'static str,
 }
 
-impl Signals {
+impl ServoColumns {
     /// What the flags say.
     ///
     /// # Errors
     /// Neither a model nor all of `--time --input --output`; a joint that does not exist or that nothing drives.
-    pub fn chosen(&self) -> Result<Chosen> {
+    pub fn chosen(&self) -> Result<ChosenColumns> {
         let (columns, joint) = match &self.model {
             Some(file) => {
                 let model = Model::load(file)?;
@@ -65,15 +65,15 @@ impl Signals {
         let own = &columns.joints[joint];
         let measured = own.position.unit.dimension;
         let output = match measured {
-            Dimension::Angle if !self.as_measured => Output::Velocity,
-            _ => Output::AsMeasured,
+            Dimension::Angle if !self.as_measured => OutputQuantity::Velocity,
+            _ => OutputQuantity::AsMeasured,
         };
         let input = own.input.as_ref().map(|input| input.unit.dimension);
-        Ok(Chosen {
+        Ok(ChosenColumns {
             input_unit: input.map_or("1", si),
             output_unit: match output {
-                Output::Velocity => "rad/s",
-                Output::AsMeasured => si(measured),
+                OutputQuantity::Velocity => "rad/s",
+                OutputQuantity::AsMeasured => si(measured),
             },
             joint,
             output,
@@ -138,7 +138,7 @@ impl Signals {
 /// # Errors
 /// As [`input::motions`].
 pub fn motions(
-    chosen: &Chosen,
+    chosen: &ChosenColumns,
     logs: &[LogRequest],
     held_out: &[LogRequest],
 ) -> Result<(Vec<Motion>, Vec<Motion>)> {

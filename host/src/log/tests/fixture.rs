@@ -1,6 +1,6 @@
 //! Columns, motions and files for this room's tests.
 
-use super::{Motion, Source};
+use super::{Motion, MotionSource};
 use crate::model::*;
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub fn motion(name: &str, samples: usize) -> Motion {
     let swing = |t: &f64| 0.7 * (3.0 * t).sin();
     Motion {
         name: name.into(),
-        source: Source {
+        source: MotionSource {
             path: PathBuf::from(name),
             sha256: String::new(),
             lines: (2, samples + 1),
