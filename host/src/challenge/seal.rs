@@ -2,13 +2,27 @@
 //!
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can open it.
 
-use super::ChallengeAnswer;
 use super::error::SealError;
 use crate::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 const NOTE: &str = "The answer, sealed. It keeps honest people from peeking, no more.";
+
+/// What was hidden.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChallengeAnswer {
+    /// Seed of the challenge.
+    pub seed: u64,
+    /// Id of the effect; none if nothing is hidden.
+    pub kind: Option<String>,
+    /// Joint it acts on, counted from 1.
+    pub joint: usize,
+    /// Its values, by the keys of its parameters.
+    pub parameters: Vec<(String, f64)>,
+    /// The model with true friction and the effect.
+    pub true_model_toml: String,
+}
 
 #[derive(Serialize, Deserialize)]
 struct Sealed {
