@@ -1,13 +1,13 @@
 //! `handstand controllers`, `delays` and `robust` seen from outside.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 
 fn bench() -> Bench {
     let bench = Bench::new();
-    bench.put("handstand.toml", include_str!("../models/handstand.toml"));
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
     bench
 }
 

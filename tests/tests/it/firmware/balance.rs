@@ -1,6 +1,6 @@
 //! Balancing on board.
 
-use crate::{greet, refused};
+use super::{greet, refused};
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;

@@ -1,9 +1,6 @@
 //! `bus`, `latency`, `virtual` over simulated servos.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 
 #[test]
 fn a_scan_finds_who_is_there() {
@@ -190,7 +187,7 @@ fn a_tap_writes_what_passed() {
 /// Two programs and a pseudo terminal between them.
 #[cfg(unix)]
 mod over_a_terminal {
-    use super::common::Bench;
+    use crate::common::Bench;
     use std::io::{BufRead as _, BufReader};
     use std::process::{Child, Command, Stdio};
 

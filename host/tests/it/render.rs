@@ -2,10 +2,7 @@
 //!
 //! Needs a Chromium on the path; without one the picture is left out, and the test says so.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
@@ -91,7 +88,7 @@ fn a_view_plays_the_handstand() {
     }
 }
 
-const HANDSTAND: &str = include_str!("../models/handstand.toml");
+const HANDSTAND: &str = include_str!("../../models/handstand.toml");
 
 /// Two seconds of the handstand under the paper's sampled gains, from this lean of the arms.
 fn balanced(lean_rad: f64) -> String {

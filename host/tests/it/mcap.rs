@@ -1,10 +1,6 @@
 //! Recordings as MCAP's own Python library reads them (PyPI `mcap`), whole and torn.
-#![cfg(unix)]
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};

@@ -1,9 +1,6 @@
 //! Comparing, diagnosing and scoring, seen from outside.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 
 #[test]
 fn models_stand_side_by_side_and_the_page_is_not_overwritten() {

@@ -1,5 +1,4 @@
 //! `record` survives `kill -9`: a sample of what `cargo xtask bench-record` does a thousand times.
-#![cfg(unix)]
 
 use handstand_tests::kills::kill_recorders;
 use std::path::PathBuf;

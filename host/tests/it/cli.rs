@@ -1,9 +1,6 @@
 //! The built program, seen from outside.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::{Bench, MODEL};
+use crate::common::{Bench, MODEL};
 
 #[test]
 fn help_lists_every_command() {

@@ -1,7 +1,6 @@
 //! `gains deploy --flash` all the way: built by the AVR's own toolchain, through a boot loader of ours, run in simavr.
-#![cfg(all(unix, simavr))]
 
-#[path = "../../host/tests/common/boot_loader.rs"]
+#[path = "../../../host/tests/it/common/boot_loader.rs"]
 #[allow(dead_code)] // its troubles are other tests'
 mod boot_loader;
 

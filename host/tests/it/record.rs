@@ -1,9 +1,6 @@
 //! `record` and `replay` over simulated servos; a recorder that is killed.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 
 /// A motion of two servos: goals to and fro, 2 s at 50 Hz.
 fn motion(largest_rad: f64) -> String {
@@ -136,7 +133,7 @@ fn a_low_supply_is_refused_by_the_cm5() {
 
 #[cfg(unix)]
 mod killed {
-    use super::common::Bench;
+    use crate::common::Bench;
     use std::io::{BufRead as _, BufReader};
     use std::process::{Child, Command, Stdio};
     use std::time::Duration;

@@ -1,9 +1,6 @@
 //! Good logs and models, mutated: the program refuses or runs, and never panics.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::{Bench, MODEL};
+use crate::common::{Bench, MODEL};
 use rand::seq::IndexedRandom as _;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;

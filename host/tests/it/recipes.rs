@@ -1,12 +1,8 @@
 //! The recipes of `docs/recipes`, run as they are: a study's shards by Slurm and by GNU parallel.
 //!
 //! Without these programs (Slurm needs root too) they are skipped, and stderr says so even when tests pass.
-#![cfg(unix)]
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,5 +1,4 @@
 //! ROBOTIS's own SDK (PyPI `dynamixel-sdk`) speaks with the simulated servos through `virtual --pty`.
-#![cfg(unix)]
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Buttons.
 
-use crate::condition;
+use super::condition;
 use handstand_shared::message::*;
 use handstand_tests::bench::*;
 

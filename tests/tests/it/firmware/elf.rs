@@ -1,11 +1,11 @@
 //! The very program of the chip, in simavr.
 
-use crate::adapter::is_a_plain_adapter;
-use crate::balance::{commands_are_the_laws, it_stands};
-use crate::condition;
-use crate::faults::*;
-use crate::safety::lets_down;
-use crate::stream::streams;
+use super::adapter::is_a_plain_adapter;
+use super::balance::{commands_are_the_laws, it_stands};
+use super::condition;
+use super::faults::*;
+use super::safety::lets_down;
+use super::stream::streams;
 use handstand::controllers::plan_file;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;

@@ -1,11 +1,7 @@
 //! `flash` against a boot loader on a pseudo terminal.
-#![cfg(unix)]
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::boot_loader::{Loader, Trouble, start};
-use common::{Bench, Ran};
+use crate::common::boot_loader::{Loader, Trouble, start};
+use crate::common::{Bench, Ran};
 
 fn program(length: usize) -> Vec<u8> {
     let mut bytes = vec![0x0c, 0x94, 0x46, 0x00];

@@ -1,9 +1,6 @@
 //! `identify` and `map` on logs whose truth is known.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::{Bench, Ran};
+use crate::common::{Bench, Ran};
 use handstand::sysid::generate::{noise, paper_noise_model, pseudo_random};
 use std::fmt::Write as _;
 

@@ -1,11 +1,8 @@
 //! What the program says, word for word.
 //!
-//! `GOLDEN=write cargo test --test golden` writes the transcripts anew; read their difference before keeping it.
+//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference before keeping it.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use std::path::Path;
 
 /// Says what the command lines say and compares it with `tests/data/NAME.txt`.
@@ -38,8 +35,8 @@ fn golden(bench: &Bench, name: &str, lines: &[&str]) {
 /// A folder with the fixtures.
 fn bench() -> Bench {
     let bench = Bench::new();
-    bench.put("arm.csv", include_str!("data/arm.csv"));
-    bench.put("arm.toml", include_str!("data/arm.toml"));
+    bench.put("arm.csv", include_str!("../data/arm.csv"));
+    bench.put("arm.toml", include_str!("../data/arm.toml"));
     bench
 }
 
@@ -108,7 +105,7 @@ fn log_check() {
 #[test]
 fn compare() {
     let bench = bench();
-    let calmed = include_str!("data/arm.toml")
+    let calmed = include_str!("../data/arm.toml")
         .replace("coefficient_nm_s_rad = 0.0", "coefficient_nm_s_rad = 0.001");
     bench.put("calmed.toml", calmed);
     golden(
@@ -129,7 +126,10 @@ fn paper() {
 #[test]
 fn refusals() {
     let bench = bench();
-    let (model, log) = (include_str!("data/arm.toml"), include_str!("data/arm.csv"));
+    let (model, log) = (
+        include_str!("../data/arm.toml"),
+        include_str!("../data/arm.csv"),
+    );
     bench.put("unknown_key.toml", model.replacen("mass_kg", "mas_kg", 1));
     bench.put("missing_column.csv", log.replacen("angle_rad", "angle", 1));
     bench.put("nan.csv", log.replacen("\n0.04,", "\n0.04,nan\n0.05,", 1));
@@ -151,7 +151,10 @@ fn refusals() {
 #[test]
 fn gains() {
     let bench = bench();
-    bench.put("handstand.toml", include_str!("../models/handstand.toml"));
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
     golden(
         &bench,
         "gains",

@@ -1,9 +1,6 @@
 //! `deploy`: gains onto a virtual CM-5, and back.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 
 #[test]
 fn gains_are_uploaded_read_back_verified_and_replayed() {
@@ -114,7 +111,7 @@ fn a_plan_is_compiled_in_and_flashed() {
     );
     let tool = bench.path("tools/cargo");
     std::fs::set_permissions(&tool, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let loader = common::boot_loader::start(common::boot_loader::Trouble::None);
+    let loader = crate::common::boot_loader::start(crate::common::boot_loader::Trouble::None);
     let line = format!(
         "gains deploy {model} --flash --port {} --wait 5 --states 10",
         loader.port

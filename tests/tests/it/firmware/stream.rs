@@ -1,6 +1,6 @@
 //! Streaming: 18 servos at 100 Hz, and answers that fail.
 
-use crate::greet;
+use super::greet;
 use handstand_shared::control_table::GOAL_POSITION;
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};

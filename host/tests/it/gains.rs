@@ -1,10 +1,7 @@
 //! `handstand gains` seen from outside: its files compile and compute what the shared law computes, and what cannot
 //! be designed is refused.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use serde_json::Value;
@@ -14,7 +11,10 @@ use std::process::Command;
 
 fn bench() -> Bench {
     let bench = Bench::new();
-    bench.put("handstand.toml", include_str!("../models/handstand.toml"));
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
     bench
 }
 
@@ -138,7 +138,7 @@ fn rust_and_c_files_compile_as_they_are_and_compute_what_the_shared_law_does() {
 #[test]
 fn what_cannot_be_designed_ends_in_3_and_says_why() {
     let bench = bench();
-    let model = include_str!("../models/handstand.toml");
+    let model = include_str!("../../models/handstand.toml");
     bench.put(
         "passive.toml",
         model
@@ -264,7 +264,7 @@ fn files_carry_every_digit() {
 #[test]
 fn the_model_s_own_delay_and_eccentric_masses_are_designed_for() {
     let bench = bench();
-    let model = include_str!("../models/handstand.toml");
+    let model = include_str!("../../models/handstand.toml");
     let late = |joint: u8, seconds: f64| {
         format!("[[effect]]\nkind = \"delay\"\njoint = {joint}\ndelay_s = {seconds}\n")
     };

@@ -1,9 +1,6 @@
 //! `handstand study` from outside: killed, sharded, merged.
 
-#[allow(dead_code)] // each test file needs a part of it
-mod common;
-
-use common::Bench;
+use crate::common::Bench;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 

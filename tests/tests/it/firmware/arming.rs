@@ -1,6 +1,6 @@
 //! What arming needs.
 
-use crate::{greet, refused};
+use super::{greet, refused};
 use handstand_shared::message::*;
 use handstand_tests::bench::*;
 
