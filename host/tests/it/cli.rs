@@ -33,6 +33,27 @@ fn help_lists_every_command() {
 }
 
 #[test]
+fn the_demo_leaves_nothing_where_it_is_run() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("temporary")).unwrap();
+    let before = files(&bench);
+    let place = bench.path("temporary").display().to_string();
+    let ran = bench.run_with("demo --effect viscous --json", &[("TMPDIR", place.clone())]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(ran.json()["solved"], true, "{ran:?}");
+    let said = format!("Everything is written to {place}");
+    assert!(ran.stderr.contains(&said), "{ran:?}");
+    assert_eq!(files(&bench), before);
+}
+
+fn files(bench: &Bench) -> Vec<std::ffi::OsString> {
+    let entries = std::fs::read_dir(bench.path(".")).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    names
+}
+
+#[test]
 fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
     let bench = Bench::new();
     for (line, said) in [
