@@ -8,6 +8,7 @@ mod controllers;
 mod deploy;
 #[cfg(unix)]
 mod dynamixel_sdk;
+mod examples;
 #[cfg(unix)]
 mod flash;
 mod fuzz;
