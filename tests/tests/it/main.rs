@@ -3,6 +3,7 @@
 #[cfg(all(unix, simavr))]
 mod deploy;
 mod firmware;
+mod fuzz;
 mod hidden;
 mod intervals;
 #[cfg(unix)]
