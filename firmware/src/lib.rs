@@ -1,6 +1,6 @@
 //! The CM-5's firmware: a bridge between the PC line and the servo bus, and a controller of its own.
 //!
-//! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the board of `desk`. Read downward only:
+//! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the host board of `handstand-cm5-sim`. Read downward only:
 //! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `slots`, `boots`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
@@ -15,8 +15,6 @@ pub mod board;
 pub mod boots;
 pub mod bus;
 pub mod design;
-#[cfg(not(target_arch = "avr"))]
-pub mod desk;
 pub mod filter;
 pub mod link;
 pub mod panel;

@@ -1,12 +1,12 @@
 //! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
 //!
-//! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `bus_sim` -> `link` -> `record`; `cli` sits on top and nothing depends on it.
+//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances, TOML)
+//! -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` -> `diagnose` ->
+//! `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` -> `paper`; `link` ->
+//! `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing depends on it. Every layer may
+//! read `error`, `output` and `number`, which writes numbers for people.
 
-pub mod bus_sim;
 pub mod challenge;
-pub mod closed_loop;
 pub mod compare;
 pub mod controllers;
 pub mod diagnose;
@@ -26,6 +26,8 @@ pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod sysid;
+#[cfg(feature = "virtual-cm5")]
+pub mod virtual_cm5;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

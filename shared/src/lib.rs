@@ -19,5 +19,4 @@ pub mod observer;
 pub mod packed;
 pub mod plan;
 pub mod raw;
-pub mod timed_bus;
 pub mod velocity;

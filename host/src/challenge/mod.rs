@@ -49,7 +49,7 @@ pub struct Answer {
     pub kind: Option<String>,
     /// Joint it acts on, counted from 1.
     pub joint: usize,
-    /// Its values, by the keys of its card.
+    /// Its values, by the keys of its parameters.
     pub parameters: Vec<(String, f64)>,
     /// The model with true friction and the effect.
     pub true_model_toml: String,

@@ -4,13 +4,12 @@ use super::goal::{Goal, MOTION_S};
 use super::physics::{Mount, Physics};
 use super::rig::{NOMINAL_SUPPLY_V, rounded};
 use super::truth::{Arm, Commands};
+use handstand_shared::raw::Position;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// Step of the 10-bit encoder over 300 degrees, rad.
-pub const RESOLUTION_RAD: f64 = 300.0 / 1024.0 * PI / 180.0;
 /// Time between samples, s, but for the jitter.
 const PERIOD_S: f64 = 0.01;
 /// Standard deviation of a sample's time, s.
@@ -227,7 +226,7 @@ impl Supply {
 
 /// What a 10-bit encoder with hanging in the middle makes of an angle, rad; never a negative zero.
 fn quantised(angle: f64) -> f64 {
-    (angle / RESOLUTION_RAD).round().clamp(-512.0, 511.0) * RESOLUTION_RAD + 0.0
+    (angle / Position::LSB_RAD).round().clamp(-512.0, 511.0) * Position::LSB_RAD + 0.0
 }
 
 /// A draw from the standard normal distribution (Box and Muller).

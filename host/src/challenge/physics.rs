@@ -113,7 +113,7 @@ impl Physics {
         }
     }
 
-    /// Switches on the effect `kind` with `values` in the order of its card; false if there is no such effect
+    /// Switches on the effect `kind` with `values` in the order of its parameters; false if there is no such effect
     /// or it has another number of values.
     pub fn switch_on(&mut self, kind: &str, values: &[f64]) -> bool {
         match (kind, values) {

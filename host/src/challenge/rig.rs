@@ -72,7 +72,7 @@ pub struct Rig {
 pub struct Secret {
     /// Id in the library of effects.
     pub kind: &'static str,
-    /// Keys and values, as the effect's card has them.
+    /// Keys and values of the effect's parameters.
     pub parameters: Vec<(&'static str, f64)>,
 }
 

@@ -76,7 +76,7 @@ pub fn score(dir: &Path, model: &Model) -> Result<Score> {
 
 /// Effects of `model` that `base` has not.
 fn beyond<'a>(model: &'a Model, base: &Model) -> Vec<&'a EffectInstance> {
-    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.card().id, effect.joint);
+    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.info().id, effect.joint);
     model.effects.iter().filter(new).collect()
 }
 
@@ -92,12 +92,12 @@ fn values(answer: &Answer, added: &[&EffectInstance]) -> Vec<ScoredValue> {
     let kind = answer.kind.as_deref();
     let found = added
         .iter()
-        .find(|effect| Some(effect.effect.card().id) == kind);
+        .find(|effect| Some(effect.effect.info().id) == kind);
     let value = |key: &str| {
         let effect = found?;
         let at = effect
             .effect
-            .card()
+            .info()
             .parameters
             .iter()
             .position(|p| p.key == key)?;

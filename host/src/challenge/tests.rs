@@ -77,7 +77,10 @@ fn every_effect_changes_the_motion() {
             worst = worst.max((squares / with.len() as f64).sqrt());
         }
         println!("{kind:20} {worst:.4} rad rms");
-        assert!(worst > 2.0 * motion::RESOLUTION_RAD, "{kind}: {worst} rad");
+        assert!(
+            worst > 2.0 * handstand_shared::raw::Position::LSB_RAD,
+            "{kind}: {worst} rad"
+        );
     }
 }
 
@@ -88,7 +91,7 @@ fn the_replay_of_the_truth_is_the_log() {
     for recording in &recordings {
         let sensed = recording.commands.replay(&truth, recording.mount);
         for (sensed, read) in sensed.iter().zip(&recording.position) {
-            assert!((sensed - read).abs() < 0.5 * motion::RESOLUTION_RAD + 4e-3);
+            assert!((sensed - read).abs() < 0.5 * handstand_shared::raw::Position::LSB_RAD + 4e-3);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The files of a challenge that are written in words.
 
-use super::motion::RESOLUTION_RAD;
 use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
 use super::rig::{Friction, NOMINAL_SUPPLY_V, Rig, STALL_NM, Secret};
+use handstand_shared::raw::Position;
 use std::fmt::Write;
 
 /// The rig as a model file, with `friction` and, if given, the secret.
@@ -46,9 +46,10 @@ payload = {{ column = "payload_kg", unit = "kg", at_m = {PAYLOAD_AT_M} }}
 turned = "turned"
 
 [[log.joint]]
-position = {{ column = "position_rad", unit = "rad", resolution_rad = {RESOLUTION_RAD:.7} }}
+position = {{ column = "position_rad", unit = "rad", resolution_rad = {:.7} }}
 input = {{ column = "duty", unit = "1" }}
-"#
+"#,
+        Position::LSB_RAD
     );
     text
 }

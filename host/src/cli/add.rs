@@ -1,6 +1,6 @@
 //! `handstand add MODEL EFFECT[@JOINT] --fit LOG... -o NEW.toml`: a model with one more effect.
 //!
-//! The effect's values are fitted along with the model's free ones, from every start on its card; the best is
+//! The effect's values are fitted along with the model's free ones, from every start value of the effect; the best is
 //! kept. The new file is the old one with the refitted values and, at its end, the effect with its intervals,
 //! the logs it was fitted to, and the error without and with it. The error without it is that of the model
 //! refitted without it, so that the fall is the effect's alone; `handstand compare` sets models side by side as

@@ -95,7 +95,7 @@ fn hidden(named: Option<&str>) -> Result<Hidden> {
     if named == "none" {
         return Ok(Hidden::Nothing);
     }
-    let id = name::effect(named)?.card().id;
+    let id = name::effect(named)?.info().id;
     kind_named(id).map(Hidden::Effect).ok_or_else(|| {
         Error::usage(
             format!("`{id}` cannot be hidden in the bench arm"),

@@ -7,14 +7,14 @@
 //! $ handstand effects coulomb
 //! ```
 //!
-//! `--json` prints the cards: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`, `reference`,
+//! `--json` prints the descriptions: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`, `reference`,
 //! `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`), `confused_with` (`with`, `why`).
 
 use super::Outcome;
 use super::name;
 use super::talk::Talk;
 use handstand::Result;
-use handstand::effects::{Card, EFFECTS, Parameter, Scope, glossary};
+use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope, glossary};
 use serde_json::{Value, json};
 
 /// Explain the physical effects the library knows.
@@ -30,14 +30,14 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         Some(name) => {
             let effect = name::effect(name)?;
             if talk.json {
-                talk.data(&card(effect.card()))?;
+                talk.data(&info(effect.info()))?;
             } else {
                 talk.print(&glossary::page(effect))?;
             }
         }
         None if talk.json => {
-            let cards: Vec<Value> = EFFECTS.iter().map(|effect| card(effect.card())).collect();
-            talk.data(&cards)?;
+            let infos: Vec<Value> = EFFECTS.iter().map(|effect| info(effect.info())).collect();
+            talk.data(&infos)?;
         }
         None => {
             talk.print(&glossary::overview().to_string())?;
@@ -47,25 +47,25 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn card(card: &Card) -> Value {
-    let confusions = card.confused_with.iter();
+fn info(info: &EffectInfo) -> Value {
+    let confusions = info.confused_with.iter();
     json!({
-        "id": card.id,
-        "title": card.title,
-        "law": card.law,
-        "scope": match card.scope {
+        "id": info.id,
+        "title": info.title,
+        "law": info.law,
+        "scope": match info.scope {
             Scope::AnyJoint => "any_joint",
             Scope::DrivenJoint => "driven_joint",
             Scope::PassiveJoint => "passive_joint",
             Scope::WholeRig => "whole_rig",
         },
-        "parameters": card.parameters.iter().map(parameter).collect::<Vec<_>>(),
-        "looks_like": card.looks_like,
+        "parameters": info.parameters.iter().map(parameter).collect::<Vec<_>>(),
+        "looks_like": info.looks_like,
         "confused_with": confusions
             .map(|other| json!({ "with": other.with, "why": other.why }))
             .collect::<Vec<_>>(),
-        "experiment": card.experiment,
-        "reference": card.reference,
+        "experiment": info.experiment,
+        "reference": info.reference,
     })
 }
 

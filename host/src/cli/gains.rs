@@ -1,15 +1,20 @@
 //! `handstand gains MODEL`: gains that balance a model at a pose, and the files that carry them on.
 //!
 //! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati equation, rounds the
-//! gains to fixed point with a proof against overflow. Weights are one number (times the identity), a diagonal
+//! gains to fixed point with a proof against overflow. Any model that `handstand add` writes will do: effects without a
+//! derivative (Coulomb friction, dead zones, ..) are left out of the design, which says so; `--without` takes one out
+//! of the model altogether. Weights are one number (times the identity), a diagonal
 //! `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
 //! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
 //! ```
 //!
-//! `--json` prints everything: `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
-//! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
+//! Then the loop is simulated with every effect of the model, those that the design leaves out included: whether it is
+//! stabilised, from how far, and which effect limits it. Exit code 1 when it is not.
+//!
+//! `--json` prints everything: `omitted_effects`, `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
+//! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
 use super::given::{Given, weight};
@@ -17,10 +22,13 @@ use super::talk::Talk;
 use super::{Outcome, input, page};
 use handstand::model::Model;
 use handstand::output::write_new;
+use handstand::study::{left_out, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
 use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
+
+mod verification;
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -50,7 +58,7 @@ pub struct Args {
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
     balance: bool,
-    /// Design without this effect of the model
+    /// Take this effect out of the model altogether
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// For continuous time: no sampling, no fixed point
@@ -124,13 +132,24 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let (design, made) = designed(args, talk)?;
+    let whole = Model::load(&args.model)?;
+    let mut part = whole.clone();
+    leave_out(&mut part, &args.without)?;
+    let left_out = left_out(&whole, &part, &design);
+    let verified = verify(&whole, &design, &request(args, &part)?.0, &left_out)?;
     if talk.json {
-        talk.data(&export::json(&design, &made))?;
+        let mut data = export::json(&design, &made);
+        data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
+        talk.data(&data)?;
     } else {
         talk.print(&export::text(&design))?;
+        talk.print(&verification::text(&verified))?;
     }
     write(args, &design, &made, talk)?;
-    Ok(Outcome::Done)
+    Ok(match verified.stabilised {
+        true => Outcome::Done,
+        false => Outcome::Refused,
+    })
 }
 
 impl Args {
@@ -194,17 +213,24 @@ pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)>
         input::vacant(file, args.force)?;
     }
     let mut model = Model::load(&args.model)?;
-    leave_out(&mut model, &args.without, talk)?;
-    let design = Design::of(&model, &request(args, &model, talk)?)?;
+    for id in leave_out(&mut model, &args.without)? {
+        talk.say(&format!("designed without {id}; the simulated loop has it"));
+    }
+    let (request, balance) = request(args, &model)?;
+    if let Some(said) = balance {
+        talk.say(&said);
+    }
+    let design = Design::of(&model, &request)?;
     Ok((design, provenance(&args.model, talk)?))
 }
 
-fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
+/// Takes these effects out of the model; which ones they were.
+fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String]> {
     for id in without {
         let before = model.effects.len();
-        model.effects.retain(|e| e.effect.card().id != id);
+        model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
-            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.card().id).collect();
+            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
             return Err(Error::usage(
                 format!("`{}` holds no effect `{id}`", model.name),
                 match held.is_empty() {
@@ -213,22 +239,21 @@ fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
                 },
             ));
         }
-        talk.say(&format!(
-            "designed without {id}: the loop must survive it all the same"
-        ));
     }
-    Ok(())
+    Ok(without)
 }
 
-fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
+/// The request, and where the pose was moved to if it was.
+fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
     let mut pose_rad = match &args.pose {
         Pose::Upright => upright(model),
         Pose::Angles(angles) => angles.clone(),
     };
+    let mut moved = None;
     if args.balance {
         pose_rad = balanced(model, &pose_rad)?;
         let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
-        talk.say(&format!("balanced at q = [{}] rad", said.join(", ")));
+        moved = Some(format!("balanced at q = [{}] rad", said.join(", ")));
     }
     let time = match args.continuous {
         true => Time::Continuous,
@@ -251,13 +276,15 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
     };
     let process = args.process.as_ref().map(Given::read).transpose()?;
     let degree = std::f64::consts::PI / 180.0;
-    Ok(Request {
+    let request = Request {
         pose_rad,
         q: weighed(&args.q, 100.0)?,
         r: weighed(&args.r, 1.0)?,
         time,
         sensors: args.lqg.then_some(Sensors {
-            position_step_rad: args.position_step.unwrap_or(300.0 / 1024.0 * degree),
+            position_step_rad: args
+                .position_step
+                .unwrap_or(handstand_shared::raw::Position::LSB_RAD),
             gyro_step_rad_s: args.gyro_step.unwrap_or(10.0 * degree),
             process,
         }),
@@ -272,7 +299,8 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
             input_step: list(&args.input_step, "--input-step", inputs)?,
         },
-    })
+    };
+    Ok((request, moved))
 }
 
 fn weighed(given: &Option<Given>, default: f64) -> Result<Weight> {

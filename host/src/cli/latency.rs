@@ -9,6 +9,7 @@
 //! `--json` prints `round_trip_us`, `line_us`, `bus_us`, `rest_us`, `round_us`, `period_us`, `fits`, `missing`; each
 //! measured time with `min`, `median`, `p99`, `max`.
 
+use super::port::no_response;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, interrupt::Interrupt};
@@ -130,7 +131,7 @@ fn by_adapter(args: &Args, talk: &Talk) -> Result<Measured> {
             }
         }
     }
-    let round_trip_us = Times::of(trips).ok_or_else(nobody)?;
+    let round_trip_us = Times::of(trips).ok_or_else(no_response)?;
     // PING and its answer: 6 bytes each, on the line and again on the bus behind it.
     let is_direct = servos.link().baud() >= 900_000;
     let line_us = micros(servos.link().line_time(12));
@@ -161,7 +162,7 @@ fn by_stream(args: &Args, talk: &Talk) -> Result<Measured> {
         trips.push(micros(session.link().now() - begin));
         ticks.push(f64::from(telemetry.tick_us));
     }
-    let round_trip_us = Times::of(trips).ok_or_else(nobody)?;
+    let round_trip_us = Times::of(trips).ok_or_else(no_response)?;
     let bus_us = Times::of(ticks).map_or(0.0, |ticks| ticks.median);
     // The question of 4 bytes' body and its answer of about 24.
     let line_us = micros(
@@ -216,7 +217,7 @@ fn rounds(mut source: impl Source, args: &Args, talk: &Talk) -> Result<(Times, u
     while (samples.len() as u64) < args.rounds && !interrupt.has_come() {
         match source.sample(None)? {
             Some(sample) => samples.push(sample),
-            None => return Err(nobody()),
+            None => return Err(no_response()),
         }
         bar.inc(1);
     }
@@ -233,13 +234,9 @@ fn rounds(mut source: impl Source, args: &Args, talk: &Talk) -> Result<(Times, u
             .count() as u64
     };
     Ok((
-        Times::of(times).ok_or_else(nobody)?,
+        Times::of(times).ok_or_else(no_response)?,
         samples.iter().map(silent).sum(),
     ))
-}
-
-fn nobody() -> Error {
-    Error::device("nobody answers", "`handstand bus doctor` finds the cause")
 }
 
 fn micros(time: Duration) -> f64 {

@@ -7,7 +7,6 @@
 mod add;
 mod bus;
 mod challenge;
-mod cm5;
 mod compare;
 mod controllers;
 mod delays;
@@ -36,11 +35,11 @@ mod robot;
 mod robust;
 mod show;
 mod signals;
+mod simulated;
 mod study;
 mod talk;
 mod view;
 mod virtual_robot;
-mod watch;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -114,7 +113,7 @@ pub enum Command {
     Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
-    /// Speak with servos: scan, read, write, set up, watch, save, restore, find what is wrong
+    /// Communicate with servos: scan, read, write, set up, monitor, back up, restore, find faults
     #[command(subcommand)]
     Bus(bus::Command),
     /// Record what servos do

@@ -12,7 +12,7 @@ pub fn effect(name: &str) -> Result<&'static dyn Effect> {
     let found = EFFECTS
         .iter()
         .copied()
-        .find(|effect| effect.card().id == name);
+        .find(|effect| effect.info().id == name);
     found.ok_or_else(|| {
         let remedy = match nearest(name) {
             Some(near) => format!("did you mean `{near}`? `handstand effects` lists all"),
@@ -23,7 +23,7 @@ pub fn effect(name: &str) -> Result<&'static dyn Effect> {
 }
 
 fn nearest(name: &str) -> Option<&'static str> {
-    let ids = EFFECTS.iter().map(|effect| effect.card().id);
+    let ids = EFFECTS.iter().map(|effect| effect.info().id);
     ids.map(|id| (strsim::jaro_winkler(name, id), id))
         .filter(|(likeness, _)| *likeness > 0.7)
         .max_by(|a, b| a.0.total_cmp(&b.0))
@@ -56,7 +56,7 @@ pub fn candidate(name: &str, model: &Model) -> Result<Candidate> {
 }
 
 fn joint(effect: &dyn Effect, at: Option<&str>, model: &Model) -> Result<Option<usize>> {
-    let (id, scope, count) = (effect.card().id, effect.card().scope, model.link_count());
+    let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),
         (Scope::WholeRig, Some(_)) => {

@@ -1,8 +1,9 @@
-//! The port a command speaks over: a serial one, or a simulated one.
+//! The port of a command: a serial one, or a simulated one.
 
-use super::cm5::Cm5;
-use handstand::link::{InProcess, Link, Serial, Servos, SimWords, Tap, ids, ports};
+use super::simulated;
+use handstand::link::{Link, Serial, Servos, Tap, ports};
 use handstand::{Error, Result};
+use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
 use std::path::PathBuf;
 
 /// Where the servos are.
@@ -35,7 +36,7 @@ impl Port {
         })
     }
 
-    /// Opens it to speak with servos.
+    /// Opens it to communicate with servos.
     ///
     /// # Errors
     /// As [`Port::open`].
@@ -48,10 +49,10 @@ impl Port {
             Some(name) => name.clone(),
             None => only_port()?,
         };
-        let (kind, words) = name.split_once(':').unwrap_or((&name, ""));
-        let mut link: AnyLink = match kind {
-            "sim" => Box::new(InProcess::new(simulated(words)?.set_up()?)),
-            "sim-cm5" => Box::new(Cm5::new(simulated(words)?.set_up()?)),
+        let (kind, spec) = name.split_once(':').unwrap_or((&name, ""));
+        let mut link = match kind {
+            "sim" => simulated::open(spec, false)?,
+            "sim-cm5" => simulated::open(spec, true)?,
             _ => return Ok(Box::new(Serial::open(&name, self.baud.unwrap_or(57_600))?)),
         };
         if let Some(baud) = self.baud {
@@ -62,18 +63,8 @@ impl Port {
 }
 
 /// The error where no servo answers.
-pub fn nobody() -> Error {
+pub fn no_response() -> Error {
     Error::device("no servo answers", "`handstand bus doctor` finds the cause")
-}
-
-/// A simulated bus from its words.
-///
-/// # Errors
-/// [`Error::Usage`] for words that mean nothing.
-pub fn simulated(words: &str) -> Result<SimWords> {
-    words
-        .parse()
-        .map_err(|what: String| Error::usage(what, "such as sim:ids=1-3,delay=0,dead=2"))
 }
 
 fn only_port() -> Result<String> {
@@ -92,7 +83,9 @@ fn only_port() -> Result<String> {
 
 /// Ids as an argument: `1-18`, `1-4,9`.
 pub fn id_list(text: &str) -> Result<Ids, String> {
-    ids(text).map(Ids)
+    let ids: Option<_> = ids(text).collect();
+    let wrong = || format!("`{text}` names no ids: {ID_LIST_SYNTAX}");
+    ids.map(Ids).ok_or_else(wrong)
 }
 
 /// Servo ids.

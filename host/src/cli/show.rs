@@ -1,10 +1,13 @@
 //! Tables and figures as every command shows them.
 
+use super::talk::Talk;
 use comfy_table::{ContentArrangement, Table, TableComponent, presets};
 use handstand::diagnose::FittedValue;
 use handstand::fitting::Horizon;
 use handstand::fitting::{Extension, Fall, Undetermined};
 use handstand::number::exact;
+use handstand::synth::{linearise, upright};
+use handstand::{Model, Result};
 use serde_json::{Value, json};
 
 /// A plain table without frame.
@@ -112,4 +115,21 @@ pub fn undetermined(refused: &Undetermined) -> String {
     format!(
         "refused: {refused}; nothing is written. Fit fewer values, or record motions that show them."
     )
+}
+
+/// Says which effects of the model a linear design leaves out.
+pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
+    let model = handstand::sim::bare_motors(model);
+    let omitted = linearise(&model, &upright(&model))?.omitted;
+    if !omitted.is_empty() {
+        let each = omitted.iter().map(|omitted| {
+            let joint = omitted.joint + 1;
+            format!("{} at joint {joint}", omitted.effect.info().title)
+        });
+        talk.say(&format!(
+            "the designs leave out {}; the simulation has them",
+            each.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    Ok(())
 }

@@ -17,14 +17,11 @@
 //!
 //! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`, `robot`.
 
-use super::cm5::Cm5;
-use super::interrupt::Interrupt;
-use super::port::simulated;
+use super::Outcome;
 use super::talk::Talk;
-use super::watch::Watch;
-use super::{Outcome, port::AnyLink};
-use handstand::link::{InProcess, SimWords};
-use handstand::{Error, Result};
+#[cfg(feature = "virtual-cm5")]
+use handstand::Error;
+use handstand::Result;
 use std::path::PathBuf;
 
 /// Offer simulated servos to any program.
@@ -54,10 +51,28 @@ pub struct Args {
 }
 
 /// Serves until told to stop.
+#[cfg(not(feature = "virtual-cm5"))]
+pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
+    Err(super::simulated::absent())
+}
+
+/// Serves until told to stop.
+#[cfg(all(feature = "virtual-cm5", not(unix)))]
+pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
+    Err(Error::usage(
+        "this system has no pseudo terminals",
+        "use --port sim with the command itself",
+    ))
+}
+
+/// Serves until told to stop.
+#[cfg(all(feature = "virtual-cm5", unix))]
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let mut words = simulated(&args.words)?;
+    use handstand::virtual_cm5::{StateLog, serve, set_up, spec};
+
+    let mut spec = spec(&args.words)?;
     if let Some(model) = &args.robot {
-        words.robot.get_or_insert_default().model = model.clone();
+        spec.robot.get_or_insert_default().model = model.clone();
     }
     if !args.seconds.unwrap_or(1.0).is_finite() {
         return Err(Error::usage(
@@ -65,36 +80,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "give a number of seconds",
         ));
     }
-    let mut bus = words.set_up()?;
-    let watch = Watch::of(&mut bus, args.log.as_deref())?;
-    let device: AnyLink = match args.cm5 {
-        true => Box::new(Cm5::new(bus)),
-        false => Box::new(InProcess::new(bus)),
-    };
-    serve(args, talk, device, &words, watch)
-}
-
-#[cfg(not(unix))]
-fn serve(_: &Args, _: &Talk, _: AnyLink, _: &SimWords, _: Watch) -> Result<Outcome> {
-    Err(Error::usage(
-        "this system has no pseudo terminals",
-        "use --port sim with the command itself",
-    ))
-}
-
-#[cfg(unix)]
-fn serve(
-    args: &Args,
-    talk: &Talk,
-    mut device: AnyLink,
-    words: &SimWords,
-    mut watch: Watch,
-) -> Result<Outcome> {
-    use handstand::link::Pty;
-    use std::time::{Duration, Instant};
-
-    let interrupt = Interrupt::listen();
-    let pty = Pty::open()?;
+    let mut bus = set_up(&spec)?;
+    let mut states = StateLog::of(&mut bus, args.log.as_deref())?;
+    let mut device = super::simulated::link(bus, args.cm5);
+    let interrupt = super::interrupt::Interrupt::listen();
+    let pty = handstand::link::Pty::open()?;
     let alias = args
         .link
         .as_deref()
@@ -103,66 +93,36 @@ fn serve(
     if talk.json {
         talk.data(&serde_json::json!({
             "port": pty.name(),
-            "ids": words.ids,
+            "ids": spec.ids,
             "cm5": args.cm5,
-            "robot": words.robot.as_ref().map(|robot| &robot.model),
+            "robot": spec.robot.as_ref().map(|robot| &robot.model),
         }))?;
     } else {
         talk.print(pty.name())?;
     }
     let speed = if args.cm5 { 57_600 } else { 1_000_000 };
     talk.say(&format!(
-        "{} simulated servos at {} baud; Ctrl-C ends it",
-        words.ids.len(),
-        speed
+        "{} simulated servos at {speed} baud; Ctrl-C ends it",
+        spec.ids.len(),
     ));
-    let (started, offset) = (Instant::now(), device.now());
-    let mut last_byte = Duration::ZERO;
-    let mut bytes = [0; 512];
     let bar = talk.bar();
-    loop {
-        let now = started.elapsed();
-        if let Some(state) = watch.newest()? {
+    serve(&mut device, &pty, |elapsed| {
+        if let Some(state) = states.newest()? {
             bar.set_message(state);
         }
-        if interrupt.has_come()
-            || args
-                .seconds
-                .is_some_and(|seconds| now.as_secs_f64() > seconds)
-        {
-            break;
-        }
-        device.pause((now + offset).saturating_sub(device.now()));
-        let count = device.receive(&mut bytes, Duration::ZERO)?;
-        if count > 0 {
-            pty.send(&bytes[..count])?;
-            last_byte = now;
-        }
-        // Answers are near while somebody talks; an idle port should cost nothing.
-        let busy = now.saturating_sub(last_byte) < Duration::from_millis(100);
-        let wait = if busy {
-            Duration::from_micros(100)
-        } else {
-            Duration::from_millis(2)
-        };
-        let count = pty.receive(&mut bytes, wait)?;
-        if count > 0 {
-            last_byte = now;
-            device.pause((started.elapsed() + offset).saturating_sub(device.now()));
-            device.set_baud(pty.baud())?;
-            device.send(&bytes[..count])?;
-        }
-    }
+        let is_over = args.seconds.is_some_and(|s| elapsed.as_secs_f64() > s);
+        Ok(!interrupt.has_come() && !is_over)
+    })?;
     bar.finish_and_clear();
     drop(alias);
     Ok(Outcome::Done)
 }
 
 /// A symbolic link that goes with the port.
-#[cfg(unix)]
+#[cfg(all(feature = "virtual-cm5", unix))]
 struct Alias(PathBuf);
 
-#[cfg(unix)]
+#[cfg(all(feature = "virtual-cm5", unix))]
 impl Alias {
     fn new(path: &std::path::Path, port: &str) -> Result<Self> {
         let refused = |error: std::io::Error| match error.kind() {
@@ -176,7 +136,7 @@ impl Alias {
     }
 }
 
-#[cfg(unix)]
+#[cfg(all(feature = "virtual-cm5", unix))]
 impl Drop for Alias {
     fn drop(&mut self) {
         // A link that somebody removed meanwhile is gone all the same.

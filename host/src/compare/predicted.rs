@@ -2,7 +2,7 @@
 
 use crate::fitting::{Data, Node};
 use crate::model::Model;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, SensorState, predict};
 use rayon::prelude::*;
 
 /// Predicted angles, rad, `[motion][joint][sample]`, every window started from its node.
@@ -19,7 +19,7 @@ pub(super) fn predicted(model: &Model, data: &Data, nodes: &[Node]) -> Vec<Vec<V
 fn one_motion(model: &Model, data: &Data, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
+    let mut memory = SensorState::default();
     let mut angles = vec![Vec::with_capacity(log.len()); plant.len()];
     for (window, node) in data.windows.iter().zip(nodes) {
         if window.motion != motion || window.samples.is_empty() {

@@ -9,15 +9,16 @@
 //! surprise = y - C s        wish = -K (s + L surprise)        next = A (s + L surprise) + B given
 //! ```
 
-use super::conditions::{GYRO_STEP_RAD_S, POSITION_STEP_RAD};
 use super::observed::{Options, regulator};
 use super::plant::{Parts, continuous, plant};
-use super::{Known, best};
+use super::{DesignModel, best};
 use crate::error::{Error, Result};
+use crate::sim::closed_loop::GYRO_STEP_RAD_S;
 use crate::synth::{Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
+use handstand_shared::raw::Position;
 use nalgebra::DMatrix;
 
 mod fixed;
@@ -45,7 +46,7 @@ const NONE: f64 = 0.1;
 const EXACT_RAD: f64 = 1e-4;
 
 /// Of readings rounded to a step: step / sqrt(12).
-const POSITION_RAD: f64 = POSITION_STEP_RAD * 0.288_675_134_594_812_9;
+const POSITION_RAD: f64 = Position::LSB_RAD * 0.288_675_134_594_812_9;
 const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
 
 impl Timing {
@@ -84,7 +85,7 @@ impl OnBoard {
     /// # Errors
     /// Robots of other than three joints, two of them driven; effects or readings later than three periods; plants that
     /// cannot be held or are not seen.
-    pub fn new(known: &Known, timing: &Timing) -> Result<OnBoard> {
+    pub fn new(known: &DesignModel, timing: &Timing) -> Result<OnBoard> {
         if (known.joints(), known.drives()) != (JOINTS, INPUTS) {
             return Err(Error::design(
                 format!(
@@ -95,7 +96,7 @@ impl OnBoard {
                 "the CM-5 balances three joints of which two are driven",
             ));
         }
-        let known = Known {
+        let known = DesignModel {
             delay_s: timing.effect_s,
             ..known.clone()
         };
@@ -154,7 +155,7 @@ const OFFSETS: Parts = Parts {
 };
 
 /// The regulator's gains; offsets act as the angles' negatives.
-fn gains(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
+fn gains(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
     let without = plant(
         known,
         Parts {
@@ -170,7 +171,7 @@ fn gains(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
 }
 
 /// The sampled plant with offsets and as many past inputs as the CM-5 keeps.
-fn widened(known: &Known) -> Result<Discrete> {
+fn widened(known: &DesignModel) -> Result<Discrete> {
     let late = plant(known, OFFSETS)?;
     if late.delayed_inputs > DELAYS {
         return Err(too_late(known.delay_s));
@@ -208,7 +209,7 @@ fn too_late(delay_s: f64) -> Error {
 }
 
 /// What each reading tells of [x, offsets, past inputs], given its age.
-fn outputs(known: &Known, timing: &Timing) -> Result<DMatrix<f64>> {
+fn outputs(known: &DesignModel, timing: &Timing) -> Result<DMatrix<f64>> {
     let mut c = DMatrix::zeros(READINGS, ESTIMATED + PAST);
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
         let ago = ago(known, timing.effect_s, age_s)?;
@@ -221,7 +222,7 @@ fn outputs(known: &Known, timing: &Timing) -> Result<DMatrix<f64>> {
 ///
 /// Input u(k - n) begins to act at `effect_s` - n periods. Backwards over a span h under one input,
 /// x(t - h) = e^{-Ah} (x(t) - S(h) B u).
-fn ago(known: &Known, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
+fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
     let now = plant(
         known,
         Parts {
@@ -254,7 +255,7 @@ fn ago(known: &Known, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
 }
 
 /// Covariance of what is not known, per sample; past inputs are known.
-fn process(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
+fn process(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
     let held = plant(
         known,
         Parts {

@@ -195,7 +195,7 @@ impl<'a> Bench<'a> {
     fn try_shams(&self, joints: usize) -> Vec<Trial> {
         let shams: Vec<Candidate> = CONTROLS
             .iter()
-            .filter(|effect| effect.card().id == SHAM)
+            .filter(|effect| effect.info().id == SHAM)
             .flat_map(|&effect| {
                 (0..joints).map(move |joint| Candidate {
                     effect,

@@ -17,8 +17,8 @@ pub struct Candidate {
 impl fmt::Display for Candidate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.joint {
-            Some(joint) => write!(f, "{}@{}", self.effect.card().id, joint + 1),
-            None => write!(f, "{}", self.effect.card().id),
+            Some(joint) => write!(f, "{}@{}", self.effect.info().id, joint + 1),
+            None => write!(f, "{}", self.effect.info().id),
         }
     }
 }
@@ -26,7 +26,7 @@ impl fmt::Display for Candidate {
 impl Candidate {
     /// Whether the model holds it already.
     pub fn in_model(&self, model: &Model) -> bool {
-        model.has_effect(self.effect.card().id, self.joint)
+        model.has_effect(self.effect.info().id, self.joint)
     }
 
     /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
@@ -45,18 +45,18 @@ impl Candidate {
 
     /// Addresses of its values.
     pub fn paths(&self) -> impl Iterator<Item = ParameterPath> + '_ {
-        let card = self.effect.card();
-        (0..card.parameters.len()).map(move |parameter| ParameterPath::Effect {
-            id: card.id,
+        let info = self.effect.info();
+        (0..info.parameters.len()).map(move |parameter| ParameterPath::Effect {
+            id: info.id,
             joint: self.joint,
             parameter,
         })
     }
 
-    /// Every combination of the card's start values.
+    /// Every combination of the parameters' start values.
     pub fn starts(&self) -> Vec<Vec<f64>> {
         let mut combinations = vec![Vec::new()];
-        for parameter in self.effect.card().parameters {
+        for parameter in self.effect.info().parameters {
             combinations = combinations
                 .iter()
                 .flat_map(|head: &Vec<f64>| {
@@ -77,11 +77,11 @@ impl Candidate {
 pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for &effect in EFFECTS {
-        let card = effect.card();
-        if without.iter().any(|id| id == card.id) {
+        let info = effect.info();
+        if without.iter().any(|id| id == info.id) {
             continue;
         }
-        let joints: Vec<Option<usize>> = match card.scope {
+        let joints: Vec<Option<usize>> = match info.scope {
             Scope::WholeRig => vec![None],
             Scope::AnyJoint => (0..model.link_count()).map(Some).collect(),
             Scope::DrivenJoint => driven(model, motions),
@@ -92,7 +92,7 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
         };
         for joint in joints {
             let candidate = Candidate { effect, joint };
-            if !candidate.in_model(model) && visible(card.needs, model, motions, joint) {
+            if !candidate.in_model(model) && visible(info.needs, model, motions, joint) {
                 found.push(candidate);
             }
         }

@@ -116,12 +116,12 @@ fn effects(trial: &Trial, mut values: &[FittedValue]) -> Vec<FittedEffect> {
         .set
         .iter()
         .map(|candidate| {
-            let card = candidate.effect.card();
-            let (own, rest) = values.split_at(card.parameters.len());
+            let info = candidate.effect.info();
+            let (own, rest) = values.split_at(info.parameters.len());
             values = rest;
             FittedEffect {
-                kind: card.id.to_string(),
-                title: card.title.to_string(),
+                kind: info.id.to_string(),
+                title: info.title.to_string(),
                 joint: candidate.joint.map(|j| j + 1),
                 parameters: own.to_vec(),
             }

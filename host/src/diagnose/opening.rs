@@ -14,7 +14,7 @@ pub(super) struct Opening {
 
 /// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have smaller effects.
 fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.card().parameters;
+    let parameters = candidate.effect.info().parameters;
     parameters
         .iter()
         .zip(start)
@@ -131,7 +131,7 @@ impl<'a> Lead<'a> {
         let scale = along / size;
         let values = candidate
             .effect
-            .card()
+            .info()
             .parameters
             .iter()
             .zip(start)
@@ -157,7 +157,7 @@ impl<'a> Lead<'a> {
 
 /// The values that shape an effect without switching it on or off.
 fn own_shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.card().parameters;
+    let parameters = candidate.effect.info().parameters;
     parameters
         .iter()
         .zip(values)
@@ -168,7 +168,7 @@ fn own_shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
 
 /// What tells openings apart: one is kept for each.
 fn shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.card().parameters;
+    let parameters = candidate.effect.info().parameters;
     let mut shape = own_shape(candidate, values);
     // The side of off counts as a shape too: a mass may be missing or be too much.
     shape.extend(

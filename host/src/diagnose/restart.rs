@@ -48,7 +48,7 @@ impl Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Looks for candidates whose law jumps from the values the model came with, and from each start on the card: what
+    /// Looks for candidates whose law jumps from the values the model came with, and from each start value: what
     /// is missing has bent the base values, and a fit that starts from them may end in a false valley.
     pub fn look_elsewhere(&self, trials: &mut [Trial]) {
         let alone = |trial: &&mut Trial| trial.set.len() == 1 && trial.set[0].jumps();

@@ -45,7 +45,7 @@ impl Trial {
     pub fn added_values(&self) -> usize {
         self.set
             .iter()
-            .map(|c| c.effect.card().parameters.len())
+            .map(|c| c.effect.info().parameters.len())
             .sum()
     }
 
@@ -222,11 +222,11 @@ fn significant(set: &[Candidate], fit: &Fit, data: &Data) -> bool {
     let Some((intervals, _)) = intervals(fit, data) else {
         return set.is_empty();
     };
-    let added: usize = set.iter().map(|c| c.effect.card().parameters.len()).sum();
+    let added: usize = set.iter().map(|c| c.effect.info().parameters.len()).sum();
     let mut own = intervals[intervals.len() - added..].iter();
     let mut all = true;
     for candidate in set {
-        let parameters = candidate.effect.card().parameters;
+        let parameters = candidate.effect.info().parameters;
         let present = parameters
             .iter()
             .zip(&mut own)

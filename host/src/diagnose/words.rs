@@ -183,7 +183,7 @@ fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
     kinds
         .into_iter()
         .filter_map(|effect| {
-            let experiment = crate::effects::named(&effect.kind)?.card().experiment;
+            let experiment = crate::effects::named(&effect.kind)?.info().experiment;
             Some(format!("To tell {} apart: {experiment}.", effect.title))
         })
         .collect()

@@ -1,7 +1,5 @@
 //! The constants of a planar chain.
 
-use crate::model::Model;
-
 /// A planar chain on a fixed base. Angles are relative, joint 1's from hanging, counter-clockwise.
 #[derive(Debug, Clone)]
 pub struct Chain {
@@ -29,26 +27,6 @@ pub struct ChainLink {
 }
 
 impl Chain {
-    /// The chain of a model, without its effects.
-    pub fn of(model: &Model) -> Chain {
-        let links = model
-            .links
-            .iter()
-            .map(|link| ChainLink {
-                length_m: link.length_m,
-                com_m: link.com_m,
-                com_angle_rad: 0.0,
-                mass_kg: link.mass_kg,
-                inertia_kg_m2: link.inertia_kg_m2,
-                armature_kg_m2: 0.0,
-            })
-            .collect();
-        Chain {
-            links,
-            gravity_m_s2: model.gravity_m_s2,
-        }
-    }
-
     /// Number of links.
     pub fn len(&self) -> usize {
         self.links.len()

@@ -1,9 +1,9 @@
 //! The effects explained to people: a page for each, and a table of all. Every word and curve comes from the
-//! cards and the laws.
+//! descriptions and the laws.
 
 use super::canvas::{plot, rounded};
 use super::signature::signature;
-use super::{Card, EFFECTS, Effect, Needs, Parameter, Scope, Site, named};
+use super::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site, named};
 use comfy_table::{ContentArrangement, Table, TableComponent, presets};
 
 /// Columns of a page.
@@ -13,33 +13,33 @@ const WIDTH: usize = 90;
 pub fn overview() -> Table {
     let mut table = table(["Name", "Effect", "Law"]);
     for effect in EFFECTS {
-        let card = effect.card();
-        table.add_row([card.id, card.title, card.law]);
+        let info = effect.info();
+        table.add_row([info.id, info.title, info.law]);
     }
     table
 }
 
 /// Everything there is to say of one effect, as plain text.
 pub fn page(effect: &dyn Effect) -> String {
-    let card = effect.card();
+    let info = effect.info();
     let sections = [
-        heading(card),
-        section("Law", &wrapped(card.law)),
-        section("Parameters", &parameters(card).to_string()),
-        section("What a log shows", &wrapped(card.looks_like)),
+        heading(info),
+        section("Law", &wrapped(info.law)),
+        section("Parameters", &parameters(info).to_string()),
+        section("What a log shows", &wrapped(info.looks_like)),
         section("Signature", &drawn(effect)),
-        section("Confused with", &confusions(card)),
-        section("Experiment", &wrapped(card.experiment)),
-        section("Reference", &wrapped(card.reference)),
+        section("Confused with", &confusions(info)),
+        section("Experiment", &wrapped(info.experiment)),
+        section("Reference", &wrapped(info.reference)),
     ];
     sections.join("\n\n") + "\n"
 }
 
-fn heading(card: &Card) -> String {
-    let title = format!("{} ({})", card.title, card.id);
+fn heading(info: &EffectInfo) -> String {
+    let title = format!("{} ({})", info.title, info.id);
     let rule = "=".repeat(title.chars().count());
-    let acts = format!("Acts on {}, at {}.", site(card.site), scope(card.scope));
-    let needs = match needs(card.needs) {
+    let acts = format!("Acts on {}, at {}.", site(info.site), scope(info.scope));
+    let needs = match needs(info.needs) {
         Some(needs) => format!("{acts} Needs {needs}."),
         None => acts,
     };
@@ -84,9 +84,9 @@ fn needs(needs: Needs) -> Option<&'static str> {
     }
 }
 
-fn parameters(card: &Card) -> Table {
+fn parameters(info: &EffectInfo) -> Table {
     let mut table = table(["Key", "Unit", "Off", "Typical", "Bounds", "Meaning"]);
-    for parameter in card.parameters {
+    for parameter in info.parameters {
         table.add_row([
             parameter.key.to_string(),
             parameter.unit.to_string(),
@@ -111,10 +111,10 @@ fn range((low, high): (f64, f64)) -> String {
     format!("{} to {}", rounded(low), rounded(high))
 }
 
-fn confusions(card: &Card) -> String {
-    let title = |id| named(id).map_or(id, |effect| effect.card().title);
+fn confusions(info: &EffectInfo) -> String {
+    let title = |id| named(id).map_or(id, |effect| effect.info().title);
     let line = |(id, why): (&'static str, &str)| wrapped(&format!("{} ({id}): {why}", title(id)));
-    let lines: Vec<String> = card
+    let lines: Vec<String> = info
         .confused_with
         .iter()
         .map(|c| line((c.with, c.why)))
@@ -125,12 +125,12 @@ fn confusions(card: &Card) -> String {
 /// The signature with its axes, and what it is drawn for.
 fn drawn(effect: &dyn Effect) -> String {
     let signature = signature(effect);
-    let pairs = effect.card().parameters.iter().zip(&signature.values);
+    let pairs = effect.info().parameters.iter().zip(&signature.values);
     let values: Vec<String> = pairs
         .map(|(parameter, value)| format!("{} = {}", parameter.key, rounded(*value)))
         .collect();
     let exaggerated = effect
-        .card()
+        .info()
         .parameters
         .iter()
         .zip(&signature.values)
@@ -183,36 +183,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_page_holds_its_card_and_a_drawing() {
+    fn every_page_holds_its_info_and_a_drawing() {
         for effect in EFFECTS {
-            let (card, page) = (effect.card(), page(*effect));
+            let (info, page) = (effect.info(), page(*effect));
             let flat = page.split_whitespace().collect::<Vec<_>>().join(" ");
             for text in [
-                card.title,
-                card.law,
-                card.looks_like,
-                card.experiment,
-                card.reference,
+                info.title,
+                info.law,
+                info.looks_like,
+                info.experiment,
+                info.reference,
             ] {
                 let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-                assert!(flat.contains(&text), "{}: {text}", card.id);
+                assert!(flat.contains(&text), "{}: {text}", info.id);
             }
             assert!(
-                card.parameters.iter().all(|p| page.contains(p.key)),
+                info.parameters.iter().all(|p| page.contains(p.key)),
                 "{}",
-                card.id
+                info.id
             );
             let dots = page
                 .chars()
                 .filter(|sign| ('\u{2801}'..='\u{28ff}').contains(sign))
                 .count();
-            assert!(dots >= 30, "{}: {dots} signs drawn", card.id);
+            assert!(dots >= 30, "{}: {dots} signs drawn", info.id);
         }
     }
 
     #[test]
     fn overview_lists_all() {
         let text = overview().to_string();
-        assert!(EFFECTS.iter().all(|effect| text.contains(effect.card().id)));
+        assert!(EFFECTS.iter().all(|effect| text.contains(effect.info().id)));
     }
 }

@@ -1,6 +1,6 @@
 //! The library of physical effects: each states its law once, and describes itself for people.
 //!
-//! Adding one is a file with a `card()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
+//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
 //! the glossary, the candidates, the fit's bounds and the law tests all iterate that list.
 
 mod air_drag;
@@ -10,7 +10,6 @@ mod base_tilt;
 mod bearing_friction;
 mod cable_spring;
 mod canvas;
-mod card;
 mod cogging;
 mod com_angle;
 mod coulomb;
@@ -19,6 +18,7 @@ mod delay;
 mod direction_asymmetry;
 mod encoder_scale;
 mod encoder_zero;
+mod info;
 mod load_friction;
 mod mass;
 mod probe;
@@ -38,12 +38,11 @@ pub mod signature;
 #[cfg(test)]
 mod tests;
 
-pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
+pub use info::{Confusion, EffectInfo, Needs, Parameter, Scope, Site};
 pub use probe::{Along, Probe};
 pub use sham::SHAM;
 
 use crate::dynamics::Chain;
-use crate::model::Model;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
@@ -94,16 +93,16 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
         .iter()
         .chain(CONTROLS)
         .copied()
-        .find(|effect| effect.card().id == id)
+        .find(|effect| effect.info().id == id)
 }
 
 /// A departure from the rigid chain with ideal drives and sensors.
 ///
 /// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in the
-/// order of the card's parameters.
+/// order of its parameters.
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
-    fn card(&self) -> &'static Card;
+    fn info(&self) -> &'static EffectInfo;
 
     /// Relative step of a finite difference in its values: large where the law jumps, so that a difference sees
     /// the jumps pass.
@@ -173,7 +172,7 @@ pub trait Effect: Sync + fmt::Debug {
 
 impl PartialEq for dyn Effect {
     fn eq(&self, other: &dyn Effect) -> bool {
-        self.card().id == other.card().id
+        self.info().id == other.info().id
     }
 }
 
@@ -223,24 +222,6 @@ pub struct Rig {
     pub gravity_turn_rad: f64,
     /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
     pub turned: bool,
-}
-
-impl Rig {
-    /// The rig of a model, its body effects applied; `turned` as in [`Rig::turned`].
-    pub fn of(model: &Model, turned: bool) -> Rig {
-        let mut rig = Rig {
-            chain: Chain::of(model),
-            gravity_turn_rad: 0.0,
-            turned,
-        };
-        for instance in &model.effects {
-            if instance.effect.card().site == Site::Body {
-                let joint = instance.joint.unwrap_or(0);
-                instance.effect.body(&instance.values, joint, &mut rig);
-            }
-        }
-        rig
-    }
 }
 
 /// The motor at an instant.

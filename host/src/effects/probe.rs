@@ -3,7 +3,7 @@
 //! What a sum of them gains on held-out motions is what a right term, still unknown, could gain: the measure of
 //! how much is left to explain.
 
-use super::{Card, DriveState, Effect, JointState, Needs, Parameter, Rig, Scope, Site};
+use super::{DriveState, Effect, EffectInfo, JointState, Needs, Parameter, Rig, Scope, Site};
 
 /// Which variable a probe bumps on; stored as its index in a probe's second value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,25 +105,25 @@ impl Along {
 /// A free-form term at one site; values are amplitude, variable, centre, width.
 #[derive(Debug)]
 pub struct Probe {
-    card: &'static Card,
+    info: &'static EffectInfo,
 }
 
 macro_rules! probe {
-    ($name:ident, $card:ident, $id:literal, $site:expr) => {
-        static $card: Card = card($id, $site);
-        pub(super) static $name: Probe = Probe { card: &$card };
+    ($name:ident, $info:ident, $id:literal, $site:expr) => {
+        static $info: EffectInfo = info($id, $site);
+        pub(super) static $name: Probe = Probe { info: &$info };
     };
 }
 
-probe!(TIMING_PROBE, TIMING_CARD, "timing_probe", Site::Timing);
-probe!(DRIVE_PROBE, DRIVE_CARD, "drive_probe", Site::Drive);
-probe!(JOINT_PROBE, JOINT_CARD, "joint_probe", Site::Joint);
-probe!(BODY_PROBE, BODY_CARD, "body_probe", Site::Body);
-probe!(ENCODER_PROBE, ENCODER_CARD, "encoder_probe", Site::Encoder);
-probe!(SENSOR_PROBE, SENSOR_CARD, "sensor_probe", Site::Sensor);
+probe!(TIMING_PROBE, TIMING_INFO, "timing_probe", Site::Timing);
+probe!(DRIVE_PROBE, DRIVE_INFO, "drive_probe", Site::Drive);
+probe!(JOINT_PROBE, JOINT_INFO, "joint_probe", Site::Joint);
+probe!(BODY_PROBE, BODY_INFO, "body_probe", Site::Body);
+probe!(ENCODER_PROBE, ENCODER_INFO, "encoder_probe", Site::Encoder);
+probe!(SENSOR_PROBE, SENSOR_INFO, "sensor_probe", Site::Sensor);
 
-const fn card(id: &'static str, site: Site) -> Card {
-    Card {
+const fn info(id: &'static str, site: Site) -> EffectInfo {
+    EffectInfo {
         id,
         title: "free-form term",
         site,
@@ -167,8 +167,8 @@ fn bump(x: f64, values: &[f64]) -> f64 {
 }
 
 impl Effect for Probe {
-    fn card(&self) -> &'static Card {
-        self.card
+    fn info(&self) -> &'static EffectInfo {
+        self.info
     }
 
     fn delay_s(&self, values: &[f64]) -> f64 {

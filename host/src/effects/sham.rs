@@ -2,7 +2,7 @@
 //!
 //! Shams run along with the real candidates. Whatever a sham gains, chance gains: if one ranks, nothing is named.
 
-use super::{Card, Effect, JointState, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
 
 /// tau = c * (measured speed, turned in time by `shift` of the motion).
 #[derive(Debug)]
@@ -11,7 +11,7 @@ pub struct Sham;
 /// Id of the sham.
 pub const SHAM: &str = "sham";
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: SHAM,
     title: "sham (shuffled speed)",
     site: Site::Joint,
@@ -34,8 +34,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Sham {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

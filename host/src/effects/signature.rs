@@ -14,7 +14,7 @@ pub struct Signature {
     pub without: Vec<(f64, f64)>,
     /// The curve with it.
     pub with: Vec<(f64, f64)>,
-    /// Values it is drawn for, in the order of the card's parameters.
+    /// Values it is drawn for, in the order of the info's parameters.
     pub values: Vec<f64>,
 }
 
@@ -44,12 +44,12 @@ pub fn signature(effect: &dyn Effect) -> Signature {
 /// Values at which the effect vanishes; the default for a shape parameter.
 pub fn off_values(effect: &dyn Effect) -> Vec<f64> {
     let off = |parameter: &Parameter| parameter.off.unwrap_or(parameter.starts[0]);
-    effect.card().parameters.iter().map(off).collect()
+    effect.info().parameters.iter().map(off).collect()
 }
 
 fn shown_values(effect: &dyn Effect, stretch: f64) -> Vec<f64> {
     effect
-        .card()
+        .info()
         .parameters
         .iter()
         .map(|parameter| shown(parameter, stretch))
@@ -122,8 +122,8 @@ impl Axes {
 
 /// Each site has its plot; where a law may depend on more than one quantity, the law itself is asked.
 fn axes(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Axes {
-    let card = effect.card();
-    match (card.site, card.needs) {
+    let info = effect.info();
+    match (info.site, info.needs) {
         (Site::Timing, _) => Axes::new("time, s", "input that acts, 1", step),
         (Site::Command, _) => Axes::new("commanded duty, 1", "applied duty, 1", command),
         (Site::Drive, Needs::Supply) => Axes::new(
@@ -328,7 +328,7 @@ mod tests {
     fn every_effect_has_one_that_can_be_seen() {
         for effect in EFFECTS {
             let signature = signature(*effect);
-            let id = effect.card().id;
+            let id = effect.info().id;
             assert_eq!(signature.with.len(), signature.without.len(), "{id}");
             let finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
             assert!(
@@ -347,12 +347,12 @@ mod tests {
     fn values_drawn_are_possible_ones() {
         for effect in EFFECTS {
             let values = signature(*effect).values;
-            for (parameter, value) in effect.card().parameters.iter().zip(values) {
+            for (parameter, value) in effect.info().parameters.iter().zip(values) {
                 let (low, high) = parameter.bounds;
                 assert!(
                     (low..=high).contains(&value),
                     "{} {}",
-                    effect.card().id,
+                    effect.info().id,
                     parameter.key
                 );
             }

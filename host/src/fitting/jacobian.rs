@@ -101,7 +101,7 @@ const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 fn scale(path: &ParameterPath) -> f64 {
     match path {
         ParameterPath::Effect { id, parameter, .. } => crate::effects::named(id)
-            .and_then(|effect| effect.card().parameters.get(*parameter))
+            .and_then(|effect| effect.info().parameters.get(*parameter))
             .and_then(|parameter| parameter.starts.first())
             .map_or(1e-3, |start| start.abs().max(1e-6)),
         _ => 1e-9,

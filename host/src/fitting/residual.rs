@@ -3,7 +3,7 @@
 use super::data::Data;
 use super::node::Node;
 use crate::model::Model;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, SensorState, predict};
 use rayon::prelude::*;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, joint after joint.
@@ -48,7 +48,7 @@ pub(super) fn motion_residuals(
 ) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
+    let mut memory = SensorState::default();
     data.windows
         .iter()
         .zip(nodes)

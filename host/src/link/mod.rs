@@ -8,7 +8,6 @@ mod answer;
 pub mod boot_loader;
 pub mod doctor;
 mod faulty;
-mod in_process;
 mod port;
 #[cfg(unix)]
 mod pty;
@@ -18,13 +17,10 @@ mod serial;
 mod servos;
 mod session;
 mod settings;
-mod sim_robot;
-mod sim_words;
 mod tap;
 
 pub use answer::Reading;
 pub use faulty::Faulty;
-pub use in_process::InProcess;
 pub use port::{Link, Voice, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
@@ -34,9 +30,8 @@ pub use serial::{Serial, ports};
 pub use servos::Servos;
 pub use session::{Session, condition_words, refusal_words};
 pub use settings::Settings;
-pub use sim_robot::{SimRobot, Start};
-pub use sim_words::{SimWords, ids};
 pub use tap::{Exchange, Tap, Way};
 
 #[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
 mod tests;

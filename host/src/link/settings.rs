@@ -160,12 +160,14 @@ impl Text<'_> {
 }
 
 #[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
 mod tests {
-    use super::super::{InProcess, SimWords};
+    use super::super::Servos;
     use super::*;
+    use crate::virtual_cm5::SimLink;
 
     fn saved() -> Vec<Settings> {
-        let mut servos = Servos::new(InProcess::new("ids=1+5".parse::<SimWords>().unwrap().bus()));
+        let mut servos = Servos::new(SimLink::adapter("ids=1+5").unwrap());
         servos.set(5, ct::CCW_LIMIT, 800).unwrap();
         [1, 5]
             .map(|id| Settings::read(&mut servos, id).unwrap())

@@ -1,13 +1,14 @@
 //! Requests over every kind of line.
 
 use super::*;
+use crate::virtual_cm5::{AdapterPort, SimLink};
 use handstand_shared::control_table as table;
 use handstand_shared::dynamixel::ErrorBits;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-fn sim(spec: &str) -> InProcess {
-    InProcess::new(spec.parse::<SimWords>().unwrap().bus())
+fn sim(spec: &str) -> SimLink<AdapterPort> {
+    SimLink::adapter(spec).unwrap()
 }
 
 #[test]

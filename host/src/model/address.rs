@@ -3,7 +3,7 @@
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
 use super::suggest::suggest;
-use crate::effects::{self, Card};
+use crate::effects::{self, EffectInfo};
 use crate::error::Error;
 use std::str::FromStr;
 
@@ -38,9 +38,9 @@ fn effect_path(text: &str, owner: &str, key: &str) -> Result<ParameterPath, Erro
         Some((id, joint)) => (id, Some(joint)),
         None => (owner, None),
     };
-    let cards = effects::EFFECTS.iter().map(|effect| effect.card());
-    let card: &'static Card = choose(text, id, cards.map(|card| (card.id, card)))?;
-    let whole_rig = card.scope == effects::Scope::WholeRig;
+    let infos = effects::EFFECTS.iter().map(|effect| effect.info());
+    let info: &'static EffectInfo = choose(text, id, infos.map(|info| (info.id, info)))?;
+    let whole_rig = info.scope == effects::Scope::WholeRig;
     let joint = match joint {
         Some(joint) if !whole_rig => {
             let joint = counted(joint).ok_or_else(|| {
@@ -65,9 +65,9 @@ fn effect_path(text: &str, owner: &str, key: &str) -> Result<ParameterPath, Erro
             ));
         }
     };
-    let keys = card.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
+    let keys = info.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
     Ok(ParameterPath::Effect {
-        id: card.id,
+        id: info.id,
         joint,
         parameter: choose(text, key, keys)?,
     })

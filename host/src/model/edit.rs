@@ -38,12 +38,12 @@ pub fn add_effect(
     let mut document = document(text, path)?;
     let mut table = Table::new();
     table.decor_mut().set_prefix("\n");
-    let card = effect.effect.card();
-    table.insert("kind", toml_edit::value(card.id));
+    let info = effect.effect.info();
+    table.insert("kind", toml_edit::value(info.id));
     if let Some(joint) = effect.joint {
         table.insert("joint", toml_edit::value(joint as i64 + 1));
     }
-    for (parameter, value) in card.parameters.iter().zip(&effect.values) {
+    for (parameter, value) in info.parameters.iter().zip(&effect.values) {
         table.insert(parameter.key, Item::Value(number(*value)));
     }
     if let Some(fitted) = fitted {

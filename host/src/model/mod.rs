@@ -11,6 +11,7 @@ pub(crate) mod limits;
 mod parse;
 mod path;
 pub(crate) mod reader;
+mod rig;
 pub(crate) mod source;
 pub(crate) mod suggest;
 mod unit;
@@ -170,7 +171,7 @@ pub struct EffectInstance {
     pub effect: &'static dyn crate::effects::Effect,
     /// Joint index from 0; `None` acts on the whole rig.
     pub joint: Option<usize>,
-    /// Values in the order of the effect's card.
+    /// Values in the order of the effect's parameters.
     pub values: Vec<f64>,
 }
 
@@ -208,6 +209,6 @@ impl Model {
     pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
         self.effects
             .iter()
-            .any(|e| e.effect.card().id == id && e.joint == joint)
+            .any(|e| e.effect.info().id == id && e.joint == joint)
     }
 }

@@ -24,20 +24,20 @@ pub enum ParameterPath {
     },
     /// A value of an effect: `coulomb@1.torque_nm`, or `base_tilt.angle_rad` for the whole rig.
     Effect {
-        /// The effect's id on its card.
+        /// The effect's id.
         id: &'static str,
         /// Joint from the base; `None` for the whole rig.
         joint: Option<usize>,
-        /// Position on the card.
+        /// Position among its parameters.
         parameter: usize,
     },
 }
 
 impl ParameterPath {
-    /// Addresses of an effect's values, in the card's order.
+    /// Addresses of an effect's values, in the order of its parameters.
     pub fn of_effect(effect: &EffectInstance) -> impl Iterator<Item = ParameterPath> + '_ {
         (0..effect.values.len()).map(|parameter| ParameterPath::Effect {
-            id: effect.effect.card().id,
+            id: effect.effect.info().id,
             joint: effect.joint,
             parameter,
         })
@@ -57,7 +57,7 @@ impl ParameterPath {
             } => model
                 .effects
                 .iter()
-                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
+                .find(|effect| effect.joint == joint && effect.effect.info().id == id)
                 .and_then(|effect| effect.values.get(parameter).copied()),
         }
     }
@@ -80,19 +80,19 @@ impl ParameterPath {
             } => model
                 .effects
                 .iter_mut()
-                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
+                .find(|effect| effect.joint == joint && effect.effect.info().id == id)
                 .and_then(|effect| effect.values.get_mut(parameter)),
         };
         place.map(|place| *place = value).is_some()
     }
 
-    /// Lowest and highest possible value: an effect's card's bounds, else what is physical.
+    /// Lowest and highest possible value: the bounds of an effect's parameter, else what is physical.
     pub fn bounds(&self, _model: &Model) -> (f64, f64) {
         match *self {
             ParameterPath::Link { field, .. } => field.bounds(),
             ParameterPath::Joint { .. } => POSITIVE,
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
+                parameter_of(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
             }
         }
     }
@@ -103,7 +103,7 @@ impl ParameterPath {
             ParameterPath::Link { field, .. } => field.unit(),
             ParameterPath::Joint { field, .. } => field.unit(),
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or("", |p| p.unit)
+                parameter_of(id, parameter).map_or("", |p| p.unit)
             }
         }
     }
@@ -114,14 +114,14 @@ impl ParameterPath {
             ParameterPath::Link { field, .. } => field.key(),
             ParameterPath::Joint { field, .. } => field.key(),
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or("", |p| p.key)
+                parameter_of(id, parameter).map_or("", |p| p.key)
             }
         }
     }
 }
 
-fn on_card(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
-    effects::named(id)?.card().parameters.get(parameter)
+fn parameter_of(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
+    effects::named(id)?.info().parameters.get(parameter)
 }
 
 impl fmt::Display for ParameterPath {
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_and_units_come_from_the_card_or_the_quantity() {
+    fn bounds_and_units_come_from_the_effect_or_the_quantity() {
         let model = model();
         let coulomb: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
         assert_eq!(coulomb.bounds(&model), (0.0, 10.0));

@@ -71,7 +71,7 @@ impl Computed {
     /// None is known: the model is the project's own.
     pub fn new() -> Result<Computed> {
         let model = handstand()?;
-        let plant = linearise(&model, &upright(&model))?;
+        let plant = linearise(&model, &upright(&model))?.plant;
         let sampled = zoh(&plant, TS_S, 0.0)?;
         let (q, r) = (DMatrix::identity(6, 6), DMatrix::identity(2, 2));
         Ok(Computed {

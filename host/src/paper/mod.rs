@@ -12,7 +12,6 @@ mod page;
 mod printed;
 mod robot;
 mod servo;
-mod timing;
 
 #[cfg(test)]
 mod tests;
@@ -24,7 +23,6 @@ pub use figure::{Curve, Figure, Holds, Ink, Panel};
 pub use findings::{Finding, Shown, findings};
 pub use page::html;
 pub use printed::{PRINTED, Printed, Quantity};
-pub use timing::{Timing, timing};
 
 use crate::error::Result;
 

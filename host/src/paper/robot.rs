@@ -5,9 +5,9 @@ use super::case::{
 };
 use super::computed::Computed;
 use super::figure::{Curve, Figure, Holds, Ink, Panel};
-use crate::closed_loop::{Outcome, Velocity};
 use crate::error::Result;
 use crate::number::short;
+use crate::sim::closed_loop::{Outcome, Velocity};
 
 /// Sampling time that stands for the continuous gains, s.
 const CONTINUOUS_S: f64 = 0.001;
@@ -73,7 +73,7 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
     let falls = |angle: f64| Ok(case(angle, false).run_upright()?.outcome.fell_s.is_some());
     let limit = edge(falls, 0.0, ECCENTRIC_RAD)?;
     let below = case(0.5 * limit, false).run_upright()?.outcome;
-    let holds = without.outcome.fell_s.is_some() && with.outcome.survived();
+    let holds = without.outcome.fell_s.is_some() && with.outcome.fell_s.is_none();
     Ok(Figure {
         number: "12",
         title: "LQR without and with angle compensation",
@@ -122,14 +122,15 @@ fn resolution(computed: &Computed) -> Result<Figure> {
     };
     let continuous = continuous.run(LEAN_RAD)?;
     let mut differenced = stepped(computed);
-    differenced.conditions.sensor.velocity = Velocity::Difference;
+    differenced.sensor.velocity = Velocity::Difference;
     let differenced = differenced.run(LEAN_RAD)?.outcome;
     let chatters = coarse
         .outcome
         .limit_cycle_rad
         .is_some_and(|cycle| cycle > 1e-3);
     let smaller = exact.peak_nm() < continuous.peak_nm();
-    let holds = exact.outcome.survived() && coarse.outcome.survived() && chatters && smaller;
+    let holds =
+        exact.outcome.fell_s.is_none() && coarse.outcome.fell_s.is_none() && chatters && smaller;
     Ok(Figure {
         number: "13",
         title: "DLQR at 0.01 s, and with the servos' position resolution",
@@ -157,7 +158,7 @@ fn tally(outcomes: &[Outcome]) -> (usize, f64) {
     let mut swings: Vec<f64> = outcomes.iter().filter_map(|o| o.limit_cycle_rad).collect();
     swings.sort_by(f64::total_cmp);
     let median = swings.get(swings.len() / 2).copied().unwrap_or(f64::NAN);
-    let stood = outcomes.iter().filter(|o| o.survived()).count();
+    let stood = outcomes.iter().filter(|o| o.fell_s.is_none()).count();
     (stood, median.to_degrees())
 }
 
@@ -171,7 +172,7 @@ fn gyro(computed: &Computed) -> Result<Figure> {
         number: "14 a,c,e",
         title: "Gyro resolution and a constant perturbation",
         claim: "with the gyro's 10 deg/s and a constant perturbation the control is larger and the robot stays up",
-        holds: match larger && seen.outcome.survived() {
+        holds: match larger && seen.outcome.fell_s.is_none() {
             true => Holds::Yes,
             false => Holds::No,
         },
@@ -188,7 +189,7 @@ fn gyro(computed: &Computed) -> Result<Figure> {
 fn dead_zone(computed: &Computed) -> Result<Figure> {
     let direct = with_dead_zone(computed);
     let mut differenced = direct.clone();
-    differenced.conditions.sensor.velocity = Velocity::Difference;
+    differenced.sensor.velocity = Velocity::Difference;
     let (seen, fallen) = (direct.run(LEAN_RAD)?, differenced.run(LEAN_RAD)?);
     let (stood, swing) = tally(&direct.share(LEAN_RAD)?);
     let (differenced_stood, _) = tally(&differenced.share(LEAN_RAD)?);

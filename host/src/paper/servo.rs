@@ -6,14 +6,12 @@ use crate::error::Result;
 use crate::log::{Motion, Source};
 use crate::model::Model;
 use crate::number::interval;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
-use std::f64::consts::TAU;
+use handstand_shared::raw::Position;
 use std::path::Path;
 
-/// Step of its encoder, rad: 300 deg / 2^10.
-pub(super) const STEP_RAD: f64 = 300.0 / 1024.0 / 360.0 * TAU;
 /// Speed of the full command, rad/s.
 const FULL_RAD_S: f64 = 11.9;
 /// Length of the blocks that are averaged, s.
@@ -82,12 +80,12 @@ pub(super) fn simulated(
         &motion,
         0..samples,
         &rest,
-        &mut Memory::default(),
+        &mut SensorState::default(),
         &mut readings,
     );
-    let jitter = noise(samples, 0.1 * STEP_RAD, seed);
+    let jitter = noise(samples, 0.1 * Position::LSB_RAD, seed);
     for (reading, jitter) in readings.iter_mut().zip(jitter) {
-        *reading = ((*reading + jitter) / STEP_RAD).round() * STEP_RAD;
+        *reading = ((*reading + jitter) / Position::LSB_RAD).round() * Position::LSB_RAD;
     }
     motion.position_rad = vec![readings];
     motion

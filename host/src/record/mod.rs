@@ -21,4 +21,5 @@ pub use source::{LetGo, Source};
 pub use stream::Stream;
 
 #[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
 mod tests;

@@ -1,14 +1,14 @@
 //! Recordings from simulated servos, whole and torn.
 
 use super::*;
-use crate::link::{InProcess, Servos, SimWords};
+use crate::link::Servos;
+use crate::virtual_cm5::SimLink;
 use std::path::Path;
 use std::time::Duration;
 
 fn recorded(path: &Path, samples: usize) -> Vec<Sample> {
-    let bus = "ids=1-3,delay=0,dead=2".parse::<SimWords>().unwrap().bus();
     let mut source = Adapter::new(
-        Servos::new(InProcess::new(bus)),
+        Servos::new(SimLink::adapter("ids=1-3,delay=0,dead=2").unwrap()),
         &[1, 2, 3],
         Duration::from_millis(10),
     );

@@ -53,7 +53,7 @@ fn table(diagnosis: &Diagnosis) -> Markup {
 
 /// Value at which an effect vanishes.
 fn off(kind: &str, key: &str) -> Option<f64> {
-    let parameters = named(kind)?.card().parameters;
+    let parameters = named(kind)?.info().parameters;
     parameters
         .iter()
         .find(|parameter| parameter.key == key)?

@@ -36,30 +36,30 @@ fn kinds(effects: &[FittedEffect]) -> Vec<&'static dyn Effect> {
 }
 
 fn explained(effect: &dyn Effect) -> Markup {
-    let card = effect.card();
+    let info = effect.info();
     let signature = signature(effect);
     html! {
         div.effect {
             div {
-                h3 { (card.title) " " code { (card.id) } }
+                h3 { (info.title) " " code { (info.id) } }
                 dl {
-                    dt { "Law" } dd { code { (card.law) } }
-                    dt { "What it looks like" } dd { (card.looks_like) }
-                    dt { "The experiment that reveals it" } dd { (card.experiment) }
-                    @if !card.confused_with.is_empty() {
+                    dt { "Law" } dd { code { (info.law) } }
+                    dt { "What it looks like" } dd { (info.looks_like) }
+                    dt { "The experiment that reveals it" } dd { (info.experiment) }
+                    @if !info.confused_with.is_empty() {
                         dt { "Easily confused with" }
-                        @for confusion in card.confused_with {
+                        @for confusion in info.confused_with {
                             dd {
-                                (named(confusion.with).map_or(confusion.with, |other| other.card().title))
+                                (named(confusion.with).map_or(confusion.with, |other| other.info().title))
                                 ": " (confusion.why)
                             }
                         }
                     }
-                    dt { "Reference" } dd { (card.reference) }
+                    dt { "Reference" } dd { (info.reference) }
                 }
             }
             figure {
-                (curves(card.title, &signature))
+                (curves(info.title, &signature))
                 figcaption {
                     span.key.tone-after { span.swatch {} "with" (values(effect, &signature)) }
                     span.key.tone-quiet { span.swatch {} "without" }
@@ -70,7 +70,7 @@ fn explained(effect: &dyn Effect) -> Markup {
 }
 
 fn values(effect: &dyn Effect, signature: &Signature) -> String {
-    let pairs = effect.card().parameters.iter().zip(&signature.values);
+    let pairs = effect.info().parameters.iter().zip(&signature.values);
     let values: Vec<String> = pairs
         .map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)))
         .collect();

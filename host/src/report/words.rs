@@ -24,7 +24,7 @@ pub(super) fn set_name(set: &[String]) -> String {
             None => (id.as_str(), None),
         };
         match named(kind) {
-            Some(effect) => at_joint(effect.card().title, joint),
+            Some(effect) => at_joint(effect.info().title, joint),
             None => id.clone(),
         }
     };

@@ -1,19 +1,19 @@
 //! Studies as pictures.
 
 use super::merge::Merged;
-use super::sweep::{Level, Ran, Sweep};
+use super::quantity::{Levels, Quantity};
+use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::number::given;
 use crate::report::{Curve, Panel, panels};
 use std::path::Path;
 
-/// A sweep: survival, region of attraction, angles and effort over the levels.
-pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
-    let card = sweep.card();
-    let across = match card.unit {
-        "" => card.title.to_string(),
-        unit => format!("{}, {unit}", card.title),
+/// A sweep: share stabilised, region of attraction, angles and effort over the levels.
+pub fn sweep_svg((quantity, levels): (&Quantity, &Levels), ran: &Sweep, robot: &str) -> String {
+    let across = match levels.unit {
+        "" => quantity.title.to_string(),
+        unit => format!("{}, {unit}", quantity.title),
     };
     let steps: Vec<String> = ran.levels.iter().map(|level| level.label.clone()).collect();
     let panel = |title: &str, curves: Vec<Curve>| Panel {
@@ -25,19 +25,24 @@ pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
     let percent = |level: &Level| {
         let figures = level.figures.as_ref();
         figures.map_or([0.0; 2], |f| {
-            [100.0 * f.survival_low, 100.0 * f.survival_high]
+            [100.0 * f.stabilised_low, 100.0 * f.stabilised_high]
         })
     };
-    let mut survival = curve(ran, "", |f| Some(100.0 * f.survival));
-    survival.intervals = ran.levels.iter().map(percent).collect();
+    let mut stabilised = curve(ran, "", |f| Some(100.0 * f.stabilised_share));
+    stabilised.intervals = ran.levels.iter().map(percent).collect();
+    let border = Curve {
+        values: ran
+            .levels
+            .iter()
+            .map(|level| level.tilt_border_rad.map(f64::to_degrees))
+            .collect(),
+        ..curve(ran, "", |_| None)
+    };
     panels(
-        &format!("{robot}: sweep of the {}", card.title),
+        &format!("{robot}: sweep of the {}", quantity.title),
         &[
-            panel("runs that stand, %, with 95 % interval", vec![survival]),
-            panel(
-                "largest tilt it recovers from, deg",
-                vec![curve(ran, "", |f| Some(f.tilt_border_rad.to_degrees()))],
-            ),
+            panel("stabilised runs, %, with 95 % interval", vec![stabilised]),
+            panel("largest tilt it recovers from, deg", vec![border]),
             panel(
                 "angles, deg",
                 vec![
@@ -52,7 +57,7 @@ pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
     )
 }
 
-fn curve(ran: &Ran, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
+fn curve(ran: &Sweep, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
     let value = |level: &Level| level.figures.as_ref().and_then(of);
     Curve {
         name: name.to_string(),
@@ -64,7 +69,7 @@ fn curve(ran: &Ran, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
 /// Parts into which an uncertain value's range is cut.
 const PARTS: usize = 6;
 
-/// A Monte Carlo study: who stands, and who is unstable in the small, over every uncertain value.
+/// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain value.
 ///
 /// # Errors
 /// As [`Merged::values`].
@@ -72,10 +77,10 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let columns = &merged.header.columns;
     let rows = merged.values(file)?;
     let place = |name: &str| columns.iter().position(|column| column == name);
-    let (Some(fell), Some(radius)) = (place("fell_s"), place("spectral_radius")) else {
+    let (Some(stabilised), Some(radius)) = (place("stabilised"), place("spectral_radius")) else {
         return Ok(panels("no runs", &[]));
     };
-    let stands = move |row: &[f64]| row[fell].is_nan();
+    let is_stabilised = move |row: &[f64]| row[stabilised] == 1.0;
     let unstable = move |row: &[f64]| row[radius] >= 1.0;
     let uncertain = columns.iter().enumerate();
     let charts = uncertain
@@ -87,7 +92,7 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
                 steps: parts.centres.iter().map(|centre| given(*centre)).collect(),
                 across: name.clone(),
                 curves: vec![
-                    parts.share("stand", &rows, stands),
+                    parts.share("stabilised", &rows, is_stabilised),
                     parts.share("unstable in the small", &rows, unstable),
                 ],
             }

@@ -4,14 +4,16 @@ use super::eigen::poles;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
+use super::linearise::{Linearised, linearise};
+use super::omitted::OmittedEffect;
+use super::operating_point::input_delay_s;
 use super::quantise::{Ranges, quantise};
 use super::reach::{Reach, controllability, observability};
 use super::request::{Request, Sensors, Time};
-use super::rest::{Rest, input_delay_s};
 use super::signal::{Signal, driven, input, reach, states};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
-use super::{linearise, zoh};
+use super::zoh;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use nalgebra::{Complex, DMatrix};
@@ -29,6 +31,8 @@ pub struct Design {
     pub x0: Vec<f64>,
     /// The inputs that hold it, SI.
     pub u0: Vec<f64>,
+    /// Effects of the model that the design leaves out: they have no derivative at the operating point.
+    pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,
     /// The sampled plant, and the delay it holds, s.
@@ -81,8 +85,11 @@ impl Design {
     /// # Errors
     /// Whatever stands in the way, with what to change.
     pub fn of(model: &Model, request: &Request) -> Result<Design> {
-        let rest = Rest::of(model, &request.pose_rad)?;
-        let plant = linearise(model, &request.pose_rad)?;
+        let Linearised {
+            plant,
+            inputs: u0,
+            omitted,
+        } = linearise(model, &request.pose_rad)?;
         let (n, m) = plant.b.shape();
         let r = request.r.matrix("R", m, "inputs")?;
         let (gains, sampled, q) = match request.time {
@@ -114,8 +121,9 @@ impl Design {
         let mut design = Design {
             model: model.name.clone(),
             states: states(model.link_count(), &inputs, delayed),
-            x0: point(&rest, delayed),
-            u0: rest.inputs.clone(),
+            x0: point(&request.pose_rad, &u0, delayed),
+            u0,
+            omitted,
             poles: poles(&plant.a)?,
             zeros: transmission_zeros(&plant.a, &plant.b, &outputs)?,
             controllability: controllability(&plant.a, &plant.b)?,
@@ -218,11 +226,12 @@ impl Design {
     }
 }
 
-fn point(rest: &Rest, delayed: usize) -> Vec<f64> {
-    let mut point = rest.pose_rad.clone();
-    point.resize(2 * rest.pose_rad.len(), 0.0);
+/// Angles, speeds of 0, then past inputs.
+fn point(pose_rad: &[f64], inputs: &[f64], delayed: usize) -> Vec<f64> {
+    let mut point = pose_rad.to_vec();
+    point.resize(2 * pose_rad.len(), 0.0);
     for _ in 0..delayed {
-        point.extend(&rest.inputs);
+        point.extend(inputs);
     }
     point
 }

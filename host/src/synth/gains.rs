@@ -100,7 +100,7 @@ mod tests {
     fn handstand() -> Continuous {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
         let model = Model::load(&file).unwrap();
-        linearise(&model, &upright(&model)).unwrap()
+        linearise(&model, &upright(&model)).unwrap().plant
     }
 
     /// Every digit printed must be met: half a unit of the last.

@@ -1,8 +1,7 @@
 //! Poses in a model's own convention of angles, and the equilibrium next to one.
 
 use super::equations::Equations;
-use super::rest::At;
-use crate::effects::Rig;
+use super::joint_slope::JointAt;
 use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 use nalgebra::DVector;
@@ -27,16 +26,17 @@ pub fn upright(model: &Model) -> Vec<f64> {
 
 /// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they balance.
 ///
-/// This is the angle compensation that links with eccentric centres of mass need.
+/// This is the angle compensation that links with eccentric centres of mass need. Friction and other effects without a
+/// derivative do not count: sticking may hold the robot elsewhere too.
 ///
 /// # Errors
-/// No equilibrium within reach of Newton's iteration, or an effect without a slope.
+/// No equilibrium within reach of Newton's iteration.
 pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
     check_size(model, pose_rad)?;
     let passive: Vec<usize> = (0..model.link_count())
         .filter(|&joint| !model.joints[joint].drive.is_driven())
         .collect();
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = Equations::of(&model.rig(false));
     let mut angle_rad = relative(model, pose_rad);
     for _ in 0..MOST_STEPS {
         let pose_rad = convention(model, &angle_rad);
@@ -48,7 +48,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
         let mut left = DVector::zeros(passive.len());
         let mut slope = slope.select_rows(&passive).select_columns(&passive);
         for (i, &joint) in passive.iter().enumerate() {
-            let own = At::new(model, joint, &angle_rad, &pose_rad).own()?;
+            let own = JointAt::new(model, joint, &angle_rad, &pose_rad).torque(&mut Vec::new());
             left[i] = gravity_nm[joint] - own.torque_nm;
             slope[(i, i)] -= own.per_rad;
         }

@@ -37,7 +37,7 @@ pub(super) fn reach(model: &Model, joint: usize) -> f64 {
     let limit = model
         .effects
         .iter()
-        .find(|e| e.joint == Some(joint) && e.effect.card().id == "torque_saturation")
+        .find(|e| e.joint == Some(joint) && e.effect.info().id == "torque_saturation")
         .and_then(|e| e.values.first().copied());
     match &model.joints[joint].drive {
         Drive::Passive | Drive::Duty(_) => 1.0,

@@ -295,13 +295,13 @@ fn nothing_is_overwritten_unasked() {
 #[test]
 fn effects_are_explained_to_people_and_programs() {
     let bench = Bench::new();
-    let cards = bench.run("effects --json").json();
-    for card in cards.as_array().unwrap() {
-        let id = card["id"].as_str().unwrap();
+    let infos = bench.run("effects --json").json();
+    for info in infos.as_array().unwrap() {
+        let id = info["id"].as_str().unwrap();
         let page = bench.run(&format!("effects {id}"));
         assert_eq!(page.code, Some(0), "{page:?}");
         assert!(
-            page.stdout.contains(card["title"].as_str().unwrap()),
+            page.stdout.contains(info["title"].as_str().unwrap()),
             "{id}"
         );
     }

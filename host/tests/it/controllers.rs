@@ -19,7 +19,7 @@ fn the_best_controller_holds_what_the_paper_s_does_not() {
     let ran = bench.run(&format!("{line} --json"));
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
-    let held = |row: usize| data[row]["held"].as_f64().unwrap();
+    let held = |row: usize| data[row]["stabilised"].as_f64().unwrap();
     assert_eq!(data[0]["controller"], "dlqr");
     assert!(held(0) < 0.5 && held(1) >= 0.9, "{data}");
     assert_eq!(data[0]["region_rad"], 0.0);
@@ -50,7 +50,7 @@ fn wrong_masses_fell_the_paper_s_gains() {
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
     let lost: Vec<f64> = (0..3)
-        .map(|row| data[row]["lost"].as_f64().unwrap())
+        .map(|row| data[row]["unstable"].as_f64().unwrap())
         .collect();
     assert!(
         (0.18..0.30).contains(&lost[0]) && (0.11..0.23).contains(&lost[1]),
@@ -68,8 +68,11 @@ fn one_sample_of_delay_is_too_much_for_the_paper_s_gains() {
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
     let longest = |row: usize, told: &str| data["controllers"][row][told]["delay_s"].as_f64();
-    assert_eq!(longest(0, "untold"), Some(0.0085));
-    assert_eq!(longest(1, "told"), Some(0.04));
-    assert!(longest(1, "told_one_sample").unwrap() > 0.01, "{data}");
-    assert_eq!(data["chains"].as_array().unwrap().len(), 12);
+    assert_eq!(longest(0, "uncompensated"), Some(0.0085));
+    assert_eq!(longest(1, "compensated"), Some(0.04));
+    assert!(
+        longest(1, "compensated_one_sample").unwrap() > 0.01,
+        "{data}"
+    );
+    assert_eq!(data["paths"].as_array().unwrap().len(), 18);
 }

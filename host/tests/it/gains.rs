@@ -145,10 +145,6 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
             .replace("drive = \"torque\"", "drive = \"passive\"")
             .replace("input = {", "# {"),
     );
-    bench.put(
-        "rubs.toml",
-        format!("{model}\n[[effect]]\nkind = \"coulomb\"\njoint = 2\ntorque_nm = 0.1\n"),
-    );
     bench.put("skew.csv", "1,0.5\n0,1\n");
     bench.put("words.csv", "1,0\n0,one\n");
     bench.put("ragged.csv", "1,0\n0\n");
@@ -190,10 +186,6 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
             "the gains of input 1 overflow 16 bits",
         ),
         ("passive.toml", "no joint of `handstand` is driven"),
-        (
-            "rubs.toml",
-            "coulomb friction at joint 2 has no slope at rest",
-        ),
         ("nowhere.toml", "nowhere.toml"),
         // Without gravity the whole robot turns freely on the bar, and torques inside it cannot stop that.
         (
@@ -210,8 +202,36 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
         );
         assert!(ran.stdout.is_empty(), "{line}");
     }
-    let ran = bench.run("gains rubs.toml --without coulomb");
+}
+
+/// The robot as `add` leaves it: servos that regulate positions, viscous and Coulomb friction.
+#[test]
+fn effects_without_a_derivative_are_left_out_and_listed() {
+    let bench = bench();
+    bench.put("robot.toml", include_str!("../models/robot.toml"));
+    let ran = bench.run("gains robot.toml --rust gains.rs");
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let said =
+        "The design leaves out Coulomb friction at joints 2, 3: its torque jumps at standstill";
+    assert!(ran.stdout.contains(said), "{}", ran.stdout);
+    assert!(bench.get("gains.rs").contains(said));
+    let json = |line: &str| -> Value {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let with = json("gains robot.toml --json");
+    let omitted = with["omitted_effects"].as_array().unwrap();
+    assert_eq!(omitted.len(), 2);
+    assert_eq!(
+        (&omitted[1]["effect"], &omitted[1]["joint"]),
+        (&"coulomb".into(), &3.into())
+    );
+    let without = json("gains robot.toml --without coulomb --json");
+    assert_eq!(without["omitted_effects"].as_array().unwrap().len(), 0);
+    assert_eq!(with["k"], without["k"]);
+    let smooth = json("gains robot.toml --without coulomb --without viscous --json");
+    assert_ne!(with["k"], smooth["k"]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Needs a Chromium on the path; without one the picture is left out, and the test says so.
 
 use crate::common::Bench;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::sim::closed_loop::{ClosedLoop, Commands, InitialState, StateFeedback, stream};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -93,7 +93,8 @@ const HANDSTAND: &str = include_str!("../../models/handstand.toml");
 /// Two seconds of the handstand under the paper's sampled gains, from this lean of the arms.
 fn balanced(lean_rad: f64) -> String {
     let model = handstand::Model::parse(HANDSTAND, Path::new("handstand.toml")).unwrap();
-    let plant = Plant::new(&model, &[FRAC_PI_2, 0.0, 0.0]).unwrap();
+    let pose = [FRAC_PI_2, 0.0, 0.0];
+    let closed = ClosedLoop::new(&model, &pose, Commands::Torque, 0.01).unwrap();
     let controller = StateFeedback::new(
         3,
         vec![
@@ -108,9 +109,9 @@ fn balanced(lean_rad: f64) -> String {
     let mut text = String::from(
         "time_s,q1_rad,dq1_rad_s,q2_rad,dq2_rad_s,torque2_nm,q3_rad,dq3_rad_s,torque3_nm\n",
     );
-    let start = Start::at([lean_rad, 0.0, 0.0]);
-    ClosedLoop::ideal(plant, 0.01).watch(&controller, &start, 2.0, stream(1, 0), |sample| {
-        let (q, w, u) = (sample.angle_rad, sample.speed_rad_s, sample.command_nm);
+    let start = InitialState::at([lean_rad, 0.0, 0.0]);
+    closed.watch(&controller, &start, 2.0, stream(1, 0), |sample| {
+        let (q, w, u) = (sample.angle_rad, sample.speed_rad_s, sample.command);
         let _ = writeln!(
             text,
             "{:.2},{},{},{},{},{},{},{},{}",

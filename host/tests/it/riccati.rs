@@ -143,7 +143,12 @@ fn gains_of_sixty_states_keep_their_digits() {
     let exact = fixture.matrix(29, 60);
 
     let model = chain(30);
-    let ours = zoh(&linearise(&model, &upright(&model)).unwrap(), 0.01, 0.0).unwrap();
+    let ours = zoh(
+        &linearise(&model, &upright(&model)).unwrap().plant,
+        0.01,
+        0.0,
+    )
+    .unwrap();
     assert!(off(&ours.a, &a) < 1e-9, "{:e}", off(&ours.a, &a));
     assert!(off(&ours.b, &b) < 1e-9, "{:e}", off(&ours.b, &b));
 

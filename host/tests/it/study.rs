@@ -49,7 +49,10 @@ fn a_killed_study_goes_on_and_ends_in_the_same_bytes() {
     let bench = bench();
     let whole = bench.run("study monte-carlo study.toml -o whole");
     assert_eq!(whole.code, Some(0), "{whole:?}");
-    assert!(whole.stdout.contains("of 2500 runs stand"), "{whole:?}");
+    assert!(
+        whole.stdout.contains("of 2500 runs are stabilised"),
+        "{whole:?}"
+    );
     let length = std::fs::metadata(bench.path("whole/shard-1-of-1.journal"))
         .unwrap()
         .len();
@@ -62,7 +65,7 @@ fn a_killed_study_goes_on_and_ends_in_the_same_bytes() {
     let rest = bench.run("study monte-carlo study.toml -o killed");
     assert_eq!(rest.code, Some(0), "{rest:?}");
     assert!(rest.stderr.contains("are done already"), "{rest:?}");
-    for file in ["runs.csv", "summary.json", "survival.svg"] {
+    for file in ["runs.csv", "summary.json", "stabilised.svg"] {
         let (one, other) = (format!("whole/{file}"), format!("killed/{file}"));
         assert_eq!(bench.get(&one), bench.get(&other), "{file}");
     }

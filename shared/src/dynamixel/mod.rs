@@ -3,11 +3,14 @@
 //! `FF FF ID LENGTH CODE PARAMETERS.. CHECKSUM`; LENGTH counts what follows it, the checksum is the inverted sum of all
 //! from ID on. CODE is an instruction on the way to a servo and its error bits on the way back.
 
+mod ids;
 mod packet;
 mod parser;
 mod request;
 mod status;
+pub mod timing;
 
+pub use ids::{ID_LIST_SYNTAX, ids};
 pub use packet::{Packet, PacketError};
 pub use parser::Parser;
 pub use request::{Instruction, Request, RequestError, check_byte, read_packet, sync_write_head};

@@ -10,13 +10,13 @@ pub const AVAILABLE: bool = cfg!(simavr);
 #[cfg(simavr)]
 mod core;
 #[cfg(simavr)]
-mod law;
+mod elf_cm5;
 #[cfg(simavr)]
-mod rig;
+mod law;
 
 #[cfg(simavr)]
 pub use core::{Core, Event};
 #[cfg(simavr)]
-pub use law::{Law, ObserverTick};
+pub use elf_cm5::{ElfCm5, Observed};
 #[cfg(simavr)]
-pub use rig::{Rig, Seen};
+pub use law::{Law, ObserverTick};

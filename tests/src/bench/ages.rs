@@ -3,13 +3,13 @@
 //! The driven joints' shafts turn as clocks, one position code every 20 us, so that an answer says when it was measured. The
 //! law's moment is the end of the last answer; the host says the attitude after every report, as in the closed loop.
 
-use super::Bench as _;
+use super::SimulatedCm5 as _;
 use super::balance::{arm_balance, plan};
 use super::run::HOST_MS;
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::message::{Attitude, Command, Report};
 use handstand_shared::raw::Position;
-use handstand_simavr::Rig;
+use handstand_simavr::ElfCm5;
 
 /// A code of the shafts' clock, ms.
 const CODE_MS: f64 = 0.02;
@@ -50,16 +50,16 @@ struct Round {
 ///
 /// # Panics
 /// The firmware does not arm.
-pub fn ages(rig: &mut Rig, seconds: f64) -> Ages {
+pub fn ages(rig: &mut ElfCm5, seconds: f64) -> Ages {
     arm_balance(rig, &plan().1).expect("it arms");
     rig.trace = Some(Vec::new());
-    rig.forget();
+    rig.clear();
     let begun_ms = rig.now_ms();
     let (mut said, mut heard) = (Vec::new(), Vec::new());
     let mut due_ms = begun_ms;
     while rig.now_ms() < begun_ms + seconds * 1e3 {
         turn(rig);
-        Rig::run_ms(rig, CODE_MS);
+        rig.run_ms(CODE_MS);
         for (arrived_ms, report) in rig.reports() {
             if let Report::Stream(report) = report {
                 let code = |place| report.positions.get(place);
@@ -67,11 +67,11 @@ pub fn ages(rig: &mut Rig, seconds: f64) -> Ages {
                 due_ms = arrived_ms + HOST_MS;
             }
         }
-        rig.forget();
+        rig.clear();
         if rig.now_ms() >= due_ms {
             due_ms = f64::INFINITY;
-            let arrives = Rig::say(rig, &Command::Attitude(Attitude::default()));
-            said.push((rig.now_ms(), to_ms(arrives)));
+            rig.send(&Command::Attitude(Attitude::default()));
+            said.push((rig.now_ms(), rig.arrival_ms()));
         }
     }
     let trace = rig.trace.take().unwrap_or_default();
@@ -87,7 +87,7 @@ fn code_at(ms: f64) -> u64 {
     (ms / CODE_MS).round() as u64 % CODES
 }
 
-fn turn(rig: &mut Rig) {
+fn turn(rig: &mut ElfCm5) {
     let code = code_at(rig.now_ms()) as u16;
     for id in [SHOULDER, HIP] {
         let servo = rig.bus.servo(id).expect("18 servos");

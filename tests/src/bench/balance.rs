@@ -1,6 +1,6 @@
 //! The robot in closed loop with the firmware: three links on a bar, two joints driven by servos in wheel mode.
 
-use super::Bench;
+use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
 use super::run::Run;
 use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
@@ -107,7 +107,7 @@ pub fn plan() -> (OnBoard, Plan) {
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.
 pub fn ready(
-    bench: &mut impl Bench,
+    bench: &mut impl SimulatedCm5,
     plan: &Plan,
     attitude: Attitude,
 ) -> Result<(u16, Option<Telemetry>), Option<Refusal>> {
@@ -126,7 +126,7 @@ pub fn ready(
     // Long before anything depends on the line, which has no room for it beside the reports.
     let telemetry = telemetry(bench);
     for _ in 0..25 {
-        bench.say(&Command::Attitude(attitude));
+        bench.send(&Command::Attitude(attitude));
         bench.run_ms(10.0);
     }
     Ok((hello.token, telemetry))
@@ -136,7 +136,7 @@ pub fn ready(
 ///
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.
-pub fn arm_balance(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Refusal>> {
+pub fn arm_balance(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refusal>> {
     let (token, _) = ready(bench, plan, Attitude::default())?;
     command(bench, &Command::Arm { token })
 }
@@ -146,7 +146,7 @@ pub fn arm_balance(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Ref
 /// # Errors
 /// As [`arm_balance`].
 pub fn balance(
-    bench: &mut impl Bench,
+    bench: &mut impl SimulatedCm5,
     plan: &Plan,
     conditions: &Conditions,
     seconds: f64,
@@ -154,8 +154,8 @@ pub fn balance(
     let mut robot = Robot::new(conditions);
     robot.place(bench);
     let (token, before) = ready(bench, plan, robot.attitude())?;
-    bench.forget();
-    let sequence = bench.say(&Command::Arm { token });
+    bench.clear();
+    let sequence = bench.send(&Command::Arm { token });
     let mut run = Run::default();
     // Somebody holds it until torque is on.
     let begun_ms = bench.now_ms();
@@ -181,9 +181,9 @@ pub fn balance(
     Ok(balanced)
 }
 
-fn telemetry(bench: &mut impl Bench) -> Option<Telemetry> {
-    bench.forget();
-    bench.say(&Command::Ask(Subject::Telemetry));
+fn telemetry(bench: &mut impl SimulatedCm5) -> Option<Telemetry> {
+    bench.clear();
+    bench.send(&Command::Ask(Subject::Telemetry));
     bench.run_ms(50.0);
     let mut reports = bench.reports().into_iter();
     reports.find_map(|(_, report)| match report {
@@ -192,18 +192,18 @@ fn telemetry(bench: &mut impl Bench) -> Option<Telemetry> {
     })
 }
 
-fn greet(bench: &mut impl Bench) -> Result<Hello, Option<Refusal>> {
-    bench.forget();
-    bench.say(&Command::Hello { version: VERSION });
+fn greet(bench: &mut impl SimulatedCm5) -> Result<Hello, Option<Refusal>> {
+    bench.clear();
+    bench.send(&Command::Hello { version: VERSION });
     wait(bench, |report| match report {
         Report::Hello(hello) => Some(Ok(hello)),
         _ => None,
     })
 }
 
-fn command(bench: &mut impl Bench, command: &Command) -> Result<(), Option<Refusal>> {
-    bench.forget();
-    let sequence = bench.say(command);
+fn command(bench: &mut impl SimulatedCm5, command: &Command) -> Result<(), Option<Refusal>> {
+    bench.clear();
+    let sequence = bench.send(command);
     wait(bench, |report| match report {
         Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.map_err(Some)),
         _ => None,
@@ -211,7 +211,7 @@ fn command(bench: &mut impl Bench, command: &Command) -> Result<(), Option<Refus
 }
 
 fn wait<T>(
-    bench: &mut impl Bench,
+    bench: &mut impl SimulatedCm5,
     kind: impl Fn(Report) -> Option<Result<T, Option<Refusal>>>,
 ) -> Result<T, Option<Refusal>> {
     for _ in 0..600 {
@@ -228,7 +228,7 @@ fn wait<T>(
 }
 
 /// Uploads a plan and has it kept.
-fn upload(bench: &mut impl Bench, plan: &Plan) -> Result<(), Option<Refusal>> {
+fn upload(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refusal>> {
     let mut table = Vec::new();
     plan.bytes(|byte| table.push(byte));
     // As an adapter it takes our frames after a zero only; another mode needs none.

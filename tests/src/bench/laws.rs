@@ -1,7 +1,7 @@
 //! The laws side by side: in floating point and in fixed point on the host, in a loop timed like the CM-5's; and the
 //! CM-5's own, told tick by tick what it saw.
 
-use super::Bench;
+use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
 use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
 use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
@@ -228,7 +228,7 @@ pub struct Sides {
 
 /// Lets the robot go from the same start under all three laws.
 pub fn side_by_side(
-    bench: &mut impl Bench,
+    bench: &mut impl SimulatedCm5,
     conditions: &Conditions,
     source: Source,
     seconds: f64,

@@ -1,6 +1,6 @@
 //! What must happen when the link falls silent, and when the controller hangs.
 
-use super::Bench;
+use super::SimulatedCm5;
 use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{Command, Mode, Refusal, Report, VERSION};
 use rand::{Rng as _, SeedableRng as _};
@@ -87,28 +87,28 @@ pub fn worst_of<B>(
 }
 
 /// Greets, streams and arms; panics with the reason if refused.
-pub fn arm(bench: &mut impl Bench) {
+pub fn arm(bench: &mut impl SimulatedCm5) {
     let outcome = try_arm(bench);
     assert_eq!(outcome, Ok(()), "arming");
 }
 
-fn try_arm(bench: &mut impl Bench) -> Result<(), Option<Refusal>> {
+fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusal>> {
     // Until the controller has started.
     bench.run_ms(10.0);
-    bench.forget();
-    bench.say(&Command::Hello { version: VERSION });
+    bench.clear();
+    bench.send(&Command::Hello { version: VERSION });
     let token = awaited(bench, |report| match report {
         Report::Hello(hello) => Some(hello.token),
         _ => None,
     });
     let token = token.ok_or(None)?;
-    bench.say(&Command::Mode(Mode::Stream));
+    bench.send(&Command::Mode(Mode::Stream));
     // Two rounds of the slow channels, until the supply is known.
     for _ in 0..25 {
-        bench.say(&Command::KeepAlive);
+        bench.send(&Command::KeepAlive);
         bench.run_ms(10.0);
     }
-    let sequence = bench.say(&Command::Arm { token });
+    let sequence = bench.send(&Command::Arm { token });
     let answer = awaited(bench, |report| match report {
         Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome),
         _ => None,
@@ -117,7 +117,7 @@ fn try_arm(bench: &mut impl Bench) -> Result<(), Option<Refusal>> {
 }
 
 /// The first report of this kind; answers wait behind a report of every tick.
-fn awaited<T>(bench: &mut impl Bench, kind: impl Fn(Report) -> Option<T>) -> Option<T> {
+fn awaited<T>(bench: &mut impl SimulatedCm5, kind: impl Fn(Report) -> Option<T>) -> Option<T> {
     for _ in 0..8 {
         bench.run_ms(10.0);
         if let Some(found) = bench
@@ -132,19 +132,19 @@ fn awaited<T>(bench: &mut impl Bench, kind: impl Fn(Report) -> Option<T>) -> Opt
 }
 
 /// Cuts the link at a random moment, possibly inside a frame, and times what follows.
-pub fn link_loss(bench: &mut impl Bench, rng: &mut ChaCha8Rng) -> Option<Loss> {
+pub fn link_loss(bench: &mut impl SimulatedCm5, rng: &mut ChaCha8Rng) -> Option<Loss> {
     arm(bench);
     let frames = rng.random_range(1..20);
     for _ in 0..frames {
-        bench.say(&Command::KeepAlive);
+        bench.send(&Command::KeepAlive);
         bench.run_ms(10.0);
     }
     bench.run_ms(rng.random_range(0.0..10.0));
-    bench.say(&Command::KeepAlive);
+    bench.send(&Command::KeepAlive);
     // 7 bytes at 57600 baud.
     bench.run_ms(7.0 * 0.1736);
     // A frame that never ends must not count.
-    bench.type_bytes(&[5, 1, 1][..rng.random_range(0..3)]);
+    bench.send_bytes(&[5, 1, 1][..rng.random_range(0..3)]);
     let started = bench.now_ms();
     let mut soft_ms = None;
     while bench.now_ms() - started < 1000.0 {
@@ -160,7 +160,7 @@ pub fn link_loss(bench: &mut impl Bench, rng: &mut ChaCha8Rng) -> Option<Loss> {
             soft_ms = Some(after);
         }
         if !bus.any_torque() {
-            bench.type_bytes(&[0]);
+            bench.send_bytes(&[0]);
             return soft_ms.map(|soft_ms| Loss {
                 soft_ms,
                 off_ms: after,
@@ -172,32 +172,32 @@ pub fn link_loss(bench: &mut impl Bench, rng: &mut ChaCha8Rng) -> Option<Loss> {
 
 /// Lets the controller hang at a random instruction, and times until torque is off on the wire.
 #[cfg(simavr)]
-pub fn hang(rig: &mut handstand_simavr::Rig, rng: &mut ChaCha8Rng) -> Option<Loss> {
+pub fn hang(rig: &mut handstand_simavr::ElfCm5, rng: &mut ChaCha8Rng) -> Option<Loss> {
     arm(rig);
     for _ in 0..3 {
-        rig.say(&Command::KeepAlive);
-        Bench::run_ms(rig, 10.0);
+        rig.send(&Command::KeepAlive);
+        rig.run_ms(10.0);
     }
-    Bench::run_ms(rig, rng.random_range(0.0..20.0));
+    rig.run_ms(rng.random_range(0.0..20.0));
     // The instruction that is next is replaced by a jump to itself.
     let at = rig.core.pc() as usize;
     let kept = [rig.core.flash()[at], rig.core.flash()[at + 1]];
     rig.core.flash()[at..at + 2].copy_from_slice(&[0xff, 0xcf]);
-    let (resets, started) = (rig.seen.resets.len(), Bench::now_ms(rig));
+    let (resets, started) = (rig.seen.resets.len(), rig.now_ms());
     rig.bus.torque_offs.clear();
     let mut reset = false;
-    while Bench::now_ms(rig) - started < 1000.0 {
-        Bench::run_ms(rig, 0.05);
+    while rig.now_ms() - started < 1000.0 {
+        rig.run_ms(0.05);
         if !reset && rig.seen.resets.len() > resets {
             reset = true;
             rig.core.flash()[at..at + 2].copy_from_slice(&kept);
         }
         if reset && !rig.bus.any_torque() && !rig.bus.torque_offs.is_empty() {
-            let off_ms = Bench::now_ms(rig) - started;
+            let off_ms = rig.now_ms() - started;
             // It must stay off, whatever the host goes on saying.
             for _ in 0..5 {
-                rig.say(&Command::KeepAlive);
-                Bench::run_ms(rig, 10.0);
+                rig.send(&Command::KeepAlive);
+                rig.run_ms(10.0);
             }
             let stays = !rig.bus.any_torque();
             return stays.then_some(Loss {

@@ -1,6 +1,6 @@
 //! Power cuts while a gain table is written.
 
-use super::{Bench, PcRig};
+use super::{SimulatedCm5, VirtualCm5};
 use handstand_firmware::slots::Stored;
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{Answer, Command, GAIN_CHUNK, Report, ResetCause};
@@ -22,21 +22,21 @@ pub struct PowerCuts {
 pub fn power_cuts(torn: &[u8]) -> PowerCuts {
     let old: Vec<u8> = (0..57).map(|at| at * 3 + 1).collect();
     let new: Vec<u8> = (0..57).map(|at| 200 - at).collect();
-    let mut first = PcRig::new();
+    let mut first = VirtualCm5::new();
     assert!(upload(&mut first, &old), "the first table is stored");
     // Both slots full: the next upload overwrites a sound table.
-    let mut second = PcRig::boot(first.board.eeprom, ResetCause(0));
+    let mut second = VirtualCm5::boot(first.board.eeprom, ResetCause(0));
     assert!(upload(&mut second, &old), "so is the second");
     let before = second.board.eeprom;
     let mut tally = PowerCuts::default();
     for torn in torn {
         for bytes in 0.. {
-            let mut rig = PcRig::boot(before.clone(), ResetCause(0));
+            let mut rig = VirtualCm5::boot(before.clone(), ResetCause(0));
             rig.board.cut = Some((bytes, *torn));
             if upload(&mut rig, &new) {
                 break;
             }
-            let mut rig = PcRig::boot(rig.board.eeprom, ResetCause(ResetCause::POWER));
+            let mut rig = VirtualCm5::boot(rig.board.eeprom, ResetCause(ResetCause::POWER));
             tally.cuts += 1;
             match kept(&mut rig) {
                 Some(table) if table == old => tally.old += 1,
@@ -48,7 +48,7 @@ pub fn power_cuts(torn: &[u8]) -> PowerCuts {
     tally
 }
 
-fn kept(rig: &mut PcRig) -> Option<Vec<u8>> {
+fn kept(rig: &mut VirtualCm5) -> Option<Vec<u8>> {
     let stored = Stored::newest(&mut rig.board)?;
     let mut table = vec![0; usize::from(stored.length)];
     stored.read(&mut rig.board, 0, &mut table);
@@ -56,7 +56,7 @@ fn kept(rig: &mut PcRig) -> Option<Vec<u8>> {
 }
 
 /// Uploads a table through the line; whether it was stored.
-fn upload(rig: &mut PcRig, table: &[u8]) -> bool {
+fn upload(rig: &mut VirtualCm5, table: &[u8]) -> bool {
     let mut offset = 0;
     for piece in table.chunks(GAIN_CHUNK) {
         let mut bytes = [0; GAIN_CHUNK];
@@ -70,10 +70,10 @@ fn upload(rig: &mut PcRig, table: &[u8]) -> bool {
     done(rig, &Command::GainStore { length, check })
 }
 
-fn done(rig: &mut PcRig, command: &Command) -> bool {
-    rig.forget();
-    rig.type_bytes(&[0]);
-    let sequence = rig.say(command);
+fn done(rig: &mut VirtualCm5, command: &Command) -> bool {
+    rig.clear();
+    rig.send_bytes(&[0]);
+    let sequence = rig.send(command);
     for _ in 0..60 {
         rig.run_ms(10.0);
         let is_answer = |report: &Report| matches!(report, Report::Answer(Answer { sequence: of, outcome: Ok(()) }) if *of == sequence);

@@ -1,6 +1,6 @@
 //! Three links and the servos on them. Angles are relative, the first from hanging.
 
-use super::Bench;
+use super::SimulatedCm5;
 use super::balance::Conditions;
 use handstand::Model;
 use handstand::dynamics::{Chain, Workspace};
@@ -37,7 +37,7 @@ pub fn model() -> Model {
 impl Robot {
     /// At rest where it starts.
     pub fn new(conditions: &Conditions) -> Self {
-        let mut chain = Chain::of(&model());
+        let mut chain = model().chain();
         for (link, aside_m) in chain.links.iter_mut().zip(conditions.eccentric_m) {
             link.com_angle_rad = (aside_m / link.com_m).atan();
         }
@@ -82,10 +82,10 @@ impl Robot {
     }
 
     /// The servos' torques.
-    pub fn torques(&self, bench: &mut impl Bench) -> [f64; 2] {
+    pub fn torques(&self, bench: &mut impl SimulatedCm5) -> [f64; 2] {
         [1, 11].map(|id| {
             let servo = bench.bus().servo(id).expect("18 servos");
-            self.torque(servo.output().duty(0.0))
+            self.torque(servo.regulator().duty(0.0))
         })
     }
 
@@ -96,7 +96,7 @@ impl Robot {
     }
 
     /// Puts the servos' shafts where the joints are.
-    pub fn place(&self, bench: &mut impl Bench) {
+    pub fn place(&self, bench: &mut impl SimulatedCm5) {
         for (joint, id) in [(1, 1), (2, 11)] {
             for (id, sign) in [(id, 1.0), (id + 1, -1.0)] {
                 let servo = bench.bus().servo(id).expect("18 servos");

@@ -1,6 +1,6 @@
 //! The host's part while the robot is balanced: it hears reports, says attitudes, and writes down what each tick saw.
 
-use super::Bench;
+use super::SimulatedCm5;
 use super::balance::{Balanced, Tick};
 use super::robot::{Robot, STEP_MS};
 use handstand_shared::control_table::MOVING_SPEED;
@@ -40,7 +40,7 @@ pub(super) struct Run {
 impl Run {
     pub(super) fn fall_or_stand(
         mut self,
-        bench: &mut impl Bench,
+        bench: &mut impl SimulatedCm5,
         robot: &mut Robot,
         seconds: f64,
     ) -> Balanced {
@@ -76,7 +76,7 @@ impl Run {
     }
 
     /// Hears reports, says attitudes, and lets time pass.
-    pub(super) fn step(&mut self, bench: &mut impl Bench, robot: &Robot) {
+    pub(super) fn step(&mut self, bench: &mut impl SimulatedCm5, robot: &Robot) {
         let now_ms = bench.now_ms();
         let commanded = [1, 11].map(|id| {
             let servo = bench.bus().servo(id).expect("18 servos");
@@ -88,7 +88,7 @@ impl Run {
                 self.hear(arrived_ms, &report);
             }
         }
-        bench.forget();
+        bench.clear();
         // A host that hears nothing says something every 20 ms.
         let last_ms = self.said_ms.unwrap_or(f64::NEG_INFINITY);
         let due_ms = self.due_ms.unwrap_or(last_ms + 20.0);
@@ -97,12 +97,12 @@ impl Run {
             let attitude = robot.attitude();
             self.said_ms = Some(now_ms);
             let command = Command::Attitude(attitude);
-            bench.say(&command);
+            bench.send(&command);
             let arrives_ms = now_ms + line_ms(&command);
             self.arrived
                 .push((arrives_ms, [attitude.angle, attitude.rate]));
         }
-        bench.turn_gyro(robot.gyro());
+        bench.set_gyro(robot.gyro());
         bench.run_ms(STEP_MS);
     }
 

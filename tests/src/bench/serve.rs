@@ -1,6 +1,6 @@
 //! A bench behind a serial port, in real time.
 
-use super::Bench;
+use super::SimulatedCm5;
 use handstand::link::Pty;
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,11 @@ const SAY_EVERY_S: f64 = 5.0;
 ///
 /// # Errors
 /// The port fails.
-pub fn serve(bench: &mut impl Bench, pty: &Pty, goes_on: impl Fn() -> bool) -> Result<(), String> {
+pub fn serve(
+    bench: &mut impl SimulatedCm5,
+    pty: &Pty,
+    goes_on: impl Fn() -> bool,
+) -> Result<(), String> {
     let failed = |error: handstand::Error| error.to_string();
     let began = Instant::now();
     let mut offset_ms = bench.now_ms();
@@ -45,13 +49,13 @@ pub fn serve(bench: &mut impl Bench, pty: &Pty, goes_on: impl Fn() -> bool) -> R
         // A program at another speed understands nothing, nor is it understood.
         let is_heard = (56_000..59_000).contains(&pty.baud());
         if is_heard {
-            bench.type_bytes(&bytes[..count]);
+            bench.send_bytes(&bytes[..count]);
         }
         bench.run_ms(behind_ms.clamp(0.1, 5.0));
         if is_heard && !bench.raw().is_empty() {
             pty.send(bench.raw()).map_err(failed)?;
         }
-        bench.forget();
+        bench.clear();
     }
     Ok(())
 }

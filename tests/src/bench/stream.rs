@@ -1,6 +1,6 @@
 //! Streaming: 18 servos at 100 Hz over 57600 baud.
 
-use super::{Bench, arm};
+use super::{SimulatedCm5, arm};
 use handstand_shared::message::{Command, Report, StreamReport, Subject, Telemetry};
 use handstand_shared::packed::{Positions, SERVOS};
 
@@ -39,21 +39,21 @@ impl StreamRun {
 }
 
 /// Arms, sends a slow sine to all servos every 10 ms, and listens.
-pub fn stream(bench: &mut impl Bench, seconds: f64) -> StreamRun {
+pub fn stream(bench: &mut impl SimulatedCm5, seconds: f64) -> StreamRun {
     arm(bench);
-    bench.forget();
-    let bytes_before = bench.link_bytes();
+    bench.clear();
+    let bytes_before = bench.pc().bytes;
     let mut said = Vec::new();
     for tick in 0..(seconds * 100.0) as usize {
         let goal = goal_at(tick);
         let goals = Positions::pack([goal; SERVOS]);
-        said.push((bench.now_ms(), bench.say(&Command::Goals(goals))));
+        said.push((bench.now_ms(), bench.send(&Command::Goals(goals))));
         bench.run_ms(10.0);
     }
-    let bytes = bench.link_bytes() - bytes_before;
+    let bytes = bench.pc().bytes - bytes_before;
     let reports = stream_reports(bench);
-    bench.forget();
-    bench.say(&Command::Ask(Subject::Telemetry));
+    bench.clear();
+    bench.send(&Command::Ask(Subject::Telemetry));
     bench.run_ms(50.0);
     let telemetry = bench
         .reports()
@@ -71,7 +71,7 @@ pub fn stream(bench: &mut impl Bench, seconds: f64) -> StreamRun {
     StreamRun {
         lost: between.map(|pair| usize::from(skipped(pair))).sum(),
         missing: reports.iter().map(|(_, report)| missing(report)).sum(),
-        bad_frames: bench.bad_frames(),
+        bad_frames: bench.pc().bad_frames,
         bytes_per_frame: bytes as f64 / reports.len() as f64,
         cycles_ms,
         round_trip_ms,
@@ -87,7 +87,7 @@ fn goal_at(tick: usize) -> u16 {
     (512.0 + 100.0 * angle.sin()).round() as u16
 }
 
-fn stream_reports(bench: &impl Bench) -> Vec<(f64, StreamReport)> {
+fn stream_reports(bench: &impl SimulatedCm5) -> Vec<(f64, StreamReport)> {
     let of_stream = |(at, report)| match report {
         Report::Stream(report) => Some((at, report)),
         _ => None,

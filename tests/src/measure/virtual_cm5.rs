@@ -3,8 +3,9 @@
 //! The chip's very program in simavr where both are there, else the same logic in process. It is a chore of the tests, for
 //! simavr is under the GPL and nothing that is shipped contains it; `handstand virtual --pty --cm5` is what is shipped.
 
-use handstand::link::{Pty, SimWords};
-use handstand_tests::bench::{Bench, PcRig, serve};
+use handstand::link::Pty;
+use handstand::virtual_cm5::{set_up, spec};
+use handstand_tests::bench::{SimulatedCm5, VirtualCm5, serve};
 use std::time::Instant;
 
 /// Offer the firmware as a serial port
@@ -33,13 +34,13 @@ pub fn run(args: &Args) -> bool {
 }
 
 fn served(args: &Args) -> Result<(), String> {
-    let words: SimWords = args.words.parse()?;
-    let bus = words.set_up().map_err(|error| error.to_string())?;
+    let bus = spec(&args.words).and_then(|spec| set_up(&spec));
+    let bus = bus.map_err(|error| error.to_string())?;
     #[cfg(simavr)]
     if !args.in_process {
         match handstand_tests::firmware::find_built() {
             Some(built) => {
-                let mut rig = handstand_simavr::Rig::new(&built.elf)?;
+                let mut rig = handstand_simavr::ElfCm5::new(&built.elf)?;
                 rig.bus = bus;
                 eprintln!(
                     "{} in simavr, at 57600 baud; Ctrl-C ends it",
@@ -50,13 +51,13 @@ fn served(args: &Args) -> Result<(), String> {
             None => eprintln!("There is no ELF: `cargo xtask firmware` builds it."),
         }
     }
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     rig.board.bus = bus;
     eprintln!("The firmware's logic in process, at 57600 baud; Ctrl-C ends it");
     offer(&mut rig, args.seconds)
 }
 
-fn offer(bench: &mut impl Bench, seconds: Option<f64>) -> Result<(), String> {
+fn offer(bench: &mut impl SimulatedCm5, seconds: Option<f64>) -> Result<(), String> {
     let pty = Pty::open().map_err(|error| error.to_string())?;
     println!("{}", pty.name());
     let began = Instant::now();

@@ -199,7 +199,7 @@ impl Arm {
         let mut model = self.off_by(&FIXED_START);
         model
             .effects
-            .retain(|effect| effect.effect.card().id != "coulomb");
+            .retain(|effect| effect.effect.info().id != "coulomb");
         model.free = self
             .free
             .iter()

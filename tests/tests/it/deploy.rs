@@ -5,7 +5,7 @@
 mod boot_loader;
 
 use boot_loader::{Trouble, start_then};
-use handstand_simavr::Rig;
+use handstand_simavr::ElfCm5;
 use handstand_tests::bench::serve;
 use handstand_tests::firmware::find_built;
 use std::os::unix::fs::PermissionsExt as _;
@@ -16,7 +16,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 /// The image that was flashed, on a chip with an erased EEPROM; at the port until nobody can be there any more.
 fn run_image(pty: &handstand::link::Pty, elf: &Path, image: &[u8]) {
-    let mut rig = Rig::new(elf).unwrap();
+    let mut rig = ElfCm5::new(elf).unwrap();
     let flash = rig.core.flash();
     flash.fill(0xff);
     flash[..image.len()].copy_from_slice(image);

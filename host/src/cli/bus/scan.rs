@@ -1,7 +1,7 @@
 //! `bus scan`: pings every id and reads what answers.
 
 use super::super::Outcome;
-use super::super::port::{AnyLink, Ids, Port, id_list, nobody};
+use super::super::port::{AnyLink, Ids, Port, id_list, no_response};
 use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
@@ -74,7 +74,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         args.ids.0.len()
     ));
     if found.is_empty() {
-        return Err(nobody());
+        return Err(no_response());
     }
     Ok(Outcome::Done)
 }

@@ -2,8 +2,8 @@
 
 use super::{INPUTS, STATES};
 use crate::cli::given::Given;
+use crate::cli::port::id_list;
 use handstand::controllers::{Fitting, Servo, Timing, board_plan, regulator_plan};
-use handstand::link::SimRobot;
 use handstand::model::Angles;
 use handstand::synth::{Design, FixedLaw, Weight, upright};
 use handstand::{Error, Model, Result};
@@ -50,7 +50,8 @@ pub struct Rig {
 struct Joints(Vec<Vec<u8>>);
 
 fn joints(text: &str) -> Result<Joints, String> {
-    SimRobot::joints(text).map(Joints)
+    let joints: Result<_, _> = text.split('/').map(|ids| Ok(id_list(ids)?.0)).collect();
+    joints.map(Joints)
 }
 
 /// As the bench's: differences of positions, smoothed over two ticks.

@@ -4,8 +4,7 @@
 //! step of attitude, speeds in 5e-4 rad/s, angles of balance four times as fine as angles, torques in 2^-13 N m.
 
 use super::{OnBoard, Timing};
-use crate::controllers::Known;
-use crate::effects::Rig;
+use crate::controllers::DesignModel;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::synth::{Equations, Format, Ranges, quantise, upright};
@@ -100,9 +99,9 @@ impl Fitting {
 /// # Errors
 /// As [`OnBoard::new`]; limits that do not fit the words.
 pub fn plan(model: &Model, fitting: &Fitting, timing: &Timing) -> Result<(OnBoard, Plan)> {
-    let known = Known {
+    let known = DesignModel {
         limit_nm: fitting.most_nm,
-        ..Known::ideal(model, &upright(model), fitting.period_s)?
+        ..DesignModel::new(model, &upright(model), fitting.period_s)?
     };
     let machine = OnBoard::new(&known, timing)?;
     let law = Law::Observer(observer(&machine, fitting.most_nm)?);
@@ -267,7 +266,7 @@ const SURELY: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 fn moments(model: &Model) -> [Moment; JOINTS] {
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = Equations::of(&model.rig(false));
     let moments = equations.moments_kg_m();
     let most = moments
         .iter()

@@ -16,7 +16,7 @@ fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
 fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
     FittedEffect {
         kind: kind.to_owned(),
-        title: crate::effects::named(kind).unwrap().card().title.to_owned(),
+        title: crate::effects::named(kind).unwrap().info().title.to_owned(),
         joint,
         parameters: vec![value(&format!("{kind}@1.torque_nm"), 0.05, false)],
     }

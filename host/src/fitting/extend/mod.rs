@@ -81,7 +81,7 @@ pub fn refit(
     finish(model, found, &data, split, horizon)
 }
 
-/// Adds the candidate and fits its values along with the model's free ones, from every start on its card. The
+/// Adds the candidate and fits its values along with the model's free ones, from every start value of the effect. The
 /// error before is that of the model refitted without it. `progress` hears of starts done and starts in all.
 ///
 /// # Errors

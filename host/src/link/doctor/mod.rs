@@ -83,4 +83,5 @@ fn cause(
 }
 
 #[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
 mod tests;

@@ -1,11 +1,10 @@
 //! Each fault that the simulated bus has, and the cause that is named for it.
 
-use super::super::{InProcess, SimWords};
 use super::*;
+use crate::virtual_cm5::SimLink;
 
 fn diagnose(words: &str, ids: &[u8]) -> Diagnosis {
-    let bus = words.parse::<SimWords>().unwrap().bus();
-    examine(InProcess::new(bus), ids, |_| ()).unwrap()
+    examine(SimLink::adapter(words).unwrap(), ids, |_| ()).unwrap()
 }
 
 /// The likeliest cause named for each fault that can be put into the bus.
@@ -24,7 +23,7 @@ fn every_fault_is_named_first() {
             "bits are wrong on the way from the servos",
         ),
         (
-            "ids=1-4,delay=0,mishear=0.2",
+            "ids=1-4,delay=0,corrupt_request=0.2",
             "bits are wrong on the way to the servos",
         ),
         (

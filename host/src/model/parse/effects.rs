@@ -16,7 +16,7 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
         {
             return Err(table.bad(
                 "kind",
-                format!("`{}` is there twice", effect.effect.card().id),
+                format!("`{}` is there twice", effect.effect.info().id),
                 "keep one of the two, or give it another joint",
             ));
         }
@@ -28,21 +28,21 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
 fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
     let kinds: Vec<(&str, &'static dyn Effect)> = EFFECTS
         .iter()
-        .map(|effect| (effect.card().id, *effect))
+        .map(|effect| (effect.info().id, *effect))
         .collect();
     let effect = table
         .choice("kind", &kinds)?
         .ok_or_else(|| table.lacks("kind"))?;
-    let card = effect.card();
+    let info = effect.info();
 
     let mut known = vec!["kind", "joint", "fitted"];
-    known.extend(card.parameters.iter().map(|parameter| parameter.key));
+    known.extend(info.parameters.iter().map(|parameter| parameter.key));
     table.only(&known)?;
     // Where its values came from: for people and reports, so any content will do.
     table.table("fitted")?;
 
-    let joint = at(table, card.id, card.scope, joints)?;
-    let values = card.parameters.iter().map(|parameter| {
+    let joint = at(table, info.id, info.scope, joints)?;
+    let values = info.parameters.iter().map(|parameter| {
         let (low, high) = parameter.bounds;
         table.required_number(parameter.key, Limits::within(low, high))
     });

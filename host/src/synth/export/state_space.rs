@@ -2,7 +2,7 @@
 
 use super::Provenance;
 use crate::synth::Discrete;
-use crate::synth::{Design, Estimation, Fixed, Signal};
+use crate::synth::{Design, Estimation, Fixed, OmittedEffect, Signal};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -34,6 +34,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
         "inputs": signals(&design.inputs),
         "x0": design.x0,
         "u0": design.u0,
+        "omitted_effects": design.omitted.iter().map(omitted).collect::<Vec<Value>>(),
         "q": rows(q),
         "r": rows(r),
         "k": rows(&gains.k),
@@ -59,6 +60,14 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
             "sha256": made.sha256,
             "command": made.command,
         },
+    })
+}
+
+fn omitted(omitted: &OmittedEffect) -> Value {
+    json!({
+        "effect": omitted.effect.info().id,
+        "joint": omitted.joint + 1,
+        "why": omitted.why.to_string(),
     })
 }
 

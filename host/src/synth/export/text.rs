@@ -1,7 +1,7 @@
 //! A design for people.
 
 use crate::number::short;
-use crate::synth::{Design, Estimation, Fixed, Mode, Reach};
+use crate::synth::{Design, Estimation, Fixed, Mode, OmittedEffect, Reach};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 
@@ -33,6 +33,7 @@ pub fn text(design: &Design) -> String {
             plant.delayed_inputs * design.inputs.len()
         ),
     });
+    parts.extend(omitted_lines(&design.omitted));
     parts.push(String::new());
     parts.push(gain_table(design));
     parts.push(String::new());
@@ -47,6 +48,27 @@ pub fn text(design: &Design) -> String {
         parts.extend(fixed_lines(design, fixed));
     }
     parts.join("\n")
+}
+
+/// A line per effect that the design leaves out, its joints together.
+pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
+    let kinds = omitted.iter().map(|o| (o.effect, o.why));
+    let mut lines = Vec::new();
+    for (at, (effect, why)) in kinds.enumerate() {
+        let same = |o: &&OmittedEffect| (o.effect, o.why) == (effect, why);
+        if omitted[..at].iter().any(|o| same(&o)) {
+            continue;
+        }
+        let joints = omitted.iter().filter(same).map(|o| o.joint + 1);
+        let joints: Vec<String> = joints.map(|joint| joint.to_string()).collect();
+        lines.push(format!(
+            "The design leaves out {} at joint{} {}: {why}",
+            effect.info().title,
+            if joints.len() > 1 { "s" } else { "" },
+            joints.join(", ")
+        ));
+    }
+    lines
 }
 
 fn gain_table(design: &Design) -> String {

@@ -16,7 +16,7 @@ pub(super) fn readings(args: &Args, built: Option<&Built>) -> Vec<Row> {
     };
     let starts = args.reduced(10, 2) as u64;
     let of_start = |start: u64| {
-        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let mut rig = handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         rig.bus_ahead_ns = start * 1_000_000 / starts;
         ages(&mut rig, 1.0)
     };

@@ -1,7 +1,7 @@
 //! The robot in closed loop, the laws side by side.
 
 use super::{Args, Row};
-use handstand_tests::bench::{Balanced, Conditions, PcRig, Sides, Source, side_by_side};
+use handstand_tests::bench::{Balanced, Conditions, Sides, Source, VirtualCm5, side_by_side};
 use handstand_tests::firmware::Built;
 use rayon::prelude::*;
 use serde_json::json;
@@ -75,11 +75,11 @@ fn loop_sides(
 ) -> Sides {
     #[cfg(simavr)]
     if let Some(built) = built {
-        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let mut rig = handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         return side_by_side(&mut rig, conditions, source, seconds);
     }
     let _ = built;
-    side_by_side(&mut PcRig::new(), conditions, source, seconds)
+    side_by_side(&mut VirtualCm5::new(), conditions, source, seconds)
 }
 
 fn loop_rows(names: [&'static str; 3], start: &str, sides: &Sides, seconds: f64) -> Vec<Row> {
@@ -127,7 +127,7 @@ pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
     let starts = args.reduced(10, 3) as u64;
     let (_, plan) = Source::Host.plan();
     let of_start = |start: u64| {
-        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let mut rig = handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         rig.bus_ahead_ns = start * 1_000_000 / starts;
         let run = balance(&mut rig, &plan, &corner(1.0, [1.0, -1.0, 1.0]), 2.0).expect("it arms");
         run.telemetry.expect("it was asked for")

@@ -1,7 +1,7 @@
 //! Link losses, hangs and power cuts.
 
 use super::{Args, Row};
-use handstand_tests::bench::{PcRig, Worst, link_loss, power_cuts, worst_of};
+use handstand_tests::bench::{VirtualCm5, Worst, link_loss, power_cuts, worst_of};
 use handstand_tests::firmware::Built;
 use serde_json::json;
 
@@ -9,11 +9,11 @@ pub(super) fn losses(args: &Args, built: Option<&Built>) -> Vec<Row> {
     let count = args.reduced(args.losses, 10);
     #[cfg(simavr)]
     if let Some(built) = built {
-        let new = || handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let new = || handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         return loss_row(worst_of(count, args.seed, new, link_loss));
     }
     let _ = built;
-    loss_row(worst_of(count, args.seed, PcRig::new, link_loss))
+    loss_row(worst_of(count, args.seed, VirtualCm5::new, link_loss))
 }
 
 fn loss_row(worst: Worst) -> Vec<Row> {
@@ -37,7 +37,7 @@ pub(super) fn hangs(args: &Args, built: Option<&Built>) -> Vec<Row> {
     let Some(built) = built else {
         return Vec::new();
     };
-    let new = || handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+    let new = || handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
     let count = args.reduced(args.losses, 10);
     let worst = worst_of(count, args.seed, new, handstand_tests::bench::hang);
     let Worst {

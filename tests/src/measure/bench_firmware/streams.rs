@@ -3,7 +3,7 @@
 use super::{Args, Row};
 #[cfg(simavr)]
 use handstand_shared::message::Telemetry;
-use handstand_tests::bench::{PcRig, StreamRun, stream};
+use handstand_tests::bench::{StreamRun, VirtualCm5, stream};
 use handstand_tests::firmware::Built;
 #[cfg(simavr)]
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ pub(super) fn streams(args: &Args, built: Option<&Built>) -> Vec<Row> {
     };
     #[cfg(simavr)]
     if let Some(built) = built {
-        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let mut rig = handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         let run = stream(&mut rig, seconds);
         let mut rows = stream_rows(&run);
         rows.extend(elf_rows(&run, &rig));
@@ -25,7 +25,7 @@ pub(super) fn streams(args: &Args, built: Option<&Built>) -> Vec<Row> {
         return rows;
     }
     let _ = built;
-    stream_rows(&stream(&mut PcRig::new(), seconds))
+    stream_rows(&stream(&mut VirtualCm5::new(), seconds))
 }
 
 fn stream_rows(run: &StreamRun) -> Vec<Row> {
@@ -76,7 +76,7 @@ fn stream_rows(run: &StreamRun) -> Vec<Row> {
 }
 
 #[cfg(simavr)]
-fn elf_rows(run: &StreamRun, rig: &handstand_simavr::Rig) -> Vec<Row> {
+fn elf_rows(run: &StreamRun, rig: &handstand_simavr::ElfCm5) -> Vec<Row> {
     let Some(telemetry) = run.telemetry else {
         return Vec::new();
     };
@@ -103,7 +103,7 @@ fn elf_rows(run: &StreamRun, rig: &handstand_simavr::Rig) -> Vec<Row> {
 fn longest_tick(built: &Built, args: &Args) -> Row {
     let starts = args.reduced(10, 3) as u64;
     let of_start = |start: u64| {
-        let mut rig = handstand_simavr::Rig::new(&built.elf).expect("the ELF was found");
+        let mut rig = handstand_simavr::ElfCm5::new(&built.elf).expect("the ELF was found");
         rig.bus_ahead_ns = start * 1_000_000 / starts;
         let telemetry = stream(&mut rig, 1.0).telemetry.expect("it was asked for");
         (telemetry.longest_tick_us, telemetry.overruns)

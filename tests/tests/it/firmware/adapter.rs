@@ -4,21 +4,21 @@ use handstand_shared::dynamixel::{ErrorBits, Packet};
 use handstand_tests::bench::*;
 
 /// Existing tools see a plain adapter: their packets go through, and so do the answers.
-pub fn is_a_plain_adapter(bench: &mut impl Bench) {
+pub fn is_a_plain_adapter(bench: &mut impl SimulatedCm5) {
     bench.run_ms(20.0);
-    bench.forget();
-    bench.type_bytes(&[0xff, 0xff, 3, 2, 1, 0xf9]);
+    bench.clear();
+    bench.send_bytes(&[0xff, 0xff, 3, 2, 1, 0xf9]);
     bench.run_ms(10.0);
     assert_eq!(bench.raw(), [0xff, 0xff, 3, 2, 0, 0xfa]);
-    bench.forget();
-    bench.type_bytes(&[0xff, 0xff, 1, 4, 2, 36, 8, 0xff - 51]);
+    bench.clear();
+    bench.send_bytes(&[0xff, 0xff, 1, 4, 2, 36, 8, 0xff - 51]);
     bench.run_ms(10.0);
     let packet = Packet::new(bench.raw()).expect("a sound answer");
     assert_eq!((packet.id(), ErrorBits(packet.code())), (1, ErrorBits(0)));
     assert_eq!(packet.parameters().len(), 8);
     // Ids and registers of zero go to the servos too.
-    bench.forget();
-    bench.type_bytes(&[0xff, 0xff, 1, 4, 2, 0, 2, 0xff - 9]);
+    bench.clear();
+    bench.send_bytes(&[0xff, 0xff, 1, 4, 2, 0, 2, 0xff - 9]);
     bench.run_ms(10.0);
     assert_eq!(
         Packet::new(bench.raw()).map(|p| p.parameters().to_vec()),
@@ -28,5 +28,5 @@ pub fn is_a_plain_adapter(bench: &mut impl Bench) {
 
 #[test]
 fn the_adapter_is_transparent() {
-    is_a_plain_adapter(&mut PcRig::new());
+    is_a_plain_adapter(&mut VirtualCm5::new());
 }

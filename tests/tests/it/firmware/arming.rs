@@ -6,14 +6,14 @@ use handstand_tests::bench::*;
 
 #[test]
 fn arming_needs_a_greeting_a_token_a_state_and_a_supply() {
-    let mut rig = PcRig::new();
-    rig.type_bytes(&[0]);
+    let mut rig = VirtualCm5::new();
+    rig.send_bytes(&[0]);
     assert_eq!(
         refused(&mut rig, Command::Arm { token: 1 }),
         Some(Refusal::Version)
     );
     let token = greet(&mut rig).token;
-    rig.type_bytes(&[0]);
+    rig.send_bytes(&[0]);
     assert_eq!(
         refused(&mut rig, Command::Arm { token: token ^ 1 }),
         Some(Refusal::Token)
@@ -37,7 +37,7 @@ fn arming_needs_a_greeting_a_token_a_state_and_a_supply() {
 
 #[test]
 fn after_the_watchdog_nothing_arms_without_a_greeting() {
-    let mut rig = PcRig::boot(vec![0xff; 4096], ResetCause(ResetCause::WATCHDOG));
+    let mut rig = VirtualCm5::boot(vec![0xff; 4096], ResetCause(ResetCause::WATCHDOG));
     rig.run_ms(50.0);
     let hello = greet(&mut rig);
     assert_eq!(hello.condition, Condition::Fault(Cause::Watchdog));
@@ -57,10 +57,10 @@ fn no_start_and_no_greeting_repeats_a_token() {
         if start % 20 == 7 {
             eeprom[0x800 + start % 64] = 0x5a;
         }
-        let mut rig = PcRig::boot(eeprom, ResetCause(ResetCause::POWER));
+        let mut rig = VirtualCm5::boot(eeprom, ResetCause(ResetCause::POWER));
         rig.run_ms(20.0);
         for _ in 0..3 {
-            rig.type_bytes(&[0]);
+            rig.send_bytes(&[0]);
             let token = greet(&mut rig).token;
             assert!(tokens.insert(token), "{token:#06x} again, start {start}");
         }

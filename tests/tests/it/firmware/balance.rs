@@ -35,7 +35,7 @@ pub fn state_plan() -> Plan {
 }
 
 /// The commands that reach the servos are the host's law on the same states, through the plan.
-pub fn commands_are_the_laws(bench: &mut impl Bench) {
+pub fn commands_are_the_laws(bench: &mut impl SimulatedCm5) {
     let plan = state_plan();
     arm_balance(bench, &plan).expect("armed");
     let Law::State { table, .. } = &plan.law else {
@@ -43,7 +43,7 @@ pub fn commands_are_the_laws(bench: &mut impl Bench) {
     };
     for (angle, rate) in [(0, 0), (37, -150), (-400, 20), (1200, 900)] {
         for _ in 0..6 {
-            bench.say(&Command::Attitude(Attitude { angle, rate }));
+            bench.send(&Command::Attitude(Attitude { angle, rate }));
             bench.run_ms(10.0);
         }
         // The shafts stand still at their centres, so only the first link departs; six ticks are enough for the slew.
@@ -57,7 +57,7 @@ pub fn commands_are_the_laws(bench: &mut impl Bench) {
         }
     }
     // Beyond the plan's range it has fallen, and torque is off.
-    bench.say(&Command::Attitude(Attitude {
+    bench.send(&Command::Attitude(Attitude {
         angle: 9000,
         rate: 0,
     }));
@@ -67,12 +67,12 @@ pub fn commands_are_the_laws(bench: &mut impl Bench) {
 
 #[test]
 fn on_board_the_servos_get_what_the_law_says() {
-    commands_are_the_laws(&mut PcRig::new());
+    commands_are_the_laws(&mut VirtualCm5::new());
 }
 
 /// Two degrees off, eccentric and with another dead zone than the plan believes in, it stands; and its
 /// commands are those of the host's fixed law on the same readings.
-pub fn it_stands(bench: &mut impl Bench, seconds: f64) {
+pub fn it_stands(bench: &mut impl SimulatedCm5, seconds: f64) {
     let two = 2f64.to_radians();
     let conditions = Conditions {
         dead_zone: 0.09,
@@ -97,7 +97,7 @@ pub fn it_stands(bench: &mut impl Bench, seconds: f64) {
 
 #[test]
 fn three_links_stand() {
-    it_stands(&mut PcRig::new(), 20.0);
+    it_stands(&mut VirtualCm5::new(), 20.0);
 }
 
 #[test]
@@ -105,10 +105,10 @@ fn a_plan_that_was_compiled_in_balances_without_upload() {
     let mut bytes = Vec::new();
     let (_, plan) = plan();
     plan.bytes(|byte| bytes.push(byte));
-    let mut rig = PcRig::with_plan(bytes, vec![0xff; 4096], ResetCause(0));
+    let mut rig = VirtualCm5::with_plan(bytes, vec![0xff; 4096], ResetCause(0));
     assert_eq!(greet(&mut rig).gains, plan.fingerprint());
     // One in EEPROM wins, once it is there.
-    rig.type_bytes(&[0]);
+    rig.send_bytes(&[0]);
     let other = state_plan();
     arm_balance(&mut rig, &other).expect("armed");
     let hello = greet(&mut rig);
@@ -118,7 +118,7 @@ fn a_plan_that_was_compiled_in_balances_without_upload() {
 
 #[test]
 fn balancing_without_gains_is_refused() {
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     let token = greet(&mut rig).token;
     assert_eq!(refused(&mut rig, Command::Mode(Mode::Balance)), None);
     rig.run_ms(300.0);

@@ -11,7 +11,7 @@ use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use handstand_shared::message::*;
 use handstand_shared::plan::Law;
-use handstand_simavr::{Law as LawProgram, Rig};
+use handstand_simavr::{ElfCm5, Law as LawProgram};
 use handstand_tests::bench::*;
 use handstand_tests::firmware::{Built, Toolchain, build, find_built};
 use rand::Rng as _;
@@ -30,7 +30,7 @@ fn built() -> Option<Built> {
 #[test]
 fn the_elf_streams() {
     let Some(built) = built() else { return };
-    let mut rig = Rig::new(&built.elf).unwrap();
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
     streams(&mut rig);
     assert_eq!(rig.seen.direction_faults, 0);
     assert!(
@@ -45,13 +45,13 @@ fn the_elf_streams() {
 #[test]
 fn the_elf_commands_what_the_law_says() {
     let Some(built) = built() else { return };
-    commands_are_the_laws(&mut Rig::new(&built.elf).unwrap());
+    commands_are_the_laws(&mut ElfCm5::new(&built.elf).unwrap());
 }
 
 #[test]
 fn the_elf_holds_three_links_up() {
     let Some(built) = built() else { return };
-    let mut rig = Rig::new(&built.elf).unwrap();
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
     it_stands(&mut rig, 5.0);
     // What is done while servos are awaited costs no byte of their answers.
     assert!(rig.seen.most_waiting <= 2, "{}", rig.seen.most_waiting);
@@ -69,7 +69,7 @@ fn the_elf_balances_by_the_plan_compiled_in() {
     let file = folder.path().join("plan.rs");
     std::fs::write(&file, plan_file(&plan, "a test")).unwrap();
     let with_plan = build(&toolchain, Some(&file)).unwrap();
-    let mut rig = Rig::new(&with_plan.elf).unwrap();
+    let mut rig = ElfCm5::new(&with_plan.elf).unwrap();
     it_stands(&mut rig, 5.0);
     // Nothing was uploaded: one byte of EEPROM is written, the counter of starts.
     let written = rig.core.eeprom().iter().filter(|byte| **byte != 0xff);
@@ -80,18 +80,18 @@ fn the_elf_balances_by_the_plan_compiled_in() {
 fn the_elf_lets_the_robot_down_when_a_servo_gives_up() {
     let Some(built) = built() else { return };
     for way in WAYS {
-        a_servo_gives_up_while_streaming(&mut Rig::new(&built.elf).unwrap(), way);
-        a_servo_gives_up_while_balancing(&mut Rig::new(&built.elf).unwrap(), way);
+        a_servo_gives_up_while_streaming(&mut ElfCm5::new(&built.elf).unwrap(), way);
+        a_servo_gives_up_while_balancing(&mut ElfCm5::new(&built.elf).unwrap(), way);
     }
 }
 
 #[test]
 fn the_elf_bears_two_servos_of_one_id() {
     let Some(built) = built() else { return };
-    twins_cost_their_own_slot_only(&mut Rig::new(&built.elf).unwrap());
-    twins_do_not_balance(&mut Rig::new(&built.elf).unwrap(), 11);
-    a_twin_ends_balancing(&mut Rig::new(&built.elf).unwrap(), 11);
-    a_twin_ends_balancing(&mut Rig::new(&built.elf).unwrap(), 2);
+    twins_cost_their_own_slot_only(&mut ElfCm5::new(&built.elf).unwrap());
+    twins_do_not_balance(&mut ElfCm5::new(&built.elf).unwrap(), 11);
+    a_twin_ends_balancing(&mut ElfCm5::new(&built.elf).unwrap(), 11);
+    a_twin_ends_balancing(&mut ElfCm5::new(&built.elf).unwrap(), 2);
 }
 
 /// Every shift has its turn in 3200 states.
@@ -117,30 +117,30 @@ fn the_observer_is_the_same_bit_for_bit() {
 #[test]
 fn the_elf_is_a_plain_adapter() {
     let Some(built) = built() else { return };
-    is_a_plain_adapter(&mut Rig::new(&built.elf).unwrap());
+    is_a_plain_adapter(&mut ElfCm5::new(&built.elf).unwrap());
 }
 
 #[test]
 fn the_elf_lets_the_robot_down() {
     let Some(built) = built() else { return };
-    lets_down(&mut Rig::new(&built.elf).unwrap(), 5);
+    lets_down(&mut ElfCm5::new(&built.elf).unwrap(), 5);
 }
 
 #[test]
 fn the_elf_reads_the_gyro() {
     let Some(built) = built() else { return };
-    let mut rig = Rig::new(&built.elf).unwrap();
-    Bench::run_ms(&mut rig, 10.0);
-    rig.type_bytes(&[0]);
-    Bench::say(&mut rig, &Command::Hello { version: VERSION });
-    Bench::run_ms(&mut rig, 20.0);
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    rig.run_ms(10.0);
+    rig.send_bytes(&[0]);
+    rig.send(&Command::Hello { version: VERSION });
+    rig.run_ms(20.0);
     for millivolts in [0, 1250, 2500, 3700, 5000] {
         rig.core.adc(3, millivolts);
-        Bench::run_ms(&mut rig, 5.0);
-        Bench::forget(&mut rig);
-        rig.type_bytes(&[0]);
-        Bench::say(&mut rig, &Command::Ask(Subject::Telemetry));
-        Bench::run_ms(&mut rig, 30.0);
+        rig.run_ms(5.0);
+        rig.clear();
+        rig.send_bytes(&[0]);
+        rig.send(&Command::Ask(Subject::Telemetry));
+        rig.run_ms(30.0);
         let told = rig
             .reports()
             .into_iter()
@@ -159,10 +159,10 @@ fn the_elf_reads_the_gyro() {
 #[test]
 fn the_elf_hears_its_buttons() {
     let Some(built) = built() else { return };
-    let mut rig = Rig::new(&built.elf).unwrap();
-    Bench::run_ms(&mut rig, 10.0);
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    rig.run_ms(10.0);
     rig.core.pin('D', 0, false);
-    Bench::run_ms(&mut rig, 50.0);
+    rig.run_ms(50.0);
     assert_eq!(condition(&mut rig), Some(Condition::Balance), "Start");
     rig.core.pin('D', 0, true);
     // Each of the others stops.
@@ -171,12 +171,12 @@ fn the_elf_hears_its_buttons() {
         assert!(rig.bus.any_torque());
         rig.core.pin('E', pin, false);
         for _ in 0..5 {
-            Bench::say(&mut rig, &Command::KeepAlive);
-            Bench::run_ms(&mut rig, 10.0);
+            rig.send(&Command::KeepAlive);
+            rig.run_ms(10.0);
         }
         assert!(!rig.bus.any_torque(), "PE{pin}");
         rig.core.pin('E', pin, true);
-        Bench::run_ms(&mut rig, 50.0);
+        rig.run_ms(50.0);
     }
 }
 
@@ -184,7 +184,7 @@ fn the_elf_hears_its_buttons() {
 fn the_elf_restarts_when_it_hangs() {
     let Some(built) = built() else { return };
     let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let mut rig = Rig::new(&built.elf).unwrap();
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
     let mut worst = Worst::default();
     (0..10).for_each(|_| worst.add(hang(&mut rig, &mut rng)));
     assert!(worst.failed == 0 && worst.off_ms <= 150.0, "{worst:?}");

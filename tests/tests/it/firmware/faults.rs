@@ -1,6 +1,6 @@
 //! Servos that give up, and servos of one id.
 
-use handstand::bus_sim::{Bus, Servo};
+use handstand_cm5_sim::{Bus, Servo};
 use handstand_shared::control_table::{MOVING_SPEED, TORQUE_ENABLE};
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::*;
@@ -41,18 +41,18 @@ impl GivesUp {
 }
 
 fn asked<T>(
-    bench: &mut impl Bench,
+    bench: &mut impl SimulatedCm5,
     subject: Subject,
     kind: impl Fn(Report) -> Option<T>,
 ) -> Option<T> {
-    bench.forget();
-    bench.say(&Command::Ask(subject));
+    bench.clear();
+    bench.send(&Command::Ask(subject));
     bench.run_ms(60.0);
     let mut reports = bench.reports().into_iter();
     reports.find_map(|(_, report)| kind(report))
 }
 
-fn limp(bench: &mut impl Bench) -> Option<Limp> {
+fn limp(bench: &mut impl SimulatedCm5) -> Option<Limp> {
     let telemetry = asked(bench, Subject::Telemetry, |report| match report {
         Report::Telemetry(telemetry) => Some(telemetry),
         _ => None,
@@ -61,7 +61,7 @@ fn limp(bench: &mut impl Bench) -> Option<Limp> {
 }
 
 /// Conditions in the order they were reported, each once.
-fn conditions(bench: &impl Bench) -> Vec<Condition> {
+fn conditions(bench: &impl SimulatedCm5) -> Vec<Condition> {
     let of_stream = |(_, report)| match report {
         Report::Stream(report) => Some(report.condition),
         _ => None,
@@ -72,13 +72,19 @@ fn conditions(bench: &impl Bench) -> Vec<Condition> {
 }
 
 /// From the blow on the host goes on speaking: torque falls in all, and never comes back to who gave up.
-fn is_let_down(bench: &mut impl Bench, id: u8, way: GivesUp, armed: Condition, say: &Command) {
-    bench.forget();
+fn is_let_down(
+    bench: &mut impl SimulatedCm5,
+    id: u8,
+    way: GivesUp,
+    armed: Condition,
+    say: &Command,
+) {
+    bench.clear();
     way.strike(bench.bus().servo(id).expect("18 servos"));
     let struck_ms = bench.now_ms();
     let mut held_ms = 0.0;
     while bench.bus().any_torque() {
-        bench.say(say);
+        bench.send(say);
         for _ in 0..10 {
             bench.run_ms(1.0);
             let after_ms = bench.now_ms() - struck_ms;
@@ -110,11 +116,11 @@ fn is_let_down(bench: &mut impl Bench, id: u8, way: GivesUp, armed: Condition, s
     assert_eq!(limp(bench), Some(Limp { id, error }), "{way:?}");
 }
 
-pub fn a_servo_gives_up_while_streaming(bench: &mut impl Bench, way: GivesUp) {
+pub fn a_servo_gives_up_while_streaming(bench: &mut impl SimulatedCm5, way: GivesUp) {
     arm(bench);
     let goals = Command::Goals(Positions::pack([530; SERVOS]));
     for _ in 0..5 {
-        bench.say(&goals);
+        bench.send(&goals);
         bench.run_ms(10.0);
     }
     assert_eq!(limp(bench), None);
@@ -125,7 +131,7 @@ pub fn a_servo_gives_up_while_streaming(bench: &mut impl Bench, way: GivesUp) {
     assert_eq!(limp(bench), None, "{way:?}");
 }
 
-pub fn a_servo_gives_up_while_balancing(bench: &mut impl Bench, way: GivesUp) {
+pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: GivesUp) {
     let (_, plan) = plan();
     arm_balance(bench, &plan).expect("armed");
     // The hip's mirror: nobody reads its angle.
@@ -142,7 +148,7 @@ fn with_twin(id: u8) -> Bus {
     Bus::new((1..=18).chain([id]))
 }
 
-pub fn twins_cost_their_own_slot_only(bench: &mut impl Bench) {
+pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
     *bench.bus() = with_twin(5);
     let run = stream(bench, 2.0);
     assert_eq!((run.lost, run.bad_frames), (0, 0));
@@ -173,7 +179,7 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl Bench) {
     assert_eq!(counted.missed[3..6].iter().filter(|n| **n > 0).count(), 1);
 }
 
-pub fn twins_do_not_balance(bench: &mut impl Bench, id: u8) {
+pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {
     let (_, plan) = plan();
     *bench.bus() = with_twin(id);
     match arm_balance(bench, &plan) {
@@ -185,7 +191,7 @@ pub fn twins_do_not_balance(bench: &mut impl Bench, id: u8) {
 }
 
 /// A servo that is plugged in while the robot balances.
-pub fn a_twin_ends_balancing(bench: &mut impl Bench, id: u8) {
+pub fn a_twin_ends_balancing(bench: &mut impl SimulatedCm5, id: u8) {
     let (_, plan) = plan();
     *bench.bus() = with_twin(id);
     set_twin(bench.bus(), id, true);
@@ -194,10 +200,10 @@ pub fn a_twin_ends_balancing(bench: &mut impl Bench, id: u8) {
     stops_balancing(bench, id);
 }
 
-fn stops_balancing(bench: &mut impl Bench, id: u8) {
-    bench.forget();
+fn stops_balancing(bench: &mut impl SimulatedCm5, id: u8) {
+    bench.clear();
     for _ in 0..20 {
-        bench.say(&Command::Attitude(Attitude::default()));
+        bench.send(&Command::Attitude(Attitude::default()));
         bench.run_ms(10.0);
     }
     assert!(!bench.bus().any_torque(), "servo {id}");
@@ -213,26 +219,26 @@ fn set_twin(bus: &mut Bus, id: u8, is_dead: bool) {
 #[test]
 fn a_servo_that_gives_up_lets_the_streaming_robot_down() {
     for way in WAYS {
-        a_servo_gives_up_while_streaming(&mut PcRig::new(), way);
+        a_servo_gives_up_while_streaming(&mut VirtualCm5::new(), way);
     }
 }
 
 #[test]
 fn a_servo_that_gives_up_lets_the_balancing_robot_down() {
     for way in WAYS {
-        a_servo_gives_up_while_balancing(&mut PcRig::new(), way);
+        a_servo_gives_up_while_balancing(&mut VirtualCm5::new(), way);
     }
 }
 
 #[test]
 fn two_servos_of_one_id_cost_their_own_slot_only() {
-    twins_cost_their_own_slot_only(&mut PcRig::new());
+    twins_cost_their_own_slot_only(&mut VirtualCm5::new());
 }
 
 #[test]
 fn two_servos_of_one_id_do_not_balance() {
     for id in [1, 2, 11, 12] {
-        twins_do_not_balance(&mut PcRig::new(), id);
-        a_twin_ends_balancing(&mut PcRig::new(), id);
+        twins_do_not_balance(&mut VirtualCm5::new(), id);
+        a_twin_ends_balancing(&mut VirtualCm5::new(), id);
     }
 }

@@ -15,9 +15,9 @@ use handstand_shared::message::*;
 use handstand_tests::bench::*;
 
 /// What it says against a command; nothing if it obeys.
-fn refused(rig: &mut PcRig, command: Command) -> Option<Refusal> {
-    rig.forget();
-    let sequence = rig.say(&command);
+fn refused(rig: &mut VirtualCm5, command: Command) -> Option<Refusal> {
+    rig.clear();
+    let sequence = rig.send(&command);
     rig.run_ms(30.0);
     rig.reports()
         .into_iter()
@@ -28,9 +28,9 @@ fn refused(rig: &mut PcRig, command: Command) -> Option<Refusal> {
 }
 
 /// Greets it.
-fn greet(rig: &mut PcRig) -> Hello {
-    rig.forget();
-    rig.say(&Command::Hello { version: VERSION });
+fn greet(rig: &mut VirtualCm5) -> Hello {
+    rig.clear();
+    rig.send(&Command::Hello { version: VERSION });
     rig.run_ms(20.0);
     let hello = rig
         .reports()
@@ -43,8 +43,8 @@ fn greet(rig: &mut PcRig) -> Hello {
 }
 
 /// What the last report of a tick says.
-fn condition(bench: &mut impl Bench) -> Option<Condition> {
-    bench.forget();
+fn condition(bench: &mut impl SimulatedCm5) -> Option<Condition> {
+    bench.clear();
     bench.run_ms(30.0);
     let last = bench.reports().into_iter().rev();
     last.filter_map(|(_, report)| match report {

@@ -4,7 +4,7 @@ use handstand_tests::bench::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-pub fn lets_down(bench: &mut impl Bench, times: usize) {
+pub fn lets_down(bench: &mut impl SimulatedCm5, times: usize) {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut worst = Worst::default();
     (0..times).for_each(|_| worst.add(link_loss(bench, &mut rng)));
@@ -14,12 +14,12 @@ pub fn lets_down(bench: &mut impl Bench, times: usize) {
 
 #[test]
 fn a_silent_link_lets_the_robot_down() {
-    lets_down(&mut PcRig::new(), 20);
+    lets_down(&mut VirtualCm5::new(), 20);
 }
 
 #[test]
 fn the_first_thing_on_the_bus_is_torque_off() {
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     assert!(
         rig.board.bus.torque_offs[0] < 200_000,
         "{:?} ns",

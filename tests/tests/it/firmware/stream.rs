@@ -7,7 +7,7 @@ use handstand_shared::packed::{Positions, SERVOS};
 use handstand_tests::bench::*;
 
 /// Streams for three seconds: every cycle of 10 ms, nothing lost, the servos where they were sent.
-pub fn streams(bench: &mut impl Bench) {
+pub fn streams(bench: &mut impl SimulatedCm5) {
     let run = stream(bench, 3.0);
     assert_eq!((run.lost, run.missing, run.bad_frames), (0, 0, 0));
     let (least, most) = (run.cycles_ms[0], run.cycles_ms[run.cycles_ms.len() - 1]);
@@ -22,12 +22,12 @@ pub fn streams(bench: &mut impl Bench) {
 
 #[test]
 fn eighteen_servos_stream_at_100_hz() {
-    streams(&mut PcRig::new());
+    streams(&mut VirtualCm5::new());
 }
 
 #[test]
 fn a_dead_servo_costs_its_own_slot_only() {
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     rig.bus().servo(7).unwrap().faults.dead = true;
     let run = stream(&mut rig, 1.0);
     assert_eq!(run.lost, 0);
@@ -40,14 +40,14 @@ fn a_dead_servo_costs_its_own_slot_only() {
 
 #[test]
 fn garbled_late_and_strange_answers_are_counted_and_asked_for_again() {
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     rig.bus().servo(3).unwrap().faults.flip = 0.2;
     rig.bus().servo(5).unwrap().faults.wrong_id = 0.2;
     rig.bus().servo(9).unwrap().faults.drop = 0.2;
     let run = stream(&mut rig, 3.0);
     assert_eq!(run.lost, 0);
-    rig.forget();
-    rig.say(&Command::Ask(Subject::Statistics));
+    rig.clear();
+    rig.send(&Command::Ask(Subject::Statistics));
     rig.run_ms(30.0);
     let counted = rig.reports().into_iter().find_map(|(_, r)| match r {
         Report::Statistics(statistics) => Some(statistics),
@@ -68,16 +68,16 @@ fn garbled_late_and_strange_answers_are_counted_and_asked_for_again() {
 
 #[test]
 fn goals_move_nothing_before_arming_and_jump_nowhere_after() {
-    let mut rig = PcRig::new();
+    let mut rig = VirtualCm5::new();
     greet(&mut rig);
-    rig.say(&Command::Mode(Mode::Stream));
+    rig.send(&Command::Mode(Mode::Stream));
     for _ in 0..30 {
-        rig.say(&Command::Goals(Positions::pack([900; SERVOS])));
+        rig.send(&Command::Goals(Positions::pack([900; SERVOS])));
         rig.run_ms(10.0);
     }
     assert!(!rig.bus().any_torque());
     arm(&mut rig);
-    rig.say(&Command::Goals(Positions::pack([1023; SERVOS])));
+    rig.send(&Command::Goals(Positions::pack([1023; SERVOS])));
     rig.run_ms(12.0);
     let goal = rig.bus().servo(1).unwrap().get(GOAL_POSITION);
     assert!(

@@ -1,0 +1,117 @@
+//! Serial ports of simulated devices, in simulated time: nothing waits, the same requests get the same replies.
+
+use super::bus::Bus;
+use super::cm5::VirtualCm5;
+use super::host_board::HostBoard;
+use handstand_firmware::design::LINK_BAUD;
+use std::time::Duration;
+
+/// The serial port of a simulated device.
+pub trait SimulatedPort: Send {
+    /// Name for the user.
+    fn name(&self) -> &'static str;
+    /// Speed of the PC's end, baud.
+    fn baud(&self) -> u32;
+    /// Set the speed of the PC's end, baud.
+    fn set_baud(&mut self, baud: u32);
+    /// Send bytes to the device.
+    fn send(&mut self, bytes: &[u8]);
+    /// Wait at most `wait` for bytes from the device; returns how many arrived.
+    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> usize;
+    /// Discard bytes that arrived and were not received.
+    fn clear(&mut self);
+    /// Simulated time since power-on.
+    fn now(&self) -> Duration;
+    /// Let simulated time pass.
+    fn pause(&mut self, time: Duration);
+    /// The longest a byte may be late beyond the line's own time.
+    fn latency(&self) -> Duration;
+}
+
+/// The PC line of a CM-5 that runs the firmware's logic in process.
+#[derive(Debug)]
+pub struct Cm5Port {
+    cm5: VirtualCm5,
+    baud: u32,
+}
+
+impl Cm5Port {
+    /// Power on a CM-5 in front of these servos.
+    pub fn new(bus: Bus) -> Self {
+        Cm5Port {
+            cm5: VirtualCm5::start(HostBoard::new(bus)),
+            baud: LINK_BAUD,
+        }
+    }
+
+    fn run(&mut self, time: Duration, until_byte: bool) {
+        let VirtualCm5 { board, app, .. } = &mut self.cm5;
+        board.run(app, board.now_ns() + nanoseconds(time), until_byte);
+    }
+
+    fn is_understood(&self) -> bool {
+        (f64::from(self.baud) / f64::from(LINK_BAUD) - 1.0).abs() < 0.03
+    }
+}
+
+impl SimulatedPort for Cm5Port {
+    fn name(&self) -> &'static str {
+        "sim-cm5"
+    }
+
+    fn baud(&self) -> u32 {
+        self.baud
+    }
+
+    fn set_baud(&mut self, baud: u32) {
+        self.baud = baud.max(1);
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        if self.is_understood() {
+            self.cm5.board.send_bytes(bytes);
+        }
+    }
+
+    fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> usize {
+        self.run(wait, true);
+        let count = fill(bytes, || self.cm5.board.take());
+        if self.is_understood() { count } else { 0 }
+    }
+
+    fn clear(&mut self) {
+        while self.cm5.board.take().is_some() {}
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_nanos(self.cm5.board.now_ns())
+    }
+
+    fn pause(&mut self, time: Duration) {
+        self.run(time, false);
+    }
+
+    fn latency(&self) -> Duration {
+        Duration::from_millis(1)
+    }
+}
+
+/// Fill `bytes` with those that are taken; returns how many.
+pub(super) fn fill(bytes: &mut [u8], mut take: impl FnMut() -> Option<(u64, u8)>) -> usize {
+    let mut count = 0;
+    for slot in bytes {
+        let Some((_, byte)) = take() else {
+            break;
+        };
+        *slot = byte;
+        count += 1;
+    }
+    count
+}
+
+/// At most a quarter of all the time there is, so that sums do not overflow.
+pub(super) fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos())
+        .unwrap_or(u64::MAX)
+        .min(u64::MAX / 4)
+}

@@ -1,0 +1,221 @@
+//! A simulated bus as text: `ids=1-18,delay=0,dead=3,robot=MODEL.toml,joints=1+2/11+12,start=hanging`.
+
+use super::bus::Bus;
+use super::fault::Faults;
+use super::plant::Start;
+use handstand_shared::control_table::{BAUD, RETURN_DELAY, Register, STATUS_LEVEL};
+use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with factory settings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BusSpec {
+    /// Ids of the servos.
+    pub ids: Vec<u8>,
+    /// The robot on them.
+    pub robot: Option<RobotSpec>,
+    registers: Vec<(Register, u16)>,
+    drop: f64,
+    flip: f64,
+    late: f64,
+    wrong_id: f64,
+    echo: bool,
+    dead: Vec<u8>,
+    hot: Vec<u8>,
+    overload: Vec<u8>,
+    jam: Vec<u8>,
+    corrupt_request: f64,
+    supply_v: f64,
+    seed: u64,
+}
+
+/// A robot on simulated servos.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RobotSpec {
+    /// Its model file.
+    pub model: PathBuf,
+    /// Servos of each driven joint, from the base outwards; without it those of the Bioloid's shoulders and hips, or
+    /// servo 1 where only one joint is driven.
+    pub joints: Option<Vec<Vec<u8>>>,
+    /// Initial pose.
+    pub start: Start,
+}
+
+/// Text that describes no simulated bus.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SpecError {
+    /// A key that does not exist.
+    #[error("`{0}` is no key of a simulated bus; there are: {KEYS}")]
+    UnknownKey(String),
+    /// A list of ids that names none.
+    #[error("`{0}` names no ids: {ID_LIST_SYNTAX}")]
+    Ids(String),
+    /// A value outside its range.
+    #[error("{key}={value}: give {expected}")]
+    Value {
+        /// The key.
+        key: String,
+        /// The value found.
+        value: String,
+        /// What the key takes.
+        expected: String,
+    },
+    /// Keys of a robot without its model.
+    #[error("joints and start are a robot's: name its model, robot=MODEL.toml")]
+    NoModel,
+}
+
+const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
+                    dead, hot, overload, jam, supply, robot, joints, start, seed";
+
+impl Default for BusSpec {
+    fn default() -> Self {
+        BusSpec {
+            ids: (1..=18).collect(),
+            robot: None,
+            registers: vec![(RETURN_DELAY, RETURN_DELAY.default)],
+            drop: 0.0,
+            flip: 0.0,
+            late: 0.0,
+            wrong_id: 0.0,
+            echo: false,
+            dead: Vec::new(),
+            hot: Vec::new(),
+            overload: Vec::new(),
+            jam: Vec::new(),
+            corrupt_request: 0.0,
+            supply_v: 11.1,
+            seed: 1,
+        }
+    }
+}
+
+impl BusSpec {
+    /// The bus it describes, without the robot.
+    pub fn bus(&self) -> Bus {
+        let mut bus = Bus::new(self.ids.iter().copied());
+        for (place, servo) in (0..).zip(&mut bus.servos) {
+            let id = servo.id();
+            for (register, code) in &self.registers {
+                servo.set(*register, *code);
+            }
+            let mut faults = Faults::none(self.seed << 8 | place);
+            faults.dead = self.dead.contains(&id);
+            faults.drop = self.drop;
+            faults.flip = self.flip;
+            faults.late = self.late;
+            faults.wrong_id = self.wrong_id;
+            faults.corrupt_request = self.corrupt_request;
+            faults.echo = self.echo;
+            servo.faults = faults;
+            servo.supply_v = self.supply_v;
+            servo.jammed = self.jam.contains(&id);
+            if self.overload.contains(&id) {
+                servo.overload();
+            }
+            if self.hot.contains(&id) {
+                servo.temperature = 85.0;
+            }
+        }
+        bus
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), SpecError> {
+        let wrong = |expected: &str| SpecError::Value {
+            key: key.into(),
+            value: value.into(),
+            expected: expected.into(),
+        };
+        let number = |most: f64| {
+            let number = value.parse().ok();
+            let number = number.filter(|number| (0.0..=most).contains(number));
+            number.ok_or_else(|| wrong(&format!("a number from 0 to {most}")))
+        };
+        let code = |most: u16| {
+            let code = value.parse().ok().filter(|code| *code <= most);
+            code.ok_or_else(|| wrong(&format!("a code from 0 to {most}")))
+        };
+        match key {
+            "ids" => self.ids = id_list(value)?,
+            "delay" => self.registers.push((RETURN_DELAY, code(254)?)),
+            "level" => self.registers.push((STATUS_LEVEL, code(2)?)),
+            "baud" => self.registers.push((BAUD, code(254)?)),
+            "drop" => self.drop = number(1.0)?,
+            "flip" => self.flip = number(1.0)?,
+            "late" => self.late = number(1.0)?,
+            "wrong_id" => self.wrong_id = number(1.0)?,
+            "corrupt_request" => self.corrupt_request = number(1.0)?,
+            "echo" => self.echo = true,
+            "dead" => self.dead = id_list(value)?,
+            "hot" => self.hot = id_list(value)?,
+            "overload" => self.overload = id_list(value)?,
+            "jam" => self.jam = id_list(value)?,
+            "supply" => self.supply_v = number(20.0)?,
+            "seed" => self.seed = value.parse().map_err(|_| wrong("a whole number"))?,
+            "robot" => self.robot.get_or_insert_default().model = value.into(),
+            "joints" => {
+                let joints = value.split('/').map(id_list).collect::<Result<_, _>>()?;
+                self.robot.get_or_insert_default().joints = Some(joints);
+            }
+            "start" => {
+                self.robot.get_or_insert_default().start = match value {
+                    "hanging" => Start::Hanging,
+                    "upright" => Start::Upright,
+                    _ => return Err(wrong("hanging or upright")),
+                }
+            }
+            _ => return Err(SpecError::UnknownKey(key.into())),
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for BusSpec {
+    type Err = SpecError;
+
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let mut spec = BusSpec::default();
+        for part in text.split(',').filter(|part| !part.is_empty()) {
+            let (key, value) = part.split_once('=').unwrap_or((part, ""));
+            spec.set(key, value)?;
+        }
+        match &spec.robot {
+            Some(robot) if robot.model.as_os_str().is_empty() => Err(SpecError::NoModel),
+            _ => Ok(spec),
+        }
+    }
+}
+
+fn id_list(text: &str) -> Result<Vec<u8>, SpecError> {
+    let ids: Option<_> = ids(text).collect();
+    ids.ok_or_else(|| SpecError::Ids(text.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_read_and_errors_are_named() {
+        let spec: BusSpec = "ids=1-3+7,delay=0,dead=2,echo,drop=0.5".parse().unwrap();
+        assert_eq!(spec.ids, [1, 2, 3, 7]);
+        assert!(spec.echo && spec.dead == [2] && spec.drop == 0.5);
+        let bus = spec.bus();
+        assert_eq!(bus.servos[3].get(RETURN_DELAY), 0);
+        assert!(bus.servos[1].faults.dead && !bus.servos[0].faults.dead);
+        assert_eq!("".parse(), Ok(BusSpec::default()));
+        for (wrong, said) in [
+            ("idz=1", "`idz`"),
+            ("ids=5-2", "1-18"),
+            ("ids=254", "253"),
+            ("drop=2", "0 to 1"),
+            ("delay=255", "254"),
+            ("joints=1+2", "robot=MODEL.toml"),
+            ("robot=a.toml,start=lying", "hanging or upright"),
+        ] {
+            let error = wrong.parse::<BusSpec>().unwrap_err().to_string();
+            assert!(error.contains(said), "{wrong}: {error}");
+        }
+    }
+}

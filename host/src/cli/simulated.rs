@@ -1,0 +1,42 @@
+//! Simulated ports: servos behind an adapter or behind a CM-5 (feature `virtual-cm5`).
+
+use super::port::AnyLink;
+use handstand::Result;
+#[cfg(feature = "virtual-cm5")]
+use handstand::virtual_cm5::{AdapterPort, Bus, Cm5Port, SimLink, set_up, spec};
+
+/// Opens the simulated port that `text` describes, a CM-5's or an adapter's.
+///
+/// # Errors
+/// The text describes no bus, or its robot does not fit.
+#[cfg(feature = "virtual-cm5")]
+pub fn open(text: &str, is_cm5: bool) -> Result<AnyLink> {
+    Ok(link(set_up(&spec(text)?)?, is_cm5))
+}
+
+/// The port of a CM-5 in front of this bus, or of an adapter on it.
+#[cfg(feature = "virtual-cm5")]
+pub fn link(bus: Bus, is_cm5: bool) -> AnyLink {
+    match is_cm5 {
+        true => Box::new(SimLink(Cm5Port::new(bus))),
+        false => Box::new(SimLink(AdapterPort::new(bus))),
+    }
+}
+
+/// Refuses: this program was built without the feature.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "virtual-cm5"))]
+pub fn open(_text: &str, _is_cm5: bool) -> Result<AnyLink> {
+    Err(absent())
+}
+
+/// The error of a program without simulated servos.
+#[cfg(not(feature = "virtual-cm5"))]
+pub fn absent() -> handstand::Error {
+    handstand::Error::usage(
+        "this program was built without simulated servos",
+        "build it with the cargo feature `virtual-cm5`, which is on by default",
+    )
+}

@@ -1,0 +1,114 @@
+//! A model as the robot on simulated servos.
+
+use crate::error::{Error, Result};
+use crate::model::{Drive, Model, Motor};
+use crate::sim::{Live, hanging};
+use crate::synth::upright;
+use handstand_cm5_sim::{Bus, BusSpec, Plant, Robot, RobotSpec, Start};
+
+/// Torque of a joint at full duty cycle, N m, where the model states none: the paper's limit.
+const FULL_NM: f64 = 2.0;
+
+/// Parse the description of a simulated bus.
+///
+/// # Errors
+/// [`Error::Usage`] with the key and what it takes.
+pub fn spec(text: &str) -> Result<BusSpec> {
+    let wrong = |error: handstand_cm5_sim::SpecError| {
+        Error::usage(error.to_string(), "such as sim:ids=1-3,delay=0,dead=2")
+    };
+    text.parse().map_err(wrong)
+}
+
+/// The bus that `spec` describes, with its robot.
+///
+/// # Errors
+/// The robot's model cannot be read or does not fit, or it needs servos that are not there.
+pub fn set_up(spec: &BusSpec) -> Result<Bus> {
+    let mut bus = spec.bus();
+    if let Some(robot) = &spec.robot {
+        bus.attach(self::robot(robot, &spec.ids)?);
+    }
+    Ok(bus)
+}
+
+fn robot(spec: &RobotSpec, ids: &[u8]) -> Result<Robot> {
+    let model = Model::load(&spec.model)?;
+    let driven: Vec<usize> = (0..model.joints.len())
+        .filter(|at| model.joints[*at].drive.is_driven())
+        .collect();
+    let servos = match (&spec.joints, driven.len()) {
+        (Some(joints), _) => joints.clone(),
+        (None, 1) => vec![vec![1]],
+        (None, 2) => vec![vec![1, 2], vec![11, 12]],
+        (None, _) => Vec::new(),
+    };
+    let absent = servos.iter().flatten().find(|id| !ids.contains(id));
+    if let Some(id) = absent {
+        return Err(Error::usage(
+            format!("the robot hangs on servo {id}, which is not there"),
+            "name the servos of each driven joint: joints=1+2/11+12",
+        ));
+    }
+    if driven.len() != servos.len() {
+        return Err(Error::usage(
+            format!(
+                "`{}` has {} driven joints, and servos are given for {}",
+                model.name,
+                driven.len(),
+                servos.len()
+            ),
+            "say which servos move each, from the base outwards: joints=1+2/11+12",
+        ));
+    }
+    let angle_rad = match spec.start {
+        Start::Hanging => hanging(&model),
+        Start::Upright => upright(&model),
+    };
+    let live = Live::new(&with_motors(model), &angle_rad)?;
+    Ok(Robot::new(Box::new(live), driven.into_iter().zip(servos)))
+}
+
+/// A joint driven by a torque gets a motor with the paper's limit.
+fn with_motors(mut model: Model) -> Model {
+    for joint in &mut model.joints {
+        if joint.drive == Drive::Torque {
+            joint.drive = Drive::Duty(Motor {
+                stall_torque_nm: FULL_NM,
+                no_load_speed_rad_s: f64::INFINITY,
+                nominal_supply_v: None,
+            });
+        }
+    }
+    model
+}
+
+impl Plant for Live {
+    fn joint_count(&self) -> usize {
+        Live::joint_count(self)
+    }
+
+    fn delay_s(&self, joint: usize) -> f64 {
+        Live::delay_s(self, joint)
+    }
+
+    fn set_duty(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
+        self.command(joint, duty, supply_v);
+    }
+
+    fn advance(&mut self, span_s: f64) {
+        Live::advance(self, span_s);
+    }
+
+    fn angle_rad(&self, joint: usize) -> f64 {
+        Live::angle_rad(self, joint)
+    }
+
+    fn speed_rad_s(&self, joint: usize) -> f64 {
+        Live::speed_rad_s(self, joint)
+    }
+
+    fn shaft(&self, joint: usize) -> (f64, f64) {
+        Live::shaft(self, joint)
+    }
+}
