@@ -1,4 +1,4 @@
-//! Good logs and models, mutated: the program refuses or runs, and never panics.
+//! Good logs, models and arguments, mutated: the program refuses or runs, and never panics.
 
 use crate::common::{Bench, MODEL};
 use rand::seq::IndexedRandom as _;
@@ -150,6 +150,40 @@ fn mutated_models_are_refused_or_used() {
         survives(
             &bench,
             "fit bad.toml short.csv --free link1.com_m -o new.toml --force",
+            case,
+        );
+    }
+}
+
+#[test]
+fn mutated_number_lists_are_refused_or_used() {
+    let bench = Bench::new();
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
+    let lists = [
+        ("--q", "100,100,100,1,1,1"),
+        ("--r", "1,2.5"),
+        ("--pose", "1.57,0,0"),
+        ("--range", "0.5,0.5,0.5,10,10,10"),
+        ("--limit", "2,2"),
+    ];
+    for case in 0..CASES {
+        let mut random = ChaCha8Rng::seed_from_u64(2000 + case);
+        let (option, list) = lists[case as usize % lists.len()];
+        let bad = match case % 2 {
+            0 => mutated(list, &mut random),
+            _ => renumbered(list, &mut random),
+        };
+        // The words of a line are parted by spaces, and no argument can hold a zero.
+        let bad: String = String::from_utf8_lossy(&bad)
+            .chars()
+            .filter(|c| !c.is_whitespace() && *c != '\0')
+            .collect();
+        survives(
+            &bench,
+            &format!("gains handstand.toml {option}={bad} --quiet"),
             case,
         );
     }

@@ -208,7 +208,7 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
 #[test]
 fn effects_without_a_derivative_are_left_out_and_listed() {
     let bench = bench();
-    bench.put("robot.toml", include_str!("../models/robot.toml"));
+    bench.put("robot.toml", include_str!("../../models/robot.toml"));
     let ran = bench.run("gains robot.toml --rust gains.rs");
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let said =

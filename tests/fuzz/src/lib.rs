@@ -34,6 +34,7 @@ pub const TARGETS: &[Target] = &[
     target("plan", targets::wire::plan),
     target("recording_csv", targets::files::recording_csv),
     target("recording_mcap", targets::files::recording_mcap),
+    target("seal", targets::files::seal),
     target("settings", targets::files::settings),
     target("study", targets::files::study),
 ];

@@ -1,12 +1,13 @@
 //! Arguments of the command line that are more than one word or number.
 
 use super::text;
-use handstand::link::{SimWords, ids};
 use handstand::log::LogRequest;
 use handstand::model::ParameterPath;
 use handstand::study::Shard;
+use handstand::sysid::structures;
+use handstand::virtual_cm5::BusSpec;
 
-/// Logs with rows, parameters, shards, servo lists, the words of a simulated bus.
+/// Logs with rows, parameters, shards, black-box structures, the words of a simulated bus.
 pub(crate) fn run(bytes: &[u8]) {
     let Some(text) = text(bytes) else {
         return;
@@ -19,8 +20,8 @@ pub(crate) fn run(bytes: &[u8]) {
         assert_eq!(again.ok(), Some(path), "{text}");
     }
     let _ = text.parse::<Shard>();
-    let _ = ids(text);
-    if let Ok(words) = text.parse::<SimWords>() {
+    let _ = structures(text);
+    if let Ok(words) = text.parse::<BusSpec>() {
         let _ = words.bus();
     }
 }

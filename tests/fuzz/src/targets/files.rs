@@ -78,6 +78,13 @@ pub(crate) fn settings(bytes: &[u8]) {
     }
 }
 
+/// The sealed answer of a challenge.
+pub(crate) fn seal(bytes: &[u8]) {
+    if let Some(text) = text(bytes) {
+        let _ = handstand::challenge::unseal(text, Path::new("answer.sealed"));
+    }
+}
+
 /// What is accepted is flashed byte for byte.
 pub(crate) fn image(bytes: &[u8]) {
     with_file("image.bin", bytes, |path| {

@@ -36,7 +36,7 @@ pub(crate) fn edit(bytes: &[u8]) {
     let instance = EffectInstance {
         effect,
         joint: (sum % 3 > 0).then_some(0),
-        values: (effect.card().parameters.iter())
+        values: (effect.info().parameters.iter())
             .map(|p| p.starts[0])
             .collect(),
     };
