@@ -2,6 +2,9 @@
 
 use handstand::diagnose::Verdict;
 
+#[path = "../../examples/closed_loop.rs"]
+#[allow(dead_code)] // its `main` is run by people
+mod closed_loop;
 #[path = "../../examples/compare.rs"]
 #[allow(dead_code)] // its `main` is run by people
 mod compare;
@@ -37,4 +40,12 @@ fn the_gains_place_every_pole_within_the_unit_circle() {
     let slowest = design.gains.poles[0].norm();
     assert!(slowest < 1.0, "{slowest}");
     assert!(design.fixed.is_some());
+}
+
+#[test]
+fn the_loop_is_held_from_near_and_lost_from_afar() {
+    let near = closed_loop::held_from(0.5).unwrap();
+    assert!(near.stabilised, "{near:?}");
+    let far = closed_loop::held_from(20.0).unwrap();
+    assert!(far.fell_s.is_some(), "{far:?}");
 }

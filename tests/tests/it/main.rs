@@ -1,5 +1,6 @@
-//! Benchmarks sampled, the firmware run. One test program: each more would link the library again.
+//! Benchmarks sampled, the firmware run, the guides followed. One test program: each more would link the library again.
 
+mod contributing;
 #[cfg(all(unix, simavr))]
 mod deploy;
 mod firmware;
