@@ -8,6 +8,8 @@
 //! $ handstand demo -o bench
 //! ```
 //!
+//! Without `-o` the folder is a new one among the system's temporary files; its place is said first.
+//!
 //! `--json` prints what `handstand challenge score --json` prints.
 
 use super::talk::Talk;
@@ -20,9 +22,9 @@ use std::path::PathBuf;
 /// Watch the whole loop on a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder to make
-    #[arg(long, short, value_name = "DIR", default_value = "handstand-demo")]
-    output: PathBuf,
+    /// Folder to make [default: a new one among the temporary files]
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Seed of the bench
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -33,9 +35,14 @@ pub struct Args {
 
 /// Runs the loop.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let at = |name: &str| args.output.join(name).to_string_lossy().into_owned();
+    let output = match &args.output {
+        Some(output) => output.clone(),
+        None => temporary()?,
+    };
+    talk.say(&format!("Everything is written to {}", output.display()));
+    let at = |name: &str| output.join(name).to_string_lossy().into_owned();
     let (folder, nominal, model) = (
-        args.output.to_string_lossy(),
+        output.to_string_lossy(),
         at("nominal.toml"),
         at("model.toml"),
     );
@@ -91,7 +98,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     talk.say("\nThe answer:");
     announce(&["challenge", "score", &folder, &model], talk);
-    let score = handstand::challenge::score(&args.output, &Model::load(model.as_ref())?)?;
+    let score = handstand::challenge::score(&output, &Model::load(model.as_ref())?)?;
     if talk.json {
         talk.data(&score)?;
     } else {
@@ -99,6 +106,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
     talk.say(&format!("The page with the pictures: {page}"));
     Ok(Outcome::Done)
+}
+
+/// A place for a folder that nobody else uses; it stays for the user to look into.
+fn temporary() -> Result<PathBuf> {
+    let folder = tempfile::Builder::new().prefix("handstand-demo-").tempdir();
+    let refused = |error| Error::file(&std::env::temp_dir(), "write", error);
+    Ok(folder.map_err(refused)?.keep().join("bench"))
 }
 
 /// Says a command line and runs it.

@@ -249,7 +249,7 @@ fn drives(table: &Table<'_>, drives: &mut Drives) -> Result<()> {
 fn runs(table: &Table<'_>, study: &mut Study) -> Result<()> {
     table.only(&["count", "length_s", "start_rad", "fall_rad", "seed"])?;
     let judging = &mut study.judging;
-    if let Some(count) = table.whole("count", Limits::within(1.0, 1e12))? {
+    if let Some(count) = table.whole("count", Limits::within(1.0, 1e9))? {
         judging.runs = count as usize;
     }
     let seconds = &mut judging.seconds;

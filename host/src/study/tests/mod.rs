@@ -222,6 +222,15 @@ fn what_does_not_belong_together_is_not_merged() {
     );
     std::fs::write(path("d.journal"), "no journal\n").unwrap();
     assert_eq!(merge(&[path("d.journal")]).unwrap_err().exit_code(), 3);
+    // A damaged header may ask for more runs than there is memory to list the missing ones in.
+    let endless = Header {
+        runs: usize::MAX,
+        chunk: 1,
+        ..header(&one)
+    };
+    let line = serde_json::to_string(&endless).unwrap() + "\n";
+    std::fs::write(path("e.journal"), line).unwrap();
+    assert_eq!(merge(&[path("e.journal")]).unwrap_err().exit_code(), 3);
 }
 
 #[test]
