@@ -15,6 +15,11 @@ pub(crate) fn short(value: f64) -> String {
     plain(value, decimals(2 - power))
 }
 
+/// Bytes as hexadecimal text, as hashes are written.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// Four significant digits, for values that go on into a file or another command.
 pub fn exact(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {

@@ -30,7 +30,7 @@ use std::path::PathBuf;
 mod list;
 mod result;
 
-/// Try controllers under everything the robot does to them.
+/// Simulate controllers in closed loop with the robot's non-idealities.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file; without it, what there is

@@ -29,7 +29,7 @@ use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Find the longest delay each controller tolerates
+/// Find the delay margin of each controller.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

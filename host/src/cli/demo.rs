@@ -15,6 +15,7 @@
 use super::talk::Talk;
 use super::{Cli, Command, Outcome, challenge, diagnose};
 use clap::Parser as _;
+use handstand::diagnose::FittedEffect;
 use handstand::{Error, Model, Result};
 use std::path::PathBuf;
 
@@ -27,7 +28,7 @@ pub struct Args {
     /// Seed of the bench
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// The effect to hide, or `none`; by lot without it
+    /// The effect to hide, or `none`; random without it
     #[arg(long, value_name = "NAME")]
     effect: Option<String>,
 }
@@ -56,9 +57,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     step(&["log", "check", &nominal, a, b, c], talk)?;
     talk.say("\nHow far is the model from what was measured, and where?");
     step(&["compare", &nominal, a, b, c], talk)?;
-    talk.say(
-        "\nWhat is missing? c.csv is held out: only the motions it foretells prove an effect.",
-    );
+    talk.say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
     let page = at("report.html");
     let found = missing(
         &[
@@ -129,10 +128,7 @@ fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found
-        .effects
-        .first()
-        .map(handstand::diagnose::words::address))
+    Ok(found.effects.first().map(FittedEffect::address))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

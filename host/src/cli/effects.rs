@@ -11,13 +11,13 @@
 //! `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`), `confused_with` (`with`, `why`).
 
 use super::Outcome;
-use super::name;
 use super::talk::Talk;
 use handstand::Result;
 use handstand::effects::{EFFECTS, EffectInfo, Parameter, Scope, glossary};
+use handstand::fitting::effect_named;
 use serde_json::{Value, json};
 
-/// Explain the physical effects the library knows.
+/// List and explain the physical effects of the library.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// One effect, such as `coulomb`; all of them without it
@@ -28,7 +28,7 @@ pub struct Args {
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     match &args.name {
         Some(name) => {
-            let effect = name::effect(name)?;
+            let effect = effect_named(name)?;
             if talk.json {
                 talk.data(&info(effect.info()))?;
             } else {

@@ -17,8 +17,8 @@
 //! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
-use super::given::{Given, weight};
 use super::talk::Talk;
+use super::weight_arg::{WeightArg, weight};
 use super::{Outcome, input, page};
 use handstand::model::Model;
 use handstand::output::write_new;
@@ -37,10 +37,10 @@ pub struct Args {
     model: PathBuf,
     /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    q: Option<Given>,
+    q: Option<WeightArg>,
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    r: Option<Given>,
+    r: Option<WeightArg>,
     /// Sampling time, s
     #[arg(
         long,
@@ -75,19 +75,19 @@ pub struct Args {
     gyro_step: Option<f64>,
     /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their limit]
     #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
-    process: Option<Given>,
+    process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    range: Option<Given>,
+    range: Option<WeightArg>,
     /// Largest inputs, SI [default: the drives' own; 2 N m for a torque]
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    limit: Option<Given>,
+    limit: Option<WeightArg>,
     /// SI value of one step of each state, where sensors set it [default: powers of two]
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    state_step: Option<Given>,
+    state_step: Option<WeightArg>,
     /// SI value of one step of each input, where drives set it
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    input_step: Option<Given>,
+    input_step: Option<WeightArg>,
     /// Write the fixed-point law as a Rust file
     #[arg(long, value_name = "FILE.rs")]
     rust: Option<PathBuf>,
@@ -154,7 +154,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 impl Args {
     /// The same with steps that somebody else prescribes: of the states, and where given of the inputs.
-    pub(super) fn in_steps(&self, steps: Given, input: Option<Given>) -> Result<Args> {
+    pub(super) fn in_steps(&self, steps: WeightArg, input: Option<WeightArg>) -> Result<Args> {
         match self.state_step {
             Some(_) => Err(Error::usage(
                 "--state-step has no place here: the firmware measures in steps of its own",
@@ -268,13 +268,13 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         .iter()
         .filter(|joint| joint.drive.is_driven())
         .count();
-    let list = |given: &Option<Given>, name, size| {
+    let list = |given: &Option<WeightArg>, name, size| {
         given
             .as_ref()
             .map(|given| given.list(name, size))
             .transpose()
     };
-    let process = args.process.as_ref().map(Given::read).transpose()?;
+    let process = args.process.as_ref().map(WeightArg::read).transpose()?;
     let degree = std::f64::consts::PI / 180.0;
     let request = Request {
         pose_rad,
@@ -293,7 +293,7 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
             // Half a radian, ten radians per second: more than a balancing robot ever comes back from.
             None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
         },
-        input_range: args.limit.as_ref().map(Given::read).transpose()?,
+        input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
         format: Format {
             bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
@@ -303,10 +303,10 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
     Ok((request, moved))
 }
 
-fn weighed(given: &Option<Given>, default: f64) -> Result<Weight> {
+fn weighed(given: &Option<WeightArg>, default: f64) -> Result<Weight> {
     given
         .as_ref()
-        .map_or(Ok(Weight::Scalar(default)), Given::read)
+        .map_or(Ok(Weight::Scalar(default)), WeightArg::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {

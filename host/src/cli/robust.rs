@@ -26,7 +26,7 @@ use std::path::PathBuf;
 /// Share of the robots that may be unstable under a robust gain.
 const UNSTABLE: f64 = 0.02;
 
-/// See robustness of gains against wrong masses.
+/// Verify the robustness of gains to errors of the masses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file

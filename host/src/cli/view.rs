@@ -2,7 +2,7 @@
 //!
 //! One file that needs nothing but itself: the chain drawn to the model's lengths, what its drives were told, the
 //! trail of its tip, the angles over time; play, pause, scrub, speed, keys. `--model OTHER.toml` adds what a model
-//! foretells for the log's inputs, `--beside LOG` another log, each drawn over the measurement.
+//! predicts for the log's inputs, `--beside LOG` another log, each drawn over the measurement.
 //!
 //! ```console
 //! $ handstand view handstand.toml run.csv --model handstand.toml -o run.html
@@ -12,15 +12,14 @@
 //! page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
 use super::talk::Talk;
-use super::{Outcome, input};
+use super::{Outcome, input, page};
 use handstand::compare::compare;
-use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 
-/// Play a motion on a page.
+/// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file: lengths to draw, columns of the log
@@ -37,9 +36,8 @@ pub struct Args {
     /// Another log to draw over it
     #[arg(long, value_name = "LOG", value_parser = input::log)]
     beside: Vec<LogRequest>,
-    /// Seconds the models run without correction, or `whole`; chosen by their stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
+    #[command(flatten)]
+    run: input::RunLength,
     /// Replace the page if it exists
     #[arg(long)]
     force: bool,
@@ -64,12 +62,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 "draw models of one chain over each other",
             ));
         }
-        let name = file
-            .file_name()
-            .unwrap_or(file.as_os_str())
-            .to_string_lossy();
+        let name = page::file_name(file);
         let motions = read(&args.logs, &other.log)?;
-        scene.add_model(&other, &compare(&other, &name, &motions, args.horizon));
+        scene.add_model(&other, &compare(&other, &name, &motions, args.run.horizon));
     }
     scene.add_beside(&model, &read(&args.beside, &model.log)?);
     let page = html(&scene, &talk.command)

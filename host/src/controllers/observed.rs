@@ -167,7 +167,7 @@ pub(super) fn regulator(
             q[(part * joints + i, part * joints + i)] = weight.copied().unwrap_or(0.0);
         }
     }
-    dlqr(without, &q, &DMatrix::identity(m, m))
+    Ok(dlqr(without, &q, &DMatrix::identity(m, m))?)
 }
 
 /// The Kalman filter's gains from the first sample on.

@@ -4,7 +4,7 @@ use super::paper;
 use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, StateFeedback};
-use crate::synth::{Discrete, grown, zoh};
+use crate::synth::{Discrete, multi_model_continuation, zoh};
 use nalgebra::DMatrix;
 
 /// Mass error the gain is designed for: a little more than the 10 % it is judged with.
@@ -49,7 +49,7 @@ impl MultiModel {
         let (n, m) = (model.plant.a.nrows(), model.drives());
         let q = DMatrix::identity(n, n) * self.weight;
         let spread = |part: f64| self.corners(model, part);
-        grown(spread, STAGES, &q, &DMatrix::identity(m, m))
+        multi_model_continuation(spread, STAGES, &q, &DMatrix::identity(m, m))
     }
 
     /// The model itself, then every combination of lightest and heaviest links, at `part` of the errors.
@@ -85,7 +85,7 @@ impl MultiModel {
             }
         }
         let other = DesignModel::new(&other, &model.pose_rad, model.period_s)?;
-        zoh(&other.plant, model.period_s, 0.0)
+        Ok(zoh(&other.plant, model.period_s, 0.0)?)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::chain::{Chain, ChainLink};
 use super::lanes::Lane;
+use super::link_motion::LinkMotion;
 
 /// Scratch memory of [`Chain::forward`], reused from call to call.
 #[derive(Debug, Clone)]
@@ -15,13 +16,7 @@ pub struct Workspace {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Scratch {
-    /// Joint to next joint, turned left: velocity of its end per rad/s.
-    lever: [f64; 2],
-    /// Centripetal acceleration at the link's end.
-    centripetal: [f64; 2],
-    /// Rigid first moment, turned left.
-    moment: [f64; 2],
-    speed_squared: f64,
+    motion: LinkMotion,
     /// Share of the link before's angular acceleration that the link takes on, the rest left to the joint; of a
     /// held joint, its torque per unit of that acceleration.
     carried: f64,
@@ -83,30 +78,24 @@ impl Chain {
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
             angle += angle_rad[i];
             speed += speed_rad_s[i];
-            let (sin, cos) = Lane::sin_cos(angle);
-            let (com_sin, com_cos) = if link.com_angle_rad == 0.0 {
-                (sin, cos)
-            } else {
-                Lane::sin_cos(angle + link.com_angle_rad)
-            };
-            let first_moment = link.mass_kg * link.com_m;
-            s.speed_squared = speed * speed;
-            s.lever = [link.length_m * cos, link.length_m * sin];
-            // The link's end lies at length * (sin, -cos); centripetal points back to the joint.
-            s.centripetal = [-s.speed_squared * s.lever[1], s.speed_squared * s.lever[0]];
-            s.moment = [first_moment * com_cos, first_moment * com_sin];
+            s.motion = LinkMotion::new(link, angle, speed);
         }
 
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
-            tree.shift(s.lever, s.centripetal);
+            let LinkMotion {
+                moment,
+                speed_squared,
+                ..
+            } = s.motion;
+            tree.shift(s.motion.lever, s.motion.centripetal);
             tree.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
-            tree.b[0] += s.moment[0];
-            tree.b[1] += s.moment[1];
+            tree.b[0] += moment[0];
+            tree.b[1] += moment[1];
             tree.mass[0] += link.mass_kg;
             tree.mass[2] += link.mass_kg;
-            tree.force[0] -= s.speed_squared * s.moment[1];
-            tree.force[1] += s.speed_squared * s.moment[0];
+            tree.force[0] -= speed_squared * moment[1];
+            tree.force[1] += speed_squared * moment[0];
             let torque = torque_nm[i] - tree.moment;
             if held[i] {
                 // A held joint carries whatever moment comes.
@@ -133,10 +122,7 @@ impl Chain {
                 out[i] = value - angular;
                 angular = value;
             }
-            linear = [
-                linear[0] + s.centripetal[0] + angular * s.lever[0],
-                linear[1] + s.centripetal[1] + angular * s.lever[1],
-            ];
+            linear = s.motion.end_m_s2(linear, angular);
         }
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn sin_cos<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
     let (odd, even) = (polynomial(SIN), polynomial(COS));
     let sin: [f64; L] = from_fn(|i| x[i] + x[i] * z[i] * odd[i]);
     let cos: [f64; L] = from_fn(|i| 1.0 - (0.5 * z[i] - z2[i] * even[i]));
-    // Swapped without a branch: which quarter comes next nobody can foretell.
+    // Swapped without a branch: the next quarter cannot be predicted.
     let quarter = rounded.map(f64::to_bits);
     let swap: [u64; L] =
         from_fn(|i| (sin[i].to_bits() ^ cos[i].to_bits()) & 0_u64.wrapping_sub(quarter[i] & 1));

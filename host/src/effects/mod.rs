@@ -21,9 +21,9 @@ mod encoder_zero;
 mod info;
 mod load_friction;
 mod mass;
+mod placebo;
 mod probe;
 mod sensor_lag;
-mod sham;
 mod speed_limit;
 mod stribeck;
 mod supply_sag;
@@ -39,8 +39,8 @@ pub mod signature;
 mod tests;
 
 pub use info::{Confusion, EffectInfo, Needs, Parameter, Scope, Site};
-pub use probe::{Along, Probe};
-pub use sham::SHAM;
+pub use placebo::PLACEBO;
+pub use probe::{Probe, ProbeVariable};
 
 use crate::dynamics::Chain;
 use std::fmt;
@@ -75,7 +75,7 @@ pub const EFFECTS: &[&dyn Effect] = &[
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
 pub const CONTROLS: &[&dyn Effect] = &[
-    &sham::Sham,
+    &placebo::Placebo,
     &probe::TIMING_PROBE,
     &probe::DRIVE_PROBE,
     &probe::JOINT_PROBE,
@@ -246,7 +246,7 @@ pub struct JointState {
     pub speed_rad_s: f64,
     /// Torque of the drive, N m.
     pub drive_nm: f64,
-    /// Measured speed of another moment, rad/s: what a sham acts on.
+    /// Measured speed of another moment, rad/s: what a placebo acts on.
     pub shuffled_rad_s: f64,
 }
 

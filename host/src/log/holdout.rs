@@ -34,7 +34,7 @@ pub fn split(mut motions: Vec<Motion>, explicit_holdout: Vec<Motion>) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::fixture::motion;
+    use crate::log::tests::fixture::motion;
 
     #[test]
     fn holds_out_the_last_third() {

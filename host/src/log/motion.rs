@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Where a motion came from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Source {
+pub struct MotionSource {
     /// The file as the user named it.
     pub path: PathBuf,
     /// SHA-256 of the whole file, lower-case hexadecimal.
@@ -19,7 +19,7 @@ pub struct Motion {
     /// File name, and the segment where a file holds several: `single_id.csv#3`.
     pub name: String,
     /// File, hash and lines.
-    pub source: Source,
+    pub source: MotionSource,
     /// Strictly increasing, s.
     pub time_s: Vec<f64>,
     /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the model says).

@@ -8,7 +8,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Tab
 
 /// How an effect's values came about, written as `[effect.fitted]`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
+pub struct FitRecord {
     /// Key of the parameter, and the interval's low and high end in its unit.
     pub intervals: Vec<(String, f64, f64)>,
     /// Name and SHA-256 of every log it was fitted to.
@@ -32,7 +32,7 @@ pub fn add_effect(
     text: &str,
     path: &Path,
     effect: &EffectInstance,
-    fitted: Option<&Fitted>,
+    fitted: Option<&FitRecord>,
 ) -> Result<String> {
     Model::parse(text, path)?;
     let mut document = document(text, path)?;
@@ -89,7 +89,10 @@ fn checked(document: DocumentMut, path: &Path) -> Result<String> {
     match Model::parse(&text, path) {
         Ok(_) => Ok(text),
         // Its line is one of a text that will not be written.
-        Err(Error::Data { what, remedy, .. }) => Err(Error::data(Place::file(path), what, remedy)),
+        Err(Error::Data { reason, .. }) => Err(Error::Data {
+            place: Place::file(path),
+            reason,
+        }),
         Err(error) => Err(error),
     }
 }
@@ -198,7 +201,7 @@ fn append(list: &mut Array, text: &str) {
     list.push_formatted(value);
 }
 
-fn provenance(fitted: &Fitted) -> Table {
+fn provenance(fitted: &FitRecord) -> Table {
     let mut table = Table::new();
     let mut intervals = InlineTable::new();
     for (key, low, high) in &fitted.intervals {

@@ -7,18 +7,23 @@ mod address;
 mod columns;
 pub mod edit;
 mod field;
-pub(crate) mod limits;
+mod limits;
 mod parse;
 mod path;
 pub(crate) mod reader;
+mod reason;
 mod rig;
 pub(crate) mod source;
-pub(crate) mod suggest;
+pub mod suggest;
+mod toml_reason;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};
 pub use field::{JointField, LinkField};
+pub use limits::Limits;
 pub use path::ParameterPath;
+pub use reason::{ModelReason, PathReason};
+pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
 use crate::error::Result;
@@ -136,6 +141,15 @@ impl Drive {
         }
     }
 
+    fn motor_mut(&mut self) -> Option<&mut Motor> {
+        match self {
+            Drive::Passive | Drive::Torque => None,
+            Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
+                Some(motor)
+            }
+        }
+    }
+
     /// Whether anything moves the joint.
     pub fn is_driven(&self) -> bool {
         !matches!(self, Drive::Passive)
@@ -175,6 +189,13 @@ pub struct EffectInstance {
     pub values: Vec<f64>,
 }
 
+impl EffectInstance {
+    /// Whether it is the effect of this id at this joint.
+    fn is(&self, id: &str, joint: Option<usize>) -> bool {
+        self.joint == joint && self.effect.info().id == id
+    }
+}
+
 impl Model {
     /// Reads a model file.
     ///
@@ -207,8 +228,6 @@ impl Model {
 
     /// Whether the model already holds this effect at this joint.
     pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
-        self.effects
-            .iter()
-            .any(|e| e.effect.info().id == id && e.joint == joint)
+        self.effects.iter().any(|effect| effect.is(id, joint))
     }
 }

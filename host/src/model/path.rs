@@ -1,6 +1,7 @@
 //! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`, `coulomb@1.torque_nm`.
 
 use super::field::{JointField, LinkField, POSITIVE};
+use super::suggest::split_unit;
 use super::{EffectInstance, Model};
 use crate::effects;
 use std::fmt;
@@ -47,18 +48,19 @@ impl ParameterPath {
     pub fn get(&self, model: &Model) -> Option<f64> {
         match *self {
             ParameterPath::Link { index, field } => {
-                model.links.get(index).map(|link| field.read(link))
+                Some(*field.of(&mut model.links.get(index)?.clone()))
             }
-            ParameterPath::Joint { index, field } => field.read(&model.joints.get(index)?.drive),
+            ParameterPath::Joint { index, field } => {
+                Some(*field.of(&mut model.joints.get(index)?.drive.clone())?)
+            }
             ParameterPath::Effect {
                 id,
                 joint,
                 parameter,
-            } => model
-                .effects
-                .iter()
-                .find(|effect| effect.joint == joint && effect.effect.info().id == id)
-                .and_then(|effect| effect.values.get(parameter).copied()),
+            } => {
+                let effect = model.effects.iter().find(|effect| effect.is(id, joint))?;
+                effect.values.get(parameter).copied()
+            }
         }
     }
 
@@ -80,7 +82,7 @@ impl ParameterPath {
             } => model
                 .effects
                 .iter_mut()
-                .find(|effect| effect.joint == joint && effect.effect.info().id == id)
+                .find(|effect| effect.is(id, joint))
                 .and_then(|effect| effect.values.get_mut(parameter)),
         };
         place.map(|place| *place = value).is_some()
@@ -100,11 +102,10 @@ impl ParameterPath {
     /// Unit as shown to people: `N m`, `kg m^2`.
     pub fn unit(&self) -> &'static str {
         match *self {
-            ParameterPath::Link { field, .. } => field.unit(),
-            ParameterPath::Joint { field, .. } => field.unit(),
             ParameterPath::Effect { id, parameter, .. } => {
                 parameter_of(id, parameter).map_or("", |p| p.unit)
             }
+            _ => split_unit(self.key()).map_or("", |(_, unit)| unit),
         }
     }
 

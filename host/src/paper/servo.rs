@@ -3,12 +3,15 @@
 use super::computed::servo_estimate;
 use super::figure::{Curve, Figure, Holds, Ink, Panel};
 use crate::error::Result;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::interval;
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
-use crate::sysid::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
+use crate::sysid::{
+    BlockMean, DeadZoneMap, Interval, OutputQuantity, Side, SupplyLine, blocks, score,
+    supply_errors,
+};
 use handstand_shared::raw::Position;
 use std::path::Path;
 
@@ -38,7 +41,7 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
     let samples = command.len();
     Motion {
         name: "simulated".to_string(),
-        source: Source {
+        source: MotionSource {
             path: "simulated".into(),
             sha256: String::new(),
             lines: (1, samples),
@@ -103,19 +106,19 @@ fn ramp(samples: usize, most: f64) -> Vec<f64> {
         .collect()
 }
 
-fn points(blocks: &[Block]) -> Vec<(f64, f64)> {
+fn points(blocks: &[BlockMean]) -> Vec<(f64, f64)> {
     blocks.iter().map(|b| (100.0 * b.input, b.output)).collect()
 }
 
 /// The fitted map over the blocks' range, in percent of the range.
-fn line(map: &DeadZone, most: f64) -> Vec<(f64, f64)> {
+fn line(map: &DeadZoneMap, most: f64) -> Vec<(f64, f64)> {
     let place = |k: i32| most * f64::from(k) / 200.0;
     (-200..=200)
         .map(|k| (100.0 * place(k), map.output(place(k))))
         .collect()
 }
 
-fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> String {
+fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) -> String {
     let text = |side: &Side| match of(side) {
         Some(known) => within(&known, scale),
         None => "none".to_string(),
@@ -124,7 +127,7 @@ fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> Str
 }
 
 /// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
-fn within(known: &Known, scale: f64) -> String {
+fn within(known: &Interval, scale: f64) -> String {
     let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
     format!("{value} ({low} to {high})")
 }
@@ -144,8 +147,8 @@ fn dead_zone(model: &Model) -> Figure {
     let (number, title) = ("4", "Dead zone");
     let claim = "stiction is a dead zone of 7-10 % of the full range, without load";
     let motion = simulated(model, ramp(8000, 0.4), None, 0.0, 4);
-    let blocks = blocks(&[motion], 0, Output::Velocity, BLOCK_S);
-    let map = match DeadZone::fit(&blocks) {
+    let blocks = blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S);
+    let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };
@@ -190,14 +193,19 @@ fn supply(model: &Model) -> Figure {
             0.0,
             50 + run as u64,
         );
-        blocks.extend(self::blocks(&[motion], 0, Output::Velocity, BLOCK_S));
+        blocks.extend(self::blocks(
+            &[motion],
+            0,
+            OutputQuantity::Velocity,
+            BLOCK_S,
+        ));
     }
     // Command as the speed it stands for: that of the same command at the nominal supply.
     for block in &mut blocks {
         let beyond = block.input.abs() - 0.085;
         block.input = (beyond * FULL_RAD_S).copysign(block.input);
     }
-    let fitted = match Supply::fit(&blocks) {
+    let fitted = match SupplyLine::fit(&blocks) {
         Ok(fitted) => fitted,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };
@@ -246,8 +254,8 @@ fn torque(model: &Model) -> Figure {
         ],
         ..motion
     };
-    let blocks = blocks(&[lifted], 0, Output::AsMeasured, BLOCK_S);
-    let map = match DeadZone::fit(&blocks) {
+    let blocks = blocks(&[lifted], 0, OutputQuantity::AsMeasured, BLOCK_S);
+    let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };

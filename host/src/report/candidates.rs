@@ -34,7 +34,7 @@ fn alternatives(alternatives: &[Alternative]) -> Markup {
         h3 { "These do as well: the data do not rule them out" }
         ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
-                b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error))
+                b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error_rad))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }
@@ -45,12 +45,12 @@ fn alternatives(alternatives: &[Alternative]) -> Markup {
 }
 
 fn error(tried: &RuledOut) -> f64 {
-    tried.held_out_error.unwrap_or(tried.training_error)
+    tried.held_out_error_rad.unwrap_or(tried.training_error_rad)
 }
 
 fn tried(diagnosis: &Diagnosis) -> Markup {
     let tried = sorted(&diagnosis.ruled_out);
-    let chosen = diagnosis.error.after;
+    let chosen = diagnosis.error.after_rad;
     let full = largest(tried.iter().map(|tried| error(tried)).chain([chosen]));
     html! {
         h3 { "Ruled out" }
@@ -73,7 +73,7 @@ fn tried(diagnosis: &Diagnosis) -> Markup {
 
 /// The chosen set, to compare with.
 fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
-    let after = diagnosis.error.after;
+    let after = diagnosis.error.after_rad;
     let (fitted, held_out) = match diagnosis.error.held_out {
         true => (NONE.to_string(), mrad(after)),
         false => (mrad(after), NONE.to_string()),
@@ -92,7 +92,7 @@ fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
 
 fn row(tried: &RuledOut, full: f64, chosen: f64) -> Markup {
     let error = error(tried);
-    let (solid, ghost) = match tried.held_out_error {
+    let (solid, ghost) = match tried.held_out_error_rad {
         Some(_) => (error, None),
         None => (0.0, Some(error)),
     };
@@ -104,8 +104,8 @@ fn row(tried: &RuledOut, full: f64, chosen: f64) -> Markup {
     html! {
         tr {
             td { (set_name(&tried.set)) br; code { (tried.set.join(" + ")) } }
-            td.number { (mrad(tried.training_error)) }
-            td.number { (tried.held_out_error.map_or(NONE.into(), mrad)) }
+            td.number { (mrad(tried.training_error_rad)) }
+            td.number { (tried.held_out_error_rad.map_or(NONE.into(), mrad)) }
             td.wide { (bar.draw()) }
             td.number { (short(tried.bic_change)) }
             td { (tried.why) }

@@ -1,6 +1,6 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{fall, in_mrad, measured_on, sentences, verdict_word, window};
+use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word, window};
 use super::{Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
@@ -36,25 +36,25 @@ fn diagnosed(diagnosis: &Diagnosis) -> Markup {
 fn error_line(diagnosis: &Diagnosis) -> Markup {
     let (error, horizon_s) = (&diagnosis.error, diagnosis.horizon_s);
     let found = !diagnosis.effects.is_empty();
-    if !error.before.is_finite() {
+    if !error.before_rad.is_finite() {
         return html! {};
     }
     html! {
         @if found {
             (figures(&[
-                ("refitted as it is", "tone-before", error.before),
-                ("with what was found", "tone-after", error.after),
-                ("floor", "tone-floor", error.floor),
+                ("refitted as it is", "tone-before", error.before_rad),
+                ("with what was found", "tone-after", error.after_rad),
+                ("floor", "tone-floor", error.floor_rad),
             ]))
         } @else {
             (figures(&[
-                ("refitted as it is", "tone-before", error.before),
-                ("floor", "tone-floor", error.floor),
+                ("refitted as it is", "tone-before", error.before_rad),
+                ("floor", "tone-floor", error.floor_rad),
             ]))
         }
         p.note {
             "Typical (RMS) angle error in milliradians, " (window(horizon_s)) ", on " (measured_on(error))
-            @if let Some(fall) = fall(error).filter(|_| found) { "; " (fall) }
+            @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."
         }
     }
@@ -62,11 +62,11 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
 
 /// Without a diagnosis the figures are the models' own.
 fn compared(report: &Report) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
     let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
         return html! { h1 { "Nothing was compared." } };
     };
-    let floor = pooled(&before.signals, |signal| signal.floor);
+    let floor = pooled(&before.signals, |signal| signal.floor_rad);
     let first = ("tone-before", error(before));
     match report.after() {
         Some(after) => html! {

@@ -65,7 +65,7 @@ mod tests {
             })
         );
         assert!(diagnosis["alternatives"][0]["effects"][0]["parameters"].is_object());
-        for key in ["unit", "before", "after", "floor"] {
+        for key in ["before_rad", "after_rad", "floor_rad"] {
             assert!(!diagnosis["error"][key].is_null(), "{key}");
         }
         assert!(value["provenance"]["logs"][0]["sha256"].is_string());
@@ -74,10 +74,10 @@ mod tests {
     #[test]
     fn what_is_no_number_becomes_null() {
         let mut diagnosis = sample::diagnosis();
-        diagnosis.error.after = f64::NAN;
+        diagnosis.error.after_rad = f64::NAN;
         diagnosis.effects[0].parameters[0].high = f64::INFINITY;
         let value = diagnosis_json(&diagnosis);
-        assert!(value["error"]["after"].is_null());
+        assert!(value["error"]["after_rad"].is_null());
         assert!(value["effects"][0]["parameters"]["torque_nm"]["high"].is_null());
     }
 }

@@ -3,9 +3,10 @@
 use super::Report;
 use super::bars::whisker;
 use super::page::Section;
+use crate::diagnose::Diagnosis;
 use crate::diagnose::words::effect_name;
-use crate::diagnose::{Diagnosis, FittedValue};
 use crate::effects::named;
+use crate::fitting::FittedValue;
 use crate::number::{interval, short, unit};
 use maud::{Markup, html};
 

@@ -3,20 +3,23 @@
 use super::Report;
 use super::page::Section;
 use crate::compare::{Comparison, HorizonError, ResidualTest};
-use crate::diagnose::Remainder;
+use crate::diagnose::ResidualStructure;
 use crate::number::{NONE, given, mrad, percent, short};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
-    let remainder = report.diagnosis.as_ref().and_then(|d| d.remainder.as_ref());
+    let structure = report
+        .diagnosis
+        .as_ref()
+        .and_then(|d| d.residual_structure.as_ref());
     let horizons = horizons(&report.comparisons);
     let last = report.comparisons.last();
     let tested = last.is_some_and(|last| last.signals.iter().any(|s| !s.tests.is_empty()));
-    if remainder.is_none() && horizons.is_empty() && !tested {
+    if structure.is_none() && horizons.is_empty() && !tested {
         return None;
     }
     let body = html! {
-        @if let Some(remainder) = remainder { (left(remainder)) }
+        @if let Some(structure) = structure { (left(structure)) }
         @if !horizons.is_empty() { (growth(&report.comparisons, &horizons)) }
         @if let Some(last) = last.filter(|_| tested) { (tests(last)) }
     };
@@ -28,12 +31,12 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     })
 }
 
-fn left(remainder: &Remainder) -> Markup {
+fn left(structure: &ResidualStructure) -> Markup {
     html! {
         p {
-            "A free-form term could still gain " b { (percent(remainder.explainable_share.clamp(0.0, 1.0))) }
-            " of the remaining squared error above the floor (at least " (percent(remainder.explainable_low.clamp(0.0, 1.0)))
-            " with 95 % confidence). It leans on: " (remainder.shape) "."
+            "A free-form term could still gain " b { (percent(structure.explainable_share.clamp(0.0, 1.0))) }
+            " of the remaining squared error above the floor (at least " (percent(structure.explainable_low.clamp(0.0, 1.0)))
+            " with 95 % confidence). It leans on: " (structure.shape) "."
         }
     }
 }

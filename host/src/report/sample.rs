@@ -3,9 +3,9 @@
 use super::{LogFile, ModelFile, Provenance, Report};
 use crate::compare::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 use crate::diagnose::{
-    Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, Remainder, RuledOut,
-    Verdict,
+    Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
 };
+use crate::fitting::{ErrorReduction, FittedValue};
 
 pub(super) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
@@ -54,11 +54,10 @@ pub(super) fn comparison(model: &str, error_mrad: f64) -> Comparison {
 fn signal(error_mrad: f64) -> SignalError {
     SignalError {
         joint: 1,
-        unit: "rad",
-        rms: 1e-3 * error_mrad,
-        largest: 3e-3 * error_mrad,
+        rms_rad: 1e-3 * error_mrad,
+        largest_rad: 3e-3 * error_mrad,
         fit_percent: 100.0 - error_mrad / 3.0,
-        floor: 5.1e-3,
+        floor_rad: 5.1e-3,
         share_above_floor: 0.9,
         tests: vec![
             ResidualTest {
@@ -159,22 +158,20 @@ pub(super) fn diagnosis() -> Diagnosis {
             effect("coulomb", "Coulomb friction", vec![coulomb]),
             effect("backlash", "Backlash", vec![FittedValue { on_bound: true, ..fitted("backlash@1.gap_rad", "rad", [0.012, 0.009, 0.0152]) }]),
         ],
-        error: ErrorFall {
-            unit: "rad".into(),
-            before: 41.2e-3,
-            after: 6.31e-3,
-            floor: 5.1e-3,
+        error: ErrorReduction {
+            before_rad: 41.2e-3,
+            after_rad: 6.31e-3,
+            floor_rad: 5.1e-3,
             held_out: true,
-            fall_low: 0.81,
-            fall_high: 0.88,
+            reduction: Some([0.81, 0.88]),
         },
         alternatives: vec![Alternative {
             effects: vec![effect("dead_zone", "Dead zone", vec![dead_zone])],
-            error: 6.5e-3,
+            error_rad: 6.5e-3,
         }],
         base: vec![fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]), delay],
         ruled_out: ruled_out(),
-        remainder: Some(Remainder {
+        residual_structure: Some(ResidualStructure {
             explainable_share: 0.07,
             explainable_low: 0.0,
             shape: "speed of joint 1".into(),
@@ -183,8 +180,8 @@ pub(super) fn diagnosis() -> Diagnosis {
             .map(|(motion, held_out, before, after)| MotionError {
                 motion: motion.into(),
                 held_out,
-                before: 1e-3 * before,
-                after: 1e-3 * after,
+                before_rad: 1e-3 * before,
+                after_rad: 1e-3 * after,
             })
             .into(),
         collinear: vec![("coulomb@1.torque_nm".into(), "motor.torque_nm".into(), 0.97)],
@@ -201,8 +198,8 @@ pub(super) fn diagnosis() -> Diagnosis {
 fn ruled_out() -> Vec<RuledOut> {
     let tried = |set: &[&str], training, held_out: Option<f64>, bic_change, why: &str| RuledOut {
         set: set.iter().map(ToString::to_string).collect(),
-        training_error: 1e-3 * training,
-        held_out_error: held_out.map(|error| 1e-3 * error),
+        training_error_rad: 1e-3 * training,
+        held_out_error_rad: held_out.map(|error| 1e-3 * error),
         bic_change,
         why: why.into(),
     };

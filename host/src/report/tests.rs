@@ -57,7 +57,7 @@ fn sections_are_there_when_their_data_are() {
     diagnosis.ruled_out.clear();
     diagnosis.alternatives.clear();
     diagnosis.motions.clear();
-    diagnosis.remainder = None;
+    diagnosis.residual_structure = None;
     assert_eq!(sections(&bare).join(" "), "provenance terms");
 }
 
@@ -142,7 +142,7 @@ fn text_of_a_named_effect() {
                                                                       chance would
     ──────────────────────────────────────────────────────────────────────────────────────────
 
-    Remainder: a free form could still gain 7.0 % (at least 0 %) of the squared error above the floor; it leans on speed of joint 1.
+    Residual structure: a free form could still gain 7.0 % (at least 0 %) of the squared error above the floor; it leans on speed of joint 1.
 
     Next
       - Add the effect: handstand add coulomb@1 --torque_nm 0.0821.
@@ -156,11 +156,11 @@ fn text_of_a_named_effect() {
 fn text_of_unfit_data() {
     let mut diagnosis = sample::diagnosis();
     diagnosis.verdict = Verdict::Unfit;
-    diagnosis.error.before = f64::NAN;
+    diagnosis.error.before_rad = f64::NAN;
     diagnosis.effects.clear();
     diagnosis.alternatives.clear();
     diagnosis.ruled_out.clear();
-    diagnosis.remainder = None;
+    diagnosis.residual_structure = None;
     diagnosis.summary = vec!["The joint never moved.".into()];
     diagnosis.warnings.clear();
     diagnosis.next = vec!["Record a motion of at least 0.5 rad.".into()];
@@ -194,8 +194,8 @@ fn spoil(report: &mut Report, values: &[f64], times: Vec<f64>, angles: Vec<f64>)
     let mut next = |place: &mut f64| *place = values.next().unwrap_or_default();
     for comparison in &mut report.comparisons {
         for signal in &mut comparison.signals {
-            next(&mut signal.rms);
-            next(&mut signal.floor);
+            next(&mut signal.rms_rad);
+            next(&mut signal.floor_rad);
             next(&mut signal.fit_percent);
         }
         for failure in &mut comparison.failures {
@@ -219,19 +219,21 @@ fn spoil(report: &mut Report, values: &[f64], times: Vec<f64>, angles: Vec<f64>)
         next(&mut fitted.high);
     }
     for tried in &mut diagnosis.ruled_out {
-        next(&mut tried.training_error);
+        next(&mut tried.training_error_rad);
         next(&mut tried.bic_change);
-        if let Some(error) = &mut tried.held_out_error {
+        if let Some(error) = &mut tried.held_out_error_rad {
             next(error);
         }
     }
     for motion in &mut diagnosis.motions {
-        next(&mut motion.before);
-        next(&mut motion.after);
+        next(&mut motion.before_rad);
+        next(&mut motion.after_rad);
     }
-    next(&mut diagnosis.error.before);
-    next(&mut diagnosis.error.after);
-    next(&mut diagnosis.error.fall_low);
+    next(&mut diagnosis.error.before_rad);
+    next(&mut diagnosis.error.after_rad);
+    for end in diagnosis.error.reduction.iter_mut().flatten() {
+        next(end);
+    }
 }
 
 proptest! {

@@ -1,10 +1,11 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    fall, in_mrad, measured_on, sentences, sorted, verdict_word, window, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, window, with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect, FittedValue};
+use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
+use crate::fitting::FittedValue;
 use crate::number::unit;
 use crate::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
@@ -22,7 +23,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
         error(diagnosis),
         alternatives(&diagnosis.alternatives),
         ruled_out(diagnosis),
-        remainder(diagnosis),
+        residual_structure(diagnosis),
         list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
     ];
@@ -73,13 +74,13 @@ fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let nothing_added = diagnosis.effects.is_empty();
-    let floor = format!("floor {} mrad", mrad(error.floor));
+    let floor = format!("floor {} mrad", mrad(error.floor_rad));
     let figures = match nothing_added {
-        true => format!("Error: {} mrad, {floor}.", mrad(error.before)),
+        true => format!("Error: {} mrad, {floor}.", mrad(error.before_rad)),
         false => format!(
             "Error: {} mrad, refitted as it is -> {} mrad; {floor}.",
-            mrad(error.before),
-            mrad(error.after)
+            mrad(error.before_rad),
+            mrad(error.after_rad)
         ),
     };
     let on = format!(
@@ -87,11 +88,10 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
         window(diagnosis.horizon_s),
         measured_on(error)
     );
-    let fall = fall(error)
-        .filter(|_| !nothing_added)
-        .map(|fall| format!("So {fall}."));
-    let lines: Vec<String> = [figures, on].into_iter().chain(fall).collect();
-    error.before.is_finite().then(|| lines.join("\n"))
+    let reduction = reduction(error).filter(|_| !nothing_added);
+    let reduction = reduction.map(|reduction| format!("So {reduction}."));
+    let lines: Vec<String> = [figures, on].into_iter().chain(reduction).collect();
+    error.before_rad.is_finite().then(|| lines.join("\n"))
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Option<String> {
@@ -105,7 +105,7 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
         let effects = joined(&alternative.effects);
         format!(
             "{effects}: {}; {}",
-            in_mrad(alternative.error),
+            in_mrad(alternative.error_rad),
             values.join(", ")
         )
     };
@@ -122,8 +122,8 @@ fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
     for tried in sorted(&diagnosis.ruled_out).into_iter().take(SHOWN) {
         table.add_row([
             tried.set.join(" + "),
-            mrad(tried.training_error),
-            tried.held_out_error.map_or(NONE.into(), mrad),
+            mrad(tried.training_error_rad),
+            tried.held_out_error_rad.map_or(NONE.into(), mrad),
             short(tried.bic_change),
             tried.why.clone(),
         ]);
@@ -138,13 +138,13 @@ fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
     (!table.is_empty()).then(|| format!("{}{more}", trimmed(&table)))
 }
 
-fn remainder(diagnosis: &Diagnosis) -> Option<String> {
-    let remainder = diagnosis.remainder.as_ref()?;
+fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
+    let structure = diagnosis.residual_structure.as_ref()?;
     Some(format!(
-        "Remainder: a free form could still gain {} (at least {}) of the squared error above the floor; it leans on {}.",
-        percent(remainder.explainable_share.clamp(0.0, 1.0)),
-        percent(remainder.explainable_low.clamp(0.0, 1.0)),
-        remainder.shape
+        "ResidualStructure: a free form could still gain {} (at least {}) of the squared error above the floor; it leans on {}.",
+        percent(structure.explainable_share.clamp(0.0, 1.0)),
+        percent(structure.explainable_low.clamp(0.0, 1.0)),
+        structure.shape
     ))
 }
 

@@ -50,7 +50,7 @@ fn pairs<'a>(before: &'a Comparison, after: Option<&'a Comparison>) -> Vec<Pair<
     let same = |a: &Trace, b: &Trace| a.motion == b.motion && a.joint == b.joint;
     let floor = |joint| {
         let signal = before.signals.iter().find(|signal| signal.joint == joint);
-        signal.map(|signal| signal.floor)
+        signal.map(|signal| signal.floor_rad)
     };
     let pair = |trace: &'a Trace| Pair {
         before: trace,
@@ -139,10 +139,10 @@ fn fits(report: &Report) -> Markup {
             tr {
                 td { (comparison.model) }
                 td.number { (signal.joint) }
-                td.number { (mrad(signal.rms)) }
-                td.number { (mrad(signal.largest)) }
+                td.number { (mrad(signal.rms_rad)) }
+                td.number { (mrad(signal.largest_rad)) }
                 td.number { (short(signal.fit_percent)) " %" }
-                td.number { (mrad(signal.floor)) }
+                td.number { (mrad(signal.floor_rad)) }
             }
         }
     };

@@ -34,9 +34,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn steps(chain: &[&Comparison]) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
-    let floor = pooled(&chain[0].signals, |signal| signal.floor);
+    let floor = pooled(&chain[0].signals, |signal| signal.floor_rad);
     let full = largest(errors.iter().copied().chain([floor]));
     let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
     let bar = |index: usize| Bar {
@@ -82,11 +82,11 @@ fn by_motion(motions: &[MotionError]) -> Markup {
     let full = largest(
         motions
             .iter()
-            .flat_map(|motion| [motion.before, motion.after]),
+            .flat_map(|motion| [motion.before_rad, motion.after_rad]),
     );
     let after = |motion: &MotionError| Bar {
-        ghost: Some(motion.before),
-        ..Bar::new(motion.after, full, Tone::After)
+        ghost: Some(motion.before_rad),
+        ..Bar::new(motion.after_rad, full, Tone::After)
     };
     html! {
         h3 { "Motion by motion" }
@@ -98,8 +98,8 @@ fn by_motion(motions: &[MotionError]) -> Markup {
                 tr {
                     td { (motion.motion) }
                     td { @if motion.held_out { "held out" } @else { "fitted" } }
-                    td.number { (mrad(motion.before)) }
-                    td.number { (mrad(motion.after)) }
+                    td.number { (mrad(motion.before_rad)) }
+                    td.number { (mrad(motion.after_rad)) }
                     td.wide { (after(motion).draw()) }
                 }
             } }

@@ -1,7 +1,7 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
-use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, Rig, SHAM, Site};
-use crate::log::{Motion, Source};
+use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
+use crate::log::{Motion, MotionSource};
 use crate::model::{Angles, Drive, Model};
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ pub struct Plant {
     pub(super) step_s: f64,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
-    /// Per joint, per sample: the measured speed of another moment; empty without a sham.
+    /// Per joint, per sample: the measured speed of another moment; empty without a placebo.
     pub(super) shuffled_rad_s: Vec<Vec<f64>>,
 }
 
@@ -97,7 +97,7 @@ impl Plant {
     pub fn without_log(model: &Model) -> Plant {
         let motion = Motion {
             name: String::new(),
-            source: Source {
+            source: MotionSource {
                 path: PathBuf::new(),
                 sha256: String::new(),
                 lines: (0, 0),
@@ -269,7 +269,7 @@ impl JointPlan {
 
 /// Measured speeds of a motion, turned in time by a bit more than a third of it.
 fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
-    if !model.effects.iter().any(|e| e.effect.info().id == SHAM) {
+    if !model.effects.iter().any(|e| e.effect.info().id == PLACEBO) {
         return Vec::new();
     }
     motion

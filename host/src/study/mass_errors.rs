@@ -37,7 +37,7 @@ impl MassErrors<'_> {
                 }
                 let period_s = case.clock.period_s;
                 let model = DesignModel::new(&case.robot, &upright(&case.robot), period_s)?;
-                zoh(&model.plant, period_s, 0.0)
+                Ok(zoh(&model.plant, period_s, 0.0)?)
             })
             .collect()
     }

@@ -5,11 +5,11 @@ use super::conditions::CONDITIONS;
 use super::judge::Judging;
 use super::quantity::{Distribution, Place, QUANTITIES, Uncertain, quantity};
 use crate::controllers::{self, DESIGNS};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, words};
+use crate::model::Limits;
 use crate::model::Model;
-use crate::model::limits::Limits;
 use crate::model::reader::Table;
-use crate::model::source::Source;
+use crate::model::source::TomlSource;
 use crate::model::suggest::suggest;
 use crate::sim::closed_loop::{Drives, Gyro, Sensor, Velocity};
 use sha2::{Digest as _, Sha256};
@@ -60,7 +60,7 @@ impl Study {
     pub fn load(path: &Path) -> Result<Study> {
         let text =
             std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))?;
-        let source = Source {
+        let source = TomlSource {
             text: &text,
             file: path,
         };
@@ -127,18 +127,6 @@ fn set(table: &Table<'_>, key: &str, limits: Limits, place: &mut f64) -> Result<
     Ok(())
 }
 
-/// The whole number under `key`, if there is one.
-fn whole(table: &Table<'_>, key: &str, limits: Limits) -> Result<Option<f64>> {
-    match table.number(key, limits)? {
-        Some(number) if number.fract() != 0.0 => Err(table.bad(
-            key,
-            format!("`{key}` = {number} is not whole"),
-            "give a whole number",
-        )),
-        number => Ok(number),
-    }
-}
-
 fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
     table.only(&[
         "controller",
@@ -158,7 +146,7 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
     set(table, "r", POSITIVE, &mut control.r)?;
     let delay = &mut control.drives.delay_periods;
     set(table, "delay_periods", Limits::within(0.0, 20.0), delay)?;
-    if let Some(bits) = whole(table, "word_bits", Limits::within(8.0, 32.0))? {
+    if let Some(bits) = table.whole("word_bits", Limits::within(8.0, 32.0))? {
         control.word_bits = bits as u32;
     }
     let period_s = &mut case.clock.period_s;
@@ -261,7 +249,7 @@ fn drives(table: &Table<'_>, drives: &mut Drives) -> Result<()> {
 fn runs(table: &Table<'_>, study: &mut Study) -> Result<()> {
     table.only(&["count", "length_s", "start_rad", "fall_rad", "seed"])?;
     let judging = &mut study.judging;
-    if let Some(count) = whole(table, "count", Limits::within(1.0, 1e9))? {
+    if let Some(count) = table.whole("count", Limits::within(1.0, 1e9))? {
         judging.runs = count as usize;
     }
     let seconds = &mut judging.seconds;
@@ -270,7 +258,7 @@ fn runs(table: &Table<'_>, study: &mut Study) -> Result<()> {
     set(table, "start_rad", Limits::within(0.0, 3.0), start)?;
     let fall = &mut study.case.limits.fall_rad;
     set(table, "fall_rad", Limits::above(0.0, 1e3), fall)?;
-    if let Some(seed) = whole(table, "seed", Limits::within(0.0, 9e15))? {
+    if let Some(seed) = table.whole("seed", Limits::within(0.0, 9e15))? {
         judging.seed = seed as u64;
     }
     Ok(())
@@ -286,7 +274,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
             .filter(|quantity| quantity.spread.is_some());
         let known: Vec<&str> = uncertain.map(|quantity| quantity.id).collect();
         let said = format!("nothing called `{what}` can be uncertain");
-        return Err(table.bad("what", said, suggest(what, &known)));
+        return Err(table.bad("what", words(said, suggest(what, &known))));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -301,7 +289,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         (Place::Whole, None) => vec![None],
         (Place::Whole, Some(_)) => {
             let said = format!("`{what}` belongs to the whole robot");
-            return Err(table.bad("link", said, "leave `link` out"));
+            return Err(table.bad("link", words(said, "leave `link` out")));
         }
         (Place::Link, Some(link)) => vec![Some(link)],
         (Place::Link, None) => (0..links).map(Some).collect(),
@@ -316,7 +304,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         };
         if all.iter().any(|other| other.column() == new.column()) {
             let said = format!("{} is drawn twice", new.column());
-            return Err(table.bad("what", said, "say it once"));
+            return Err(table.bad("what", words(said, "say it once")));
         }
         all.push(new);
     }

@@ -56,7 +56,7 @@ pub fn sweep(
         (levels.set)(&mut case, level);
         let (figures, refused) = match at_level(&case, judging) {
             Ok(figures) => (Some(figures), None),
-            Err(Error::Design { what, .. }) => (None, Some(what)),
+            Err(Error::Design(reason)) => (None, Some(reason.to_string())),
             Err(error) => return Err(error),
         };
         done();

@@ -1,6 +1,8 @@
 //! Everything that follows from a model and weights, as one value; `export` writes it in many ways.
 
+use super::controllability::{Controllability, controllability, observability};
 use super::eigen::poles;
+use super::error::DesignError;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
@@ -8,13 +10,11 @@ use super::linearise::{Linearised, linearise};
 use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
 use super::quantise::{Ranges, quantise};
-use super::reach::{Reach, controllability, observability};
 use super::request::{Request, Sensors, Time};
-use super::signal::{Signal, driven, input, reach, states};
+use super::signal::{Signal, default_limit, driven, input, states};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
-use crate::error::{Error, Result};
 use crate::model::Model;
 use nalgebra::{Complex, DMatrix};
 
@@ -45,10 +45,10 @@ pub struct Design {
     pub poles: Vec<Complex<f64>>,
     /// Zeros from the inputs to the angles of the driven joints, 1/s.
     pub zeros: Vec<Complex<f64>>,
-    /// Which modes the inputs reach.
-    pub controllability: Reach,
-    /// Which modes the measured angles show.
-    pub observability: Reach,
+    /// Controllability of the plant by its inputs.
+    pub controllability: Controllability,
+    /// Observability of the plant by its measured angles.
+    pub observability: Controllability,
     /// The estimator.
     pub estimator: Option<Estimation>,
     /// The fixed-point law.
@@ -84,7 +84,7 @@ impl Design {
     ///
     /// # Errors
     /// Whatever stands in the way, with what to change.
-    pub fn of(model: &Model, request: &Request) -> Result<Design> {
+    pub fn of(model: &Model, request: &Request) -> Result<Design, DesignError> {
         let Linearised {
             plant,
             inputs: u0,
@@ -139,7 +139,10 @@ impl Design {
         if let Some((sampled, _)) = design.sampled.clone() {
             let input_range = match &request.input_range {
                 Some(range) => range.diagonal("the range of inputs", m)?,
-                None => driven.iter().map(|joint| reach(model, *joint)).collect(),
+                None => driven
+                    .iter()
+                    .map(|joint| default_limit(model, *joint))
+                    .collect(),
             };
             design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
             if let Some(sensors) = &request.sensors {
@@ -149,7 +152,12 @@ impl Design {
         Ok(design)
     }
 
-    fn fixed(&self, request: &Request, plant: &Discrete, input: Vec<f64>) -> Result<Fixed> {
+    fn fixed(
+        &self,
+        request: &Request,
+        plant: &Discrete,
+        input: Vec<f64>,
+    ) -> Result<Fixed, DesignError> {
         let mut state = request
             .state_range
             .diagonal("the range of states", plant.plant_states())?;
@@ -177,13 +185,10 @@ impl Design {
         let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
         let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
         if loss.radius_fixed >= 1.0 {
-            return Err(Error::design(
-                format!(
-                    "rounded to {} bits the gains no longer stabilise: the spectral radius is {:.6}",
-                    law.bits, loss.radius_fixed
-                ),
-                "declare smaller ranges: steps and gains are rounded to what they need",
-            ));
+            return Err(DesignError::UnstableWhenRounded {
+                bits: law.bits,
+                radius: loss.radius_fixed,
+            });
         }
         Ok(Fixed { ranges, law, loss })
     }
@@ -193,7 +198,7 @@ impl Design {
         sensors: &Sensors,
         plant: Discrete,
         input_range: &[f64],
-    ) -> Result<Estimation> {
+    ) -> Result<Estimation, DesignError> {
         let (own, joints) = (plant.plant_states(), plant.plant_states() / 2);
         let rows: Vec<usize> = (0..=joints).collect();
         let plant = Discrete {

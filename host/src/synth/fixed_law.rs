@@ -3,9 +3,9 @@
 //! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for studies.
 
 use super::eigen::poles;
+use super::error::DesignError;
 use super::gains::Gains;
 use super::system::Discrete;
-use crate::error::Result;
 use handstand_shared::crc::crc32;
 use handstand_shared::gains::VERSION;
 use nalgebra::DMatrix;
@@ -107,7 +107,7 @@ impl FixedLaw {
         x0: &[f64],
         u0: &[f64],
         state_range: &[f64],
-    ) -> Result<Loss> {
+    ) -> Result<Loss, DesignError> {
         let rounded = self.gain();
         let (m, n) = rounded.shape();
         let per_input = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
@@ -115,7 +115,7 @@ impl FixedLaw {
         };
         let point_off = |j: usize| (self.x0[j] as f64 * self.state_step[j] - x0[j]).abs();
         let overflow = 2f64.powi(2 * self.bits as i32 - 1);
-        let radius = |k: &DMatrix<f64>| -> Result<f64> {
+        let radius = |k: &DMatrix<f64>| -> Result<f64, DesignError> {
             let poles = poles(&(&plant.a - &plant.b * k))?;
             Ok(poles
                 .iter()

@@ -1,8 +1,8 @@
 //! One joint at the operating point: what holds it, and the first-order change of its torque.
 
+use super::error::DesignError;
 use super::omitted::OmittedEffect;
 use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
-use crate::error::{Error, Result};
 use crate::model::{Drive, EffectInstance, Model};
 
 /// Most steps of Newton's iteration for the duty that holds a torque.
@@ -122,7 +122,7 @@ impl<'a> JointAt<'a> {
     }
 
     /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within `slack_nm`.
-    pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held> {
+    pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held, DesignError> {
         let (at, mut omitted) = (self.at_rest(), Vec::new());
         for site in [Site::Command, Site::Friction, Site::Sensor] {
             self.slopes(site, at, &mut omitted);
@@ -156,19 +156,16 @@ impl<'a> JointAt<'a> {
         })
     }
 
-    fn unbalanced(&self, needed_nm: f64) -> Error {
-        Error::design(
-            format!(
-                "joint {} is passive and {needed_nm:.3e} N m would have to hold it at {} rad: the pose is no equilibrium",
-                self.joint + 1,
-                self.pose_rad
-            ),
-            "choose a pose in which every passive joint balances; --balance finds the nearest",
-        )
+    fn unbalanced(&self, needed_nm: f64) -> DesignError {
+        DesignError::NoEquilibrium {
+            joint: self.joint,
+            torque_nm: needed_nm,
+            angle_rad: self.pose_rad,
+        }
     }
 
     /// Duty that makes `needed_nm`, by Newton's iteration: one step where the torque is linear in the duty.
-    fn duty(&self, needed_nm: f64, omitted: &mut Vec<OmittedEffect>) -> Result<Duty> {
+    fn duty(&self, needed_nm: f64, omitted: &mut Vec<OmittedEffect>) -> Result<Duty, DesignError> {
         let mut at = self.at_rest();
         let (full_torque_nm, motor) = (at.full_torque_nm, self.drive.motor());
         at.duty = needed_nm / full_torque_nm;
@@ -185,13 +182,10 @@ impl<'a> JointAt<'a> {
             }
             at.duty += off_nm / duty.per_duty;
         }
-        Err(Error::design(
-            format!(
-                "joint {} needs {needed_nm:.3} N m to hold the pose, more than its drive can give",
-                self.joint + 1
-            ),
-            "choose a pose that asks less of it",
-        ))
+        Err(DesignError::DriveTooWeak {
+            joint: self.joint,
+            torque_nm: needed_nm,
+        })
     }
 
     /// Torque of the drive at a duty, with its slopes. An effect without a slope still limits the torque: beyond a

@@ -3,11 +3,11 @@
 //! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so dq''/dq = M^-1 (dtorque/dq - dG/dq). The
 //! Coriolis torques are quadratic in the speeds and leave nothing.
 
+use super::error::DesignError;
 use super::joint_slope::JointSlope;
 use super::omitted::OmittedEffect;
 use super::operating_point::OperatingPoint;
 use super::system::Continuous;
-use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 use nalgebra::{DMatrix, DVector};
 
@@ -30,17 +30,16 @@ pub struct Linearised {
 ///
 /// # Errors
 /// A pose that is no equilibrium of the smooth effects, nothing driven.
-pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised> {
+pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised, DesignError> {
     let point = OperatingPoint::of(model, pose_rad)?;
     let n = model.link_count();
     let driven: Vec<usize> = (0..n)
         .filter(|&joint| model.joints[joint].drive.is_driven())
         .collect();
     if driven.is_empty() {
-        return Err(Error::design(
-            format!("no joint of `{}` is driven", model.name),
-            "give a [[joint]] another drive than passive",
-        ));
+        return Err(DesignError::NothingDriven {
+            model: model.name.clone(),
+        });
     }
     // The model's own angles are `convention` times the relative ones.
     let convention = match model.angles {
@@ -65,14 +64,8 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised> {
         per_input[(joint, input)] = point.joints[joint].per_input;
     }
     let mass = point.equations.mass(&point.relative_rad);
-    let mass = mass.cholesky().ok_or_else(|| {
-        Error::design(
-            format!(
-                "the masses and inertias of `{}` do not make a positive inertia",
-                model.name
-            ),
-            "give every link a mass and an inertia",
-        )
+    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
+        model: model.name.clone(),
     })?;
     let accelerate = |torque: DMatrix<f64>| &convention * mass.solve(&torque);
     let mut a = DMatrix::zeros(2 * n, 2 * n);
@@ -99,7 +92,8 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synth::{Equations, NonSmooth, balanced, upright};
+    use crate::synth::operating_point::equations;
+    use crate::synth::{NonSmooth, balanced, upright};
     use std::path::Path;
 
     /// Three links with drives and effects of every kind that has a slope.
@@ -211,7 +205,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         ];
         let mut hanging = q.clone();
         hanging[0] += std::f64::consts::PI;
-        let equations = Equations::of(&model.rig(false));
+        let equations = equations(model);
         let left = torque
             - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
             - equations.gravity(&hanging);

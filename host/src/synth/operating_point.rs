@@ -1,10 +1,10 @@
 //! The operating point of a linear model: what holds the robot in a pose, and how each joint answers small changes.
 
-use super::equations::Equations;
+use super::error::DesignError;
 use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::{check_size, relative};
-use crate::error::{Error, Result};
+use crate::dynamics::EquationsOfMotion;
 use crate::model::Model;
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
@@ -17,7 +17,7 @@ pub(super) struct OperatingPoint {
     pub inputs: Vec<f64>,
     /// Relative angles, the first from hanging, rad.
     pub relative_rad: Vec<f64>,
-    pub equations: Equations,
+    pub equations: EquationsOfMotion,
     /// One per joint.
     pub joints: Vec<JointSlope>,
     /// Effects without a derivative here; they count neither in `inputs` nor in `joints`.
@@ -29,10 +29,10 @@ impl OperatingPoint {
     ///
     /// # Errors
     /// A pose that is no equilibrium of the smooth effects, or that asks more of a drive than it can give.
-    pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint> {
+    pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint, DesignError> {
         check_size(model, pose_rad)?;
         let relative_rad = relative(model, pose_rad);
-        let equations = Equations::of(&model.rig(false));
+        let equations = equations(model);
         let gravity_nm = equations.gravity(&relative_rad);
         let mut level_rad = relative_rad.clone();
         level_rad[0] += std::f64::consts::FRAC_PI_2;
@@ -55,11 +55,17 @@ impl OperatingPoint {
     }
 }
 
+/// The equations of motion of a model's chain, body effects included.
+pub(super) fn equations(model: &Model) -> EquationsOfMotion {
+    let rig = model.rig(false);
+    EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
+}
+
 /// The delay of the drives, s: the same for all of them.
 ///
 /// # Errors
 /// Drives that differ in delay.
-pub fn input_delay_s(model: &Model) -> Result<f64> {
+pub fn input_delay_s(model: &Model) -> Result<f64, DesignError> {
     let delay = |joint: usize| -> f64 {
         let at = model.effects.iter().filter(|e| e.joint == Some(joint));
         // An empty sum would be -0.
@@ -70,9 +76,9 @@ pub fn input_delay_s(model: &Model) -> Result<f64> {
     let first = delays.first().copied().unwrap_or(0.0);
     match delays.iter().find(|&&delay| delay != first) {
         None => Ok(first),
-        Some(other) => Err(Error::design(
-            format!("the drives differ in delay: {first} s and {other} s"),
-            "give every driven joint the same delay, or choose one with --delay",
-        )),
+        Some(other) => Err(DesignError::DelaysDiffer {
+            first_s: first,
+            other_s: *other,
+        }),
     }
 }

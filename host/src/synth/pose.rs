@@ -1,8 +1,8 @@
 //! Poses in a model's own convention of angles, and the equilibrium next to one.
 
-use super::equations::Equations;
+use super::error::DesignError;
 use super::joint_slope::JointAt;
-use crate::error::{Error, Result};
+use super::operating_point::equations;
 use crate::model::{Angles, Model};
 use nalgebra::DVector;
 
@@ -31,12 +31,12 @@ pub fn upright(model: &Model) -> Vec<f64> {
 ///
 /// # Errors
 /// No equilibrium within reach of Newton's iteration.
-pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
+pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError> {
     check_size(model, pose_rad)?;
     let passive: Vec<usize> = (0..model.link_count())
         .filter(|&joint| !model.joints[joint].drive.is_driven())
         .collect();
-    let equations = Equations::of(&model.rig(false));
+    let equations = equations(model);
     let mut angle_rad = relative(model, pose_rad);
     for _ in 0..MOST_STEPS {
         let pose_rad = convention(model, &angle_rad);
@@ -62,10 +62,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
             return Ok(convention(model, &angle_rad));
         }
     }
-    Err(Error::design(
-        "no equilibrium was found near this pose",
-        "start from a pose nearer to balance",
-    ))
+    Err(DesignError::EquilibriumNotFound)
 }
 
 /// Relative angles, the first from hanging, in the model's own convention.
@@ -96,22 +93,16 @@ pub(super) fn relative(model: &Model, pose_rad: &[f64]) -> Vec<f64> {
 }
 
 /// One angle per joint, all of them numbers.
-pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<()> {
+pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<(), DesignError> {
     let n = model.link_count();
     if pose_rad.len() != n {
-        return Err(Error::design(
-            format!(
-                "the pose has {} angles, the model {n} joints",
-                pose_rad.len()
-            ),
-            "give one angle per joint, from the base outwards",
-        ));
+        return Err(DesignError::PoseSize {
+            angles: pose_rad.len(),
+            joints: n,
+        });
     }
     match pose_rad.iter().find(|angle| !angle.is_finite()) {
         None => Ok(()),
-        Some(angle) => Err(Error::design(
-            format!("the pose has an angle of {angle}"),
-            "give angles in rad",
-        )),
+        Some(angle) => Err(DesignError::PoseAngle(*angle)),
     }
 }

@@ -5,11 +5,11 @@
 //! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control 15 (1970) 44, told
 //! for sampled plants and several of them: Makila, Toivonen, IEEE Trans. Automatic Control 32 (1987) 658). The step is
 //! quasi-Newton (BFGS). A gain that one plant escapes has infinite cost, so the search never leaves the gains that
-//! hold all of them; it has to start from one, which [`grown`] finds by letting the plants part little by little.
+//! hold all of them; it has to start from one, which [`multi_model_continuation`] finds by widening the spread of the plants in stages.
 
+use super::error::DesignError;
 use super::gains::dlqr;
 use super::system::Discrete;
-use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 
 /// Most quasi-Newton steps.
@@ -61,15 +61,11 @@ pub fn multi_model(
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
     start: &DMatrix<f64>,
-) -> Result<DMatrix<f64>> {
+) -> Result<DMatrix<f64>, DesignError> {
     let (m, n) = start.shape();
     let mut k = start.clone();
-    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or_else(|| {
-        Error::design(
-            "the gain to start from lets one of the plants fall",
-            "start from plants that differ less",
-        )
-    })?;
+    let (mut cost, gradient) =
+        mean_cost(plants, q, r, &k).ok_or_else(|| DesignError::UnstableStart)?;
     let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
     let mut slope = flat(&gradient);
     let mut curvature =
@@ -103,12 +99,12 @@ pub fn multi_model(
 ///
 /// # Errors
 /// Plants that part too far: no gain that holds all of them was found on the way.
-pub fn grown(
-    spread: impl Fn(f64) -> Result<Vec<Discrete>>,
+pub fn multi_model_continuation<E: From<DesignError>>(
+    spread: impl Fn(f64) -> Result<Vec<Discrete>, E>,
     stages: usize,
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
-) -> Result<DMatrix<f64>> {
+) -> Result<DMatrix<f64>, E> {
     let nominal = spread(0.0)?;
     let mut k = dlqr(&nominal[0], q, r)?.k;
     let q = &q
@@ -116,12 +112,8 @@ pub fn grown(
         .resize(nominal[0].a.nrows(), nominal[0].a.nrows(), 0.0);
     for stage in 1..=stages {
         let share = stage as f64 / stages as f64;
-        k = multi_model(&spread(share)?, q, r, &k).map_err(|_| {
-            Error::design(
-                format!("no gain was found that holds all plants at {share:.2} of the spread"),
-                "ask for less spread, or for more stages on the way",
-            )
-        })?;
+        k = multi_model(&spread(share)?, q, r, &k)
+            .map_err(|_| DesignError::SpreadTooWide { share })?;
     }
     Ok(k)
 }
@@ -252,6 +244,6 @@ mod tests {
             .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
         assert!((k - best.unwrap()).abs() < 1e-3, "{k} {best:?}");
         let fallen = multi_model(&plants, &q, &r, &DMatrix::from_element(1, 1, 0.1)).unwrap_err();
-        assert_eq!(fallen.exit_code(), 3);
+        assert_eq!(fallen, DesignError::UnstableStart);
     }
 }

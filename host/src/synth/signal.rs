@@ -1,4 +1,4 @@
-//! What states and inputs are called, and how far inputs reach.
+//! Names and units of states and inputs, and the default limits of inputs.
 
 use crate::model::{Drive, Model};
 
@@ -33,7 +33,7 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
 
 /// The largest input that makes sense for a drive: its torque limit where the model has one, else 2 N m (the torque at which the paper's
 /// servos saturate); full duty; half a turn; the no-load speed.
-pub(super) fn reach(model: &Model, joint: usize) -> f64 {
+pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     let limit = model
         .effects
         .iter()

@@ -4,7 +4,7 @@
 //! singular until D is square and of full rank; what is left has the zeros as the eigenvalues of A - B D^-1 C.
 
 use super::eigen::poles;
-use crate::error::Result;
+use super::error::DesignError;
 use nalgebra::{Complex, DMatrix};
 
 /// Singular values below this share of the system's size count as zero.
@@ -27,7 +27,7 @@ pub fn transmission_zeros(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     c: &DMatrix<f64>,
-) -> Result<Vec<Complex<f64>>> {
+) -> Result<Vec<Complex<f64>>, DesignError> {
     poles(a)?;
     // Equal size keeps one threshold fair to all three.
     let unit = |m: &DMatrix<f64>| match m.norm() {

@@ -42,7 +42,7 @@ pub fn noise(samples: usize, deviation: f64, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Plus and minus 1, each held for `hold` samples, by lot.
+/// Plus and minus 1, each held for `hold` samples, drawn at random.
 pub fn pseudo_random(samples: usize, hold: usize, seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let levels: Vec<f64> = (0..samples.div_ceil(hold.max(1)))

@@ -66,7 +66,7 @@ impl Structure {
         }
     }
 
-    /// Output error, orders as MATLAB's `oe` has them.
+    /// OutputQuantity error, orders as MATLAB's `oe` has them.
     pub fn oe([nb, nf, nk]: [usize; 3]) -> Self {
         Structure {
             family: Family::Oe,

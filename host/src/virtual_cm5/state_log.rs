@@ -32,7 +32,7 @@ impl StateLog {
                 "hang one on the servos: --robot MODEL.toml",
             ));
         }
-        let create = |path: &Path| {
+        let create = |path: &Path| -> Result<_> {
             let file = File::create_new(path).map_err(|error| refused(path, error))?;
             Ok((path.to_path_buf(), BufWriter::new(file)))
         };

@@ -246,7 +246,7 @@ fn an_effect_is_added_with_its_value_and_provenance() {
     assert!((value - 0.001).abs() < 2e-5, "{value}");
     let error = &data["error"];
     assert_eq!(error["held_out"], true);
-    assert!(error["after"].as_f64() < error["before"].as_f64());
+    assert!(error["after_rad"].as_f64() < error["before_rad"].as_f64());
     let text = bench.get("new.toml");
     assert!(text.starts_with("# A pendulum.\n"), "{text}");
     for part in [

@@ -69,7 +69,7 @@ fn a_run_through_the_firmware_is_what_its_model_says() {
     let compared = bench.run(&format!("compare {model} run.csv --json"));
     assert_eq!(compared.code, Some(0), "{compared:?}");
     let signal = &compared.json()["comparisons"][0]["signals"][0];
-    let rms_rad = signal["rms"].as_f64().unwrap();
+    let rms_rad = signal["rms_rad"].as_f64().unwrap();
     assert!((0.0005..0.012).contains(&rms_rad), "{signal}");
     assert!(signal["fit_percent"].as_f64().unwrap() > 90.0, "{signal}");
 }

@@ -12,7 +12,7 @@ fn models_stand_side_by_side_and_the_page_is_not_overwritten() {
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
     let rms = |model: usize| {
-        data["comparisons"][model]["signals"][0]["rms"]
+        data["comparisons"][model]["signals"][0]["rms_rad"]
             .as_f64()
             .unwrap()
     };

@@ -162,7 +162,10 @@ fn miss(outcome: &Outcome) -> Option<String> {
             || "no interval".to_owned(),
             |(low, high)| format!("{low:.5} to {high:.5}"),
         );
-        notes.push(format!("{} is {}, not {interval}", value.key, value.hidden));
+        notes.push(format!(
+            "{} is {}, not {interval}",
+            value.key, value.true_value
+        ));
     }
     (!notes.is_empty()).then(|| format!("{hidden}, seed {seed}: named, but {}", notes.join("; ")))
 }

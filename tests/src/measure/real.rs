@@ -8,8 +8,7 @@
 use super::page::Page;
 use super::scatter::scatter_rad;
 use comfy_table::{ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand::diagnose::words::address;
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, diagnose};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::{Error, Model, Result};
@@ -208,8 +207,12 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
         let error = &row.diagnosis.error;
         table.add_row([
             rig.name.to_string(),
-            format!("{:.2} -> {:.2}", 1e3 * error.before, 1e3 * error.after),
-            format!("{:.2}", 1e3 * error.floor),
+            format!(
+                "{:.2} -> {:.2}",
+                1e3 * error.before_rad,
+                1e3 * error.after_rad
+            ),
+            format!("{:.2}", 1e3 * error.floor_rad),
             format!("{:.2}", 1e3 * row.scatter_rad),
             if error.held_out { "held out" } else { "fitted" }.to_string(),
             format!("{:?}", row.diagnosis.verdict).to_lowercase(),
@@ -233,7 +236,7 @@ fn effects(diagnosis: &Diagnosis) -> String {
         effect.parameters.iter().map(move |value| {
             format!(
                 "{}.{} = {:.3e} {} ({:.3e} to {:.3e})",
-                address(effect),
+                effect.address(),
                 value.key,
                 value.value,
                 value.unit,
@@ -243,7 +246,7 @@ fn effects(diagnosis: &Diagnosis) -> String {
         })
     });
     let rivals = diagnosis.alternatives.iter().map(|rival| {
-        let names: Vec<String> = rival.effects.iter().map(address).collect();
+        let names: Vec<String> = rival.effects.iter().map(FittedEffect::address).collect();
         format!("or {}", names.join(" + "))
     });
     values.chain(rivals).collect::<Vec<_>>().join("\n")

@@ -100,7 +100,7 @@ pub struct Gains {
 
 #[derive(Debug, clap::Subcommand)]
 enum Then {
-    /// Bring them onto the CM-5, and read them back
+    /// Deploy the gains to the CM-5, and read them back
     Deploy(Box<Args>),
 }
 

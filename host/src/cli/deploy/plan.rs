@@ -1,8 +1,8 @@
 //! What the robot is like beside its model, and the plan that follows.
 
 use super::{INPUTS, STATES};
-use crate::cli::given::Given;
 use crate::cli::port::id_list;
+use crate::cli::weight_arg::WeightArg;
 use handstand::controllers::{Fitting, Servo, Timing, board_plan, regulator_plan};
 use handstand::model::Angles;
 use handstand::synth::{Design, FixedLaw, Weight, upright};
@@ -61,24 +61,24 @@ const VELOCITY: Velocity = Velocity {
 };
 
 /// SI value of one step of each state, as the firmware measures them.
-pub fn state_steps() -> Given {
+pub fn state_steps() -> WeightArg {
     let (angle, position) = (Attitude::ANGLE_LSB_RAD, Position::LSB_RAD);
     let speed = position / PERIOD_S / f64::from(1 << VELOCITY.fraction);
     let rate = Attitude::RATE_LSB_RAD_S;
-    Given::Numbers(Weight::Diagonal(vec![
+    WeightArg::Numbers(Weight::Diagonal(vec![
         angle, position, position, rate, speed, speed,
     ]))
 }
 
 impl Rig {
     /// Steps of the inputs that the plan can turn into commands, if those of this law are too coarse for it.
-    pub fn finer(&self, law: &FixedLaw) -> Option<Given> {
+    pub fn finer(&self, law: &FixedLaw) -> Option<WeightArg> {
         // A plan holds commands per step in 16 bits behind the point.
         let most_nm =
             self.full_torque / (1023.0 - (self.dead_zone * 1023.0).round()) * 65_535.0 / 65_536.0;
         let is_coarse = law.input_step.iter().any(|step| *step > most_nm);
         let step = 2f64.powi(most_nm.log2().floor() as i32);
-        is_coarse.then(|| Given::Numbers(Weight::Diagonal(vec![step; law.input_step.len()])))
+        is_coarse.then(|| WeightArg::Numbers(Weight::Diagonal(vec![step; law.input_step.len()])))
     }
 
     /// The plan of a law on an estimated state.

@@ -17,7 +17,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::mpsc;
 
-/// Run robots that all differ within what is uncertain.
+/// Simulate robots drawn from the uncertain quantities.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Study file

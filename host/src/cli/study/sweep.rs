@@ -15,7 +15,7 @@ use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Sweep a quantity and judge the closed loop at every level
+/// Sweep one parameter of the closed loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Sweeps, or `all`

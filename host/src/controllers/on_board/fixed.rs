@@ -5,9 +5,10 @@
 
 use super::{OnBoard, Timing};
 use crate::controllers::DesignModel;
+use crate::dynamics::EquationsOfMotion;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::synth::{Equations, Format, Ranges, quantise, upright};
+use crate::synth::{Format, Ranges, quantise, upright};
 use handstand_shared::gains::GainTable;
 use handstand_shared::message::Attitude;
 use handstand_shared::observer::{
@@ -266,7 +267,8 @@ const SURELY: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 fn moments(model: &Model) -> [Moment; JOINTS] {
-    let equations = Equations::of(&model.rig(false));
+    let rig = model.rig(false);
+    let equations = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad);
     let moments = equations.moments_kg_m();
     let most = moments
         .iter()
@@ -275,7 +277,7 @@ fn moments(model: &Model) -> [Moment; JOINTS] {
     let scaled = |part: f64| (part / most * 16_384.0).round() as i16;
     let mut links = [Moment::ZERO; JOINTS];
     for (link, [along, aside]) in links.iter_mut().zip(moments) {
-        (link.along, link.aside) = (scaled(*along), scaled(*aside));
+        (link.along, link.aside) = (scaled(along), scaled(aside));
     }
     links
 }

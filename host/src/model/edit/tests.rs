@@ -15,8 +15,8 @@ fn effect(id: &str, joint: usize, value: f64) -> EffectInstance {
     }
 }
 
-fn fitted() -> Fitted {
-    Fitted {
+fn fitted() -> FitRecord {
+    FitRecord {
         intervals: vec![("torque_nm".into(), 0.018, 0.022)],
         logs: vec![("drop \"1\".csv".into(), "ab12".into())],
         error_before: 0.012_345_678,

@@ -240,7 +240,7 @@ fn inputs(model: &Model, motion: &Motion) -> Vec<Input> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Source;
+    use crate::log::MotionSource;
     use std::f64::consts::PI;
     use std::path::Path;
 
@@ -249,7 +249,7 @@ mod tests {
     fn motion() -> Motion {
         Motion {
             name: "a.csv".into(),
-            source: Source {
+            source: MotionSource {
                 path: "a.csv".into(),
                 sha256: String::new(),
                 lines: (1, 2),

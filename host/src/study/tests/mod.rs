@@ -203,7 +203,7 @@ fn what_does_not_belong_together_is_not_merged() {
     let files = [path("a.journal"), path("b.journal")];
     let error = merge(&files).unwrap_err();
     assert!(
-        matches!(&error, Error::Data { what, .. } if what.contains("another study")),
+        matches!(&error, Error::Data { reason, .. } if reason.to_string().contains("another study")),
         "{error}"
     );
     let error = Journal::open(&files[0], &header(&other)).unwrap_err();

@@ -1,7 +1,7 @@
 //! A design for people.
 
 use crate::number::short;
-use crate::synth::{Design, Estimation, Fixed, Mode, OmittedEffect, Reach};
+use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 
@@ -133,34 +133,31 @@ fn plant_lines(design: &Design) -> Vec<String> {
         ),
         format!("Zeros to driven q     {kind}"),
         format!(
-            "Inputs reach          {}",
-            reach(&design.controllability, design)
+            "Controllability       {}",
+            controllability(&design.controllability, design)
         ),
         format!(
-            "Angles show           {}",
-            reach(&design.observability, design)
+            "Observability         {}",
+            controllability(&design.observability, design)
         ),
     ]
 }
 
-fn reach(reach: &Reach, design: &Design) -> String {
+fn controllability(of: &Controllability, design: &Design) -> String {
     let n = design.plant.a.nrows();
     // Mirrored modes are equally hard: rounded, the growing one is named, which comes first.
-    let size = |mode: &Mode| (1e6 * mode.measure.max(f64::MIN_POSITIVE).ln()).round();
-    let weakest = reach
-        .modes
-        .iter()
-        .min_by(|a, b| size(a).total_cmp(&size(b)));
-    let all = match reach.is_full() {
+    let size = |mode: &Mode| (1e6 * mode.margin.max(f64::MIN_POSITIVE).ln()).round();
+    let weakest = of.modes.iter().min_by(|a, b| size(a).total_cmp(&size(b)));
+    let all = match of.is_full() {
         true => "every mode".to_string(),
-        false => format!("NOT every mode: rank {} of {n}", reach.rank),
+        false => format!("NOT every mode: rank {} of {n}", of.rank),
     };
     match weakest {
         None => all,
         Some(mode) => format!(
-            "{all}; hardest {} 1/s, {} from lost",
+            "{all}; weakest {} 1/s, margin {}",
             several(&[mode.pole]),
-            short(mode.measure)
+            short(mode.margin)
         ),
     }
 }

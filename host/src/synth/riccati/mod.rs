@@ -12,4 +12,4 @@ mod stein;
 mod twofold;
 
 use doubling::symmetrise;
-pub(super) use problem::{Kind, Problem};
+pub(super) use problem::{Problem, TimeDomain};
