@@ -40,5 +40,5 @@ pub fn regulator() -> Result<Design> {
         input_range: None,
         format: Format::default(),
     };
-    Design::of(&robot, &request)
+    Ok(Design::of(&robot, &request)?)
 }

@@ -81,7 +81,7 @@ pub(crate) fn settings(bytes: &[u8]) {
 /// The sealed answer of a challenge.
 pub(crate) fn seal(bytes: &[u8]) {
     if let Some(text) = text(bytes) {
-        let _ = handstand::challenge::unseal(text, Path::new("answer.sealed"));
+        let _ = handstand::challenge::unseal(text);
     }
 }
 
