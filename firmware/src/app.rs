@@ -6,25 +6,25 @@ use crate::design::TICK_US;
 use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::Buttons;
+use crate::plan_store::Writer;
 use crate::servos::Servos;
-use crate::slots::Writer;
-use crate::{boots, bus};
-use handstand_shared::message::{Attitude, Cause, Condition, Roster, Statistics};
+use crate::{boot_counter, bus};
+use handstand_shared::message::{Attitude, Cause, Condition, ServoList, Statistics};
 use handstand_shared::packed::{Positions, Speeds};
 
 mod buttons;
 mod command;
-mod letting_down;
+mod modes;
+mod soft_stop;
 mod state;
-mod turns;
 
-pub use state::{Drive, State};
+pub use state::{State, Torque};
 
 /// What the host wants of the servos.
 #[derive(Debug, Clone, Copy)]
-enum Wish {
+enum Goal {
     /// Nothing since arming: stay.
-    Stay,
+    Hold,
     Positions(Positions),
     Speeds(Speeds),
 }
@@ -39,15 +39,15 @@ pub struct App {
     statistics: Statistics,
     buttons: Buttons,
     writer: Writer,
-    wish: Wish,
+    goal: Goal,
     balance: Balance,
     attitude: Attitude,
-    /// Sequence number of the frame `wish` came in.
+    /// Sequence number of the frame `goal` came in.
     obeyed: u8,
     /// What arming must bring; none before a greeting and after every fault.
     token: Option<u16>,
     /// Number of this start, and of the greetings in it from a number of chance on: what tokens are made of.
-    boots: u8,
+    boot_count: u8,
     greetings: Option<u8>,
     ticks: u32,
     /// Ticks since the last sound frame.
@@ -75,16 +75,16 @@ impl App {
             state,
             link: Link::default(),
             filter: Filter::default(),
-            servos: Servos::new(&Roster::default()),
+            servos: Servos::new(&ServoList::default()),
             statistics: Statistics::default(),
             buttons: Buttons::default(),
             writer: Writer::new(board),
-            wish: Wish::Stay,
+            goal: Goal::Hold,
             balance: Balance::NONE,
             attitude: Attitude::default(),
             obeyed: 0,
             token: None,
-            boots: boots::count(board) as u8,
+            boot_count: boot_counter::count(board) as u8,
             greetings: None,
             ticks: 0,
             silent: 0,
@@ -175,15 +175,15 @@ impl App {
         }
         match self.state {
             State::Bridge => {}
-            State::Stream(Drive::Off) | State::Balance(Drive::Off) => self.watch(board, started),
+            State::Stream(Torque::Off) | State::Balance(Torque::Off) => self.watch(board, started),
             State::Fault(_) => self.insist(board, started),
-            State::Stream(Drive::On) => self.stream(board, started),
-            State::Balance(Drive::On) => self.balance(board, started),
-            State::Stream(Drive::Soft { left, cause }) => {
+            State::Stream(Torque::On) => self.stream(board, started),
+            State::Balance(Torque::On) => self.balance(board, started),
+            State::Stream(Torque::Fading { left, cause }) => {
                 self.fade(board, left, cause, State::Stream);
                 self.watch(board, started);
             }
-            State::Balance(Drive::Soft { left, cause }) => {
+            State::Balance(Torque::Fading { left, cause }) => {
                 self.fade(board, left, cause, State::Balance);
                 self.watch(board, started);
             }

@@ -6,7 +6,7 @@ use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
 use handstand_shared::message::Attitude;
 use handstand_shared::observer::{self, FINE, READINGS};
-use handstand_shared::plan::{Given, Law, Moment, Plan};
+use handstand_shared::plan::{AppliedInput, Law, Moment, Plan};
 use handstand_shared::raw::{Position, Signed};
 use handstand_shared::velocity;
 use micromath::F32Ext;
@@ -25,7 +25,7 @@ pub struct Balance {
     fingerprint: Option<u32>,
     velocities: [velocity::Memory; 2],
     estimate: observer::Memory,
-    given: [Given; 2],
+    applied: [AppliedInput; 2],
     /// Angles at which the robot balances beside the operating point: the first link's in its steps, the joints' as readings.
     compensation: [i16; 3],
     /// The first link's angle, in 1/10 of its step: a rate step lasts 1/10 angle step per tick.
@@ -50,7 +50,7 @@ impl Balance {
         fingerprint: None,
         velocities: [velocity::Memory::NONE; 2],
         estimate: observer::Memory::ZERO,
-        given: [Given::NOTHING; 2],
+        applied: [AppliedInput::NOTHING; 2],
         compensation: [0; 3],
         angle: 0,
         rate: 0,
@@ -76,7 +76,7 @@ impl Balance {
     #[inline(never)]
     pub fn start(&mut self) {
         self.velocities = [velocity::Memory::NONE; 2];
-        self.given = [Given::NOTHING; 2];
+        self.applied = [AppliedInput::NOTHING; 2];
         self.missed = 0;
         self.rate = 0;
         self.compensation = compensation(&self.plan.moments);
@@ -141,15 +141,15 @@ impl Balance {
         &mut self,
         readings: &[i16; READINGS],
     ) -> impl Iterator<Item = (u8, Signed)> + use<> {
-        let [u2, u3] = self.wish(readings);
+        let [u2, u3] = self.raw_command(readings);
         let [shoulder, hip] = &self.plan.joints;
-        let [given2, given3] = &mut self.given;
-        let (u2, u3) = (shoulder.give(given2, u2), hip.give(given3, u3));
+        let [applied2, applied3] = &mut self.applied;
+        let (u2, u3) = (shoulder.apply(applied2, u2), hip.apply(applied3, u3));
         let first = shoulder.commands(shoulder.command(u2));
         first.chain(hip.commands(hip.command(u3)))
     }
 
-    fn wish(&mut self, readings: &[i16; READINGS]) -> [i16; 2] {
+    fn raw_command(&mut self, readings: &[i16; READINGS]) -> [i16; 2] {
         match &self.plan.law {
             Law::State { table, velocity } => {
                 let [angle, q2, q3, rate] = *readings;
@@ -167,23 +167,23 @@ impl Balance {
                 ];
                 control(table, &states)
             }
-            Law::Observer(observer) => observer.wish(&mut self.estimate, &fine(readings)),
+            Law::Observer(observer) => observer.raw_command(&mut self.estimate, &fine(readings)),
         }
     }
 
-    /// Tells the estimate what was given; [`Balance::go_on`] does the rest.
-    pub fn learn(&mut self) {
+    /// Tells the estimate what was applied; [`Balance::step_update`] does the rest.
+    pub fn begin_update(&mut self) {
         if let Law::Observer(observer) = &self.plan.law {
-            let given = [self.given[0].input, self.given[1].input];
-            observer.tell(&mut self.estimate, given);
+            let applied = [self.applied[0].input, self.applied[1].input];
+            observer.begin_update(&mut self.estimate, applied);
         }
     }
 
     /// A step towards the next estimate, if one is left: 60 us on the AVR.
     #[inline(never)]
-    pub fn go_on(&mut self) {
+    pub fn step_update(&mut self) {
         if let Law::Observer(observer) = &self.plan.law {
-            observer.go_on(&mut self.estimate);
+            observer.step_update(&mut self.estimate);
         }
     }
 

@@ -37,7 +37,7 @@ pub const FADE_TICKS: u8 = 16;
 /// Below this supply arming is refused; 8 NiMH cells are empty at about 1.1 V each.
 pub const LOW_SUPPLY: handstand_shared::raw::Supply = handstand_shared::raw::Supply(88);
 
-/// Rounds of the slow channels with a low supply before an armed robot is let down: 3 x 90 ms. A single
+/// Rounds of the housekeeping with a low supply before an armed robot is let down: 3 x 90 ms. A single
 /// dip under load is normal.
 pub const LOW_ROUNDS: u8 = 3;
 

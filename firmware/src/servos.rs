@@ -1,6 +1,6 @@
 //! The servos as a group: who they are, where they are, and what they last said.
 
-use handstand_shared::message::{Limp, Roster, Slow};
+use handstand_shared::message::{Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
@@ -24,7 +24,7 @@ pub struct Servo {
     pub goal: Position,
 }
 
-/// All of them, in the roster's order.
+/// All of them, in the servo list's order.
 #[derive(Debug, Clone)]
 pub struct Servos {
     servos: [Servo; SERVOS],
@@ -33,23 +33,23 @@ pub struct Servos {
     pub positions: Positions,
     /// How many have been asked for their return delay.
     asked: u8,
-    /// Place of the first servo whose slow channels are read in this tick.
-    pub slow_from: u8,
-    slow_second: u8,
-    /// The slow channels read in this tick.
-    pub slow: [Slow; 2],
-    /// The lowest supply in the round of slow channels before this one.
+    /// Place of the first servo whose housekeeping are read in this tick.
+    pub housekeeping_from: u8,
+    housekeeping_second: u8,
+    /// The housekeeping read in this tick.
+    pub housekeeping: [Housekeeping; 2],
+    /// The lowest supply in the round of housekeeping before this one.
     pub supply: Option<Supply>,
     lowest: Supply,
-    /// Rounds of slow channels so far, modulo 256.
+    /// Rounds of housekeeping so far, modulo 256.
     pub rounds: u8,
     /// The first commanded servo since arming that said it was overloaded or too hot.
-    pub limp: Option<Limp>,
+    pub tripped: Option<TrippedServo>,
 }
 
 impl Servos {
     /// Nothing is known of them but their ids.
-    pub fn new(roster: &Roster) -> Self {
+    pub fn new(list: &ServoList) -> Self {
         let unknown = Servo {
             id: 0,
             delay: ReturnDelay::FACTORY,
@@ -59,23 +59,23 @@ impl Servos {
             goal: Position::CENTRE,
         };
         let mut servos = [unknown; SERVOS];
-        (servos.iter_mut().zip(roster.ids())).for_each(|(servo, id)| servo.id = *id);
+        (servos.iter_mut().zip(list.ids())).for_each(|(servo, id)| servo.id = *id);
         Servos {
             servos,
-            count: roster.ids().len() as u8,
+            count: list.ids().len() as u8,
             positions: Positions::pack([Position::CENTRE.0; SERVOS]),
             asked: 0,
-            slow_from: 0,
-            slow_second: if roster.ids().len() > 1 { 1 } else { 0 },
-            slow: [round::SILENT; 2],
+            housekeeping_from: 0,
+            housekeeping_second: if list.ids().len() > 1 { 1 } else { 0 },
+            housekeeping: [round::SILENT; 2],
             supply: None,
             lowest: Supply(u8::MAX),
             rounds: 0,
-            limp: None,
+            tripped: None,
         }
     }
 
-    /// Those of the roster.
+    /// Those of the servo list.
     pub fn all(&self) -> &[Servo] {
         self.servos
             .get(..usize::from(self.count))

@@ -4,7 +4,9 @@
 //! cargo run --release --example closed_loop
 //! ```
 
-use handstand::sim::closed_loop::{ClosedLoop, Commands, InitialState, Outcome, StateFeedback, stream};
+use handstand::sim::closed_loop::{
+    ClosedLoop, Commands, InitialState, Outcome, StateFeedback, stream,
+};
 use handstand::synth::{Design, Format, Request, Time, Weight, upright};
 use handstand::{Model, Result};
 use std::path::Path;

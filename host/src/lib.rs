@@ -9,6 +9,7 @@
 pub mod challenge;
 pub mod compare;
 pub mod controllers;
+pub mod deploy;
 pub mod diagnose;
 pub mod dynamics;
 pub mod effects;

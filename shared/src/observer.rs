@@ -1,18 +1,18 @@
-//! A law on an estimated state, for three links of which two are driven: what a robot needs whose servos tell neither
-//! speed nor balance, and act late.
+//! Observer-based state feedback for three links of which two are driven: the law for servos that measure neither speed
+//! nor attitude, and act late.
 //!
-//! A Kalman filter with the gains behind it, on known past inputs,
+//! A Kalman filter with LQR gains behind it, on known past inputs:
 //!
 //! ```text
-//! surprise = readings - expect [estimate, past inputs]           four readings
-//! wish     = sat(feedback [estimate, past inputs, surprise])     two inputs
-//! next     = update [estimate, past inputs, surprise, given]     nine states
+//! innovation  = readings - predict [estimate, past inputs]           four readings
+//! raw_command = sat(feedback [estimate, past inputs, innovation])    two inputs
+//! next        = update [estimate, past inputs, innovation, applied]  nine states
 //! ```
 //!
-//! where `given` is the input that really went out, after dead zone, slew and limits. All three are [`GainTable`]s: 16-bit
-//! words, 32-bit sums that no states overflow, one rounding and one saturation per row. Multiplied out to two tables on the readings
-//! themselves it would be shorter, but then rounded gains that should cancel would not, and the slowest of its modes
-//! would grow. Inputs on their way are kept exactly. The estimate is [angles, speeds, angles of balance] of the three joints.
+//! `applied` is the input that went out after dead zone, slew and limits. All three are [`GainTable`]s: 16-bit words,
+//! 32-bit sums that no states overflow, one rounding and one saturation per row. Multiplied out to two tables on the
+//! readings themselves it would be shorter, but rounded gains that should cancel would not, and the slowest mode would
+//! grow. Delayed inputs are kept exactly. The estimate is [angles, speeds, equilibrium angles] of the three joints.
 
 use crate::gains::{GainTable, take};
 use crate::law::{control, departure, input};
@@ -21,7 +21,7 @@ use crate::law::{control, departure, input};
 pub const INPUTS: usize = 2;
 /// Joints, the first of them passive.
 pub const JOINTS: usize = 3;
-/// Estimated states: angles, speeds, angles of balance.
+/// Estimated states: angles, speeds, equilibrium angles.
 pub const ESTIMATED: usize = 3 * JOINTS;
 /// Sample periods an input may be on its way.
 pub const DELAYS: usize = 3;
@@ -29,36 +29,36 @@ pub const DELAYS: usize = 3;
 pub const PAST: usize = DELAYS * INPUTS;
 /// Readings: the angles, then the first link's rate.
 pub const READINGS: usize = JOINTS + 1;
-/// What readings are expected from.
+/// Width of what readings are predicted from.
 pub const STATE: usize = ESTIMATED + PAST;
-/// What the feedback sees.
+/// Width of what the feedback acts on.
 pub const SEEN: usize = STATE + READINGS;
-/// What the update sees.
+/// Width of what the update acts on.
 pub const WIDTH: usize = SEEN + INPUTS;
 
 /// Binary places of a driven joint's reading below a position code.
 pub const FINE: u8 = 5;
 
-/// The machine.
+/// Fixed-point observer and feedback.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Observer {
-    /// From estimate and past inputs to the readings, in the surprise's steps.
-    pub expect: GainTable<READINGS, STATE>,
-    /// From those and the surprise to the inputs.
+    /// From estimate and past inputs to the readings, in the innovation's steps.
+    pub predict: GainTable<READINGS, STATE>,
+    /// From those and the innovation to the inputs.
     pub feedback: GainTable<INPUTS, SEEN>,
-    /// From all that and the given inputs to the next estimate.
+    /// From all that and the applied inputs to the next estimate.
     pub update: GainTable<ESTIMATED, WIDTH>,
-    /// Binary places of the surprise below the readings' steps; estimated angles have as many.
+    /// Binary places of the innovation below the readings' steps; estimated angles have as many.
     pub reading_places: [u8; READINGS],
-    /// Binary places of the angles of balance below the readings' steps.
+    /// Binary places of the equilibrium angles below the readings' steps.
     pub balance_places: [u8; JOINTS],
 }
 
 /// Steps of an update: the departures, then one per estimated state.
 const STEPS: u8 = 1 + ESTIMATED as u8;
 
-/// What it remembers: estimate, past inputs, and room for surprise and given inputs; and the next estimate, while it is
-/// being made.
+/// State of the observer: estimate, past inputs, innovation and applied inputs, and the next estimate while it is
+/// computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
     all: [i16; WIDTH],
@@ -82,7 +82,7 @@ impl Memory {
         }
     }
 
-    /// Estimate, past inputs, last surprise and last given inputs, in the tables' steps.
+    /// Estimate, past inputs, last innovation and last applied inputs, in the tables' steps.
     pub fn all(&self) -> &[i16; WIDTH] {
         &self.all
     }
@@ -98,7 +98,7 @@ impl Observer {
 
     /// One of zeros.
     pub const ZERO: Observer = Observer {
-        expect: GainTable::ZERO,
+        predict: GainTable::ZERO,
         feedback: GainTable::ZERO,
         update: GainTable::ZERO,
         reading_places: [0; READINGS],
@@ -107,7 +107,7 @@ impl Observer {
 
     /// Hands its bytes to `sink`: the tables' canonical ones, then the places.
     pub fn bytes(&self, mut sink: impl FnMut(u8)) {
-        self.expect.bytes(&mut sink);
+        self.predict.bytes(&mut sink);
         self.feedback.bytes(&mut sink);
         self.update.bytes(&mut sink);
         let places = self.reading_places.iter().chain(&self.balance_places);
@@ -116,7 +116,7 @@ impl Observer {
 
     /// Overwrites it by the next bytes, as [`GainTable::fill`].
     pub fn fill(&mut self, from: &mut impl Iterator<Item = u8>) -> Option<()> {
-        self.expect.fill(from)?;
+        self.predict.fill(from)?;
         self.feedback.fill(from)?;
         self.update.fill(from)?;
         self.reading_places = take(from)?;
@@ -126,7 +126,7 @@ impl Observer {
 
     /// Whether no states whatever overflow a sum.
     pub fn is_safe(&self) -> bool {
-        self.expect.is_safe() && self.feedback.is_safe() && self.update.is_safe()
+        self.predict.is_safe() && self.feedback.is_safe() && self.update.is_safe()
     }
 
     /// At rest at these readings; `balance` are the angles at which the robot is expected to balance, in the readings' steps.
@@ -143,18 +143,18 @@ impl Observer {
         }
     }
 
-    /// The inputs wished for at these readings. Ends an update that is under way.
+    /// Raw command at these readings. Finishes a pending update first.
     #[inline(never)]
-    pub fn wish(&self, memory: &mut Memory, readings: &[i16; READINGS]) -> [i16; INPUTS] {
+    pub fn raw_command(&self, memory: &mut Memory, readings: &[i16; READINGS]) -> [i16; INPUTS] {
         self.finish(memory);
-        let expected = match memory.all.first_chunk() {
-            Some(state) => control(&self.expect, state),
+        let predicted = match memory.all.first_chunk() {
+            Some(state) => control(&self.predict, state),
             None => [0; READINGS],
         };
         let place = memory.all.iter_mut().skip(STATE);
-        let read = readings.iter().zip(self.reading_places).zip(expected);
-        for (to, ((reading, places), expected)) in place.zip(read) {
-            *to = finer(*reading, places).saturating_sub(expected);
+        let read = readings.iter().zip(self.reading_places).zip(predicted);
+        for (to, ((reading, places), predicted)) in place.zip(read) {
+            *to = finer(*reading, places).saturating_sub(predicted);
         }
         match memory.all.first_chunk() {
             Some(seen) => control(&self.feedback, seen),
@@ -162,23 +162,23 @@ impl Observer {
         }
     }
 
-    /// Goes on by a sample under the inputs that were really given.
-    pub fn learn(&self, memory: &mut Memory, given: [i16; INPUTS]) {
-        self.tell(memory, given);
+    /// Update the estimate by a sample under the applied inputs.
+    pub fn update(&self, memory: &mut Memory, applied: [i16; INPUTS]) {
+        self.begin_update(memory, applied);
         self.finish(memory);
     }
 
-    /// Begins to go on by a sample under the inputs that were really given: [`Observer::go_on`] does the work, in steps, for
-    /// whoever has to wait for something else in between.
-    pub fn tell(&self, memory: &mut Memory, given: [i16; INPUTS]) {
+    /// Begin an update under the applied inputs: [`Observer::step_update`] does the work in steps, between which the
+    /// caller may wait for something else.
+    pub fn begin_update(&self, memory: &mut Memory, applied: [i16; INPUTS]) {
         let place = memory.all.iter_mut().skip(SEEN);
-        place.zip(given).for_each(|(to, from)| *to = from);
+        place.zip(applied).for_each(|(to, from)| *to = from);
         memory.left = STEPS;
     }
 
-    /// A step of the update that is under way; false if there is none. The last one lets the next estimate count.
+    /// A step of the pending update; false if there is none. After the last one the next estimate is valid.
     #[inline(never)]
-    pub fn go_on(&self, memory: &mut Memory) -> bool {
+    pub fn step_update(&self, memory: &mut Memory) -> bool {
         let left = memory.left;
         if left == 0 {
             return false;
@@ -199,12 +199,12 @@ impl Observer {
     }
 
     fn finish(&self, memory: &mut Memory) {
-        while self.go_on(memory) {}
+        while self.step_update(memory) {}
     }
 }
 
 impl Memory {
-    /// The next estimate counts, and the given inputs are the newest past ones.
+    /// The next estimate counts, and the applied inputs are the newest past ones.
     fn take_next(&mut self) {
         let all = &mut self.all;
         all.copy_within(ESTIMATED..ESTIMATED + PAST - INPUTS, ESTIMATED + INPUTS);
@@ -226,11 +226,11 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Readings are expected as estimated, but for the rate; the estimate stays but for 256 times the surprise and the
-    /// first given input; inputs are minus the driven joints' angles and inputs two samples old.
+    /// Readings are predicted as estimated, but for the rate; the estimate stays but for 256 times the innovation and the
+    /// first applied input; inputs are minus the driven joints' angles and inputs two samples old.
     fn observer() -> Observer {
         let mut observer = Observer::ZERO;
-        for (i, row) in observer.expect.rows.iter_mut().enumerate() {
+        for (i, row) in observer.predict.rows.iter_mut().enumerate() {
             (row.shift, row.low, row.high) = (8, i16::MIN, i16::MAX);
             if i < JOINTS {
                 row.k[i] = -256;
@@ -260,22 +260,25 @@ mod tests {
         let mut memory = Memory::ZERO;
         observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
         assert_eq!(memory.all()[..ESTIMATED], [20, 40, 60, 0, 0, 0, 1, 8, 24]);
-        assert_eq!(observer.wish(&mut memory, &[10, 20, 30, 40]), [-40, -60]);
+        assert_eq!(
+            observer.raw_command(&mut memory, &[10, 20, 30, 40]),
+            [-40, -60]
+        );
         assert_eq!(memory.all()[STATE..SEEN], [0, 0, 0, 40]);
-        observer.learn(&mut memory, [7, 9]);
+        observer.update(&mut memory, [7, 9]);
         assert_eq!(memory.all()[..JOINTS], [41, 61, 81]);
         assert_eq!(memory.all()[ESTIMATED..STATE], [7, 9, 0, 0, 0, 0]);
-        observer.wish(&mut memory, &[20, 31, 40, 0]);
+        observer.raw_command(&mut memory, &[20, 31, 40, 0]);
         assert_eq!(memory.all()[STATE..SEEN], [-1, 1, -1, 0]);
-        observer.learn(&mut memory, [1, 2]);
-        // Halves of the surprise are rounded down, for there is no bias.
+        observer.update(&mut memory, [1, 2]);
+        // Halves of the innovation are rounded down, for there is no bias.
         assert_eq!(memory.all()[..JOINTS], [43, 64, 83]);
         assert_eq!(memory.all()[ESTIMATED..STATE], [1, 2, 7, 9, 0, 0]);
-        assert_eq!(observer.wish(&mut memory, &[0; 4]), [-71, -92]);
+        assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-71, -92]);
         memory.all[1] = 1000;
-        assert_eq!(observer.wish(&mut memory, &[0; 4]), [-100, -92]);
-        // Surprises saturate.
-        observer.wish(&mut memory, &[i16::MIN, i16::MAX, 0, 0]);
+        assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-100, -92]);
+        // Innovations saturate.
+        observer.raw_command(&mut memory, &[i16::MIN, i16::MAX, 0, 0]);
         assert_eq!(memory.all()[STATE..STATE + 2], [i16::MIN, i16::MAX - 1000]);
     }
 
@@ -284,32 +287,32 @@ mod tests {
         let observer = observer();
         let mut memory = Memory::ZERO;
         observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
-        assert!(!observer.go_on(&mut memory));
-        observer.wish(&mut memory, &[11, 22, 33, 44]);
-        let (mut whole, mut left_to_wish) = (memory, memory);
-        observer.learn(&mut whole, [7, 9]);
-        observer.tell(&mut memory, [7, 9]);
+        assert!(!observer.step_update(&mut memory));
+        observer.raw_command(&mut memory, &[11, 22, 33, 44]);
+        let (mut whole, mut left_to_next) = (memory, memory);
+        observer.update(&mut whole, [7, 9]);
+        observer.begin_update(&mut memory, [7, 9]);
         let before = memory;
         for _ in 1..STEPS {
-            assert!(observer.go_on(&mut memory));
+            assert!(observer.step_update(&mut memory));
             assert_eq!(memory.all(), before.all());
         }
-        assert!(observer.go_on(&mut memory));
+        assert!(observer.step_update(&mut memory));
         assert_ne!(memory.all(), before.all());
         assert_eq!(memory, whole);
-        assert!(!observer.go_on(&mut memory));
-        // What nobody did meanwhile is done before the next wish.
-        observer.tell(&mut left_to_wish, [7, 9]);
+        assert!(!observer.step_update(&mut memory));
+        // What nobody did meanwhile is done before the next raw_command.
+        observer.begin_update(&mut left_to_next, [7, 9]);
         let next = [12, 23, 34, 45];
         assert_eq!(
-            observer.wish(&mut left_to_wish, &next),
-            observer.wish(&mut whole, &next)
+            observer.raw_command(&mut left_to_next, &next),
+            observer.raw_command(&mut whole, &next)
         );
-        assert_eq!(left_to_wish, whole);
+        assert_eq!(left_to_next, whole);
         // A new start forgets an update.
-        observer.tell(&mut memory, [7, 9]);
+        observer.begin_update(&mut memory, [7, 9]);
         observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
-        assert!(!observer.go_on(&mut memory));
+        assert!(!observer.step_update(&mut memory));
     }
 
     #[test]

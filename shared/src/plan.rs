@@ -16,7 +16,7 @@ use crate::velocity::Velocity;
 mod joint;
 mod parts;
 
-pub use joint::{Given, Joint};
+pub use joint::{AppliedInput, Joint};
 pub use parts::{Gyro, Moment};
 
 /// Version of the bytes.

@@ -1,6 +1,6 @@
 //! What buttons do, and which LEDs tell the state.
 
-use super::{App, Drive, State};
+use super::{App, State, Torque};
 use crate::board::Board;
 use crate::design::SILENT_TICKS;
 use crate::panel::{button, leds};
@@ -27,20 +27,20 @@ impl App {
     /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the host arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
-            State::Stream(Drive::On | Drive::Soft { .. }) => {
+            State::Stream(Torque::On | Torque::Fading { .. }) => {
                 self.disarm(board);
-                self.state = State::Stream(Drive::Off);
+                self.state = State::Stream(Torque::Off);
             }
-            State::Balance(Drive::On | Drive::Soft { .. }) => {
+            State::Balance(Torque::On | Torque::Fading { .. }) => {
                 self.disarm(board);
-                self.state = State::Balance(Drive::Off);
+                self.state = State::Balance(Torque::Off);
             }
-            State::Bridge | State::Stream(Drive::Off) => {
+            State::Bridge | State::Stream(Torque::Off) => {
                 if pressed & button::START != 0 {
                     self.enter(board, Mode::Balance);
                 }
             }
-            State::Balance(Drive::Off) | State::Fault(_) => {}
+            State::Balance(Torque::Off) | State::Fault(_) => {}
         }
     }
 }

@@ -1,12 +1,12 @@
 //! What each command of the host does.
 
-use super::{App, Drive, State, Wish};
+use super::{App, Goal, State, Torque};
 use crate::board::Board;
 use crate::design::LOW_SUPPLY;
+use crate::plan_store::MAX_TABLE;
 use crate::servos::Servos;
-use crate::slots::MAX_TABLE;
 use handstand_shared::message::{
-    Answer, Command, GAIN_CHUNK, Hello, Mode, Numbered, Refusal, Report, Roster, Subject,
+    Answer, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report, ServoList, Subject,
     Telemetry, VERSION,
 };
 
@@ -43,36 +43,36 @@ impl App {
                 Outcome::Quiet
             }
             Command::Mode(mode) => Outcome::Answer(self.change(board, mode)),
-            Command::Roster(roster) => Outcome::Answer(self.enlist(&roster)),
-            Command::Goals(goals) => self.wish_for(sequence, Wish::Positions(goals)),
-            Command::Speeds(speeds) => self.wish_for(sequence, Wish::Speeds(speeds)),
+            Command::ServoList(list) => Outcome::Answer(self.enlist(&list)),
+            Command::Goals(goals) => self.set_goal(sequence, Goal::Positions(goals)),
+            Command::Speeds(speeds) => self.set_goal(sequence, Goal::Speeds(speeds)),
             Command::Attitude(attitude) => {
                 self.attitude = attitude;
                 Outcome::Quiet
             }
             Command::Arm { token } => Outcome::Answer(self.arm(board, token)),
-            Command::GainChunk { offset, bytes } => match self.is_armed() {
+            Command::PlanChunk { offset, bytes } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
                 false => match self.writer.chunk(offset, &bytes, sequence) {
                     true => Outcome::Later,
-                    false => Outcome::Answer(Err(Refusal::BadGains)),
+                    false => Outcome::Answer(Err(Refusal::BadPlan)),
                 },
             },
-            Command::GainStore { length, check } => match self.is_armed() {
+            Command::PlanStore { length, check } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
                 false => match self.writer.store(board, length, check, sequence) {
                     true => Outcome::Later,
-                    false => Outcome::Answer(Err(Refusal::BadGains)),
+                    false => Outcome::Answer(Err(Refusal::BadPlan)),
                 },
             },
-            Command::GainRead { offset } => self.read_plan(board, offset),
+            Command::PlanRead { offset } => self.read_plan(board, offset),
         }
     }
 
     /// A piece of the plan that counts: the one in EEPROM, else the one compiled in.
     #[inline(never)]
     fn read_plan<B: Board>(&mut self, board: &mut B, offset: u16) -> Outcome {
-        let mut bytes = [0; GAIN_CHUNK];
+        let mut bytes = [0; PLAN_CHUNK];
         let length = match self.writer.newest() {
             Some(stored) => {
                 stored.read(board, offset, &mut bytes);
@@ -87,7 +87,7 @@ impl App {
                     .unwrap_or(MAX_TABLE)
             }
         };
-        let report = Report::GainChunk {
+        let report = Report::PlanChunk {
             offset,
             length,
             bytes,
@@ -106,7 +106,7 @@ impl App {
             version: VERSION,
             token,
             condition: self.condition(),
-            gains: self.balance.fingerprint().unwrap_or(0),
+            plan: self.balance.fingerprint().unwrap_or(0),
         };
         self.link.send(board, &Report::Hello(hello));
         Outcome::Quiet
@@ -118,14 +118,14 @@ impl App {
         let before = self.greetings.unwrap_or(board.clock() as u8);
         let greeting = before.wrapping_add(1);
         self.greetings = Some(greeting);
-        u16::from_le_bytes([greeting, self.boots])
+        u16::from_le_bytes([greeting, self.boot_count])
     }
 
     fn stop<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         self.disarm(board);
         self.state = match self.state {
-            State::Stream(_) => State::Stream(Drive::Off),
-            State::Balance(_) => State::Balance(Drive::Off),
+            State::Stream(_) => State::Stream(Torque::Off),
+            State::Balance(_) => State::Balance(Torque::Off),
             State::Bridge => State::Bridge,
             State::Fault(cause) => State::Fault(cause),
         };
@@ -143,21 +143,21 @@ impl App {
         Ok(())
     }
 
-    fn enlist(&mut self, roster: &Roster) -> Result<(), Refusal> {
+    fn enlist(&mut self, list: &ServoList) -> Result<(), Refusal> {
         if self.is_armed() {
             Err(Refusal::Armed)
-        } else if !roster.is_sound() {
-            Err(Refusal::Roster)
+        } else if !list.is_sound() {
+            Err(Refusal::ServoList)
         } else {
-            self.servos = Servos::new(roster);
+            self.servos = Servos::new(list);
             Ok(())
         }
     }
 
     /// Goals count only while streaming with torque on; before that they keep the link alive and no more.
-    fn wish_for(&mut self, sequence: u8, wish: Wish) -> Outcome {
-        if self.state == State::Stream(Drive::On) {
-            self.wish = wish;
+    fn set_goal(&mut self, sequence: u8, goal: Goal) -> Outcome {
+        if self.state == State::Stream(Torque::On) {
+            self.goal = goal;
             self.obeyed = sequence;
         }
         Outcome::Quiet
@@ -171,17 +171,17 @@ impl App {
             Some(_) => {}
         }
         match self.state {
-            State::Stream(Drive::Off) => {
+            State::Stream(Torque::Off) => {
                 self.has_supply()?;
-                self.wish = Wish::Stay;
+                self.goal = Goal::Hold;
                 self.low = (0, self.servos.rounds);
                 self.servos.arm(board);
-                self.state = State::Stream(Drive::On);
+                self.state = State::Stream(Torque::On);
                 Ok(())
             }
-            State::Balance(Drive::Off) => self.arm_balance(board),
-            State::Stream(Drive::On | Drive::Soft { .. })
-            | State::Balance(Drive::On | Drive::Soft { .. }) => Err(Refusal::Armed),
+            State::Balance(Torque::Off) => self.arm_balance(board),
+            State::Stream(Torque::On | Torque::Fading { .. })
+            | State::Balance(Torque::On | Torque::Fading { .. }) => Err(Refusal::Armed),
             State::Bridge | State::Fault(_) => Err(Refusal::State),
         }
     }
@@ -190,7 +190,7 @@ impl App {
     #[inline(never)]
     fn arm_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         self.has_supply()?;
-        self.balance.fingerprint().ok_or(Refusal::NoGains)?;
+        self.balance.fingerprint().ok_or(Refusal::NoPlan)?;
         if !self.balance.has_servos(&self.servos) {
             return Err(Refusal::Servo);
         }
@@ -202,10 +202,10 @@ impl App {
             return Err(Refusal::Pose);
         }
         self.balance.begin(&readings);
-        self.wish = Wish::Stay;
+        self.goal = Goal::Hold;
         self.low = (0, self.servos.rounds);
         self.servos.arm(board);
-        self.state = State::Balance(Drive::On);
+        self.state = State::Balance(Torque::On);
         Ok(())
     }
 
@@ -231,7 +231,7 @@ impl App {
             stack_size,
             supply: self.servos.supply.map_or(0, |supply| supply.0),
             gyro: board.gyro(),
-            limp: self.servos.limp,
+            tripped: self.servos.tripped,
         };
         if self.link.send(board, &Report::Telemetry(telemetry)) {
             self.longest_tick_us = 0;
@@ -249,7 +249,7 @@ impl App {
 
     fn is_armed(&self) -> bool {
         match self.state {
-            State::Stream(drive) | State::Balance(drive) => drive != Drive::Off,
+            State::Stream(drive) | State::Balance(drive) => drive != Torque::Off,
             State::Bridge | State::Fault(_) => false,
         }
     }

@@ -8,22 +8,22 @@ pub enum State {
     /// Plain adapter between PC and servos.
     Bridge,
     /// Reads the servos and obeys the host's goals.
-    Stream(Drive),
+    Stream(Torque),
     /// Reads the servos and balances.
-    Balance(Drive),
+    Balance(Torque),
     /// Torque is off and stays off until the host greets, chooses a mode and arms anew.
     Fault(Cause),
 }
 
 /// Torque within a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Drive {
+pub enum Torque {
     /// Torque off.
     Off,
     /// Torque on.
     On,
     /// Positions held, torque limit falling.
-    Soft {
+    Fading {
         /// Ticks until torque is off.
         left: u8,
         /// Why.
@@ -36,11 +36,11 @@ impl State {
     pub fn condition(self) -> Condition {
         match self {
             State::Bridge => Condition::Bridge,
-            State::Stream(Drive::Off) => Condition::Stream,
-            State::Stream(Drive::On) => Condition::StreamArmed,
-            State::Balance(Drive::Off) => Condition::Balance,
-            State::Balance(Drive::On) => Condition::BalanceArmed,
-            State::Stream(Drive::Soft { .. }) | State::Balance(Drive::Soft { .. }) => {
+            State::Stream(Torque::Off) => Condition::Stream,
+            State::Stream(Torque::On) => Condition::StreamArmed,
+            State::Balance(Torque::Off) => Condition::Balance,
+            State::Balance(Torque::On) => Condition::BalanceArmed,
+            State::Stream(Torque::Fading { .. }) | State::Balance(Torque::Fading { .. }) => {
                 Condition::Soft
             }
             State::Fault(cause) => Condition::Fault(cause),

@@ -27,7 +27,7 @@ mod program {
         /// The observer's memory, before and after.
         memory: [i16; WIDTH],
         readings: [i16; READINGS],
-        given: [i16; INPUTS],
+        applied: [i16; INPUTS],
         /// A table or an observer in its bytes.
         bytes: [u8; Observer::LENGTH],
     }
@@ -41,7 +41,7 @@ mod program {
         u: [0; 2],
         memory: [0; WIDTH],
         readings: [0; READINGS],
-        given: [0; INPUTS],
+        applied: [0; INPUTS],
         bytes: [0; Observer::LENGTH],
     };
 
@@ -92,13 +92,13 @@ mod program {
                     2 => {
                         let all = (&raw const (*mailbox).memory).read_volatile();
                         let readings = (&raw const (*mailbox).readings).read_volatile();
-                        let given = (&raw const (*mailbox).given).read_volatile();
+                        let applied = (&raw const (*mailbox).applied).read_volatile();
                         let mut memory = Memory::of(all);
                         let law = black_box(&observer);
                         mark(&port, 1);
-                        let u = black_box(law.wish(&mut memory, &readings));
+                        let u = black_box(law.raw_command(&mut memory, &readings));
                         mark(&port, 2);
-                        law.learn(&mut memory, given);
+                        law.update(&mut memory, applied);
                         mark(&port, 3);
                         (&raw mut (*mailbox).u).write_volatile(u);
                         (&raw mut (*mailbox).memory).write_volatile(*memory.all());

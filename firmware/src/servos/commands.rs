@@ -14,7 +14,7 @@ use heapless::Vec;
 impl Servos {
     /// Torque on where a servo answered: full limit, and the goal where it stands.
     pub fn arm<B: Board>(&mut self, board: &mut B) {
-        self.limp = None;
+        self.tripped = None;
         for servo in self.all_mut() {
             servo.armed = servo.present;
             servo.goal = servo.position;
@@ -63,7 +63,7 @@ impl Servos {
         bus::write_each(board, GOAL_POSITION, armed, moved);
     }
 
-    /// Sends commands to servos in wheel mode, in the roster's order.
+    /// Sends commands to servos in wheel mode, in the servo list's order.
     pub fn spin<B: Board>(&self, board: &mut B, speeds: impl Iterator<Item = u16>) {
         let all = self.all().iter().zip(speeds);
         let commanded = all.filter(|(servo, _)| servo.armed);

@@ -1,4 +1,4 @@
-//! Reading: every tick all positions, and the slow channels of two servos in turn.
+//! Reading: every tick all positions, and the housekeeping of two servos in turn.
 
 use super::Servos;
 use crate::board::{Board, since_us};
@@ -6,19 +6,19 @@ use crate::bus::{self, Answer, ReadPacket, look};
 use crate::design::LAST_RETRY_US;
 use handstand_shared::control_table::{PRESENT_POSITION, RETURN_DELAY};
 use handstand_shared::dynamixel::{ErrorBits, read_packet};
-use handstand_shared::message::{Limp, Slow, Statistics};
+use handstand_shared::message::{Housekeeping, Statistics, TrippedServo};
 use handstand_shared::packed::SERVOS;
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 use heapless::Vec;
 
-/// Bytes from the position on that hold the slow channels too.
+/// Bytes from the position on that hold the housekeeping too.
 const ALL_CHANNELS: u8 = bus::MOST_READ as u8;
 
 /// Error bits of a servo that drops its torque, or is about to.
 const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
 
 /// Of a servo that did not answer.
-pub(super) const SILENT: Slow = Slow {
+pub(super) const SILENT: Housekeeping = Housekeeping {
     error: 0xff,
     speed: [0; 2],
     load: [0; 2],
@@ -27,7 +27,7 @@ pub(super) const SILENT: Slow = Slow {
 };
 
 impl Servos {
-    /// Reads all positions, and the slow channels of two servos in turn; whoever answered in the last tick and does not
+    /// Reads all positions, and the housekeeping of two servos in turn; whoever answered in the last tick and does not
     /// now is asked once more at the end, if there is time. A silent servo costs its own time only.
     ///
     /// `meanwhile` is called once per servo, while its answer is awaited: bytes that come before it returns wait in the
@@ -85,11 +85,11 @@ impl Servos {
             .is_some_and(|servo| servo.present)
     }
 
-    /// Whether its slow channels are read in this tick, and as which of the two.
+    /// Whether its housekeeping are read in this tick, and as which of the two.
     fn turn_of(&self, place: u8) -> Option<usize> {
-        if place == self.slow_from {
+        if place == self.housekeeping_from {
             Some(0)
-        } else if place == self.slow_second {
+        } else if place == self.housekeeping_second {
             Some(1)
         } else {
             None
@@ -128,12 +128,12 @@ impl Servos {
             None => look::<2>(answer, servo.id),
             Some(turn) => {
                 let reading = look::<{ ALL_CHANNELS as usize }>(answer, servo.id);
-                let slow = reading.map_or(SILENT, slow_of);
+                let housekeeping = reading.map_or(SILENT, housekeeping_of);
                 if reading.is_ok() {
-                    self.lowest = self.lowest.min(Supply(slow.supply));
+                    self.lowest = self.lowest.min(Supply(housekeeping.supply));
                 }
-                if let Some(slot) = self.slow.get_mut(turn) {
-                    *slot = slow;
+                if let Some(slot) = self.housekeeping.get_mut(turn) {
+                    *slot = housekeeping;
                 }
                 reading.map(|([low, high, ..], error)| ([low, high], error))
             }
@@ -147,7 +147,7 @@ impl Servos {
             if servo.armed && error.0 & GAVE_UP != 0 {
                 servo.armed = false;
                 let (id, error) = (servo.id, error.0);
-                self.limp = self.limp.or(Some(Limp { id, error }));
+                self.tripped = self.tripped.or(Some(TrippedServo { id, error }));
             }
         }
         servo.present
@@ -155,14 +155,14 @@ impl Servos {
 
     /// Moves on to the next two servos; at the end of a round the lowest supply of it is known.
     fn begin_round(&mut self) {
-        let next = self.after(self.slow_second);
-        if next <= self.slow_from {
+        let next = self.after(self.housekeeping_second);
+        if next <= self.housekeeping_from {
             self.supply = Some(self.lowest).filter(|lowest| *lowest != Supply(u8::MAX));
             self.lowest = Supply(u8::MAX);
             self.rounds = self.rounds.wrapping_add(1);
         }
-        self.slow_from = next;
-        self.slow_second = self.after(next);
+        self.housekeeping_from = next;
+        self.housekeeping_second = self.after(next);
     }
 
     fn after(&self, place: u8) -> u8 {
@@ -188,8 +188,10 @@ impl Servos {
     }
 }
 
-fn slow_of(([_, _, s0, s1, l0, l1, supply, temperature], error): ([u8; 8], ErrorBits)) -> Slow {
-    Slow {
+fn housekeeping_of(
+    ([_, _, s0, s1, l0, l1, supply, temperature], error): ([u8; 8], ErrorBits),
+) -> Housekeeping {
+    Housekeeping {
         error: error.0,
         speed: [s0, s1],
         load: [l0, l1],

@@ -131,12 +131,11 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let (design, made) = designed(args, talk)?;
+    let (part, request, made) = requested(args, talk)?;
+    let design = Design::of(&part, &request)?;
     let whole = Model::load(&args.model)?;
-    let mut part = whole.clone();
-    leave_out(&mut part, &args.without)?;
     let left_out = left_out(&whole, &part, &design);
-    let verified = verify(&whole, &design, &request(args, &part)?.0, &left_out)?;
+    let verified = verify(&whole, &design, &request, &left_out)?;
     if talk.json {
         let mut data = export::json(&design, &made);
         data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
@@ -153,21 +152,6 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 impl Args {
-    /// The same with steps that somebody else prescribes: of the states, and where given of the inputs.
-    pub(super) fn in_steps(&self, steps: WeightArg, input: Option<WeightArg>) -> Result<Args> {
-        match self.state_step {
-            Some(_) => Err(Error::usage(
-                "--state-step has no place here: the firmware measures in steps of its own",
-                "leave it out",
-            )),
-            None => Ok(Args {
-                state_step: Some(steps),
-                input_step: input.or_else(|| self.input_step.clone()),
-                ..self.clone()
-            }),
-        }
-    }
-
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
@@ -206,8 +190,8 @@ impl Args {
     }
 }
 
-/// The design, and where it came from.
-pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)> {
+/// The model without the effects left out, what is asked of its design, and where it came from.
+pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
         input::vacant(file, args.force)?;
@@ -220,8 +204,7 @@ pub(super) fn designed(args: &Args, talk: &Talk) -> Result<(Design, Provenance)>
     if let Some(said) = balance {
         talk.say(&said);
     }
-    let design = Design::of(&model, &request)?;
-    Ok((design, provenance(&args.model, talk)?))
+    Ok((model, request, provenance(&args.model, talk)?))
 }
 
 /// Takes these effects out of the model; which ones they were.

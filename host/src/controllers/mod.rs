@@ -26,10 +26,7 @@ pub use design_model::DesignModel;
 pub use info::{ControllerInfo, Design, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;
-pub use on_board::{
-    Fitting, OnBoard, Servo, Timing, plan as board_plan, plan_file, reading_steps, regulator_plan,
-    si as board_steps,
-};
+pub use on_board::{OnBoard, Timing};
 pub use picture::picture;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, Through};

@@ -6,7 +6,7 @@
 //! and the inputs since determine exactly. With s = [x, offsets, past inputs],
 //!
 //! ```text
-//! surprise = y - C s        wish = -K (s + L surprise)        next = A (s + L surprise) + B given
+//! innovation = y - C s        raw_command = -K (s + L innovation)        next = A (s + L innovation) + B applied
 //! ```
 
 use super::observed::{Options, regulator};
@@ -20,12 +20,6 @@ use handstand_shared::observer::{
 };
 use handstand_shared::raw::Position;
 use nalgebra::DMatrix;
-
-mod fixed;
-mod rust_file;
-
-pub use fixed::{Fitting, Servo, plan, reading_steps, regulator_plan, si};
-pub use rust_file::plan_file;
 
 /// When things happen in a period, and how well the readings tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +66,7 @@ impl Timing {
 #[derive(Debug, Clone, PartialEq)]
 pub struct OnBoard {
     /// 4 x 15.
-    pub expect: DMatrix<f64>,
+    pub predict: DMatrix<f64>,
     /// 2 x 19.
     pub feedback: DMatrix<f64>,
     /// 9 x 21.
@@ -121,25 +115,29 @@ impl OnBoard {
         Ok(OnBoard {
             feedback: -beside(&[&gains, &(&gains * l)]),
             update: beside(&[a, &(a * l), b]).rows(0, ESTIMATED).into_owned(),
-            expect: seen,
+            predict: seen,
         })
     }
 
-    /// The inputs wished for; `memory` is what the machine remembers.
-    pub fn wish(&self, memory: &mut [f64; WIDTH], readings: &[f64; READINGS]) -> [f64; INPUTS] {
+    /// The inputs commanded; `memory` is what the machine remembers.
+    pub fn raw_command(
+        &self,
+        memory: &mut [f64; WIDTH],
+        readings: &[f64; READINGS],
+    ) -> [f64; INPUTS] {
         for (i, reading) in readings.iter().enumerate() {
-            memory[STATE + i] = reading - times(&self.expect, i, &memory[..STATE]);
+            memory[STATE + i] = reading - times(&self.predict, i, &memory[..STATE]);
         }
         std::array::from_fn(|i| times(&self.feedback, i, &memory[..SEEN]))
     }
 
-    /// Goes on by a sample under the inputs that were given.
-    pub fn learn(&self, memory: &mut [f64; WIDTH], given: [f64; INPUTS]) {
-        memory[SEEN..].copy_from_slice(&given);
+    /// Goes on by a sample under the inputs that were applied.
+    pub fn update(&self, memory: &mut [f64; WIDTH], applied: [f64; INPUTS]) {
+        memory[SEEN..].copy_from_slice(&applied);
         let next: [f64; ESTIMATED] = std::array::from_fn(|i| times(&self.update, i, memory));
         memory.copy_within(ESTIMATED..ESTIMATED + PAST - INPUTS, ESTIMATED + INPUTS);
         memory[..ESTIMATED].copy_from_slice(&next);
-        memory[ESTIMATED..ESTIMATED + INPUTS].copy_from_slice(&given);
+        memory[ESTIMATED..ESTIMATED + INPUTS].copy_from_slice(&applied);
     }
 }
 

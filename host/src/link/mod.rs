@@ -4,7 +4,6 @@
 //! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
 //! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
 
-mod answer;
 pub mod boot_loader;
 pub mod doctor;
 mod faulty;
@@ -12,23 +11,26 @@ mod port;
 #[cfg(unix)]
 mod pty;
 mod replay;
-mod retry;
+mod reply;
 mod serial;
+mod servo_error;
 mod servos;
 mod session;
+mod session_error;
 mod settings;
 mod tap;
 
-pub use answer::Reading;
 pub use faulty::Faulty;
 pub use port::{Link, Voice, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;
-pub use retry::Failure;
+pub use reply::Reading;
 pub use serial::{Serial, ports};
+pub use servo_error::{ServoError, ServoResult};
 pub use servos::Servos;
-pub use session::{Session, condition_words, refusal_words};
+pub use session::Session;
+pub use session_error::{SessionError, condition_words, refusal_words};
 pub use settings::Settings;
 pub use tap::{Exchange, Tap, Way};
 

@@ -1,8 +1,8 @@
-//! Speaking with servos: requests, answers in bounded time, tries.
+//! Communicate with servos: requests, replies in bounded time, retries.
 
-use super::answer::{Reading, is_answer, status};
 use super::port::{Link, read_some};
-use super::retry::Failure;
+use super::reply::{Reading, is_answer, status};
+use super::servo_error::{ServoError, ServoResult};
 use handstand_shared::control_table::{RETURN_DELAY, Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{BROADCAST, ErrorBits, MAX_PACKET, Request, status_length};
 use handstand_shared::raw::ReturnDelay;
@@ -46,11 +46,11 @@ impl<L: Link> Servos<L> {
         &mut self.link
     }
 
-    /// Whether the servo is there, and what it complains of.
+    /// Ping the servo; returns its error flags.
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn ping(&mut self, id: u8) -> Result<ErrorBits, Failure> {
+    pub fn ping(&mut self, id: u8) -> ServoResult<ErrorBits> {
         self.ask(id, &Request::Ping, 0).map(|reading| reading.error)
     }
 
@@ -58,11 +58,14 @@ impl<L: Link> Servos<L> {
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn read(&mut self, id: u8, address: u8, count: u8) -> Result<Reading, Failure> {
+    pub fn read(&mut self, id: u8, address: u8, count: u8) -> ServoResult<Reading> {
         let reading = self.ask(id, &Request::Read { address, count }, count)?;
         match reading.data.len() == usize::from(count) {
             true => Ok(reading),
-            false => Err(Failure::Refused(reading.error)),
+            false => Err(ServoError::Refused {
+                id,
+                flags: reading.error,
+            }),
         }
     }
 
@@ -70,7 +73,7 @@ impl<L: Link> Servos<L> {
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn get(&mut self, id: u8, register: Register) -> Result<u16, Failure> {
+    pub fn get(&mut self, id: u8, register: Register) -> ServoResult<u16> {
         let code = self.read(id, register.address, register.size)?.code();
         if register == RETURN_DELAY {
             self.delays.insert(id, ReturnDelay(code as u8));
@@ -81,8 +84,8 @@ impl<L: Link> Servos<L> {
     /// Sets a register and reads it back, whatever the status level says; waits while EEPROM is written.
     ///
     /// # Errors
-    /// Why there is no good answer, or [`Failure::Refused`] if the register kept another code.
-    pub fn set(&mut self, id: u8, register: Register, code: u16) -> Result<(), Failure> {
+    /// Why there is no good answer, or [`ServoError::Refused`] if the register kept another code.
+    pub fn set(&mut self, id: u8, register: Register, code: u16) -> ServoResult<()> {
         let mut left = self.tries;
         loop {
             let error = self.write(id, register, code)?;
@@ -96,9 +99,14 @@ impl<L: Link> Servos<L> {
             left -= 1;
             match kept {
                 Ok(kept) if kept == code => return Ok(()),
-                Ok(_) if error != ErrorBits(0) => return Err(Failure::Refused(error)),
-                Ok(_) if left == 0 => return Err(Failure::Refused(ErrorBits::RANGE)),
-                Err(failure) if left == 0 || !failure.is_passing() => return Err(failure),
+                Ok(_) if error != ErrorBits(0) => {
+                    return Err(ServoError::Refused { id, flags: error });
+                }
+                Ok(_) if left == 0 => {
+                    let flags = ErrorBits::RANGE;
+                    return Err(ServoError::Refused { id, flags });
+                }
+                Err(failure) if left == 0 || !failure.is_transient() => return Err(failure),
                 Ok(_) | Err(_) => self.retries += 1,
             }
         }
@@ -107,8 +115,8 @@ impl<L: Link> Servos<L> {
     /// Sends a register once without expecting an answer; the error bits if one comes.
     ///
     /// # Errors
-    /// [`Failure::Port`] only.
-    pub fn write(&mut self, id: u8, register: Register, code: u16) -> Result<ErrorBits, Failure> {
+    /// [`ServoError::Port`] only.
+    pub fn write(&mut self, id: u8, register: Register, code: u16) -> ServoResult<ErrorBits> {
         let bytes = code.to_le_bytes();
         let data = &bytes[..usize::from(register.size)];
         let request = Request::Write {
@@ -125,16 +133,16 @@ impl<L: Link> Servos<L> {
         }
         match answer {
             Ok(error) => Ok(error),
-            Err(Failure::Port(error)) => Err(Failure::Port(error)),
+            Err(ServoError::Port(error)) => Err(ServoError::Port(error)),
             Err(_) => Ok(ErrorBits(0)),
         }
     }
 
-    /// Sets a register of several servos in one packet; nobody answers.
+    /// Set a register of several servos in one packet, which is not answered.
     ///
     /// # Errors
-    /// [`Failure::Port`] only.
-    pub fn sync_write(&mut self, register: Register, codes: &[(u8, u16)]) -> Result<(), Failure> {
+    /// [`ServoError::Port`] only.
+    pub fn sync_write(&mut self, register: Register, codes: &[(u8, u16)]) -> ServoResult<()> {
         let width = register.size;
         let block = |(id, code): &(u8, u16)| {
             let bytes = code.to_le_bytes();
@@ -154,29 +162,29 @@ impl<L: Link> Servos<L> {
         Ok(())
     }
 
-    /// Torque off, everywhere. Twice, for nobody answers a broadcast.
+    /// Torque off, everywhere. Twice, for a broadcast is not answered.
     ///
     /// # Errors
-    /// [`Failure::Port`] only.
-    pub fn torque_off(&mut self) -> Result<(), Failure> {
+    /// [`ServoError::Port`] only.
+    pub fn torque_off(&mut self) -> ServoResult<()> {
         for _ in 0..2 {
             self.write(BROADCAST, TORQUE_ENABLE, 0)?;
         }
         Ok(())
     }
 
-    fn tell(&mut self, request: &Request) -> Result<ErrorBits, Failure> {
+    fn tell(&mut self, request: &Request) -> ServoResult<ErrorBits> {
         self.send(BROADCAST, request)?;
         Ok(ErrorBits(0))
     }
 
-    fn ask(&mut self, id: u8, request: &Request, count: u8) -> Result<Reading, Failure> {
+    fn ask(&mut self, id: u8, request: &Request, count: u8) -> ServoResult<Reading> {
         let mut left = self.tries.max(1);
         loop {
             let answer = self.once(id, request, count);
             left -= 1;
             match answer {
-                Err(failure) if left > 0 && failure.is_passing() => {
+                Err(failure) if left > 0 && failure.is_transient() => {
                     self.retries += 1;
                     // What is late must not be taken for the next answer.
                     self.link.pause(LATE);
@@ -186,7 +194,7 @@ impl<L: Link> Servos<L> {
         }
     }
 
-    fn send(&mut self, id: u8, request: &Request) -> Result<Vec<u8>, Failure> {
+    fn send(&mut self, id: u8, request: &Request) -> ServoResult<Vec<u8>> {
         let mut out = [0; MAX_PACKET];
         let length = request.emit(id, &mut out).unwrap_or(0);
         self.link.send(&out[..length])?;
@@ -197,8 +205,8 @@ impl<L: Link> Servos<L> {
     /// bytes, so this must be known first: two bytes that no servo and no controller heeds tell.
     ///
     /// # Errors
-    /// [`Failure::Port`] only.
-    pub fn echoes(&mut self) -> Result<bool, Failure> {
+    /// [`ServoError::Port`] only.
+    pub fn echoes(&mut self) -> ServoResult<bool> {
         if let Some(echo) = self.echo {
             return Ok(echo);
         }
@@ -214,13 +222,13 @@ impl<L: Link> Servos<L> {
     ///
     /// # Errors
     /// The port failed.
-    pub fn stragglers(&mut self) -> Result<usize, Failure> {
+    pub fn stragglers(&mut self) -> ServoResult<usize> {
         let deadline = self.link.now() + LATE + self.link.line_time(status_length(0));
         Ok(read_some(&mut self.link, deadline, |_| false)?.len())
     }
 
     /// One request and its answer: waits as long as line, return delay and lengths say, and no longer.
-    fn once(&mut self, id: u8, request: &Request, count: u8) -> Result<Reading, Failure> {
+    fn once(&mut self, id: u8, request: &Request, count: u8) -> ServoResult<Reading> {
         let echoes = self.echoes()?;
         self.link.clear()?;
         let sent = self.send(id, request)?;
@@ -242,12 +250,15 @@ impl<L: Link> Servos<L> {
         })?;
         match found {
             Some((from, reading)) if from == id && reading.error.has(ErrorBits::CHECKSUM) => {
-                Err(Failure::Misheard)
+                Err(ServoError::CorruptedRequest { id })
             }
             Some((from, reading)) if from == id && is_answer(&reading, count) => Ok(reading),
-            Some((from, _)) if from != id => Err(Failure::Stranger(from)),
-            _ if bytes.len() <= echo => Err(Failure::Silent),
-            _ => Err(Failure::Garbled(bytes.len())),
+            Some((from, _)) if from != id => Err(ServoError::UnexpectedId { id, from }),
+            _ if bytes.len() <= echo => Err(ServoError::NoResponse { id }),
+            _ => {
+                let bytes = bytes.len();
+                Err(ServoError::Garbled { id, bytes })
+            }
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Speaking with the CM-5's firmware in frames.
+//! A session with the CM-5's firmware: commands and reports in frames.
 
 use super::port::Link;
-use crate::error::{Error, Result};
+use super::session_error::SessionError;
 use handstand_shared::frame::{Decoder, MAX_FRAME};
 use handstand_shared::message::{
-    Cause, Command, Condition, Hello, Numbered, Refusal, Report, VERSION, decode, encode,
+    Command, Condition, Hello, Numbered, Report, VERSION, decode, encode,
 };
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,14 +13,16 @@ use std::time::Duration;
 const TURN: Duration = Duration::from_millis(30);
 const TRIES: u32 = 3;
 
-/// A talk with the firmware.
+type Result<T> = std::result::Result<T, SessionError>;
+
+/// A session with the firmware.
 pub struct Session<L> {
     link: L,
     decoder: Decoder,
     next_out: u8,
     next_in: Option<u8>,
     waiting: VecDeque<(Duration, Report)>,
-    /// What the firmware said of itself at the greeting.
+    /// The firmware's answer to the greeting.
     pub hello: Hello,
     /// Sound frames received.
     pub frames: u64,
@@ -34,13 +36,13 @@ impl<L: Link> Session<L> {
     /// Greets the firmware.
     ///
     /// # Errors
-    /// [`Error::Device`]: nobody answers in frames, or a firmware of another version does.
+    /// No firmware responds, or one of another version.
     pub fn open(link: L) -> Result<Self> {
-        let nobody = Hello {
+        let unknown = Hello {
             version: 0,
             token: 0,
             condition: Condition::Bridge,
-            gains: 0,
+            plan: 0,
         };
         let mut session = Session {
             link,
@@ -48,7 +50,7 @@ impl<L: Link> Session<L> {
             next_out: 0,
             next_in: None,
             waiting: VecDeque::new(),
-            hello: nobody,
+            hello: unknown,
             frames: 0,
             bad: 0,
             lost: 0,
@@ -58,7 +60,7 @@ impl<L: Link> Session<L> {
         Ok(session)
     }
 
-    /// Greets anew, for a new token.
+    /// Greet again, for a new token.
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -73,20 +75,14 @@ impl<L: Link> Session<L> {
                 self.hello = hello;
                 return match hello.version {
                     VERSION => Ok(()),
-                    other => Err(Error::device(
-                        format!(
-                            "{}: the firmware speaks version {other}, this program version {VERSION}",
-                            self.link.name()
-                        ),
-                        "build and flash the firmware that belongs to this program: docs/flash.md",
-                    )),
+                    theirs => Err(SessionError::Version {
+                        port: self.port(),
+                        theirs,
+                    }),
                 };
             }
         }
-        Err(Error::device(
-            format!("{}: no Handstand firmware answers", self.link.name()),
-            "is it flashed (docs/flash.md), switched on, the cable in, and the speed right (--baud 57600)?",
-        ))
+        Err(SessionError::NoFirmware { port: self.port() })
     }
 
     /// The line.
@@ -117,13 +113,13 @@ impl<L: Link> Session<L> {
     ///
     /// # Errors
     /// No answer after three tries, or a refusal.
-    pub fn obey(&mut self, command: &Command, name: &str) -> Result<()> {
+    pub fn obey(&mut self, command: &Command, action: &str) -> Result<()> {
         for _ in 0..TRIES {
             let sent = self.send(command)?;
             // Gains are answered when EEPROM is written: 8.5 ms a byte, a byte a tick.
             let slow = matches!(
                 command,
-                Command::GainChunk { .. } | Command::GainStore { .. }
+                Command::PlanChunk { .. } | Command::PlanStore { .. }
             );
             let turn = self.turn()
                 + if slow {
@@ -138,19 +134,16 @@ impl<L: Link> Session<L> {
             match outcome {
                 Some(Ok(())) => return Ok(()),
                 Some(Err(refusal)) => {
-                    let (why, remedy) = refusal_words(refusal);
-                    return Err(Error::device(
-                        format!("the CM-5 refuses to {name}: {why}"),
-                        remedy,
-                    ));
+                    let action = action.into();
+                    return Err(SessionError::Refused { action, refusal });
                 }
                 None => {}
             }
         }
-        Err(Error::device(
-            format!("{}: no answer when asked to {name}", self.link.name()),
-            "the line is disturbed or the CM-5 was reset: `handstand latency` measures the line",
-        ))
+        Err(SessionError::NoAnswer {
+            port: self.port(),
+            action: action.into(),
+        })
     }
 
     /// Sends a command and waits for the report that `pick` takes.
@@ -168,10 +161,7 @@ impl<L: Link> Session<L> {
                 return Ok(picked);
             }
         }
-        Err(Error::device(
-            format!("{}: the CM-5 does not answer", self.link.name()),
-            "the line is disturbed or the CM-5 was reset: `handstand latency` measures the line",
-        ))
+        Err(SessionError::NoReport { port: self.port() })
     }
 
     /// The next report and when it came, waiting at most `wait`.
@@ -227,66 +217,12 @@ impl<L: Link> Session<L> {
         Ok(None)
     }
 
+    fn port(&self) -> String {
+        self.link.name().to_string()
+    }
+
     /// Longest time from command to answer: both lines, the stream's frames before it, the firmware's turn.
     fn turn(&self) -> Duration {
         self.link.line_time(4 * MAX_FRAME) + self.link.latency() + TURN
-    }
-}
-
-/// Why a command is refused, and what to do.
-pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
-    match refusal {
-        Refusal::Version => (
-            "no greeting of its version came first",
-            "reset the CM-5 and try again",
-        ),
-        Refusal::State => (
-            "not in this state",
-            "choose a mode first; after a fault, greet anew",
-        ),
-        Refusal::Armed => ("torque is on", "disarm first"),
-        Refusal::Token => ("the greeting is out of date", "try again"),
-        Refusal::Supply => (
-            "the supply is too low, or no servo has told it",
-            "charge the battery: `handstand bus monitor` shows the voltage",
-        ),
-        Refusal::Servo => (
-            "a servo it needs does not answer",
-            "`handstand bus scan` shows who does",
-        ),
-        Refusal::NoGains => (
-            "there are no gains on it",
-            "`handstand deploy` puts them there",
-        ),
-        Refusal::BadGains => (
-            "the gain table is unsound",
-            "make it anew; if it stays so, firmware and program do not belong together",
-        ),
-        Refusal::Roster => (
-            "the list of servos is empty, too long, or names an id twice",
-            "give 1 to 18 different ids",
-        ),
-        Refusal::Pose => (
-            "the robot is too far from the pose its gains are for",
-            "bring it there by hand, then arm",
-        ),
-    }
-}
-
-/// What the firmware is doing, in words.
-pub fn condition_words(condition: Condition) -> &'static str {
-    match condition {
-        Condition::Bridge => "adapter",
-        Condition::Stream => "streaming, torque off",
-        Condition::StreamArmed => "streaming, torque on",
-        Condition::Balance => "ready to balance, torque off",
-        Condition::BalanceArmed => "balancing",
-        Condition::Soft => "letting down",
-        Condition::Fault(Cause::LinkLost) => "stopped: the link was lost",
-        Condition::Fault(Cause::LowSupply) => "stopped: the supply is low",
-        Condition::Fault(Cause::ServoLost) => "stopped: a servo stopped answering",
-        Condition::Fault(Cause::ServoError) => "stopped: a servo is overloaded or too hot",
-        Condition::Fault(Cause::Fallen) => "stopped: it left the range its gains hold in",
-        Condition::Fault(Cause::Watchdog) => "stopped: the watchdog reset the controller",
     }
 }

@@ -31,7 +31,7 @@ fn a_new_id_is_verified_under_its_new_name() {
     let mut servos = Servos::new(sim("ids=1"));
     servos.set(1, table::ID, 9).unwrap();
     assert!(servos.ping(9).is_ok());
-    assert!(matches!(servos.ping(1), Err(Failure::Silent)));
+    assert!(matches!(servos.ping(1), Err(ServoError::NoResponse { .. })));
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn whatever_the_status_level_a_value_is_set_or_refused() {
         servos.set(1, table::MOVING_SPEED, 100).unwrap();
         assert!(matches!(
             servos.set(1, table::PRESENT_POSITION, 1),
-            Err(Failure::Refused(_))
+            Err(ServoError::Refused { .. })
         ));
     }
 }
@@ -63,7 +63,7 @@ fn an_echo_is_told_from_an_answer() {
     assert!(servos.echoes().unwrap());
     assert_eq!(servos.ping(1).unwrap(), ErrorBits(0));
     assert_eq!(servos.get(1, table::MODEL).unwrap(), 12);
-    assert!(matches!(servos.ping(2), Err(Failure::Silent)));
+    assert!(matches!(servos.ping(2), Err(ServoError::NoResponse { .. })));
     let mut plain = Servos::new(sim("ids=1"));
     assert!(!plain.echoes().unwrap());
 }
@@ -74,7 +74,7 @@ fn a_silent_servo_costs_its_time_and_no_more() {
     servos.tries = 1;
     servos.ping(1).unwrap();
     let before = servos.link().now();
-    assert!(matches!(servos.ping(7), Err(Failure::Silent)));
+    assert!(matches!(servos.ping(7), Err(ServoError::NoResponse { .. })));
     let spent = servos.link().now() - before;
     assert!(
         (Duration::from_millis(1)..Duration::from_millis(2)).contains(&spent),
@@ -113,7 +113,7 @@ fn what_a_tap_wrote_replays() {
         live
     );
     let mut other = Servos::new(Replay::new("record", 1_000_000, exchanges));
-    assert!(matches!(other.ping(1), Err(Failure::Port(_))));
+    assert!(matches!(other.ping(1), Err(ServoError::Port(_))));
 }
 
 #[test]
@@ -165,6 +165,6 @@ fn a_serial_port_carries_the_same_talk() {
     });
     assert_eq!(servos.get(1, table::MODEL).unwrap(), 12);
     servos.set(1, table::LED, 1).unwrap();
-    assert!(matches!(servos.ping(2), Err(Failure::Silent)));
+    assert!(matches!(servos.ping(2), Err(ServoError::NoResponse { .. })));
     device.join().unwrap();
 }

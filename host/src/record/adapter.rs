@@ -3,7 +3,7 @@
 use super::sample::{Joint, Sample};
 use super::source::{LetGo, Source, say_twice};
 use crate::error::Result;
-use crate::link::{Failure, Link, Servos};
+use crate::link::{Link, ServoError, Servos};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
@@ -45,7 +45,7 @@ impl<L: Link> Adapter<L> {
         let id = self.ids[place];
         let reading = match self.servos.read(id, PRESENT_POSITION.address, 8) {
             Ok(reading) => reading,
-            Err(Failure::Port(error)) => return Err(error),
+            Err(ServoError::Port(error)) => return Err(error),
             Err(_) => {
                 return Ok(Joint {
                     goal_rad: self.goals[place].map(Position::to_rad),
@@ -74,16 +74,12 @@ impl<L: Link> Adapter<L> {
             .iter()
             .map(|(_, code)| Some(Position(*code)))
             .collect();
-        self.servos
-            .sync_write(GOAL_POSITION, &codes)
-            .map_err(|failure| failure.of(0))
+        Ok(self.servos.sync_write(GOAL_POSITION, &codes)?)
     }
 
     fn write_each(&mut self, register: Register, code: u16) -> Result<()> {
         let codes: Vec<(u8, u16)> = self.ids.iter().map(|id| (*id, code)).collect();
-        self.servos
-            .sync_write(register, &codes)
-            .map_err(|failure| failure.of(0))
+        Ok(self.servos.sync_write(register, &codes)?)
     }
 }
 
@@ -109,10 +105,7 @@ impl<L: Link> Source for Adapter<L> {
     fn arm(&mut self) -> Result<()> {
         let mut here = Vec::new();
         for id in self.ids.clone() {
-            let code = self
-                .servos
-                .get(id, PRESENT_POSITION)
-                .map_err(|failure| failure.of(id))?;
+            let code = self.servos.get(id, PRESENT_POSITION)?;
             here.push(Position(code).to_rad());
         }
         self.armed = true;
@@ -123,7 +116,7 @@ impl<L: Link> Source for Adapter<L> {
     }
 
     fn disarm(&mut self) -> Result<()> {
-        self.servos.torque_off().map_err(|failure| failure.of(0))?;
+        self.servos.torque_off()?;
         self.armed = false;
         Ok(())
     }
@@ -155,10 +148,10 @@ impl<L: Link> Drop for Adapter<L> {
 
 fn danger(id: u8, error: ErrorBits) -> Option<String> {
     let grave = [ErrorBits::OVERLOAD, ErrorBits::OVERHEAT, ErrorBits::VOLTAGE];
-    let complains = grave.into_iter().any(|bits| error.has(bits));
-    complains.then(|| {
+    let is_grave = grave.into_iter().any(|bits| error.has(bits));
+    is_grave.then(|| {
         format!(
-            "servo {id} complains of: {}",
+            "servo {id} reports: {}",
             error.names().collect::<Vec<_>>().join(", ")
         )
     })

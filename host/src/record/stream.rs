@@ -4,7 +4,7 @@ use super::sample::{Joint, Sample};
 use super::source::{LetGo, Source, say_twice};
 use crate::error::{Error, Result};
 use crate::link::{Link, Session, condition_words};
-use handstand_shared::message::{Command, Condition, Mode, Report, Roster};
+use handstand_shared::message::{Command, Condition, Mode, Report, ServoList};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, Signed};
 use std::time::Duration;
@@ -17,7 +17,7 @@ pub struct Stream<L: Link> {
     goals: Option<Vec<Position>>,
     /// Where all stood in the newest report that has them all.
     stood: Option<Vec<Position>>,
-    slow: Vec<Joint>,
+    housekeeping: Vec<Joint>,
     armed: bool,
     condition: Condition,
 }
@@ -35,13 +35,13 @@ impl<L: Link> Stream<L> {
             ));
         }
         let mut session = Session::open(link)?;
-        let mut roster = Roster {
+        let mut list = ServoList {
             count: ids.len() as u8,
             ids: [0; SERVOS],
         };
-        roster.ids[..ids.len()].copy_from_slice(ids);
+        list.ids[..ids.len()].copy_from_slice(ids);
         session.obey(&Command::Mode(Mode::Bridge), "stop")?;
-        session.obey(&Command::Roster(roster), "take the list of servos")?;
+        session.obey(&Command::ServoList(list), "take the list of servos")?;
         session.obey(&Command::Mode(Mode::Stream), "stream")?;
         let begun = session.link().now();
         Ok(Stream {
@@ -50,7 +50,7 @@ impl<L: Link> Stream<L> {
             begun,
             goals: None,
             stood: None,
-            slow: vec![Joint::default(); ids.len()],
+            housekeeping: vec![Joint::default(); ids.len()],
             armed: false,
             condition: Condition::Stream,
         })
@@ -83,21 +83,22 @@ impl<L: Link> Source for Stream<L> {
                 continue;
             };
             self.condition = report.condition;
-            for (place, slow) in report.slow(self.count) {
-                if slow.error == 0xff {
+            for (place, housekeeping) in report.housekeeping(self.count) {
+                if housekeeping.error == 0xff {
                     continue;
                 }
-                if let Some(joint) = self.slow.get_mut(place) {
+                if let Some(joint) = self.housekeeping.get_mut(place) {
                     joint.speed_rad_s = Some(
-                        f64::from(Signed(u16::from_le_bytes(slow.speed)).get())
+                        f64::from(Signed(u16::from_le_bytes(housekeeping.speed)).get())
                             * Signed::SPEED_LSB_RAD_S,
                     );
                     joint.load = Some(
-                        f64::from(Signed(u16::from_le_bytes(slow.load)).get()) * Signed::OUTPUT_LSB,
+                        f64::from(Signed(u16::from_le_bytes(housekeeping.load)).get())
+                            * Signed::OUTPUT_LSB,
                     );
-                    joint.supply_v = Some(f64::from(slow.supply) * 0.1);
-                    joint.temperature_celsius = Some(f64::from(slow.temperature));
-                    joint.error = Some(slow.error);
+                    joint.supply_v = Some(f64::from(housekeeping.supply) * 0.1);
+                    joint.temperature_celsius = Some(f64::from(housekeeping.temperature));
+                    joint.error = Some(housekeeping.error);
                 }
             }
             let stood = (0..self.count).map(|place| report.position(place).map(Position));
@@ -112,7 +113,7 @@ impl<L: Link> Source for Stream<L> {
                 position_rad: report.position(place).map(|code| Position(code).to_rad()),
                 goal_rad: goal(place),
                 // Each servo's turn comes every few ticks; between them nothing was measured.
-                ..std::mem::take(&mut self.slow[place])
+                ..std::mem::take(&mut self.housekeeping[place])
             });
             let joints = joints.collect();
             return Ok(Some(Sample {
@@ -139,7 +140,7 @@ impl<L: Link> Source for Stream<L> {
 
     fn disarm(&mut self) -> Result<()> {
         self.armed = false;
-        self.session.obey(&Command::Disarm, "switch torque off")
+        Ok(self.session.obey(&Command::Disarm, "switch torque off")?)
     }
 
     fn let_go(&mut self) -> Option<LetGo> {

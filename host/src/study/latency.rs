@@ -131,8 +131,8 @@ fn report_bytes() -> usize {
         obeyed: 0,
         positions: Positions::pack([512; SERVOS]),
         missing: [0; 3],
-        slow_from: 0,
-        slow: Default::default(),
+        housekeeping_from: 0,
+        housekeeping: Default::default(),
     };
     encode(0, &Report::Stream(report), &mut [0; MAX_FRAME]).unwrap_or(MAX_FRAME)
 }
@@ -159,7 +159,7 @@ mod tests {
     fn the_signal_paths_take_their_time() {
         let total = SIGNAL_PATHS.iter().map(|path| 1e3 * path.total_s());
         let rounded: Vec<f64> = total.map(|ms| (10.0 * ms).round() / 10.0).collect();
-        assert_eq!(rounded, [1.0, 4.3, 3.0, 11.1, 18.0, 27.0]);
+        assert_eq!(rounded, [1.0, 4.3, 3.0, 11.4, 18.5, 27.5]);
         assert!(report_bytes() > goal_bytes() && goal_bytes() > 23);
     }
 }

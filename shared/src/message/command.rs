@@ -4,7 +4,7 @@ use crate::packed::{Positions, SERVOS, Speeds};
 use serde::{Deserialize, Serialize};
 
 /// Bytes of gain table in one message.
-pub const GAIN_CHUNK: usize = 32;
+pub const PLAN_CHUNK: usize = 32;
 
 /// What the host may say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,10 +17,10 @@ pub enum Command {
     /// Changes the state; torque goes off on the way.
     Mode(Mode),
     /// Says which servos there are.
-    Roster(Roster),
-    /// Goal positions, in the roster's order. Obeyed from the next tick on, if armed.
+    ServoList(ServoList),
+    /// Goal positions, in the servo list's order. Obeyed from the next tick on, if armed.
     Goals(Positions),
-    /// Speed commands for wheel mode, as [`crate::raw::Signed`], in the roster's order.
+    /// Speed commands for wheel mode, as [`crate::raw::Signed`], in the servo list's order.
     Speeds(Speeds),
     /// The first link's attitude, where the host measures it.
     Attitude(Attitude),
@@ -31,7 +31,7 @@ pub enum Command {
     /// Asks for a report.
     Ask(Subject),
     /// Asks for a piece of the stored gain table.
-    GainRead {
+    PlanRead {
         /// Its first byte.
         offset: u16,
     },
@@ -41,14 +41,14 @@ pub enum Command {
         token: u16,
     },
     /// A piece of a new gain table. Critical; refused while armed.
-    GainChunk {
-        /// Its first byte, a multiple of [`GAIN_CHUNK`].
+    PlanChunk {
+        /// Its first byte, a multiple of [`PLAN_CHUNK`].
         offset: u16,
         /// The piece; what lies behind the table's end is ignored.
-        bytes: [u8; GAIN_CHUNK],
+        bytes: [u8; PLAN_CHUNK],
     },
     /// The table is complete: check it, then keep it. Critical; answered when it is in EEPROM.
-    GainStore {
+    PlanStore {
         /// Bytes of the table.
         length: u16,
         /// CRC-32 of them.
@@ -78,14 +78,14 @@ pub enum Subject {
 
 /// The servos, in the order of goals and positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Roster {
+pub struct ServoList {
     /// How many of `ids` count, at most [`SERVOS`].
     pub count: u8,
     /// Their ids.
     pub ids: [u8; SERVOS],
 }
 
-impl Roster {
+impl ServoList {
     /// The first `count` ids, at most [`SERVOS`] of them.
     pub fn ids(&self) -> &[u8] {
         let count = usize::from(self.count).min(SERVOS);
@@ -101,12 +101,12 @@ impl Roster {
     }
 }
 
-impl Default for Roster {
+impl Default for ServoList {
     /// The Bioloid humanoid: 1 to 18.
     fn default() -> Self {
         let mut ids = [0; SERVOS];
         (ids.iter_mut().zip(1..)).for_each(|(slot, id)| *slot = id);
-        Roster {
+        ServoList {
             count: SERVOS as u8,
             ids,
         }

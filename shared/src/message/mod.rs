@@ -7,10 +7,10 @@
 mod command;
 mod report;
 
-pub use command::{Attitude, Command, GAIN_CHUNK, Mode, Roster, Subject};
+pub use command::{Attitude, Command, Mode, PLAN_CHUNK, ServoList, Subject};
 pub use report::{
-    Answer, Cause, Condition, Hello, Limp, Refusal, Report, ResetCause, Slow, Statistics,
-    StreamReport, Telemetry,
+    Answer, Cause, Condition, Hello, Housekeeping, Refusal, Report, ResetCause, Statistics,
+    StreamReport, Telemetry, TrippedServo,
 };
 
 use crate::crc::crc32;
@@ -29,24 +29,24 @@ pub trait Message: Serialize + for<'de> Deserialize<'de> {
 impl Message for Command {
     fn is_critical(&self) -> bool {
         match self {
-            Command::Arm { .. } | Command::GainChunk { .. } | Command::GainStore { .. } => true,
+            Command::Arm { .. } | Command::PlanChunk { .. } | Command::PlanStore { .. } => true,
             Command::Hello { .. }
             | Command::Mode(_)
-            | Command::Roster(_)
+            | Command::ServoList(_)
             | Command::Goals(_)
             | Command::Speeds(_)
             | Command::Attitude(_)
             | Command::KeepAlive
             | Command::Disarm
             | Command::Ask(_)
-            | Command::GainRead { .. } => false,
+            | Command::PlanRead { .. } => false,
         }
     }
 }
 
 impl Message for Report {
     fn is_critical(&self) -> bool {
-        matches!(self, Report::GainChunk { .. })
+        matches!(self, Report::PlanChunk { .. })
     }
 }
 

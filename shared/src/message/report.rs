@@ -1,6 +1,6 @@
 //! From the CM-5 to the host.
 
-use super::command::GAIN_CHUNK;
+use super::command::PLAN_CHUNK;
 use crate::packed::{Positions, SERVOS};
 use serde::{Deserialize, Serialize};
 
@@ -18,13 +18,13 @@ pub enum Report {
     /// When asked for.
     Statistics(Statistics),
     /// A piece of the stored gain table. Critical.
-    GainChunk {
+    PlanChunk {
         /// Its first byte.
         offset: u16,
         /// Bytes of the whole table; 0 if there is none.
         length: u16,
         /// The piece, filled up with zeros.
-        bytes: [u8; GAIN_CHUNK],
+        bytes: [u8; PLAN_CHUNK],
     },
 }
 
@@ -37,8 +37,8 @@ pub struct Hello {
     pub token: u16,
     /// What it is doing.
     pub condition: Condition,
-    /// Fingerprint of the gains it would balance with; 0 if it has none.
-    pub gains: u32,
+    /// Fingerprint of the plan it balances with; 0 if it has none.
+    pub plan: u32,
 }
 
 /// What the firmware is doing.
@@ -69,7 +69,7 @@ pub enum Cause {
     LowSupply,
     /// A servo that is balanced with stopped answering.
     ServoLost,
-    /// A servo reported overload or overheating, and went limp.
+    /// A servo reported overload or overheating, and tripped.
     ServoError,
     /// The robot left the range in which its gains hold.
     Fallen,
@@ -102,11 +102,11 @@ pub enum Refusal {
     /// A servo that is needed does not answer.
     Servo,
     /// There are no valid gains.
-    NoGains,
+    NoPlan,
     /// The uploaded table's check, length or content is wrong.
-    BadGains,
-    /// The roster is empty, too long, or names an id twice.
-    Roster,
+    BadPlan,
+    /// The servo list is empty, too long, or names an id twice.
+    ServoList,
     /// The robot is too far from the pose its gains are for.
     Pose,
 }
@@ -121,18 +121,18 @@ pub struct StreamReport {
     pub condition: Condition,
     /// Sequence number of the goals obeyed in this tick.
     pub obeyed: u8,
-    /// Positions, in the roster's order; where one is missing, the last one known.
+    /// Positions, in the servo list's order; where one is missing, the last one known.
     pub positions: Positions,
     /// Who did not answer in this tick: a bit each, the lowest first.
     pub missing: [u8; 3],
-    /// Place in the roster of the first of `slow`; the second follows it, around the end.
-    pub slow_from: u8,
+    /// Place in the servo list of the first of `housekeeping`; the second follows it, around the end.
+    pub housekeeping_from: u8,
     /// Slower channels of two servos in turn.
-    pub slow: [Slow; 2],
+    pub housekeeping: [Housekeeping; 2],
 }
 
 impl StreamReport {
-    /// Whether the servo at this place of the roster answered.
+    /// Whether the servo at this place of the servo list answered.
     pub fn is_present(&self, place: usize) -> bool {
         (self.missing.get(place / 8)).is_some_and(|bits| bits >> (place % 8) & 1 == 0)
     }
@@ -145,17 +145,17 @@ impl StreamReport {
             .filter(|_| self.is_present(place))
     }
 
-    /// The slower channels in this report, each with its place in a roster of `count`.
-    pub fn slow(&self, count: usize) -> impl Iterator<Item = (usize, Slow)> {
-        let first = usize::from(self.slow_from);
+    /// The housekeeping in this report, each with its place in a servo list of `count`.
+    pub fn housekeeping(&self, count: usize) -> impl Iterator<Item = (usize, Housekeeping)> {
+        let first = usize::from(self.housekeeping_from);
         let places = [first, if first + 1 < count { first + 1 } else { 0 }];
-        places.into_iter().zip(self.slow).take(count)
+        places.into_iter().zip(self.housekeeping).take(count)
     }
 }
 
 /// Registers 38 to 43 of one servo and its error bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Slow {
+pub struct Housekeeping {
     /// [`crate::dynamixel::ErrorBits`] of its last answer; all ones if it never answered.
     pub error: u8,
     /// Present speed, the lower byte first; [`crate::raw::Signed`].
@@ -194,12 +194,12 @@ pub struct Telemetry {
     /// The gyro's last reading, ADC code.
     pub gyro: u16,
     /// The servo that let the robot down, until it is armed anew.
-    pub limp: Option<Limp>,
+    pub tripped: Option<TrippedServo>,
 }
 
 /// A servo that gave up under torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Limp {
+pub struct TrippedServo {
     /// Its id.
     pub id: u8,
     /// What it said: [`crate::dynamixel::ErrorBits`].

@@ -21,8 +21,8 @@ fn stream_report() -> StreamReport {
         obeyed: 255,
         positions: Positions::pack([1023; SERVOS]),
         missing: [0; 3],
-        slow_from: 17,
-        slow: [Slow::default(); 2],
+        housekeeping_from: 17,
+        housekeeping: [Housekeeping::default(); 2],
     }
 }
 
@@ -55,17 +55,17 @@ fn the_largest_messages_fit_a_frame() {
         missed: [u8::MAX; SERVOS],
     };
     round_trip(1, Report::Statistics(full));
-    let bytes = [0xff; GAIN_CHUNK];
+    let bytes = [0xff; PLAN_CHUNK];
     let (offset, length) = (u16::MAX, u16::MAX);
     round_trip(
         2,
-        Report::GainChunk {
+        Report::PlanChunk {
             offset,
             length,
             bytes,
         },
     );
-    round_trip(3, Command::GainChunk { offset, bytes });
+    round_trip(3, Command::PlanChunk { offset, bytes });
 }
 
 #[test]
@@ -111,31 +111,31 @@ fn a_message_with_something_behind_it_is_refused() {
 #[test]
 fn the_slow_channels_go_around() {
     let report = stream_report();
-    assert!(report.slow(18).map(|(place, _)| place).eq([17, 0]));
+    assert!(report.housekeeping(18).map(|(place, _)| place).eq([17, 0]));
     assert!(report.is_present(17) && !report.is_present(24));
     assert_eq!(report.position(17), Some(1023));
 }
 
 #[test]
 fn a_roster_with_an_id_twice_is_not_sound() {
-    let mut roster = Roster::default();
-    assert!(roster.is_sound());
-    roster.ids[3] = roster.ids[9];
-    assert!(!roster.is_sound());
-    roster.count = 5;
-    assert!(roster.is_sound());
-    roster.count = 0;
-    assert!(!roster.is_sound());
+    let mut list = ServoList::default();
+    assert!(list.is_sound());
+    list.ids[3] = list.ids[9];
+    assert!(!list.is_sound());
+    list.count = 5;
+    assert!(list.is_sound());
+    list.count = 0;
+    assert!(!list.is_sound());
 }
 
 proptest! {
     #[test]
-    fn commands_survive(sequence: u8, codes: [u16; SERVOS], token: u16, length: u16, check: u32, bytes: [u8; GAIN_CHUNK], angle: i16, rate: i16, ids: [u8; SERVOS], count: u8) {
+    fn commands_survive(sequence: u8, codes: [u16; SERVOS], token: u16, length: u16, check: u32, bytes: [u8; PLAN_CHUNK], angle: i16, rate: i16, ids: [u8; SERVOS], count: u8) {
         for command in [
             Command::Goals(Positions::pack(codes)), Command::Speeds(Speeds::pack(codes)), Command::Arm { token },
-            Command::GainChunk { offset: length, bytes }, Command::GainStore { length, check }, Command::Disarm, Command::KeepAlive,
-            Command::Attitude(Attitude { angle, rate }), Command::Roster(Roster { count, ids }),
-            Command::Mode(Mode::Balance), Command::Ask(Subject::Statistics), Command::GainRead { offset: length },
+            Command::PlanChunk { offset: length, bytes }, Command::PlanStore { length, check }, Command::Disarm, Command::KeepAlive,
+            Command::Attitude(Attitude { angle, rate }), Command::ServoList(ServoList { count, ids }),
+            Command::Mode(Mode::Balance), Command::Ask(Subject::Statistics), Command::PlanRead { offset: length },
         ] {
             let length = round_trip(sequence, command);
             prop_assert!(length <= wire_length(MAX_BODY));

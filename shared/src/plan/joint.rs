@@ -1,4 +1,4 @@
-//! One driven joint: from its servo's position to the law's reading, from the law's wish to the servo's command.
+//! One driven joint: from its servo's position to the law's reading, from the law's raw_command to the servo's command.
 
 use crate::raw::{Position, Signed};
 
@@ -26,17 +26,17 @@ pub struct Joint {
     pub slew: i16,
 }
 
-/// What was given last, and what is still owed, in steps of the input.
+/// What was applied last, and what is still owed, in steps of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Given {
-    /// The input given last.
+pub struct AppliedInput {
+    /// The input applied last.
     pub input: i16,
     owed: i16,
 }
 
-impl Given {
-    /// Nothing given, nothing owed.
-    pub const NOTHING: Given = Given { input: 0, owed: 0 };
+impl AppliedInput {
+    /// Nothing applied, nothing owed.
+    pub const NOTHING: AppliedInput = AppliedInput { input: 0, owed: 0 };
 }
 
 impl Joint {
@@ -60,17 +60,17 @@ impl Joint {
         if self.reversed { -angle } else { angle }
     }
 
-    /// The input that is given for one that is wished for: within the limits of size and change, and never one that would
+    /// The input that is applied for one that is commanded: within the limits of size and change, and never one that would
     /// vanish in the dead zone. What falls short of `least` is owed.
-    pub fn give(&self, given: &mut Given, wish: i16) -> i16 {
-        let owed = wish.saturating_add(given.owed);
+    pub fn apply(&self, applied: &mut AppliedInput, raw_command: i16) -> i16 {
+        let owed = raw_command.saturating_add(applied.owed);
         let half = self.least / 2;
         let whole = if owed.unsigned_abs() < half.unsigned_abs() {
             0
         } else {
             self.beyond_least(owed)
         };
-        let last = given.input;
+        let last = applied.input;
         let (low, high) = (
             last.saturating_sub(self.slew),
             last.saturating_add(self.slew),
@@ -83,9 +83,9 @@ impl Joint {
                 false => self.beyond_least(last.signum()),
             };
         }
-        given.input = input;
+        applied.input = input;
         // What a limit holds back is not owed: it would come when it is no longer wanted.
-        given.owed = owed.saturating_sub(input).max(-half).min(half);
+        applied.owed = owed.saturating_sub(input).max(-half).min(half);
         input
     }
 

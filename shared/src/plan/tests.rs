@@ -118,30 +118,33 @@ fn the_mean_of_what_is_given_is_what_was_wished_for() {
         least: 250,
         ..JOINT
     };
-    for wish in [-200, -30, 10, 100, 124, 200, 700] {
-        let mut given = Given::NOTHING;
+    for raw_command in [-200, -30, 10, 100, 124, 200, 700] {
+        let mut applied = AppliedInput::NOTHING;
         let sum: i32 = (0..1000)
-            .map(|_| i32::from(joint.give(&mut given, wish)))
+            .map(|_| i32::from(joint.apply(&mut applied, raw_command)))
             .sum();
-        assert!((sum - 1000 * i32::from(wish)).abs() <= 250, "{wish}: {sum}");
+        assert!(
+            (sum - 1000 * i32::from(raw_command)).abs() <= 250,
+            "{raw_command}: {sum}"
+        );
     }
 }
 
 proptest! {
-    /// Whatever is wished for: within the limits, never a change beyond the slew, never lost in the dead zone.
+    /// Whatever is commanded: within the limits, never a change beyond the slew, never lost in the dead zone.
     #[test]
     fn limits_hold(
         least in 0i16..300,
         more in 0i16..2000,
         slew in 0i16..2000,
-        wishes in prop::collection::vec(any::<i16>(), 1..60),
+        raw_commands in prop::collection::vec(any::<i16>(), 1..60),
         small in prop::collection::vec(-400i16..400, 1..60),
     ) {
         let joint = Joint { least, most: least.saturating_add(more), slew: least.max(1).saturating_add(slew), ..JOINT };
-        let mut given = Given::NOTHING;
+        let mut applied = AppliedInput::NOTHING;
         let mut last = 0;
-        for wish in wishes.into_iter().chain(small) {
-            let input = joint.give(&mut given, wish);
+        for raw_command in raw_commands.into_iter().chain(small) {
+            let input = joint.apply(&mut applied, raw_command);
             prop_assert!(input.abs() <= joint.most);
             prop_assert!((i32::from(input) - i32::from(last)).abs() <= i32::from(joint.slew));
             prop_assert!(input == 0 || input.abs() >= joint.least, "{input}");

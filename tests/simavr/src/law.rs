@@ -16,14 +16,14 @@ pub struct Law {
 /// A tick of the observer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ObserverTick {
-    /// The inputs wished for.
-    pub wish: [i16; INPUTS],
+    /// The inputs commanded.
+    pub raw_command: [i16; INPUTS],
     /// What it remembers afterwards.
     pub memory: Memory,
-    /// Cycles until the wish, marks included.
-    pub wish_cycles: u64,
+    /// Cycles until the raw_command, marks included.
+    pub command_cycles: u64,
     /// Cycles of the update after it, marks included.
-    pub learn_cycles: u64,
+    pub update_cycles: u64,
 }
 
 // Offsets in the program's mailbox, which is `repr(C)`; the AVR aligns nothing.
@@ -33,8 +33,8 @@ const X: usize = 3;
 const U: usize = X + 12;
 const MEMORY: usize = U + 4;
 const MAIL_READINGS: usize = MEMORY + 2 * WIDTH;
-const GIVEN: usize = MAIL_READINGS + 2 * READINGS;
-const BYTES: usize = GIVEN + 2 * INPUTS;
+const APPLIED: usize = MAIL_READINGS + 2 * READINGS;
+const BYTES: usize = APPLIED + 2 * INPUTS;
 
 impl Law {
     /// Loads the program.
@@ -88,17 +88,17 @@ impl Law {
         &mut self,
         memory: &Memory,
         readings: &[i16; READINGS],
-        given: &[i16; INPUTS],
+        applied: &[i16; INPUTS],
     ) -> ObserverTick {
         self.put_words(MEMORY, memory.all());
         self.put_words(MAIL_READINGS, readings);
-        self.put_words(GIVEN, given);
+        self.put_words(APPLIED, applied);
         let marks = self.ask(2);
         ObserverTick {
-            wish: self.words(U),
+            raw_command: self.words(U),
             memory: Memory::of(self.words(MEMORY)),
-            wish_cycles: between(&marks, 1, 2),
-            learn_cycles: between(&marks, 2, 3),
+            command_cycles: between(&marks, 1, 2),
+            update_cycles: between(&marks, 2, 3),
         }
     }
 

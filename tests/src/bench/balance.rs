@@ -3,11 +3,12 @@
 use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
 use super::run::Run;
-use handstand::controllers::{Fitting, OnBoard, Timing, board_plan};
+use handstand::controllers::{OnBoard, Timing};
+use handstand::deploy::{self, Board, BoardLaw};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
-    Attitude, Command, Condition, GAIN_CHUNK, Hello, Mode, Refusal, Report, Subject, Telemetry,
+    Attitude, Command, Condition, Hello, Mode, PLAN_CHUNK, Refusal, Report, Subject, Telemetry,
     VERSION,
 };
 use handstand_shared::plan::{Gyro, Plan};
@@ -31,18 +32,18 @@ impl Source {
     }
 
     /// The servos, and the gyro as it is wired.
-    pub fn fitting(self) -> Fitting {
+    pub fn board(self) -> Board {
         let gyro = match self {
-            Source::Host => Fitting::BIOLOID.gyro,
+            Source::Host => Board::BIOLOID.gyro,
             Source::Gyro => Gyro {
                 from_host: false,
                 zero: GYRO_ZERO,
                 scale: (GYRO_STEP_RAD_S / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
             },
         };
-        Fitting {
+        Board {
             gyro,
-            ..Fitting::BIOLOID
+            ..Board::BIOLOID
         }
     }
 
@@ -51,7 +52,11 @@ impl Source {
     /// # Panics
     /// The repository's own model cannot be read or designed for: a bug.
     pub fn plan(self) -> (OnBoard, Plan) {
-        board_plan(&model(), &self.fitting(), &self.timing()).expect("a plan can be made")
+        let (model, board) = (model(), self.board());
+        let machine = deploy::observer_design(&model, &board, &self.timing());
+        let machine = machine.expect("an observer can be designed");
+        let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board);
+        (machine, plan.expect("a plan can be made"))
     }
 }
 
@@ -119,7 +124,7 @@ pub fn ready(
     }
     bench.run_ms(10.0);
     let hello = greet(bench)?;
-    if hello.gains != plan.fingerprint() {
+    if hello.plan != plan.fingerprint() {
         upload(bench, plan)?;
     }
     command(bench, &Command::Mode(Mode::Balance))?;
@@ -233,11 +238,11 @@ fn upload(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refus
     plan.bytes(|byte| table.push(byte));
     // As an adapter it takes our frames after a zero only; another mode needs none.
     command(bench, &Command::Mode(Mode::Stream))?;
-    for (offset, piece) in (0..).step_by(GAIN_CHUNK).zip(table.chunks(GAIN_CHUNK)) {
-        let mut bytes = [0; GAIN_CHUNK];
+    for (offset, piece) in (0..).step_by(PLAN_CHUNK).zip(table.chunks(PLAN_CHUNK)) {
+        let mut bytes = [0; PLAN_CHUNK];
         bytes[..piece.len()].copy_from_slice(piece);
-        command(bench, &Command::GainChunk { offset, bytes })?;
+        command(bench, &Command::PlanChunk { offset, bytes })?;
     }
     let (length, check) = (table.len() as u16, crc32(&table));
-    command(bench, &Command::GainStore { length, check })
+    command(bench, &Command::PlanStore { length, check })
 }

@@ -122,28 +122,28 @@ fn law_share(elf: &Path, states: usize, seed: u64, first: usize) -> LawRun {
 pub struct ObserverRun {
     /// Memories and readings tried.
     pub states: usize,
-    /// How many differ in any bit of wish or memory.
+    /// How many differ in any bit of raw_command or memory.
     pub different: usize,
-    /// Most cycles from readings to wish, marks included.
-    pub wish: u64,
+    /// Most cycles from readings to raw_command, marks included.
+    pub raw_command: u64,
     /// Most cycles of the update, marks included.
-    pub learn: u64,
+    pub update: u64,
 }
 
 impl ObserverRun {
     const NOTHING: ObserverRun = ObserverRun {
         states: 0,
         different: 0,
-        wish: 0,
-        learn: 0,
+        raw_command: 0,
+        update: 0,
     };
 
     fn with(self, other: ObserverRun) -> ObserverRun {
         ObserverRun {
             states: self.states + other.states,
             different: self.different + other.different,
-            wish: self.wish.max(other.wish),
-            learn: self.learn.max(other.learn),
+            raw_command: self.raw_command.max(other.raw_command),
+            update: self.update.max(other.update),
         }
     }
 }
@@ -170,15 +170,15 @@ fn observer_share(elf: &Path, first: &Observer, states: usize, seed: u64) -> Obs
         law.set_observer(&observer);
         for _ in 0..each.min(states - run.states) {
             let mut memory = Memory::of(random_words(&mut rng));
-            let (readings, given) = (random_words(&mut rng), random_words(&mut rng));
-            let tick = law.tick(&memory, &readings, &given);
-            let wish = observer.wish(&mut memory, &readings);
-            observer.learn(&mut memory, given);
+            let (readings, applied) = (random_words(&mut rng), random_words(&mut rng));
+            let tick = law.tick(&memory, &readings, &applied);
+            let raw_command = observer.raw_command(&mut memory, &readings);
+            observer.update(&mut memory, applied);
             run.states += 1;
-            let here = (wish, memory.all());
-            run.different += usize::from(here != (tick.wish, tick.memory.all()));
-            run.wish = run.wish.max(tick.wish_cycles);
-            run.learn = run.learn.max(tick.learn_cycles);
+            let here = (raw_command, memory.all());
+            run.different += usize::from(here != (tick.raw_command, tick.memory.all()));
+            run.raw_command = run.raw_command.max(tick.command_cycles);
+            run.update = run.update.max(tick.update_cycles);
         }
         observer = random_observer(first, &mut rng);
     }
@@ -188,7 +188,7 @@ fn observer_share(elf: &Path, first: &Observer, states: usize, seed: u64) -> Obs
 /// One with other numbers than `like`, and sums as safe.
 fn random_observer(like: &Observer, rng: &mut ChaCha8Rng) -> Observer {
     let mut other = *like;
-    shuffle(&mut other.expect, rng);
+    shuffle(&mut other.predict, rng);
     shuffle(&mut other.feedback, rng);
     shuffle(&mut other.update, rng);
     assert!(other.is_safe(), "rows only change places and signs");

@@ -4,10 +4,11 @@
 use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
 use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
-use handstand::controllers::{OnBoard, Timing, board_steps, reading_steps};
+use handstand::controllers::{OnBoard, Timing};
+use handstand::deploy::{reading_steps, state_steps};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
-use handstand_shared::plan::{Given, Law, Plan};
+use handstand_shared::plan::{AppliedInput, Law, Plan};
 use handstand_shared::raw::{Position, Signed};
 
 /// A law of the host, between readings in steps and commands in codes.
@@ -21,7 +22,7 @@ pub trait HostLaw {
 pub struct Fixed<'a> {
     plan: &'a Plan,
     memory: Option<Memory>,
-    given: [Given; 2],
+    applied: [AppliedInput; 2],
 }
 
 /// The machine as it was designed, with the plan's servos.
@@ -37,7 +38,7 @@ impl<'a> Fixed<'a> {
         Fixed {
             plan,
             memory: None,
-            given: [Given::NOTHING; 2],
+            applied: [AppliedInput::NOTHING; 2],
         }
     }
 }
@@ -64,17 +65,17 @@ impl HostLaw for Fixed<'_> {
             observer.start(&mut memory, &readings, [0; 3]);
             memory
         });
-        let wish = observer.wish(memory, &readings);
+        let raw_command = observer.raw_command(memory, &readings);
         let joints = &self.plan.joints;
-        let given = [0, 1].map(|i| joints[i].give(&mut self.given[i], wish[i]));
-        observer.learn(memory, given);
-        [0, 1].map(|i| joints[i].command(given[i]))
+        let applied = [0, 1].map(|i| joints[i].apply(&mut self.applied[i], raw_command[i]));
+        observer.update(memory, applied);
+        [0, 1].map(|i| joints[i].command(applied[i]))
     }
 }
 
 impl HostLaw for Float<'_> {
     fn commands(&mut self, [angle, q2, q3, rate]: [i16; 4]) -> [i16; 2] {
-        let step = board_steps();
+        let step = state_steps();
         let readings = [angle, q2 << FINE, q3 << FINE, rate];
         let reading_step = reading_steps();
         let readings: [f64; 4] = std::array::from_fn(|i| f64::from(readings[i]) * reading_step[i]);
@@ -83,10 +84,10 @@ impl HostLaw for Float<'_> {
             memory[..3].copy_from_slice(&readings[..3]);
             memory
         });
-        let wish = self.machine.wish(memory, &readings);
-        let given = wish.map(|torque| torque.clamp(-FULL_NM, FULL_NM));
-        self.machine.learn(memory, given);
-        [0, 1].map(|i| self.plan.joints[i].command((given[i] / step[WIDTH - 1]).round() as i16))
+        let raw_command = self.machine.raw_command(memory, &readings);
+        let applied = raw_command.map(|torque| torque.clamp(-FULL_NM, FULL_NM));
+        self.machine.update(memory, applied);
+        [0, 1].map(|i| self.plan.joints[i].command((applied[i] / step[WIDTH - 1]).round() as i16))
     }
 }
 
@@ -254,7 +255,7 @@ pub fn side_by_side(
 mod tests {
     use super::*;
     use crate::bench::robot::model;
-    use handstand::controllers::{Fitting, board_plan};
+    use handstand::deploy::{self, Board, BoardLaw};
 
     const TWO: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
@@ -262,7 +263,9 @@ mod tests {
     #[test]
     fn both_laws_of_the_host_stand() {
         for timing in [Timing::HOST_ATTITUDE, Timing::GYRO] {
-            let (machine, plan) = board_plan(&model(), &Fitting::BIOLOID, &timing).unwrap();
+            let (model, board) = (model(), Board::BIOLOID);
+            let machine = deploy::observer_design(&model, &board, &timing).unwrap();
+            let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board).unwrap();
             for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
                 let conditions = Conditions {
                     dead_zone: 0.08,

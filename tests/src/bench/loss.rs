@@ -103,7 +103,7 @@ fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusal>> {
     });
     let token = token.ok_or(None)?;
     bench.send(&Command::Mode(Mode::Stream));
-    // Two rounds of the slow channels, until the supply is known.
+    // Two rounds of the housekeeping, until the supply is known.
     for _ in 0..25 {
         bench.send(&Command::KeepAlive);
         bench.run_ms(10.0);

@@ -1,9 +1,9 @@
 //! Power cuts while a gain table is written.
 
 use super::{SimulatedCm5, VirtualCm5};
-use handstand_firmware::slots::Stored;
+use handstand_firmware::plan_store::Stored;
 use handstand_shared::crc::crc32;
-use handstand_shared::message::{Answer, Command, GAIN_CHUNK, Report, ResetCause};
+use handstand_shared::message::{Answer, Command, PLAN_CHUNK, Report, ResetCause};
 
 /// What was tried, and what came of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -58,16 +58,16 @@ fn kept(rig: &mut VirtualCm5) -> Option<Vec<u8>> {
 /// Uploads a table through the line; whether it was stored.
 fn upload(rig: &mut VirtualCm5, table: &[u8]) -> bool {
     let mut offset = 0;
-    for piece in table.chunks(GAIN_CHUNK) {
-        let mut bytes = [0; GAIN_CHUNK];
+    for piece in table.chunks(PLAN_CHUNK) {
+        let mut bytes = [0; PLAN_CHUNK];
         bytes[..piece.len()].copy_from_slice(piece);
-        if !done(rig, &Command::GainChunk { offset, bytes }) {
+        if !done(rig, &Command::PlanChunk { offset, bytes }) {
             return false;
         }
-        offset += GAIN_CHUNK as u16;
+        offset += PLAN_CHUNK as u16;
     }
     let (length, check) = (table.len() as u16, crc32(table));
-    done(rig, &Command::GainStore { length, check })
+    done(rig, &Command::PlanStore { length, check })
 }
 
 fn done(rig: &mut VirtualCm5, command: &Command) -> bool {

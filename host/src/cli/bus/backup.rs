@@ -58,7 +58,7 @@ pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
     }
     let mut saved = Vec::new();
     for id in &ids {
-        saved.push(Settings::read(&mut servos, *id).map_err(|failure| failure.of(*id))?);
+        saved.push(Settings::read(&mut servos, *id)?);
     }
     output::write_new(&args.file, &Settings::to_toml(&saved), args.force)?;
     if talk.json {
@@ -91,7 +91,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
     let mut changes: Vec<Change> = Vec::new();
     // All servos are read before any is written: a servo that is missing stops a half restored robot from arising.
     for servo in &saved {
-        let now = Settings::read(&mut servos, servo.id).map_err(|failure| failure.of(servo.id))?;
+        let now = Settings::read(&mut servos, servo.id)?;
         if now.get(MODEL) != servo.get(MODEL) {
             return Err(Error::device(
                 format!(
@@ -116,9 +116,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
     let bar = talk.bar();
     bar.set_length(changes.len() as u64);
     for change in changes.iter().filter(|_| !args.dry_run) {
-        servos
-            .set(change.id, change.register, change.code)
-            .map_err(|failure| failure.of(change.id))?;
+        servos.set(change.id, change.register, change.code)?;
         bar.inc(1);
     }
     bar.finish_and_clear();

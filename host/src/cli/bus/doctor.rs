@@ -34,7 +34,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     } else if well {
         talk.print(&format!(
             "All is well: {} servos answer every ping.",
-            diagnosis.pulses.len()
+            diagnosis.pings.len()
         ))?;
     } else {
         let causes = diagnosis.causes.iter().enumerate().map(|(place, cause)| {

@@ -6,7 +6,7 @@ use super::super::port::{Ids, Port, id_list};
 use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
-use handstand::link::Failure;
+use handstand::link::ServoError;
 use handstand_shared::control_table::PRESENT_POSITION;
 use handstand_shared::raw::{Position, Signed};
 use serde::Serialize;
@@ -61,7 +61,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             // Registers 36 to 43: position, speed, load, supply, temperature.
             seen.push(match servos.read(*id, PRESENT_POSITION.address, 8) {
                 Ok(reading) => Seen::of(*id, &reading.data, reading.error.names().collect()),
-                Err(Failure::Port(error)) => return Err(error),
+                Err(ServoError::Port(error)) => return Err(error),
                 Err(_) => Seen::silent(*id),
             });
         }
@@ -124,7 +124,7 @@ fn text(seen: &[Seen]) -> String {
         "Load",
         "Supply",
         "Temp",
-        "Complains of",
+        "Error flags",
     ]);
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_string());
     for servo in seen {

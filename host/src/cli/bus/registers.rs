@@ -59,9 +59,7 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
     let mut rows = Vec::new();
     let mut shown = table(["Address", "Register", "Code", "Means", "Default"]);
     for register in wanted {
-        let code = servos
-            .get(args.id, *register)
-            .map_err(|failure| failure.of(args.id))?;
+        let code = servos.get(args.id, *register)?;
         let meaning = meaning(*register, code);
         shown.add_row([
             register.address.to_string(),
@@ -101,12 +99,8 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
         ));
     }
     let mut servos = args.port.servos()?;
-    let before = servos
-        .get(*id, *register)
-        .map_err(|failure| failure.of(*id))?;
-    servos
-        .set(*id, *register, *code)
-        .map_err(|failure| failure.of(*id))?;
+    let before = servos.get(*id, *register)?;
+    servos.set(*id, *register, *code)?;
     if talk.json {
         talk.data(&json!({ "id": id, "register": register.name, "before": before, "code": code }))?;
     } else {

@@ -5,7 +5,7 @@ use super::super::port::{AnyLink, Ids, Port, id_list, no_response};
 use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
-use handstand::link::{Failure, Servos};
+use handstand::link::{ServoError, ServoResult, Servos};
 use handstand_shared::control_table as ct;
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::Position;
@@ -51,7 +51,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "Position",
             "Supply",
             "Temp",
-            "Complains of",
+            "Error flags",
         ]);
         for servo in &found {
             shown.add_row([
@@ -90,12 +90,12 @@ pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
         let pinged = servos.ping(*id);
         servos.tries = 3;
         match pinged {
-            Ok(error) => found.push(read(servos, *id, error).map_err(|failure| failure.of(*id))?),
-            Err(Failure::Silent) => {}
-            Err(Failure::Port(error)) => return Err(error),
+            Ok(error) => found.push(read(servos, *id, error)?),
+            Err(ServoError::NoResponse { .. }) => {}
+            Err(ServoError::Port(error)) => return Err(error),
             Err(_) => {
                 if let Ok(error) = servos.ping(*id) {
-                    found.push(read(servos, *id, error).map_err(|failure| failure.of(*id))?);
+                    found.push(read(servos, *id, error)?);
                 } else {
                     talk.say(&format!("id {id}: bytes came, but no sound answer: two servos of this id, or a bad line"));
                 }
@@ -107,7 +107,7 @@ pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
     Ok(found)
 }
 
-fn read(servos: &mut Servos<AnyLink>, id: u8, error: ErrorBits) -> Result<Found, Failure> {
+fn read(servos: &mut Servos<AnyLink>, id: u8, error: ErrorBits) -> ServoResult<Found> {
     Ok(Found {
         id,
         model: servos.get(id, ct::MODEL)?,

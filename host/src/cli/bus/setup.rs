@@ -54,9 +54,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             ));
         }
         if only != new {
-            servos
-                .set(only, ID, u16::from(new))
-                .map_err(|failure| failure.of(only))?;
+            servos.set(only, ID, u16::from(new))?;
             changes.push(Change {
                 id: new,
                 register: ID,
@@ -73,13 +71,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             (RETURN_DELAY, args.return_delay),
             (STATUS_LEVEL, args.status_level),
         ] {
-            let before = servos
-                .get(*id, register)
-                .map_err(|failure| failure.of(*id))?;
+            let before = servos.get(*id, register)?;
             if before != code {
-                servos
-                    .set(*id, register, code)
-                    .map_err(|failure| failure.of(*id))?;
+                servos.set(*id, register, code)?;
                 changes.push(Change {
                     id: *id,
                     register,

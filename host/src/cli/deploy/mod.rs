@@ -22,25 +22,21 @@
 //! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null), `fingerprint`, `bytes`, `uploaded`,
 //! `states_replayed`.
 
+mod board;
 mod build;
-mod plan;
-mod replay;
-mod upload;
 
 use super::flash::{Loader, write};
 use super::port::Port;
 use super::talk::Talk;
 use super::{Outcome, gains};
+use board::BoardArgs;
 use clap::ValueEnum as _;
-use handstand::controllers::plan_file;
+use handstand::deploy::{self, BoardLaw, plan_file};
 use handstand::link::Session;
 use handstand::link::boot_loader::Image;
 use handstand::output::write_new;
-use handstand::synth::Design;
-use handstand::synth::export::Provenance;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
-use plan::Rig;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +47,7 @@ pub struct Args {
     #[command(flatten)]
     gains: gains::Args,
     #[command(flatten)]
-    rig: Rig,
+    board: BoardArgs,
     #[command(flatten)]
     port: Port,
     /// The law
@@ -116,10 +112,6 @@ pub fn gains(args: &Gains, talk: &Talk) -> Result<Outcome> {
     }
 }
 
-/// States and inputs of the firmware's law: angles and speeds of three joints, two of them driven.
-const STATES: usize = 6;
-const INPUTS: usize = 2;
-
 /// What was done so far.
 struct Steps<'a> {
     done: Vec<String>,
@@ -133,24 +125,10 @@ impl Steps<'_> {
     }
 }
 
-/// The design in the firmware's steps.
-fn designed(args: &Args, talk: &Talk) -> Result<(gains::Args, Design, Provenance)> {
-    let given = args.gains.in_steps(plan::state_steps(), None)?;
-    let (design, made) = gains::designed(&given, talk)?;
-    let finer = design
-        .fixed
-        .as_ref()
-        .and_then(|fixed| args.rig.finer(&fixed.law));
-    let Some(finer) = finer else {
-        return Ok((given, design, made));
-    };
-    let given = args.gains.in_steps(plan::state_steps(), Some(finer))?;
-    let (design, made) = gains::designed(&given, talk)?;
-    Ok((given, design, made))
-}
-
-/// The plan that was asked for; the files of a design are written.
+/// The plan; the files of a design are written.
 fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
+    let model = Model::load(args.gains.model())?;
+    let board = args.board.board()?;
     if args.law == Law::Observer {
         if let Some(option) = args.gains.for_plain_states() {
             return Err(Error::usage(
@@ -160,19 +138,13 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
                 "leave it out, or say --law state",
             ));
         }
-        return args.rig.observing(&Model::load(args.gains.model())?);
+        let machine = deploy::observer_design(&model, &board, &args.board.timing())?;
+        return deploy::plan(&model, BoardLaw::Observer(&machine), &board);
     }
-    let (given, mut design, made) = designed(args, talk)?;
-    let model = Model::load(given.model())?;
-    plan::tell_from_upright(&mut design, &model)?;
-    let fixed = design.fixed.as_ref().ok_or_else(|| {
-        Error::usage(
-            "gains for continuous time have no table",
-            "leave --continuous out",
-        )
-    })?;
-    let plan = args.rig.regulating(&model, &design, &fixed.law)?;
-    gains::write(&given, &design, &made, talk)?;
+    let (reduced, request, made) = gains::requested(&args.gains, talk)?;
+    let design = deploy::state_design(&reduced, request, &board)?;
+    let plan = deploy::plan(&model, BoardLaw::State(&design), &board)?;
+    gains::write(&args.gains, &design, &made, talk)?;
     Ok(plan)
 }
 
@@ -204,7 +176,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "flash the firmware that belongs to this program",
         )
     })?;
-    replay::replay(&back.law, args.states, args.seed, talk)?;
+    let bar = talk.bar();
+    bar.set_length(args.states);
+    let replayed = deploy::replay(&back.law, args.states, args.seed, |done| {
+        bar.set_position(done)
+    });
+    bar.finish_and_clear();
+    replayed?;
     steps.say(format!(
         "replayed: its law on its tables equals wide integers bit for bit over {} states",
         args.states
@@ -243,7 +221,11 @@ fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Res
         return Ok(bytes.to_vec());
     }
     let mut session = Session::open(args.port.open()?)?;
-    upload::upload(&mut session, bytes, steps.talk)?;
+    let bar = steps.talk.bar();
+    bar.set_length(bytes.len() as u64);
+    let sent = deploy::upload(&mut session, bytes, |sent| bar.set_position(sent));
+    bar.finish_and_clear();
+    sent?;
     steps.say("uploaded: the CM-5 keeps it in EEPROM".to_string());
     verified(&mut session, bytes, fingerprint, steps)
 }
@@ -268,7 +250,7 @@ fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut Steps) -> Result<Ve
     // It starts within its first second.
     std::thread::sleep(std::time::Duration::from_secs(1));
     let mut session = Session::open(args.port.open()?)?;
-    let (theirs, ours) = (session.hello.gains, plan.fingerprint());
+    let (theirs, ours) = (session.hello.plan, plan.fingerprint());
     if theirs != ours {
         return Err(Error::device(
             format!(
@@ -286,7 +268,7 @@ fn verified(
     fingerprint: u32,
     steps: &mut Steps,
 ) -> Result<Vec<u8>> {
-    let back = upload::verify(session, bytes, fingerprint)?;
+    let back = deploy::verify(session, bytes, fingerprint)?;
     steps.say(format!(
         "read back: {} bytes and the fingerprint are the same",
         back.len()

@@ -1,5 +1,6 @@
 //! A program as the boot loader takes it.
 
+use super::ImageError;
 use crate::error::{Error, Place, Result};
 use std::path::Path;
 
@@ -16,11 +17,15 @@ impl Image {
     /// A file that cannot be read; Intel HEX or ELF, which the boot loader would write into flash as they are; too large.
     pub fn load(path: &Path) -> Result<Image> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
-        Image::check(bytes).map_err(|(what, remedy)| Error::data(Place::file(path), what, remedy))
+        Image::check(bytes)
+            .map_err(|error| Error::data(Place::file(path), error.to_string(), error.remedy()))
     }
 
-    pub(super) fn check(bytes: Vec<u8>) -> Result<Image, (String, &'static str)> {
-        let bin = "give the raw binary, the `.bin` that `cargo xtask firmware` writes";
+    /// A program from its bytes.
+    ///
+    /// # Errors
+    /// Bytes that are no raw program, or too many.
+    pub fn check(bytes: Vec<u8>) -> Result<Image, ImageError> {
         let is_hex = bytes.first() == Some(&b':')
             && bytes
                 .iter()
@@ -29,19 +34,11 @@ impl Image {
         // The first word of an AVR program is a jump: `jmp` or `rjmp`.
         let is_jump = matches!(bytes[..], [0x0c, 0x94, _, _, ..] | [_, 0xc0..=0xcf, ..]);
         match bytes.len() {
-            0 => Err(("the file is empty".to_string(), bin)),
-            _ if bytes.starts_with(b"\x7fELF") => {
-                Err(("this is an ELF, not a raw binary".to_string(), bin))
-            }
-            _ if is_hex => Err(("this is Intel HEX, not a raw binary".to_string(), bin)),
-            length if length > LARGEST => Err((
-                format!("{length} bytes are too many: the boot loader begins at {LARGEST}"),
-                "make the program smaller",
-            )),
-            _ if !is_jump => Err((
-                "this is no program for the AVR: it does not begin with a jump".to_string(),
-                bin,
-            )),
+            0 => Err(ImageError::Empty),
+            _ if bytes.starts_with(b"\x7fELF") => Err(ImageError::Elf),
+            _ if is_hex => Err(ImageError::IntelHex),
+            length if length > LARGEST => Err(ImageError::TooLong(length)),
+            _ if !is_jump => Err(ImageError::NoJump),
             _ => Ok(Image(bytes)),
         }
     }
@@ -85,7 +82,7 @@ mod tests {
             ),
             (vec![0; 100], "jump"),
         ] {
-            let (what, _) = Image::check(bytes).unwrap_err();
+            let what = Image::check(bytes).unwrap_err().to_string();
             assert!(what.contains(said), "{what}");
         }
     }

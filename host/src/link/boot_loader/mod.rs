@@ -4,13 +4,16 @@
 //! 150 ms of silence end them -> `Success` or `Error`, `Size:`, `Checksum:XX-YY`; then `verify`, `app` (start the
 //! application at power-on), `go`. 57600 8N1. It lies at 0x1E000, so an image has at most 122,880 bytes.
 
+mod error;
 mod image;
 
+pub use error::{BootLoaderError, ImageError};
 pub use image::{Image, LARGEST};
 
 use super::port::Link;
-use crate::error::{Error, Result};
 use std::time::Duration;
+
+type Result<T> = std::result::Result<T, BootLoaderError>;
 
 /// Speed of the boot loader, baud.
 pub const BAUD: u32 = 57_600;
@@ -32,7 +35,7 @@ impl<L: Link> BootLoader<L> {
     /// Knocks until the boot loader answers, at most for `patience`; `keep_on` is asked meanwhile.
     ///
     /// # Errors
-    /// [`Error::Device`] if it does not.
+    /// [`BootLoaderError::NotEntered`] if it does not.
     pub fn enter(
         link: L,
         pace: Duration,
@@ -57,21 +60,20 @@ impl<L: Link> BootLoader<L> {
                 return Ok(loader);
             }
         }
-        Err(Error::device(
-            format!("{}: the boot loader does not answer", loader.link.name()),
-            "press the MODE button (reset) while this program knocks; is the cable in the CM-5, the battery on?",
-        ))
+        Err(BootLoaderError::NotEntered {
+            port: loader.link.name().into(),
+        })
     }
 
     /// Sends the image; `sent` is told how many bytes are on their way.
     ///
     /// # Errors
-    /// [`Error::Device`]: no answer, or size or checksum differ from ours.
+    /// [`BootLoaderError`]: no answer, or size or checksum differ from ours.
     pub fn load(&mut self, image: &Image, mut sent: impl FnMut(usize)) -> Result<()> {
         self.link.clear()?;
         self.link.send(b"load 0\r")?;
         let ready = self.wait(&["Ready"], ANSWER)?;
-        ready.ok_or_else(|| self.silent("`load 0`"))?;
+        ready.ok_or_else(|| self.no_answer("`load 0`"))?;
         // The rest of its line, before bytes could be taken for it.
         self.wait(&["\n"], Duration::from_millis(200))?;
         let chunk = if self.pace.is_zero() { 64 } else { 1 };
@@ -87,7 +89,7 @@ impl<L: Link> BootLoader<L> {
         let patience = self.link.line_time(image.bytes().len()) + writing + ANSWER;
         let answer = self
             .wait(&[PROMPT], patience)?
-            .ok_or_else(|| self.silent("the image"))?;
+            .ok_or_else(|| self.no_answer("the image"))?;
         judge(&answer, image)
     }
 
@@ -97,7 +99,7 @@ impl<L: Link> BootLoader<L> {
     /// checksum of what it received were compared before.
     ///
     /// # Errors
-    /// [`Error::Device`] if it says nothing, or says so.
+    /// [`BootLoaderError`] if it says nothing, or says so.
     pub fn verify(&mut self) -> Result<String> {
         let answer = self.command("verify", Duration::from_secs(20))?;
         let lower = answer.to_lowercase();
@@ -105,10 +107,7 @@ impl<L: Link> BootLoader<L> {
         let said = answer.trim_end_matches(PROMPT).trim();
         let said = said.strip_prefix("verify").unwrap_or(said).trim();
         match lower.contains("error") || lower.contains("fail") {
-            true => Err(Error::device(
-                format!("verify failed: the boot loader says `{said}`"),
-                AGAIN,
-            )),
+            true => Err(BootLoaderError::Verify { reply: said.into() }),
             false => Ok(said.to_string()),
         }
     }
@@ -116,24 +115,24 @@ impl<L: Link> BootLoader<L> {
     /// From now on the application starts at power-on.
     ///
     /// # Errors
-    /// [`Error::Device`] if it does not answer.
+    /// [`BootLoaderError`] if it does not answer.
     pub fn start_at_power_on(&mut self) -> Result<()> {
         self.command("app", ANSWER).map(|_| ())
     }
 
-    /// Starts the application now; nobody answers.
+    /// Start the application now; there is no answer.
     ///
     /// # Errors
     /// The port failed.
     pub fn go(&mut self) -> Result<()> {
-        self.link.send(b"go\r")
+        Ok(self.link.send(b"go\r")?)
     }
 
     fn command(&mut self, words: &str, patience: Duration) -> Result<String> {
         self.link.clear()?;
         self.link.send(format!("{words}\r").as_bytes())?;
         self.wait(&[PROMPT], patience)?
-            .ok_or_else(|| self.silent(&format!("`{words}`")))
+            .ok_or_else(|| self.no_answer(format!("`{words}`")))
     }
 
     /// What came until one of these words did, or nothing if none does.
@@ -154,18 +153,13 @@ impl<L: Link> BootLoader<L> {
         Ok(None)
     }
 
-    fn silent(&self, about: &str) -> Error {
-        Error::device(
-            format!(
-                "{}: the boot loader does not answer to {about}",
-                self.link.name()
-            ),
-            "press MODE (reset) and try again; if it stays so, slow down: --pace-us 200",
-        )
+    fn no_answer(&self, request: impl Into<String>) -> BootLoaderError {
+        BootLoaderError::NoAnswer {
+            port: self.link.name().into(),
+            request: request.into(),
+        }
     }
 }
-
-const AGAIN: &str = "the CM-5 holds no whole program, the boot loader is unharmed: try again, slower if it stays so: --pace-us 200";
 
 /// Judges what the boot loader says of an image; its word alone is not enough.
 fn judge(answer: &str, image: &Image) -> Result<()> {
@@ -176,14 +170,14 @@ fn judge(answer: &str, image: &Image) -> Result<()> {
             .take_while(char::is_ascii_hexdigit)
             .collect()
     };
-    let failed = |what: String| Err(Error::device(what, AGAIN));
     let (length, sum) = (image.bytes().len(), image.checksum());
     let size = after("Size:").map(digits).unwrap_or_default();
     let same_size = size.parse() == Ok(length) || usize::from_str_radix(&size, 16) == Ok(length);
     if !size.is_empty() && !same_size {
-        return failed(format!(
-            "{length} bytes were sent, the boot loader received {size}"
-        ));
+        return Err(BootLoaderError::Size {
+            sent: length,
+            received: size,
+        });
     }
     let sums: Vec<u8> = after("Checksum:")
         .map(|text| {
@@ -194,13 +188,16 @@ fn judge(answer: &str, image: &Image) -> Result<()> {
         })
         .unwrap_or_default();
     if sums.len() != 2 || sums.iter().any(|theirs| *theirs != sum) {
-        return failed(format!(
-            "the checksum is wrong: ours {sum:02X}, the boot loader's {sums:02X?}"
-        ));
+        return Err(BootLoaderError::Checksum {
+            ours: sum,
+            theirs: sums,
+        });
     }
     match answer.contains("Success") && !size.is_empty() {
         true => Ok(()),
-        false => failed(format!("the boot loader says: {}", answer.trim())),
+        false => Err(BootLoaderError::Failed {
+            reply: answer.trim().into(),
+        }),
     }
 }
 
@@ -223,7 +220,7 @@ mod tests {
         ] {
             let error = judge(&bad, &image).unwrap_err();
             assert!(error.to_string().contains(said), "{error}");
-            assert_eq!(error.exit_code(), 4);
+            assert_eq!(crate::Error::from(error).exit_code(), 4);
         }
     }
 }

@@ -1,19 +1,19 @@
-//! Why a servo gives no status packet: tests that tell the causes apart.
+//! Diagnose why servos do not respond: tests that tell the causes apart.
 
 mod disturbance;
-mod nobody;
-mod pulse;
-mod some;
+mod no_response;
+mod partial_response;
+mod ping_test;
 
-pub use pulse::Pulse;
+pub use ping_test::PingTest;
 
 use super::port::Link;
 use super::servos::Servos;
 use crate::error::Result;
-use nobody::nobody;
-use pulse::{PINGS, pulse};
+use no_response::no_response;
+use partial_response::partial_response;
+use ping_test::{PINGS, ping_test};
 use serde::Serialize;
-use some::some;
 
 /// A cause, how well the tests support it (0 to 1), and what to do.
 #[derive(Debug, Clone, Serialize)]
@@ -34,12 +34,12 @@ pub struct Diagnosis {
     /// Whether the adapter hears itself.
     pub echo: bool,
     /// Each servo asked.
-    pub pulses: Vec<Pulse>,
+    pub pings: Vec<PingTest>,
     /// The likeliest first.
     pub causes: Vec<Cause>,
 }
 
-/// Examines the servos `ids`; `step` is told what is done next.
+/// Test the servos `ids`; `step` receives the name of each test before it begins.
 ///
 /// # Errors
 /// The port failed.
@@ -47,23 +47,25 @@ pub fn examine<L: Link>(link: L, ids: &[u8], mut step: impl FnMut(&str)) -> Resu
     let mut servos = Servos::new(link);
     servos.tries = 1;
     step("listening for an echo");
-    let echo = servos.echoes().map_err(|failure| failure.of(0))?;
-    let mut pulses = Vec::new();
+    let echo = servos.echoes()?;
+    let mut pings = Vec::new();
     for id in ids {
         step(&format!("servo {id}: {PINGS} pings"));
-        pulses.push(pulse(&mut servos, *id)?);
+        pings.push(ping_test(&mut servos, *id)?);
     }
     let mut causes = Vec::new();
-    let spoke = |pulse: &Pulse| pulse.answered + pulse.late + pulse.misheard + pulse.strangers > 0;
-    if !pulses.iter().any(spoke) {
-        nobody(&mut servos, ids, &pulses, &mut causes, &mut step)?;
+    let replied = |test: &PingTest| {
+        test.answered + test.late + test.corrupted_requests + test.unexpected_ids > 0
+    };
+    if !pings.iter().any(replied) {
+        no_response(&mut servos, ids, &pings, &mut causes, &mut step)?;
     } else {
-        some(&mut servos, &pulses, &mut causes)?;
+        partial_response(&mut servos, &pings, &mut causes)?;
     }
     causes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     Ok(Diagnosis {
         echo,
-        pulses,
+        pings,
         causes,
     })
 }

@@ -35,12 +35,9 @@ fn every_fault_is_named_first() {
             "servos answer with others' ids",
         ),
         ("ids=1-4+3,delay=0", "two servos have the id 3"),
-        (
-            "ids=1-4,delay=0,overload=2",
-            "servo 2 complains of: overload",
-        ),
-        ("ids=1-4,delay=0,hot=2", "servo 2 complains of: overheat"),
-        ("ids=1-4,delay=0,supply=5", "complains of: voltage"),
+        ("ids=1-4,delay=0,overload=2", "servo 2 reports: overload"),
+        ("ids=1-4,delay=0,hot=2", "servo 2 reports: overheat"),
+        ("ids=1-4,delay=0,supply=5", "reports: voltage"),
         ("ids=1-4,delay=0,level=0", "has status level 0"),
         ("ids=1-4,delay=250", "waits 500 us"),
         ("ids=1-4,dead=1-4", "the servos have no power"),
@@ -63,5 +60,5 @@ fn every_fault_is_named_first() {
 fn a_bus_that_is_well_has_no_cause() {
     let diagnosis = diagnose("ids=1-4,delay=0", &[1, 2, 3, 4]);
     assert!(diagnosis.causes.is_empty(), "{:?}", diagnosis.causes);
-    assert!(diagnosis.pulses.iter().all(|pulse| pulse.answered == PINGS));
+    assert!(diagnosis.pings.iter().all(|test| test.answered == PINGS));
 }

@@ -229,10 +229,18 @@ fn only_what_needs_the_general_simulation_gets_it() {
 fn the_general_simulation_agrees_where_its_effects_vanish() {
     let start = InitialState::at([TILT, -TILT, TILT]);
     let ours = one(&loop_of(&model()), &paper_gains(), &start, 2.0);
-    let effects = [("coulomb", 1, &[0.0][..]), ("viscous", 0, &[0.0])];
-    let theirs = one(&loop_of(&with(&effects)), &paper_gains(), &start, 2.0);
-    assert!((ours.rms_angle_rad - theirs.rms_angle_rad).abs() < 1e-9);
-    assert!((ours.rms_torque_nm - theirs.rms_torque_nm).abs() < 1e-9);
+    let viscous = [("viscous", 0, &[0.0][..])];
+    // Friction that vanishes still ends a step where a joint turns back.
+    let coulomb = [("coulomb", 1, &[0.0][..])];
+    for (effects, tolerance) in [(viscous, 1e-12), (coulomb, 1e-7)] {
+        let theirs = one(&loop_of(&with(&effects)), &paper_gains(), &start, 2.0);
+        let angle = ours.rms_angle_rad - theirs.rms_angle_rad;
+        let torque = ours.rms_torque_nm - theirs.rms_torque_nm;
+        assert!(
+            angle.abs() < tolerance && torque.abs() < 10.0 * tolerance,
+            "{angle} {torque}"
+        );
+    }
 }
 
 /// A robot that hangs, its shoulder stuck: it swings as if the joint were locked, and the drive's 0.1 N m do nothing.

@@ -45,8 +45,8 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
         let ObserverRun {
             states,
             different,
-            wish,
-            learn,
+            raw_command,
+            update,
         } = observer_law(&built.law, observer, count, args.seed);
         rows.push(Row {
             name: "law with observer on the AVR against the host's",
@@ -57,10 +57,12 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
         });
         rows.push(Row {
             name: "law with observer, cycles",
-            measured: format!("{wish} before the commands, {learn} while servos are awaited"),
+            measured: format!(
+                "{raw_command} before the commands, {update} while servos are awaited"
+            ),
             limit: "-",
             holds: None,
-            values: json!({"wish": wish, "learn": learn}),
+            values: json!({"raw_command": raw_command, "update": update}),
         });
     }
     rows

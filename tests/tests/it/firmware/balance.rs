@@ -106,13 +106,13 @@ fn a_plan_that_was_compiled_in_balances_without_upload() {
     let (_, plan) = plan();
     plan.bytes(|byte| bytes.push(byte));
     let mut rig = VirtualCm5::with_plan(bytes, vec![0xff; 4096], ResetCause(0));
-    assert_eq!(greet(&mut rig).gains, plan.fingerprint());
+    assert_eq!(greet(&mut rig).plan, plan.fingerprint());
     // One in EEPROM wins, once it is there.
     rig.send_bytes(&[0]);
     let other = state_plan();
     arm_balance(&mut rig, &other).expect("armed");
     let hello = greet(&mut rig);
-    assert_eq!(hello.gains, other.fingerprint());
+    assert_eq!(hello.plan, other.fingerprint());
     assert_ne!(other.fingerprint(), plan.fingerprint());
 }
 
@@ -124,6 +124,6 @@ fn balancing_without_gains_is_refused() {
     rig.run_ms(300.0);
     assert_eq!(
         refused(&mut rig, Command::Arm { token }),
-        Some(Refusal::NoGains)
+        Some(Refusal::NoPlan)
     );
 }

@@ -6,7 +6,7 @@ use super::condition;
 use super::faults::*;
 use super::safety::lets_down;
 use super::stream::streams;
-use handstand::controllers::plan_file;
+use handstand::deploy::plan_file;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use handstand_shared::message::*;

@@ -52,12 +52,12 @@ fn asked<T>(
     reports.find_map(|(_, report)| kind(report))
 }
 
-fn limp(bench: &mut impl SimulatedCm5) -> Option<Limp> {
+fn tripped(bench: &mut impl SimulatedCm5) -> Option<TrippedServo> {
     let telemetry = asked(bench, Subject::Telemetry, |report| match report {
         Report::Telemetry(telemetry) => Some(telemetry),
         _ => None,
     });
-    telemetry.expect("telemetry").limp
+    telemetry.expect("telemetry").tripped
 }
 
 /// Conditions in the order they were reported, each once.
@@ -113,7 +113,7 @@ fn is_let_down(
         "{way:?}"
     );
     let error = way.says().0;
-    assert_eq!(limp(bench), Some(Limp { id, error }), "{way:?}");
+    assert_eq!(tripped(bench), Some(TrippedServo { id, error }), "{way:?}");
 }
 
 pub fn a_servo_gives_up_while_streaming(bench: &mut impl SimulatedCm5, way: GivesUp) {
@@ -123,12 +123,12 @@ pub fn a_servo_gives_up_while_streaming(bench: &mut impl SimulatedCm5, way: Give
         bench.send(&goals);
         bench.run_ms(10.0);
     }
-    assert_eq!(limp(bench), None);
+    assert_eq!(tripped(bench), None);
     is_let_down(bench, 7, way, Condition::StreamArmed, &goals);
     // Cooled down it is armed anew, and nobody is named any more.
     bench.bus().servo(7).expect("18 servos").temperature = 30.0;
     arm(bench);
-    assert_eq!(limp(bench), None, "{way:?}");
+    assert_eq!(tripped(bench), None, "{way:?}");
 }
 
 pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: GivesUp) {

@@ -1,35 +1,31 @@
-//! The law as the firmware computes it, beside integers that cannot overflow.
+//! Compare the firmware's law with integers that cannot overflow.
 
-use crate::cli::talk::Talk;
-use handstand::{Error, Result};
+use crate::error::{Error, Result};
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
 use handstand_shared::plan::Law;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-/// Runs every table of the law over so many random states.
+/// Compute every table of the law at `states` random states drawn from `seed`; `progress` gets the number so far.
 ///
 /// # Errors
 /// A bit differs.
-pub fn replay(law: &Law, states: u64, seed: u64, talk: &Talk) -> Result<()> {
+pub fn replay(law: &Law, states: u64, seed: u64, mut progress: impl FnMut(u64)) -> Result<()> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let bar = talk.bar();
-    bar.set_length(states);
     for count in 0..states {
         match law {
             Law::State { table, .. } => same(table, &mut random)?,
             Law::Observer(observer) => {
-                same(&observer.expect, &mut random)?;
+                same(&observer.predict, &mut random)?;
                 same(&observer.feedback, &mut random)?;
                 same(&observer.update, &mut random)?;
             }
         }
         if count % 4096 == 0 {
-            bar.set_position(count);
+            progress(count);
         }
     }
-    bar.finish_and_clear();
     Ok(())
 }
 

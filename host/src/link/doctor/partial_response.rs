@@ -1,45 +1,45 @@
-//! What is wrong where some servos answer.
+//! Causes where some servos respond.
 
 use super::super::port::Link;
-use super::super::retry::Failure;
+use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
 use super::disturbance::{disturbances, is_twice};
-use super::pulse::{PINGS, Pulse};
+use super::ping_test::{PINGS, PingTest};
 use super::{Cause, cause};
 use crate::error::Result;
 use handstand_shared::control_table::{PRESENT_SUPPLY, RETURN_DELAY, STATUS_LEVEL};
 use handstand_shared::dynamixel::ErrorBits;
 
-/// Some answer: what is wrong with the others, or with how they answer.
-pub(super) fn some<L: Link>(
+/// Some servos respond: causes for the others, and for replies that are not valid.
+pub(super) fn partial_response<L: Link>(
     servos: &mut Servos<L>,
-    pulses: &[Pulse],
+    pings: &[PingTest],
     causes: &mut Vec<Cause>,
 ) -> Result<()> {
-    for pulse in pulses.iter().filter(|pulse| is_twice(pulse)) {
-        causes.push(twice(pulse));
+    for test in pings.iter().filter(|test| is_twice(test)) {
+        causes.push(twice(test));
     }
-    let silent = |pulse: &&Pulse| pulse.answered == 0 && !is_twice(pulse);
-    causes.extend(pulses.iter().filter(silent).map(missing));
-    causes.extend(disturbances(pulses));
-    for pulse in pulses.iter().filter(|pulse| !pulse.errors.is_empty()) {
-        let supply = servos.get(pulse.id, PRESENT_SUPPLY).ok();
-        causes.push(complaint(pulse, supply));
+    let silent = |test: &&PingTest| test.answered == 0 && !is_twice(test);
+    causes.extend(pings.iter().filter(silent).map(missing));
+    causes.extend(disturbances(pings));
+    for test in pings.iter().filter(|test| !test.error_flags.is_empty()) {
+        let supply = servos.get(test.id, PRESENT_SUPPLY).ok();
+        causes.push(error_flags(test, supply));
     }
-    for pulse in pulses.iter().filter(|pulse| pulse.answered > 0) {
-        settings(servos, pulse.id, causes)?;
+    for test in pings.iter().filter(|test| test.answered > 0) {
+        settings(servos, test.id, causes)?;
     }
     Ok(())
 }
 
-fn twice(pulse: &Pulse) -> Cause {
-    let id = pulse.id;
+fn twice(test: &PingTest) -> Cause {
+    let id = test.id;
     cause(
         0.85,
         format!("two servos have the id {id}"),
         format!(
             "of {PINGS} answers of id {id} {} were garbled, {} came double; those of others are sound",
-            pulse.garbled, pulse.doubled
+            test.garbled, test.doubled
         ),
         format!(
             "disconnect all others, connect one of the two, and give it a free id: handstand bus setup --new-id N; id {id} stays with the other"
@@ -47,13 +47,16 @@ fn twice(pulse: &Pulse) -> Cause {
     )
 }
 
-fn missing(pulse: &Pulse) -> Cause {
-    let id = pulse.id;
-    if pulse.strangers > 0 {
+fn missing(test: &PingTest) -> Cause {
+    let id = test.id;
+    if test.unexpected_ids > 0 {
         return cause(
             0.8,
             format!("another servo answers for id {id}"),
-            format!("{} of {PINGS} answers carried another id", pulse.strangers),
+            format!(
+                "{} of {PINGS} answers carried another id",
+                test.unexpected_ids
+            ),
             "an adapter or servo is faulty: take servos off one by one",
         );
     }
@@ -67,9 +70,9 @@ fn missing(pulse: &Pulse) -> Cause {
     )
 }
 
-fn complaint(pulse: &Pulse, supply: Option<u16>) -> Cause {
-    let (id, errors) = (pulse.id, pulse.errors.join(", "));
-    let has = |bits: ErrorBits| bits.names().any(|name| pulse.errors.contains(&name));
+fn error_flags(test: &PingTest, supply: Option<u16>) -> Cause {
+    let (id, errors) = (test.id, test.error_flags.join(", "));
+    let has = |bits: ErrorBits| bits.names().any(|name| test.error_flags.contains(&name));
     let remedy = if has(ErrorBits::OVERLOAD) {
         "take the load off it; it recovers when its torque limit is written, then torque enable"
     } else if has(ErrorBits::OVERHEAT) {
@@ -84,7 +87,7 @@ fn complaint(pulse: &Pulse, supply: Option<u16>) -> Cause {
     });
     cause(
         0.6,
-        format!("servo {id} complains of: {errors}"),
+        format!("servo {id} reports: {errors}"),
         format!("its status packets say so{volts}"),
         remedy,
     )
@@ -97,8 +100,8 @@ fn settings<L: Link>(servos: &mut Servos<L>, id: u8, causes: &mut Vec<Cause>) ->
     let delay = servos.get(id, RETURN_DELAY);
     servos.tries = 1;
     match level {
-        Err(Failure::Port(error)) => return Err(error),
-        Err(Failure::Silent) => causes.push(cause(
+        Err(ServoError::Port(error)) => return Err(error),
+        Err(ServoError::NoResponse { .. }) => causes.push(cause(
             0.75,
             format!("servo {id} has status level 0: it answers PING and nothing else"),
             "PING is answered, READ is not",

@@ -1,9 +1,10 @@
-//! What it may be when nobody answers.
+//! Causes where no servo responds.
 
 use super::super::port::Link;
 use super::super::servos::Servos;
-use super::super::session::{Session, condition_words};
-use super::pulse::Pulse;
+use super::super::session::Session;
+use super::super::session_error::condition_words;
+use super::ping_test::PingTest;
 use super::{Cause, cause};
 use crate::error::Result;
 use handstand_shared::message::Condition;
@@ -11,11 +12,11 @@ use handstand_shared::message::Condition;
 /// Speeds servos are found at, likeliest first.
 const BAUDS: [u32; 6] = [1_000_000, 57_600, 115_200, 500_000, 200_000, 9_600];
 
-/// Nobody answers: another speed, a controller that is no adapter now, no power, or the line is not connected.
-pub(super) fn nobody<L: Link>(
+/// No servo responds: another speed, a controller that is no adapter now, no power, or the line is not connected.
+pub(super) fn no_response<L: Link>(
     servos: &mut Servos<L>,
     ids: &[u8],
-    pulses: &[Pulse],
+    pings: &[PingTest],
     causes: &mut Vec<Cause>,
     step: &mut impl FnMut(&str),
 ) -> Result<()> {
@@ -60,7 +61,7 @@ pub(super) fn nobody<L: Link>(
         ));
         return Ok(());
     }
-    let garbled: usize = pulses.iter().map(|pulse| pulse.garbled).sum();
+    let garbled: usize = pings.iter().map(|test| test.garbled).sum();
     if garbled > 0 {
         causes.push(cause(
             0.8,

@@ -6,7 +6,7 @@
 
 use crate::board::Board;
 use handstand_shared::crc::extend32;
-use handstand_shared::message::GAIN_CHUNK;
+use handstand_shared::message::PLAN_CHUNK;
 use handstand_shared::plan::Plan;
 
 const _: () =
@@ -101,7 +101,7 @@ pub struct Writer {
     newest: Option<Stored>,
     /// What counts once the header is written.
     next: Option<Stored>,
-    bytes: [u8; GAIN_CHUNK],
+    bytes: [u8; PLAN_CHUNK],
     used: u8,
     done: u8,
     address: u16,
@@ -116,7 +116,7 @@ impl Writer {
         Writer {
             newest: Stored::newest(board),
             next: None,
-            bytes: [0; GAIN_CHUNK],
+            bytes: [0; PLAN_CHUNK],
             used: 0,
             done: 0,
             address: 0,
@@ -136,11 +136,11 @@ impl Writer {
     }
 
     /// Begins to write a piece of a table; false if it lies outside, or another is being written.
-    pub fn chunk(&mut self, offset: u16, bytes: &[u8; GAIN_CHUNK], answer: u8) -> bool {
+    pub fn chunk(&mut self, offset: u16, bytes: &[u8; PLAN_CHUNK], answer: u8) -> bool {
         if self.busy || offset >= MAX_TABLE {
             return false;
         }
-        let room = usize::from(MAX_TABLE - offset).min(GAIN_CHUNK);
+        let room = usize::from(MAX_TABLE - offset).min(PLAN_CHUNK);
         let address = start(self.other_slot()) + HEADER + offset;
         self.begin(address, bytes.get(..room).unwrap_or(bytes), answer);
         true

@@ -8,7 +8,7 @@ use crate::board::Board;
 
 /// Behind the slots of the plan, far below the boot loader's bytes from 0xFF6 on.
 const CELLS: core::ops::Range<u16> = 0x800..0x840;
-const _: () = assert!(crate::slots::END <= CELLS.start && CELLS.end <= 0xff6);
+const _: () = assert!(crate::plan_store::END <= CELLS.start && CELLS.end <= 0xff6);
 
 /// Counts this start; its number, modulo 16384.
 pub fn count<B: Board>(board: &mut B) -> u16 {

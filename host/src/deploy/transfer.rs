@@ -1,47 +1,49 @@
-//! The plan over the line: piece by piece, and back.
+//! Transfer a plan to the CM-5 in chunks, and read it back.
 
-use super::super::port::AnyLink;
-use super::super::talk::Talk;
-use handstand::link::Session;
-use handstand::{Error, Result};
+use crate::error::{Error, Result};
+use crate::link::{Link, Session};
 use handstand_shared::crc::crc32;
-use handstand_shared::message::{Command, GAIN_CHUNK, Report};
+use handstand_shared::message::{Command, PLAN_CHUNK, Report};
 
-/// Sends a plan; the CM-5 answers when it is in EEPROM.
-pub fn upload(session: &mut Session<AnyLink>, bytes: &[u8], talk: &Talk) -> Result<()> {
-    let bar = talk.bar();
-    bar.set_length(bytes.len() as u64);
-    for (place, piece) in bytes.chunks(GAIN_CHUNK).enumerate() {
-        let mut chunk = [0; GAIN_CHUNK];
+/// Upload a plan's bytes; returns when the CM-5 has them in EEPROM. `progress` gets the number of bytes sent so far.
+///
+/// # Errors
+/// The CM-5 does not answer or refuses.
+pub fn upload<L: Link>(
+    session: &mut Session<L>,
+    bytes: &[u8],
+    mut progress: impl FnMut(u64),
+) -> Result<()> {
+    for (place, piece) in bytes.chunks(PLAN_CHUNK).enumerate() {
+        let mut chunk = [0; PLAN_CHUNK];
         chunk[..piece.len()].copy_from_slice(piece);
-        let offset = (place * GAIN_CHUNK) as u16;
+        let offset = (place * PLAN_CHUNK) as u16;
         session.obey(
-            &Command::GainChunk {
+            &Command::PlanChunk {
                 offset,
                 bytes: chunk,
             },
             "take gains",
         )?;
-        bar.inc(piece.len() as u64);
+        progress(u64::from(offset) + piece.len() as u64);
     }
-    bar.finish_and_clear();
-    let store = Command::GainStore {
+    let store = Command::PlanStore {
         length: bytes.len() as u16,
         check: crc32(bytes),
     };
-    session.obey(&store, "keep the gains")
+    Ok(session.obey(&store, "keep the gains")?)
 }
 
-/// The plan that the CM-5 has.
-pub fn read_back(session: &mut Session<AnyLink>) -> Result<Vec<u8>> {
+/// Read the plan that the CM-5 has.
+fn read_back<L: Link>(session: &mut Session<L>) -> Result<Vec<u8>> {
     let mut back = Vec::new();
     loop {
         let wanted = back.len() as u16;
         let (length, bytes) =
             session.fetch(
-                &Command::GainRead { offset: wanted },
+                &Command::PlanRead { offset: wanted },
                 |report| match *report {
-                    Report::GainChunk {
+                    Report::PlanChunk {
                         offset,
                         length,
                         bytes,
@@ -57,8 +59,11 @@ pub fn read_back(session: &mut Session<AnyLink>) -> Result<Vec<u8>> {
     }
 }
 
-/// Whether what came back is what was sent, and the CM-5 takes it for these gains.
-pub fn verify(session: &mut Session<AnyLink>, ours: &[u8], fingerprint: u32) -> Result<Vec<u8>> {
+/// Read the plan back; its bytes must be `ours`, and the CM-5's fingerprint this one.
+///
+/// # Errors
+/// The CM-5 does not answer, or has another plan.
+pub fn verify<L: Link>(session: &mut Session<L>, ours: &[u8], fingerprint: u32) -> Result<Vec<u8>> {
     let theirs = read_back(session)?;
     if ours != theirs {
         return Err(Error::device(
@@ -71,12 +76,12 @@ pub fn verify(session: &mut Session<AnyLink>, ours: &[u8], fingerprint: u32) -> 
         ));
     }
     session.greet()?;
-    match session.hello.gains == fingerprint {
+    match session.hello.plan == fingerprint {
         true => Ok(theirs),
         false => Err(Error::device(
             format!(
                 "the CM-5 says its gains are {:08X}, not {fingerprint:08X}",
-                session.hello.gains
+                session.hello.plan
             ),
             "its firmware does not take this plan: flash the firmware that belongs to this program, docs/flash.md",
         )),

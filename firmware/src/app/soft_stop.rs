@@ -1,6 +1,6 @@
 //! How torque goes off, and when it must.
 
-use super::{App, Drive, State, Wish};
+use super::{App, Goal, State, Torque};
 use crate::board::Board;
 use crate::bus;
 use crate::design::{FADE_TICKS, LOW_ROUNDS, LOW_SUPPLY, SILENT_TICKS};
@@ -20,7 +20,7 @@ impl App {
                 self.servos.rounds,
             );
         }
-        if self.servos.limp.is_some() {
+        if self.servos.tripped.is_some() {
             Some(Cause::ServoError)
         } else if self.silent > SILENT_TICKS {
             Some(Cause::LinkLost)
@@ -37,14 +37,14 @@ impl App {
         &mut self,
         board: &mut B,
         cause: Cause,
-        within: fn(Drive) -> State,
+        within: fn(Torque) -> State,
     ) {
-        if self.servos.limp.is_some() {
+        if self.servos.tripped.is_some() {
             self.servos.release(board);
         }
         // A servo in wheel mode has no position to hold: it stops.
         let balanced = matches!(self.state, State::Balance(_));
-        if balanced || matches!(self.wish, Wish::Speeds(_)) {
+        if balanced || matches!(self.goal, Goal::Speeds(_)) {
             self.servos.spin(board, [0; SERVOS].into_iter());
         } else {
             self.servos.hold(board);
@@ -59,13 +59,13 @@ impl App {
         board: &mut B,
         left: u8,
         cause: Cause,
-        within: fn(Drive) -> State,
+        within: fn(Torque) -> State,
     ) {
         const STEP: u16 = TorqueLimit::FULL.0 / FADE_TICKS as u16;
         match left.checked_sub(1) {
             Some(left) => {
                 bus::write_all(board, TORQUE_LIMIT, STEP * u16::from(left));
-                self.state = within(Drive::Soft { left, cause });
+                self.state = within(Torque::Fading { left, cause });
             }
             None => self.give_up(board, cause),
         }
@@ -81,7 +81,7 @@ impl App {
     pub(super) fn disarm<B: Board>(&mut self, board: &mut B) {
         self.servos.disarm(board);
         self.token = None;
-        self.wish = Wish::Stay;
+        self.goal = Goal::Hold;
     }
 
     /// Changes the mode; torque is off on the way.
@@ -90,8 +90,8 @@ impl App {
         self.disarm(board);
         self.state = match mode {
             Mode::Bridge => State::Bridge,
-            Mode::Stream => State::Stream(Drive::Off),
-            Mode::Balance => State::Balance(Drive::Off),
+            Mode::Stream => State::Stream(Torque::Off),
+            Mode::Balance => State::Balance(Torque::Off),
         };
     }
 }

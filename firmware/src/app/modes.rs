@@ -1,6 +1,6 @@
 //! What a tick does in each state.
 
-use super::{App, State, Wish};
+use super::{App, Goal, State};
 use crate::balance::Stop;
 use crate::board::{Board, since_us};
 use crate::bus;
@@ -18,7 +18,7 @@ impl App {
     #[inline(never)]
     fn read<B: Board>(&mut self, board: &mut B, started: u16) {
         let balance = &mut self.balance;
-        let meanwhile = || balance.go_on();
+        let meanwhile = || balance.step_update();
         self.servos
             .read(board, &mut self.statistics, started, meanwhile);
     }
@@ -38,10 +38,10 @@ impl App {
             self.soften(board, cause, State::Stream);
             return self.watch(board, started);
         }
-        match self.wish {
-            Wish::Stay => {}
-            Wish::Positions(goals) => self.servos.go_to(board, &goals),
-            Wish::Speeds(speeds) => self.servos.spin(board, speeds.codes()),
+        match self.goal {
+            Goal::Hold => {}
+            Goal::Positions(goals) => self.servos.go_to(board, &goals),
+            Goal::Speeds(speeds) => self.servos.spin(board, speeds.codes()),
         }
         self.watch(board, started);
     }
@@ -54,7 +54,7 @@ impl App {
             return self.watch(board, started);
         }
         self.read(board, started);
-        match self.servos.limp {
+        match self.servos.tripped {
             None => self.command(board),
             // It leaves the other ones to throw the robot: not one command more.
             Some(_) => self.soften(board, Cause::ServoError, State::Balance),
@@ -77,7 +77,7 @@ impl App {
         let law_us = since_us(board, law_started);
         self.longest_law_us = self.longest_law_us.max(law_us);
         self.servos.turn(board, commands);
-        self.balance.learn();
+        self.balance.begin_update();
     }
 
     #[inline(never)]
@@ -89,8 +89,8 @@ impl App {
             obeyed: self.obeyed,
             positions: self.servos.positions,
             missing: [m0, m1, m2],
-            slow_from: self.servos.slow_from,
-            slow: self.servos.slow,
+            housekeeping_from: self.servos.housekeeping_from,
+            housekeeping: self.servos.housekeeping,
         };
         self.link.send(board, &Report::Stream(report));
     }

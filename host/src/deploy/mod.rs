@@ -1,0 +1,62 @@
+//! Deploy a designed law to the CM-5: make its plan, upload it, read it back, verify it.
+//!
+//! [`plan`] makes the board's plan from a design: gains on the measured state ([`state_design`]), or the observer-based law.
+//! [`upload`] and [`verify`] transfer it, [`replay`] compares the firmware's law with wide integers.
+
+mod board;
+mod observer;
+mod replay;
+mod rust_file;
+mod state;
+mod transfer;
+
+pub use board::{Board, ServoPair};
+pub use observer::{reading_steps, state_steps};
+pub use replay::replay;
+pub use rust_file::plan_file;
+pub use state::state_design;
+pub use transfer::{upload, verify};
+
+use crate::controllers::{DesignModel, OnBoard, Timing};
+use crate::error::Result;
+use crate::model::Model;
+use crate::synth::{Design, upright};
+use handstand_shared::observer::INPUTS;
+use handstand_shared::plan::{Law, Plan};
+
+/// The design that a plan is made from.
+#[derive(Debug, Clone, Copy)]
+pub enum BoardLaw<'a> {
+    /// State feedback on angles and their differences, as [`state_design`] designs it.
+    State(&'a Design),
+    /// The observer-based law.
+    Observer(&'a OnBoard),
+}
+
+/// The observer-based law for a model on this board, in floating point.
+///
+/// # Errors
+/// Absolute angles; as [`OnBoard::new`].
+pub fn observer_design(model: &Model, board: &Board, timing: &Timing) -> Result<OnBoard> {
+    state::relative(model)?;
+    let known = DesignModel {
+        limit_nm: board.most_nm,
+        ..DesignModel::new(model, &upright(model), board.period_s)?
+    };
+    OnBoard::new(&known, timing)
+}
+
+/// The plan that makes the CM-5 execute a design.
+///
+/// # Errors
+/// A design that the firmware has no law for, or values that do not fit its words.
+pub fn plan(model: &Model, law: BoardLaw, board: &Board) -> Result<Plan> {
+    match law {
+        BoardLaw::State(design) => state::plan(model, design, board),
+        BoardLaw::Observer(machine) => {
+            let law = Law::Observer(observer::quantised(machine, board.most_nm)?);
+            let moments = board::moments(model);
+            board.plan(law, moments, [observer::INPUT_STEP_NM; INPUTS])
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Twenty pings to each servo.
+
+use super::super::port::Link;
+use super::super::servo_error::ServoError;
+use super::super::servos::Servos;
+use crate::error::Result;
+use handstand_shared::control_table::RETURN_DELAY;
+use handstand_shared::dynamixel::ErrorBits;
+use serde::Serialize;
+
+/// How often each servo is pinged.
+pub(super) const PINGS: usize = 20;
+
+/// Replies of one servo to twenty pings.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct PingTest {
+    /// Its id.
+    pub id: u8,
+    /// Valid replies.
+    pub answered: usize,
+    /// No byte.
+    pub silent: usize,
+    /// Bytes, but only after the return delay and its margin.
+    pub late: usize,
+    /// Valid replies with more bytes behind them, as of a second servo.
+    pub doubled: usize,
+    /// Bytes, but no valid reply.
+    pub garbled: usize,
+    /// Replies with another id.
+    pub unexpected_ids: usize,
+    /// Replies that the request's checksum was wrong.
+    pub corrupted_requests: usize,
+    /// Its other error flags.
+    pub error_flags: Vec<&'static str>,
+}
+
+pub(super) fn ping_test<L: Link>(servos: &mut Servos<L>, id: u8) -> Result<PingTest> {
+    let mut test = PingTest {
+        id,
+        ..PingTest::default()
+    };
+    // With its return delay known, late replies show.
+    if let Err(error) = servos.get(id, RETURN_DELAY) {
+        error.port()?;
+    }
+    let mut flags = ErrorBits(0);
+    for round in 0..PINGS {
+        match servos.ping(id) {
+            Ok(error) => {
+                test.answered += 1;
+                flags = flags.with(error);
+                test.doubled += usize::from(servos.stragglers()? > 0);
+            }
+            Err(ServoError::NoResponse { .. }) => match servos.stragglers()? {
+                0 => test.silent += 1,
+                _ => test.late += 1,
+            },
+            Err(ServoError::Garbled { .. } | ServoError::Refused { .. }) => test.garbled += 1,
+            Err(ServoError::UnexpectedId { .. }) => test.unexpected_ids += 1,
+            Err(ServoError::CorruptedRequest { .. }) => test.corrupted_requests += 1,
+            Err(ServoError::Port(error)) => return Err(error),
+        }
+        // An absent servo need not be asked so often.
+        if round == 2 && test.silent == 3 {
+            test.silent = PINGS;
+            break;
+        }
+    }
+    test.error_flags = flags.names().collect();
+    Ok(test)
+}

@@ -1,0 +1,84 @@
+//! Errors of communicating with a servo.
+
+use crate::error::Error;
+use handstand_shared::dynamixel::ErrorBits;
+
+/// Result of a request to a servo.
+pub type ServoResult<T> = std::result::Result<T, ServoError>;
+
+/// A request to a servo that failed after all tries.
+#[derive(Debug, thiserror::Error)]
+pub enum ServoError {
+    /// No byte came.
+    #[error("servo {id}: no status packet")]
+    NoResponse {
+        /// Id of the servo, as in all variants.
+        id: u8,
+    },
+    /// Bytes came, but no valid packet.
+    #[error("servo {id}: {bytes} bytes came, but no sound status packet")]
+    Garbled {
+        /// Id of the servo.
+        id: u8,
+        /// How many bytes.
+        bytes: usize,
+    },
+    /// The servo received the request with a wrong checksum.
+    #[error("servo {id} receives wrong checksums")]
+    CorruptedRequest {
+        /// Id of the servo.
+        id: u8,
+    },
+    /// Another servo replied.
+    #[error("servo {id} was asked, servo {from} answered")]
+    UnexpectedId {
+        /// Id of the servo asked.
+        id: u8,
+        /// Id in the reply.
+        from: u8,
+    },
+    /// The servo refused the request.
+    #[error("servo {id} refuses: {}", names(*flags))]
+    Refused {
+        /// Id of the servo.
+        id: u8,
+        /// Its error flags.
+        flags: ErrorBits,
+    },
+    /// The port failed.
+    #[error(transparent)]
+    Port(#[from] Error),
+}
+
+impl ServoError {
+    /// Whether another try may succeed.
+    pub fn is_transient(&self) -> bool {
+        !matches!(self, ServoError::Refused { .. } | ServoError::Port(_))
+    }
+
+    /// The port's error, if that is what failed; everything else is about the servo.
+    ///
+    /// # Errors
+    /// The port's error.
+    pub fn port(self) -> crate::Result<ServoError> {
+        match self {
+            ServoError::Port(error) => Err(error),
+            other => Ok(other),
+        }
+    }
+}
+
+impl From<ServoError> for Error {
+    fn from(error: ServoError) -> Self {
+        let remedy = match error {
+            ServoError::Port(error) => return error,
+            ServoError::Refused { .. } => "see the error bits in docs/bus.md",
+            _ => "`handstand bus doctor` finds the cause",
+        };
+        Error::device(error.to_string(), remedy)
+    }
+}
+
+fn names(flags: ErrorBits) -> String {
+    flags.names().collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,128 @@
+//! Errors of a session with the CM-5's firmware, and its states in words.
+
+use crate::error::Error;
+use handstand_shared::message::{Cause, Condition, Refusal, VERSION};
+
+/// A session with the firmware that failed.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// No Handstand firmware responds on this port.
+    #[error("{port}: no Handstand firmware answers")]
+    NoFirmware {
+        /// The port.
+        port: String,
+    },
+    /// The firmware has another protocol version.
+    #[error("{port}: the firmware has protocol version {theirs}, this program version {VERSION}")]
+    Version {
+        /// The port.
+        port: String,
+        /// The firmware's version.
+        theirs: u8,
+    },
+    /// The firmware refused a command.
+    #[error("the CM-5 refuses to {action}: {}", refusal_words(*refusal).0)]
+    Refused {
+        /// What it was asked to do.
+        action: String,
+        /// Why not.
+        refusal: Refusal,
+    },
+    /// No answer to a command after all tries.
+    #[error("{port}: no answer when asked to {action}")]
+    NoAnswer {
+        /// The port.
+        port: String,
+        /// What it was asked to do.
+        action: String,
+    },
+    /// The report asked for did not come after all tries.
+    #[error("{port}: the CM-5 does not answer")]
+    NoReport {
+        /// The port.
+        port: String,
+    },
+    /// The port failed.
+    #[error(transparent)]
+    Port(#[from] Error),
+}
+
+impl From<SessionError> for Error {
+    fn from(error: SessionError) -> Self {
+        let remedy = match &error {
+            SessionError::Port(_) => "",
+            SessionError::NoFirmware { .. } => {
+                "is it flashed (docs/flash.md), switched on, the cable in, and the speed right (--baud 57600)?"
+            }
+            SessionError::Version { .. } => {
+                "build and flash the firmware that belongs to this program: docs/flash.md"
+            }
+            SessionError::Refused { refusal, .. } => refusal_words(*refusal).1,
+            SessionError::NoAnswer { .. } | SessionError::NoReport { .. } => {
+                "the line is disturbed or the CM-5 was reset: `handstand latency` measures the line"
+            }
+        };
+        match error {
+            SessionError::Port(error) => error,
+            error => Error::device(error.to_string(), remedy),
+        }
+    }
+}
+
+/// Why a command is refused, and what to do.
+pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
+    match refusal {
+        Refusal::Version => (
+            "no greeting of its version came first",
+            "reset the CM-5 and try again",
+        ),
+        Refusal::State => (
+            "not in this state",
+            "choose a mode first; after a fault, greet anew",
+        ),
+        Refusal::Armed => ("torque is on", "disarm first"),
+        Refusal::Token => ("the greeting is out of date", "try again"),
+        Refusal::Supply => (
+            "the supply is too low, or no servo has told it",
+            "charge the battery: `handstand bus monitor` shows the voltage",
+        ),
+        Refusal::Servo => (
+            "a servo it needs does not answer",
+            "`handstand bus scan` shows who does",
+        ),
+        Refusal::NoPlan => (
+            "there are no gains on it",
+            "`handstand deploy` puts them there",
+        ),
+        Refusal::BadPlan => (
+            "the gain table is unsound",
+            "make it anew; if it stays so, firmware and program do not belong together",
+        ),
+        Refusal::ServoList => (
+            "the list of servos is empty, too long, or names an id twice",
+            "give 1 to 18 different ids",
+        ),
+        Refusal::Pose => (
+            "the robot is too far from the pose its gains are for",
+            "bring it there by hand, then arm",
+        ),
+    }
+}
+
+/// What the firmware is doing, in words.
+pub fn condition_words(condition: Condition) -> &'static str {
+    match condition {
+        Condition::Bridge => "adapter",
+        Condition::Stream => "streaming, torque off",
+        Condition::StreamArmed => "streaming, torque on",
+        Condition::Balance => "ready to balance, torque off",
+        Condition::BalanceArmed => "balancing",
+        Condition::Soft => "letting down",
+        Condition::Fault(Cause::LinkLost) => "stopped: the link was lost",
+        Condition::Fault(Cause::LowSupply) => "stopped: the supply is low",
+        Condition::Fault(Cause::ServoLost) => "stopped: a servo stopped answering",
+        Condition::Fault(Cause::ServoError) => "stopped: a servo is overloaded or too hot",
+        Condition::Fault(Cause::Fallen) => "stopped: it left the range its gains hold in",
+        Condition::Fault(Cause::Watchdog) => "stopped: the watchdog reset the controller",
+    }
+}
