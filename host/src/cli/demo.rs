@@ -111,7 +111,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 /// A place for a folder that nobody else uses; it stays for the user to look into.
 fn temporary() -> Result<PathBuf> {
     let folder = tempfile::Builder::new().prefix("handstand-demo-").tempdir();
-    let refused = |error| Error::file(&std::env::temp_dir(), "write", error);
+    let refused = |error| Error::file(std::env::temp_dir(), "write", error);
     Ok(folder.map_err(refused)?.keep().join("bench"))
 }
 
