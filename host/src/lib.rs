@@ -1,10 +1,12 @@
-//! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
+//! Model a chain of links, compare it with measured logs, and find the physical effect that is
+//! missing.
 //!
-//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances, TOML)
-//! -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` -> `diagnose` ->
-//! `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` -> `paper`; `link` ->
-//! `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing depends on it. Every layer may
-//! read `error`, `output` and `number`, which writes numbers for people.
+//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
+//! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
+//! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
+//! `paper`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing
+//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for
+//! people.
 
 pub mod challenge;
 pub mod compare;
@@ -21,6 +23,7 @@ pub mod model;
 pub mod number;
 pub mod output;
 pub mod paper;
+pub mod plot;
 pub mod record;
 pub mod report;
 pub mod sim;

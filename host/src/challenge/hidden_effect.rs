@@ -1,10 +1,20 @@
 //! What a bench arm hides: a random effect, or a given one, at random values.
 
-use super::Hidden;
 use super::rounding::rounded;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
+
+/// What a challenge hides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hidden {
+    /// Any effect, or once in twelve nothing.
+    Random,
+    /// Nothing: the model is complete but for its friction values.
+    Nothing,
+    /// This effect, one of [`KINDS`]; see [`kind_named`]. Any other name hides nothing.
+    Effect(&'static str),
+}
 
 /// The hidden effect and its values.
 #[derive(Debug, Clone, PartialEq)]

@@ -19,9 +19,9 @@ mod truth;
 mod tests;
 
 pub use error::{ChallengeError, SealError};
-pub use hidden_effect::{KINDS, kind_named};
+pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use score::{ChallengeScore, ScoredValue, score};
-pub use seal::{seal, unseal};
+pub use seal::{ChallengeAnswer, seal, unseal};
 
 use crate::error::Error;
 use bench_arm::{BenchArm, STALL_NM};
@@ -31,35 +31,8 @@ use physics::{Mount, Physics};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rounding::rounded;
-use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
-
-/// What a challenge hides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hidden {
-    /// Any effect, or once in twelve nothing.
-    Random,
-    /// Nothing: the model is complete but for its friction values.
-    Nothing,
-    /// This effect, one of [`KINDS`]; see [`kind_named`]. Any other name hides nothing.
-    Effect(&'static str),
-}
-
-/// What was hidden.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ChallengeAnswer {
-    /// Seed of the challenge.
-    pub seed: u64,
-    /// Id of the effect; none if nothing is hidden.
-    pub kind: Option<String>,
-    /// Joint it acts on, counted from 1.
-    pub joint: usize,
-    /// Its values, by the keys of its parameters.
-    pub parameters: Vec<(String, f64)>,
-    /// The model with true friction and the effect.
-    pub true_model_toml: String,
-}
 
 /// A model, logs it doesn't fully explain, and why.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,7 @@
 //! A model against the answer of its challenge.
 
-use super::{ChallengeAnswer, ChallengeError, unseal};
+use super::error::ChallengeError;
+use super::seal::{ChallengeAnswer, unseal};
 use crate::error::Error;
 use crate::fitting::{Candidate, FitData, Horizon, fit_start_states};
 use crate::log::{LogRequest, read};

@@ -2,13 +2,27 @@
 //!
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can open it.
 
-use super::ChallengeAnswer;
 use super::error::SealError;
 use crate::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 const NOTE: &str = "The answer, sealed. It keeps honest people from peeking, no more.";
+
+/// What was hidden.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChallengeAnswer {
+    /// Seed of the challenge.
+    pub seed: u64,
+    /// Id of the effect; none if nothing is hidden.
+    pub kind: Option<String>,
+    /// Joint it acts on, counted from 1.
+    pub joint: usize,
+    /// Its values, by the keys of its parameters.
+    pub parameters: Vec<(String, f64)>,
+    /// The model with true friction and the effect.
+    pub true_model_toml: String,
+}
 
 #[derive(Serialize, Deserialize)]
 struct Sealed {
@@ -24,8 +38,8 @@ pub fn seal(answer: &ChallengeAnswer) -> String {
     let plain = serde_json::to_vec(answer).expect("an answer is plain data");
     let sealed = Sealed {
         note: NOTE.to_owned(),
-        sha256: hex(&Sha256::digest(&plain)),
-        sealed: hex(&masked(&plain)),
+        sha256: hex(Sha256::digest(&plain)),
+        sealed: hex(masked(&plain)),
     };
     let mut text = serde_json::to_string_pretty(&sealed).expect("strings are plain data");
     text.push('\n');
@@ -40,7 +54,7 @@ pub fn unseal(text: &str) -> Result<ChallengeAnswer, SealError> {
     let sealed: Sealed = serde_json::from_str(text).map_err(|_| SealError::NotSealed)?;
     let bytes = unhex(&sealed.sealed).ok_or(SealError::NotHexadecimal)?;
     let plain = masked(&bytes);
-    if hex(&Sha256::digest(&plain)) != sealed.sha256 {
+    if hex(Sha256::digest(&plain)) != sealed.sha256 {
         return Err(SealError::Changed);
     }
     serde_json::from_slice(&plain).map_err(|_| SealError::OtherVersion)

@@ -1,20 +1,22 @@
 //! `handstand gains MODEL`: gains that balance a model at a pose, and the files that carry them on.
 //!
-//! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati equation, rounds the
-//! gains to fixed point with a proof against overflow. Any model that `handstand add` writes will do: effects without a
-//! derivative (Coulomb friction, dead zones, ..) are left out of the design, which says so; `--without` takes one out
-//! of the model altogether. Weights are one number (times the identity), a diagonal
-//! `1,1,0.1`, or a CSV file of a matrix.
+//! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati
+//! equation, rounds the gains to fixed point with a proof against overflow. Any model that
+//! `handstand add` writes will do: effects without a derivative (Coulomb friction, dead zones, ..)
+//! are left out of the design, which says so; `--without` takes one out of the model altogether.
+//! Weights are one number (times the identity), a diagonal `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
 //! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
 //! ```
 //!
-//! Then the loop is simulated with every effect of the model, those that the design leaves out included: whether it is
-//! stabilised, from how far, and which effect limits it. Exit code 1 when it is not.
+//! Then the loop is simulated with every effect of the model, those that the design leaves out
+//! included: whether it is stabilised, from how far, and which effect limits it. Exit code 1 when
+//! it is not.
 //!
-//! `--json` prints everything: `omitted_effects`, `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
-//! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
+//! `--json` prints everything: `omitted_effects`, `k`, `riccati`, `residual`, `loop_poles`,
+//! `poles_1_s`, `zeros_1_s`, `continuous` and `sampled` (`a`, `b`, `c`, `d`, ..), `estimator`,
+//! `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
 use super::talk::Talk;
@@ -73,7 +75,8 @@ pub struct Args {
     /// Step of the gyro, rad/s [default: 10 degrees per second]
     #[arg(long, value_name = "RAD_S", requires = "lqg")]
     gyro_step: Option<f64>,
-    /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their limit]
+    /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their
+    /// limit]
     #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
     process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
@@ -136,15 +139,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
     let verified = verify(&whole, &design, &request, &left_out)?;
+    let mut data = export::json(&design, &made);
+    data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
     if talk.json {
-        let mut data = export::json(&design, &made);
-        data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
         talk.data(&data)?;
     } else {
         talk.print(&export::text(&design))?;
         talk.print(&verification::text(&verified))?;
     }
-    write(args, &design, &made, talk)?;
+    write(args, &design, &made, &data, talk)?;
     Ok(match verified.stabilised {
         true => Outcome::Done,
         false => Outcome::Refused,
@@ -273,7 +276,8 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         }),
         state_range: match &args.range {
             Some(range) => range.read()?,
-            // Half a radian, ten radians per second: more than a balancing robot ever comes back from.
+            // Half a radian, ten radians per second: more than a balancing robot ever comes back
+            // from.
             None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
         },
         input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
@@ -301,7 +305,14 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
     })
 }
 
-pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
+/// Writes the files that the options ask for; `data` is what the JSON file holds.
+pub(super) fn write(
+    args: &Args,
+    design: &Design,
+    made: &Provenance,
+    data: &serde_json::Value,
+    talk: &Talk,
+) -> Result<()> {
     let put = |file: &Path, text: &str| -> Result<()> {
         write_new(file, text, args.force)?;
         talk.say(&format!("wrote {}", file.display()));
@@ -321,7 +332,7 @@ pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk
     if let Some(file) = &args.state_space {
         let text = match file.extension().is_some_and(|ending| ending == "m") {
             true => export::matlab(design, made),
-            false => format!("{:#}\n", export::json(design, made)),
+            false => format!("{data:#}\n"),
         };
         put(file, &text)?;
     }

@@ -1,17 +1,17 @@
 //! `handstand identify LOG... [--orders bj:1,2,1,2,1]...`: a servo as a black box.
 //!
 //! Discrete-time models from command to measured output, fitted by the prediction-error method. Of
-//! several orders the one with the fewest coefficients is kept that predicts held-out data as well as the best one. From a
-//! measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
+//! several orders the one with the fewest coefficients is kept that predicts held-out data as well
+//! as the best one. From a measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
 //!
 //! ```console
 //! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg --validate other.csv
 //! ```
 //!
-//! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`, `bj:nb,nc,nd,nf,nk`,
-//! each a number or a range such as `1-3`. Without `--validate` the last third of each motion is held out.
-//! `docs/identify.md` explains the output; its keys as `--json` are in `docs/json.md`. Exit code 1: no model
-//! could be fitted.
+//! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`,
+//! `bj:nb,nc,nd,nf,nk`, each a number or a range such as `1-3`. Without `--validate` the last third
+//! of each motion is held out. `docs/identify.md` explains the output; its keys as `--json` are in
+//! `docs/json.md`. Exit code 1: no model could be fitted.
 
 use super::servo_columns::{self, ChosenColumns, ServoColumns};
 use super::talk::Talk;

@@ -1,7 +1,7 @@
 //! Ctrl-C: the first is asked for, not obeyed at once, so that servos can be let go in order. A second one ends the program
 //! at once; if servos may hold torque by then, the last thing on the line is that they let go.
 
-use handstand::record::LetGo;
+use handstand::record::EmergencyOff;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 #[derive(Clone, Default)]
 pub struct Interrupt {
     come: Arc<AtomicBool>,
-    let_go: Arc<Mutex<Option<LetGo>>>,
+    emergency_off: Arc<Mutex<Option<EmergencyOff>>>,
 }
 
 impl Interrupt {
@@ -22,9 +22,9 @@ impl Interrupt {
     }
 
     /// What a second Ctrl-C does before it ends the program with exit code 5.
-    pub fn at_once(&self, let_go: Option<LetGo>) {
-        if let Ok(mut slot) = self.let_go.lock() {
-            *slot = let_go;
+    pub fn at_once(&self, emergency_off: Option<EmergencyOff>) {
+        if let Ok(mut slot) = self.emergency_off.lock() {
+            *slot = emergency_off;
         }
     }
 
@@ -52,10 +52,14 @@ impl Interrupt {
 
     #[cfg(unix)]
     fn end(&self) {
-        let let_go = self.let_go.lock().ok().and_then(|mut slot| slot.take());
-        match let_go {
-            Some(let_go) => {
-                let_go();
+        let emergency_off = self
+            .emergency_off
+            .lock()
+            .ok()
+            .and_then(|mut slot| slot.take());
+        match emergency_off {
+            Some(emergency_off) => {
+                emergency_off();
                 std::process::exit(i32::from(super::Outcome::Stopped.exit_code()));
             }
             // As the shell counts a program that a signal ended.

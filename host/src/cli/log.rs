@@ -1,14 +1,15 @@
 //! `handstand log check MODEL LOG...`: checks logs before a model is fitted to them.
 //!
-//! Reads every row; the model says how columns are named and in which units. What is broken is refused, what
-//! looks wrong is warned of, each with file, line, column and remedy.
+//! Reads every row; the model says how columns are named and in which units. What is broken is
+//! refused, what looks wrong is warned of, each with file, line, column and remedy.
 //!
 //! ```console
 //! $ handstand log check arm.toml swing.csv drop.csv:26-139
 //! ```
 //!
-//! Exit code 1 when a log is refused, 0 otherwise, warnings or not. `--json` prints `verdict` (`clean`,
-//! `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`, `what`, `remedy`).
+//! Exit code 1 when a log is refused, 0 otherwise, warnings or not. `--json` prints `verdict`
+//! (`clean`, `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`,
+//! `what`, `remedy`).
 
 use super::Outcome;
 use super::input;

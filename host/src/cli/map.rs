@@ -1,15 +1,17 @@
 //! `handstand map dead-zone LOG...`, `handstand map supply LOG...`: what a servo does at rest.
 //!
-//! `dead-zone` fits a dead zone, a line on either side and, where one is seen, a limit, from commanded to measured
-//! speed or torque, and turns the map round: which command makes which output. `supply` fits the relative speed
-//! error as a line over the supply voltage, and says at which supply the speed is right.
+//! `dead-zone` fits a dead zone, a line on either side and, where one is seen, a limit, from
+//! commanded to measured speed or torque, and turns the map round: which command makes which
+//! output. `supply` fits the relative speed error as a line over the supply voltage, and says at
+//! which supply the speed is right.
 //!
 //! ```console
 //! $ handstand map dead-zone ramp.csv --time t=s --input command=% --output angle=deg
 //! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg --supply volts=V
 //! ```
 //!
-//! Both work on means over blocks of time, so record slowly: an input that changes within a block blurs the edge.
+//! Both work on means over blocks of time, so record slowly: an input that changes within a block
+//! blurs the edge.
 
 use super::servo_columns::{self, ServoColumns};
 use super::talk::Talk;

@@ -1,8 +1,8 @@
 //! Commands, one per file; each file's head is the command's manual.
 //!
-//! stdout carries data, stderr talk. Exit codes: 0 done, 1 the answer is no (a log refused, values that cannot
-//! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a
-//! drive was stopped for safety, 101 a bug.
+//! stdout carries data, stderr messages. Exit codes: 0 done, 1 the answer is no (a log refused, values
+//! that cannot be determined), 2 the request makes no sense, 3 a file or its content is refused, 4
+//! a device failed, 5 a drive was stopped for safety, 101 a bug.
 
 mod add;
 mod bus;
@@ -46,7 +46,8 @@ use talk::Talk;
 /// Exit code of a bug.
 pub const BUG: u8 = 101;
 
-/// Compare a model of a servo arm or chain of links with measured logs, and find the missing physical effect.
+/// Compare a model of a servo arm or chain of links with measured logs, and find the missing
+/// physical effect.
 #[derive(Debug, Parser)]
 #[command(name = "handstand", version, max_term_width = 100, after_help = FIRST)]
 pub struct Cli {
@@ -56,7 +57,7 @@ pub struct Cli {
     /// Print nothing on stderr but errors
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// What to do
+    /// The command to run
     #[command(subcommand)]
     pub command: Command,
 }
@@ -64,13 +65,13 @@ pub struct Cli {
 const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
 
 impl Cli {
-    /// Where this run's words go.
+    /// Where this run's output goes.
     pub fn talk(&self) -> Talk {
         Talk::new(self.json, self.quiet)
     }
 }
 
-/// What there is to do.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Compare a model's simulation with measured logs
@@ -129,7 +130,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the command.
     ///
     /// # Errors
     /// Requests that make no sense, files that cannot be read or are refused.

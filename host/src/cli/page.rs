@@ -95,7 +95,7 @@ pub fn hashed(file: &Path) -> Result<ModelFile> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
     Ok(ModelFile {
         name: file_name(file),
-        sha256: hex(&Sha256::digest(&bytes)),
+        sha256: hex(Sha256::digest(&bytes)),
     })
 }
 

@@ -62,11 +62,6 @@ impl Port {
     }
 }
 
-/// The error where no servo answers.
-pub fn no_response() -> Error {
-    Error::device("no servo answers", "`handstand bus doctor` finds the cause")
-}
-
 fn only_port() -> Result<String> {
     match ports().as_slice() {
         [only] => Ok(only.clone()),

@@ -16,7 +16,7 @@ use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{Format, Recorder, Sample, read};
+use handstand::record::{Format, Recorder, Tally, read};
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -37,45 +37,6 @@ pub struct Args {
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
-}
-
-/// What a recording came to.
-#[derive(Debug, Default)]
-pub struct Tally {
-    samples: u64,
-    missing: u64,
-    first_s: Option<f64>,
-    last_s: f64,
-}
-
-impl Tally {
-    /// Counts a sample.
-    pub fn count(&mut self, sample: &Sample) {
-        self.samples += 1;
-        self.missing += sample
-            .joints
-            .iter()
-            .filter(|joint| joint.position_rad.is_none())
-            .count() as u64;
-        self.first_s.get_or_insert(sample.time_s);
-        self.last_s = sample.time_s;
-    }
-
-    /// Samples counted.
-    pub fn samples(&self) -> u64 {
-        self.samples
-    }
-
-    /// From the first sample to the last, s.
-    pub fn seconds(&self) -> f64 {
-        self.last_s - self.first_s.unwrap_or(self.last_s)
-    }
-
-    /// Samples per second.
-    pub fn rate_hz(&self) -> Option<f64> {
-        (self.samples > 1 && self.seconds() > 0.0)
-            .then(|| (self.samples - 1) as f64 / self.seconds())
-    }
 }
 
 /// Samples until told to stop.

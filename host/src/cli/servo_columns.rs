@@ -1,4 +1,5 @@
-//! Which columns of a log are a servo's input and output: by a model file, or by flags; never guessed.
+//! Which columns of a log are a servo's input and output: by a model file, or by flags; never
+//! guessed.
 
 use super::input;
 use handstand::log::{LogRequest, Motion, read};
@@ -52,7 +53,8 @@ impl ServoColumns {
     /// What the flags say.
     ///
     /// # Errors
-    /// Neither a model nor all of `--time --input --output`; a joint that does not exist or that nothing drives.
+    /// Neither a model nor all of `--time --input --output`; a joint that does not exist or that
+    /// nothing drives.
     pub fn chosen(&self) -> Result<ChosenColumns> {
         let (columns, joint) = match &self.model {
             Some(file) => {

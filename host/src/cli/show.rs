@@ -1,22 +1,17 @@
 //! Tables and figures as every command shows them.
 
 use super::talk::Talk;
-use comfy_table::{ContentArrangement, Table, TableComponent, presets};
+use comfy_table::{ContentArrangement, Table};
 use handstand::fitting::{Horizon, Refitted, Undetermined};
 use handstand::number::exact;
+use handstand::report::plain_table;
 use handstand::synth::{linearise, upright};
 use handstand::{Model, Result};
 use serde_json::{Value, json};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
+    let mut table = plain_table(header);
     if table.width().is_none() {
         table.set_width(100);
     }

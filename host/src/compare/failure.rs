@@ -1,8 +1,8 @@
 //! Where the error is: conditions that hold more of it than their share of the samples.
 
 use super::conditions::{Met, met};
+use super::result::{Failure, SignalError};
 use super::sample_features::features;
-use super::{Failure, SignalError};
 use crate::log::Motion;
 use crate::model::Model;
 

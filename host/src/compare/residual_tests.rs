@@ -2,7 +2,7 @@
 //!
 //! Samples are counted, not timed. Motions stand end to end, but no product reaches across their borders.
 
-use super::ResidualTest;
+use super::result::ResidualTest;
 use crate::log::Motion;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

@@ -3,7 +3,7 @@
 use super::failure::failures;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
-use super::{Comparison, HorizonError, SignalError, Trace};
+use super::result::{Comparison, HorizonError, SignalError, Trace};
 use crate::fitting::{FitData, Horizon, fit_start_states, longest_stable};
 use crate::log::Motion;
 use crate::model::Model;

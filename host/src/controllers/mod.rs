@@ -15,7 +15,6 @@ mod observed;
 mod offset;
 mod on_board;
 mod paper;
-mod picture;
 mod plant;
 mod regulator;
 mod robust;
@@ -27,7 +26,6 @@ pub use info::{ControllerInfo, Design, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;
 pub use on_board::{OnBoard, Timing};
-pub use picture::picture;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, Through};
 

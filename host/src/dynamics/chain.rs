@@ -22,7 +22,8 @@ pub struct ChainLink {
     pub mass_kg: f64,
     /// Moment of inertia about the centre of mass, kg m^2.
     pub inertia_kg_m2: f64,
-    /// Rotor's inertia reflected through the gear, kg m^2: counts in the joint's own acceleration only.
+    /// Rotor's inertia reflected through the gear, kg m^2: counts in the joint's own acceleration
+    /// only.
     pub armature_kg_m2: f64,
 }
 
@@ -37,8 +38,8 @@ impl Chain {
         self.links.is_empty()
     }
 
-    /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned counter-clockwise by
-    /// `turn_rad`: against its pull.
+    /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned
+    /// counter-clockwise by `turn_rad`: against its pull.
     pub fn base_m_s2(&self, turn_rad: f64) -> [f64; 2] {
         let (sin, cos) = turn_rad.sin_cos();
         [-self.gravity_m_s2 * sin, self.gravity_m_s2 * cos]

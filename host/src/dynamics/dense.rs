@@ -1,7 +1,8 @@
 //! Equations of motion of a short chain with a dense mass matrix, in absolute angles.
 //!
-//! The closed form is that of [`EquationsOfMotion`](super::EquationsOfMotion); solved by LDL^T. For few links that is
-//! faster than [`Chain::forward`]'s O(n), and [`Lanes`] run several chains at once.
+//! The closed form is that of [`EquationsOfMotion`](super::EquationsOfMotion); solved by LDL^T. For
+//! few links that is faster than [`Chain::forward`]'s O(n), and [`Lanes`] run several chains at
+//! once.
 
 use super::chain::Chain;
 use super::equations::{LinkTerms, Turned, coupling, weight};
@@ -26,7 +27,8 @@ pub struct Dense<const N: usize, V = f64> {
 }
 
 impl<const N: usize> Dense<N> {
-    /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it has `N` links.
+    /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it
+    /// has `N` links.
     pub fn new(chain: &Chain, gravity_turn_rad: f64) -> Option<Self> {
         let terms: [LinkTerms; N] = LinkTerms::of(chain).try_into().ok()?;
         Some(Dense {
@@ -58,7 +60,8 @@ impl<const N: usize, const L: usize> Dense<N, Lanes<L>> {
 }
 
 impl<const N: usize, V: Lane> Dense<N, V> {
-    /// Absolute accelerations, rad/s^2, at absolute angles and speeds under a moment `load_nm` on each link.
+    /// Absolute accelerations, rad/s^2, at absolute angles and speeds under a moment `load_nm` on
+    /// each link.
     #[inline(always)]
     pub fn accelerate(&self, angle_rad: &[V; N], speed_rad_s: &[V; N], load_nm: &[V; N]) -> [V; N] {
         let zero = V::splat(0.0);
@@ -89,7 +92,8 @@ impl<const N: usize, V: Lane> Dense<N, V> {
         solve(mass, rest)
     }
 
-    /// Runs `steps` steps of classical Runge-Kutta of fourth order, `step_s` each, under constant moments.
+    /// Runs `steps` steps of classical Runge-Kutta of fourth order, `step_s` each, under constant
+    /// moments.
     #[inline(always)]
     pub fn advance(
         &self,

@@ -1,18 +1,20 @@
-//! The chain's equations of motion in closed form: M(q) q'' + C(q, q') q' + G(q) = torque, for any n.
+//! The chain's equations of motion in closed form: M(q) q'' + C(q, q') q' + G(q) = torque, for any
+//! n.
 //!
-//! With absolute angles t, the centre of mass of link j lies at the sum of the lengths before it and its own lever.
-//! As complex numbers the kinetic energy is (1/2) sum_ij M_ij t_i' t_j' with
+//! With absolute angles t, the centre of mass of link j lies at the sum of the lengths before it
+//! and its own lever. As complex numbers the kinetic energy is (1/2) sum_ij M_ij t_i' t_j' with
 //!
 //! ```text
 //! M_ii = I_i + m_i c_i^2 + l_i^2 (m_{i+1} + ..)      M_ij = l_i Re(p_j e^{i (t_j - t_i)}),  i < j
 //! p_j  = m_j c_j e^{i d_j} + l_j (m_{j+1} + ..)      G_j  = base . (p_j e^{i t_j})
 //! ```
 //!
-//! where d is the angle of the centre of mass off the link's line and base is [`Chain::base_m_s2`]. M depends on differences
-//! of angles only, so Lagrange's equations leave C_ij = (dM_ij / dt_j) t_j', for which dM/dt - 2 C is skew. A rotor of
-//! inertia J at joint i adds J to M_ii and M_{i-1,i-1} and takes J from M_{i,i-1}. Relative angles q follow from
-//! t = L q with L the lower triangle of ones: M becomes L^T M L, and so on. (Spong, Hutchinson, Vidyasagar, Robot
-//! Modeling and Control (2006), chapter 7.)
+//! where d is the angle of the centre of mass off the link's line and base is [`Chain::base_m_s2`].
+//! M depends on differences of angles only, so Lagrange's equations leave C_ij = (dM_ij / dt_j)
+//! t_j', for which dM/dt - 2 C is skew. A rotor of inertia J at joint i adds J to M_ii and
+//! M_{i-1,i-1} and takes J from M_{i,i-1}. Relative angles q follow from t = L q with L the lower
+//! triangle of ones: M becomes L^T M L, and so on. (Spong, Hutchinson, Vidyasagar, Robot Modeling
+//! and Control (2006), chapter 7.)
 
 use super::chain::Chain;
 use super::lanes::Lane;
@@ -89,10 +91,11 @@ pub(super) fn weight<V: Lane>(base_m_s2: [V; 2], link: &Turned<V>) -> V {
     base_m_s2[0] * link.moment[0] + base_m_s2[1] * link.moment[1]
 }
 
-/// Closed-form equations of a planar chain of any length, angles relative, the first from hanging: for analysis.
+/// Closed-form equations of a planar chain of any length, angles relative, the first from hanging:
+/// for analysis.
 ///
-/// [`Dense`](super::Dense) runs the same formulas in simulations; [`Chain::forward`] computes the same motion by
-/// recursion.
+/// [`Dense`](super::Dense) runs the same formulas in simulations; [`Chain::forward`] computes the
+/// same motion by recursion.
 #[derive(Debug, Clone)]
 pub struct EquationsOfMotion {
     terms: Vec<LinkTerms>,
@@ -108,7 +111,8 @@ impl EquationsOfMotion {
         }
     }
 
-    /// Moment of each link with all that hangs on its end, p_j above: along the link and across it, kg m.
+    /// Moment of each link with all that hangs on its end, p_j above: along the link and across it,
+    /// kg m.
     pub fn moments_kg_m(&self) -> Vec<[f64; 2]> {
         self.terms.iter().map(|t| [t.along, t.across]).collect()
     }
@@ -123,7 +127,8 @@ impl EquationsOfMotion {
         }))
     }
 
-    /// C(q, q'), n x n, kg m^2/s: C q' are the Coriolis and centrifugal torques, and dM/dt - 2 C is skew.
+    /// C(q, q'), n x n, kg m^2/s: C q' are the Coriolis and centrifugal torques, and dM/dt - 2 C is
+    /// skew.
     pub fn coriolis(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> DMatrix<f64> {
         let turned = self.turned(angle_rad);
         let mut c = self.square(|i, j| match i == j {
@@ -238,7 +243,8 @@ mod tests {
             }
         }
 
-        /// Lagrange: torque = d/dt (dT/dw) - dT/dq + dV/dq, every derivative by central differences of the energy.
+        /// Lagrange: torque = d/dt (dT/dw) - dT/dq + dV/dq, every derivative by central differences
+        /// of the energy.
         #[test]
         fn they_are_the_lagrangian_s(values in prop::collection::vec(-2.0f64..2.0, 9)) {
             let n = 3;

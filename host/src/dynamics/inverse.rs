@@ -3,7 +3,8 @@
 use super::chain::Chain;
 use super::link_motion::LinkMotion;
 
-/// Absolute angle, angular velocity and angular acceleration of a link, and the acceleration of its joint.
+/// Absolute angle, angular velocity and angular acceleration of a link, and the acceleration of its
+/// joint.
 #[derive(Clone, Copy)]
 struct Motion {
     link: [f64; 3],

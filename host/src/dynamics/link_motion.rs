@@ -5,7 +5,8 @@ use super::lanes::Lane;
 
 /// Positions and velocity terms of a link, relative to its own joint.
 ///
-/// The link's end lies at length (sin, -cos), so a quarter turn to the left of it is length (cos, sin).
+/// The link's end lies at length (sin, -cos), so a quarter turn to the left of it is length (cos,
+/// sin).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LinkMotion {
     /// Joint to next joint, turned left: velocity of its end per rad/s, m.
@@ -38,7 +39,8 @@ impl LinkMotion {
         }
     }
 
-    /// Acceleration of the link's end, m/s^2, from that of its joint and the link's angular acceleration.
+    /// Acceleration of the link's end, m/s^2, from that of its joint and the link's angular
+    /// acceleration.
     #[inline(always)]
     pub fn end_m_s2(&self, joint_m_s2: [f64; 2], angular_rad_s2: f64) -> [f64; 2] {
         [

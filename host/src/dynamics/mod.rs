@@ -1,4 +1,5 @@
-//! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; the tests hold them to each other.
+//! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; the tests
+//! hold them to each other.
 
 mod articulated;
 mod chain;

@@ -1,14 +1,16 @@
-//! Classical Runge-Kutta of fourth order for q'' = f(q, q'): by value for a few joints in registers, and in place for
-//! rows of any length.
+//! Classical Runge-Kutta of fourth order for q'' = f(q, q'): by value for a few joints in
+//! registers, and in place for rows of any length.
 //!
-//! Two forms of one method, bit for bit the same: three links in four lanes take 344 ns a step by value and 358 ns in place.
+//! Two forms of one method, bit for bit the same: three links in four lanes take 344 ns a step by
+//! value and 358 ns in place.
 
 use super::lanes::Lane;
 use std::array::from_fn;
 
 /// Angles and speeds after `step_s`; `accelerate` gives the accelerations at angles and speeds.
 ///
-/// Give the closure `#[inline(always)]` where the step must be fast: without it, a chain of three takes half as long again.
+/// Give the closure `#[inline(always)]` where the step must be fast: without it, a chain of three
+/// takes half as long again.
 #[inline(always)]
 pub fn runge_kutta<const N: usize, V: Lane>(
     (q, w): ([V; N], [V; N]),
@@ -32,7 +34,8 @@ pub fn runge_kutta<const N: usize, V: Lane>(
     )
 }
 
-/// Scratch memory of a step; `R` is a row of one number per joint: an array, or a `Vec` of any length.
+/// Scratch memory of a step; `R` is a row of one number per joint: an array, or a `Vec` of any
+/// length.
 #[derive(Debug, Clone)]
 pub struct RungeKutta<R> {
     angle: R,
@@ -51,8 +54,8 @@ impl<R: Clone> RungeKutta<R> {
         }
     }
 
-    /// Advances angles and speeds by `step_s`. `accelerate` writes the accelerations at the angles and speeds it is
-    /// given into its third argument.
+    /// Advances angles and speeds by `step_s`. `accelerate` writes the accelerations at the angles
+    /// and speeds it is given into its third argument.
     #[inline(always)]
     pub fn step<V: Lane>(
         &mut self,

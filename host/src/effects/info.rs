@@ -1,5 +1,7 @@
 //! What an effect says of itself.
 
+use serde::Serialize;
+
 /// Where in the chain command -> drive -> joint -> body -> sensor an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Site {
@@ -22,7 +24,8 @@ pub enum Site {
 }
 
 /// Which joints an effect can act on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Scope {
     /// Every joint.
     AnyJoint,
@@ -48,7 +51,7 @@ pub enum Needs {
 }
 
 /// One value of an effect.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Parameter {
     /// Key in model files, with its unit: `torque_nm`.
     pub key: &'static str,
@@ -56,18 +59,20 @@ pub struct Parameter {
     pub unit: &'static str,
     /// What it is.
     pub meaning: &'static str,
-    /// Value at which the effect vanishes; `None` for a shape parameter, which has none.
+    /// Value at which the effect vanishes; `None` for a shape parameter, which has none. JSON
+    /// knows no infinity: an effect that is off at infinity has `null` there as well.
     pub off: Option<f64>,
     /// Range met in practice on servo arms of this size.
     pub typical: (f64, f64),
     /// Physically possible range: signs are enforced by it.
     pub bounds: (f64, f64),
     /// Values to start a fit from, the first being the default.
+    #[serde(skip)]
     pub starts: &'static [f64],
 }
 
 /// Another effect that looks alike.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Confusion {
     /// Its id.
     pub with: &'static str,
@@ -76,20 +81,22 @@ pub struct Confusion {
 }
 
 /// The whole description of an effect.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct EffectInfo {
     /// Name in commands and model files: `coulomb`.
     pub id: &'static str,
     /// Name for people.
     pub title: &'static str,
-    /// Where it acts.
-    pub site: Site,
-    /// Which joints it can act on.
-    pub scope: Scope,
-    /// What it takes to be a candidate.
-    pub needs: Needs,
     /// The law in one line.
     pub law: &'static str,
+    /// Which joints it can act on.
+    pub scope: Scope,
+    /// Where it acts.
+    #[serde(skip)]
+    pub site: Site,
+    /// What it takes to be a candidate.
+    #[serde(skip)]
+    pub needs: Needs,
     /// Its values.
     pub parameters: &'static [Parameter],
     /// What a log shows.

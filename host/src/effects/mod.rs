@@ -1,7 +1,8 @@
 //! The library of physical effects: each states its law once, and describes itself for people.
 //!
-//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
-//! the glossary, the candidates, the fit's bounds and the law tests all iterate that list.
+//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`]. The
+//! simulator, the effect pages, the candidates, the fit's bounds and the law tests all iterate that
+//! list.
 
 mod air_drag;
 mod armature;
@@ -9,7 +10,6 @@ mod backlash;
 mod base_tilt;
 mod bearing_friction;
 mod cable_spring;
-mod canvas;
 mod cogging;
 mod com_angle;
 mod coulomb;
@@ -32,7 +32,6 @@ mod torque_saturation;
 mod torque_scale;
 mod viscous;
 
-pub mod glossary;
 pub mod signature;
 
 #[cfg(test)]
@@ -98,14 +97,14 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
 
 /// A departure from the rigid chain with ideal drives and sensors.
 ///
-/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in the
-/// order of its parameters.
+/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in
+/// the order of its parameters.
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
     fn info(&self) -> &'static EffectInfo;
 
-    /// Relative step of a finite difference in its values: large where the law jumps, so that a difference sees
-    /// the jumps pass.
+    /// Relative step of a finite difference in its values: large where the law jumps, so that a
+    /// difference sees the jumps pass.
     fn difference(&self) -> f64 {
         SMOOTH_DIFFERENCE
     }
@@ -133,8 +132,8 @@ pub trait Effect: Sync + fmt::Debug {
         0.0
     }
 
-    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it is the
-    /// breakaway torque: a joint at rest is held until pushed harder than that.
+    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it
+    /// is the breakaway torque: a joint at rest is held until pushed harder than that.
     fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
         0.0
     }
@@ -144,21 +143,21 @@ pub trait Effect: Sync + fmt::Debug {
         angle_rad
     }
 
-    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long changed by
-    /// `speed_rad_s`; `None` where the past decides.
+    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long
+    /// changed by `speed_rad_s`; `None` where the past decides.
     fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
         None
     }
 
-    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has none. Bodies and
-    /// delays need none: they are taken as they are.
+    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has
+    /// none. Bodies and delays need none: they are taken as they are.
     fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
         None
     }
 
-    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
-    /// `memory` is the effect's own, [encoded angle, reading] of the call before; `None` before the first call
-    /// of a motion, which reads the angle itself.
+    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to
+    /// `angle_rad`. `memory` is the effect's own, [encoded angle, reading] of the call before;
+    /// `None` before the first call of a motion, which reads the angle itself.
     fn sense(
         &self,
         _values: &[f64],
@@ -189,8 +188,8 @@ pub struct AtRest {
     pub full_torque_nm: f64,
 }
 
-/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as its site has
-/// it), and what it adds of its own.
+/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as
+/// its site has it), and what it adds of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slope {
     /// Per unit of what passes through.
@@ -269,7 +268,8 @@ pub struct Slide {
     pub speed_rad_s: f64,
     /// +1 or -1: the direction of motion, or of the push at rest.
     pub direction: f64,
-    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear transmits.
+    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear
+    /// transmits.
     pub gear_load_nm: f64,
     /// Magnitude of the force in the bearing, N.
     pub bearing_load_n: f64,

@@ -6,10 +6,11 @@ mod tests;
 
 use super::data::{FitData, Horizon};
 use super::error_reduction::ErrorReduction;
-use super::fit::{Fit, FitOptions, fit, fit_start_states};
+use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::longest_stable;
 use super::residual::residuals;
+use super::solve::{fit, fit_start_states};
 use super::staged::{fit_staged, initial_guess};
 use crate::fitting::Candidate;
 use crate::log::Split;

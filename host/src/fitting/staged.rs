@@ -5,7 +5,8 @@
 //! in the length of the windows).
 
 use super::data::{FitData, Horizon};
-use super::fit::{Fit, FitOptions, fit};
+use super::fit::{Fit, FitOptions};
+use super::solve::fit;
 use crate::model::{Model, ParameterPath};
 
 /// Seconds of one window, stage by stage.

@@ -21,7 +21,7 @@ mod settings;
 mod tap;
 
 pub use faulty::Faulty;
-pub use port::{Link, Voice, read_some};
+pub use port::{LineWriter, Link, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;

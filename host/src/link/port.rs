@@ -4,7 +4,7 @@ use crate::error::Result;
 use std::time::Duration;
 
 /// Sends bytes on a line that another thread holds.
-pub type Voice = Box<dyn std::io::Write + Send>;
+pub type LineWriter = Box<dyn std::io::Write + Send>;
 
 /// A line of bytes, with the clock it runs by.
 ///
@@ -51,7 +51,7 @@ pub trait Link: Send {
 
     /// Another way to speak on this line, for a thread that must not wait for this one; none on a line that ends with the
     /// program.
-    fn second_voice(&self) -> Option<Voice> {
+    fn second_writer(&self) -> Option<LineWriter> {
         None
     }
 
@@ -92,8 +92,8 @@ macro_rules! passed_on {
             fn latency(&self) -> Duration {
                 (**self).latency()
             }
-            fn second_voice(&self) -> Option<Voice> {
-                (**self).second_voice()
+            fn second_writer(&self) -> Option<LineWriter> {
+                (**self).second_writer()
             }
         }
     };
@@ -154,8 +154,8 @@ macro_rules! left_to_inner {
             self.inner.latency()
         }
 
-        fn second_voice(&self) -> Option<$crate::link::port::Voice> {
-            self.inner.second_voice()
+        fn second_writer(&self) -> Option<$crate::link::port::LineWriter> {
+            self.inner.second_writer()
         }
     };
 }

@@ -1,6 +1,6 @@
 //! A serial port of this computer.
 
-use super::port::{Link, Voice};
+use super::port::{LineWriter, Link};
 use crate::error::{Error, Result};
 use serialport::{ClearBuffer, ErrorKind as Kind, SerialPort};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -105,7 +105,7 @@ impl Link for Serial {
         LATENCY
     }
 
-    fn second_voice(&self) -> Option<Voice> {
+    fn second_writer(&self) -> Option<LineWriter> {
         Some(Box::new(self.port.try_clone().ok()?))
     }
 }

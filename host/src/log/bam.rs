@@ -1,7 +1,8 @@
-//! The JSON logs of Rhoban's BAM bench: one position-driven joint, angles in rad.
+//! Reads the JSON logs of Rhoban's BAM bench: one position-driven joint, angles in rad.
 //!
-//! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and `entries`, each
-//! with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`, `input_volts`, `torque_enable`.
+//! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and
+//! `entries`, each with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`,
+//! `input_volts`, `torque_enable`.
 
 use super::read::LEAST_ROWS;
 use super::reason::LogReason;
@@ -16,11 +17,12 @@ use std::path::Path;
 /// Reads the log, or the entries asked for, as one motion.
 ///
 /// The mass in the file belongs to the model, so the motion carries no payload. Speed, supply and
-/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from 1.
+/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from
+/// 1.
 ///
 /// # Errors
-/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that does
-/// not increase; fewer than [`LEAST_ROWS`] entries.
+/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
+/// does not increase; fewer than [`LEAST_ROWS`] entries.
 pub(super) fn read(request: &LogRequest) -> Result<Motion> {
     let path = &request.path;
     let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
@@ -58,7 +60,7 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
         name: request.name(),
         source: MotionSource {
             path: path.clone(),
-            sha256: hex(&Sha256::digest(&bytes)),
+            sha256: hex(Sha256::digest(&bytes)),
             lines: (first + 1, last + 1),
         },
         position_rad: vec![entries.numbers("position")?],

@@ -1,4 +1,4 @@
-//! The streaming core: a CSV log row by row, in memory that does not grow with it.
+//! Streams a CSV log row by row, in memory that does not grow with it.
 
 use super::header::LogHeader;
 use super::lines::Lines;
@@ -19,9 +19,9 @@ pub struct FileFacts {
 
 /// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
 ///
-/// A row that cannot be read arrives as an error with file, line and column; the visitor decides whether
-/// that ends the reading. The separator (`,`, `;`, tab) comes from the header line; byte-order mark, CR LF,
-/// quotes, blank lines and `#` comments are taken as they come.
+/// A row that cannot be read arrives as an error with file, line and column; the visitor decides
+/// whether that ends the reading. The separator (`,`, `;`, tab) comes from the header line;
+/// byte-order mark, CR LF, quotes, blank lines and `#` comments are taken as they come.
 ///
 /// # Errors
 /// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.

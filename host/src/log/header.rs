@@ -1,4 +1,4 @@
-//! What stands before the data: separator, column names, constants in comments.
+//! Reads the header of a CSV log: separator, column names, constants in comments.
 
 use super::lines::Lines;
 use super::reason::LogReason;
@@ -41,8 +41,8 @@ impl LogCell {
 }
 
 impl LogHeader {
-    /// Reads up to and including the names. Also returns the first data line where the names stood in a
-    /// comment just above it, as numpy writes them.
+    /// Reads up to and including the names. Also returns the first data line where the names stood
+    /// in a comment just above it, as numpy writes them.
     ///
     /// # Errors
     /// An empty file, UTF-16, or data without names.

@@ -1,4 +1,4 @@
-//! A file line by line, hashed on the way; holds one line at a time.
+//! Reads a file line by line and hashes it; holds one line at a time.
 
 use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
@@ -75,6 +75,6 @@ impl Lines {
 
     /// SHA-256 of all bytes read, lower-case hexadecimal.
     pub fn sha256(self) -> String {
-        hex(&self.hash.finalize())
+        hex(self.hash.finalize())
     }
 }

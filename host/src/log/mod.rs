@@ -1,4 +1,4 @@
-//! Measurements: reading logs as rigs write them, gating them, holding motions out.
+//! Measurement logs: CSV and JSON readers, quality check, training and held-out motions.
 
 mod bam;
 pub mod check;

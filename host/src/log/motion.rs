@@ -22,11 +22,12 @@ pub struct Motion {
     pub source: MotionSource,
     /// Strictly increasing, s.
     pub time_s: Vec<f64>,
-    /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the model says).
+    /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the
+    /// model says).
     pub position_rad: Vec<Vec<f64>>,
     /// Per joint: measured speed, rad/s, where logged.
     pub velocity_rad_s: Vec<Option<Vec<f64>>>,
-    /// Per joint: what the drive was told, in SI of its kind; none for a passive joint.
+    /// Per joint: the drive's input, in SI of its kind; none for a passive joint.
     pub input: Vec<Option<Vec<f64>>>,
     /// Supply, V, where logged.
     pub supply_v: Option<Vec<f64>>,

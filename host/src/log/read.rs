@@ -1,4 +1,4 @@
-//! From rows to motions: cutting at segments and gaps, refusing what no simulation could follow.
+//! Reads logs into motions: cut at segments and gaps, refused where no simulation can follow.
 
 use super::csv::visit;
 use super::reason::LogReason;
@@ -14,12 +14,13 @@ pub const LEAST_ROWS: usize = 10;
 
 /// Reads the requested logs into motions, in order; a file ending in `.json` is a BAM log.
 ///
-/// Motions are named after the file, its rows where only some were asked for, and the segment: `a.csv`,
-/// `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are not judged.
+/// Motions are named after the file, its rows where only some were asked for, and the segment:
+/// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
+/// not judged.
 ///
 /// # Errors
-/// Unreadable cells and rows, time that does not increase, a payload or orientation that changes within a
-/// motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
+/// Unreadable cells and rows, time that does not increase, a payload or orientation that changes
+/// within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut motions = Vec::new();
     for request in requests {

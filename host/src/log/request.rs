@@ -1,4 +1,4 @@
-//! Which rows of which file the user asked for.
+//! A log as named on the command line: a path, and the rows wanted.
 
 use super::reason::LogReason;
 use crate::error::{Error, Result};

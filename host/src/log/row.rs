@@ -1,10 +1,11 @@
-//! One sample as numbers in SI.
+//! One row of a log, in SI.
 
 use super::reason::LogReason;
 use crate::error::Place;
 use std::path::PathBuf;
 
-/// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take ages.
+/// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take
+/// ages.
 const LONGEST_GAP_S: f64 = 100.0;
 
 /// Columns of the file, counted from 1, where a place is to be shown.
@@ -41,7 +42,7 @@ pub struct LogRow {
     pub position_rad: Vec<f64>,
     /// Per joint: speed, rad/s, where logged.
     pub velocity_rad_s: Vec<Option<f64>>,
-    /// Per joint: what the drive was told, SI of its kind.
+    /// Per joint: the drive's input, SI of its kind.
     pub input: Vec<Option<f64>>,
     /// Supply, V, where logged.
     pub supply_v: Option<f64>,
@@ -100,8 +101,8 @@ impl LogRow {
         }
     }
 
-    /// Why this row cannot follow `previous` within a motion, with the field that shows it; `None` if a new
-    /// motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
+    /// Why this row cannot follow `previous` within a motion, with the field that shows it; `None`
+    /// if a new motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
     pub(super) fn follows(
         &self,
         previous: &Before,

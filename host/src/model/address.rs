@@ -35,12 +35,12 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
         Some((id, joint)) => (id, Some(joint)),
         None => (owner, None),
     };
-    let cards = effects::EFFECTS.iter().map(|effect| effect.info());
-    let card: &'static EffectInfo = choose(text, id, cards.map(|card| (card.id, card)))?;
-    let keys = card.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
+    let infos = effects::EFFECTS.iter().map(|effect| effect.info());
+    let info: &'static EffectInfo = choose(text, id, infos.map(|info| (info.id, info)))?;
+    let keys = info.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
     Ok(ParameterPath::Effect {
-        id: card.id,
-        joint: joint_of(text, card, joint)?,
+        id: info.id,
+        joint: joint_of(text, info, joint)?,
         parameter: choose(text, key, keys)?,
     })
 }
@@ -48,11 +48,11 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
 /// The joint named behind the `@`, as the effect's scope allows.
 fn joint_of(
     text: &str,
-    card: &EffectInfo,
+    info: &EffectInfo,
     joint: Option<&str>,
 ) -> Result<Option<usize>, PathReason> {
-    let (text, id) = (text.to_string(), card.id);
-    match (joint, card.scope == effects::Scope::WholeRig) {
+    let (text, id) = (text.to_string(), info.id);
+    match (joint, info.scope == effects::Scope::WholeRig) {
         (None, true) => Ok(None),
         (None, false) => Err(PathReason::MissingJoint { text, id }),
         (Some(_), true) => Err(PathReason::WholeRig { text, id }),

@@ -23,8 +23,8 @@ pub struct FitRecord {
 
 /// The text with one more `[[effect]]` at the end of those it has; `path` only names it in errors.
 ///
-/// Where `[fit]` names what is free, the effect's values join that list, so that later fits and diagnoses refit
-/// them; without such a list the values of all effects are free anyway.
+/// Where `[fit]` names what is free, the effect's values join that list, so that later fits and
+/// diagnoses refit them; without such a list the values of all effects are free anyway.
 ///
 /// # Errors
 /// The text is no model, it holds the effect at that joint already, or the effect does not suit it.

@@ -1,7 +1,7 @@
 //! A robot or a bench arm as plain numbers: one planar chain of n links for everything.
 //!
-//! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line; [`edit`]
-//! writes effects and fitted values back without losing a comment.
+//! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line;
+//! [`edit`] writes effects and fitted values back without losing a comment.
 
 mod address;
 mod columns;
@@ -121,7 +121,8 @@ pub enum Drive {
         /// The motor behind it.
         motor: Motor,
     },
-    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped at 1.
+    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped
+    /// at 1.
     Speed {
         /// Duty per rad/s of error.
         gain_s_per_rad: f64,
@@ -172,7 +173,8 @@ impl Drive {
 pub struct Motor {
     /// Torque at standstill and full duty at the nominal supply, N m.
     pub stall_torque_nm: f64,
-    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not fall with speed.
+    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not
+    /// fall with speed.
     pub no_load_speed_rad_s: f64,
     /// Supply for which the figures hold, V.
     pub nominal_supply_v: Option<f64>,

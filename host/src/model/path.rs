@@ -1,4 +1,5 @@
-//! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`, `coulomb@1.torque_nm`.
+//! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`,
+//! `coulomb@1.torque_nm`.
 
 use super::field::{JointField, LinkField, POSITIVE};
 use super::suggest::split_unit;
@@ -64,7 +65,8 @@ impl ParameterPath {
         }
     }
 
-    /// Writes the number there, unchecked against [`bounds`](Self::bounds); `false` if there is no such place.
+    /// Writes the number there, unchecked against [`bounds`](Self::bounds); `false` if there is no
+    /// such place.
     #[must_use]
     pub fn set(&self, model: &mut Model, value: f64) -> bool {
         let place = match *self {

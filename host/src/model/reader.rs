@@ -3,11 +3,12 @@
 //! Read by hand over `toml_edit`, not derived with `serde`. A trial with `toml` 1 and
 //! `serde_path_to_error` gave table, line and column for plain structs. Inside tables with a tag it
 //! did not, because serde buffers what stands beside the tag and forgets the spans: a wrong
-//! `stall_torque_nm` of the second `[[joint]]` was reported at the first one's heading, and a passive
-//! joint's was accepted in silence. Joints, effects (whose keys come from their description) and
-//! columns (whose keys come from their dimension) are such tables: 35 of the 68 refusals in
-//! `parse/tests.rs`. They would need visitors of their own, and the other 33 their reason picked out
-//! of serde's English sentence, which is more code than this file.
+//! `stall_torque_nm` of the second `[[joint]]` was reported at the first one's heading, and a
+//! passive joint's was accepted in silence. Joints, effects (whose keys come from their
+//! description) and columns (whose keys come from their dimension) are such tables: 35 of the 68
+//! refusals in `parse/tests.rs` that are not of syntax. They would need visitors of their own, and
+//! the other 33 their reason picked out of serde's English sentence: by estimate as much code as
+//! this file has.
 
 use super::limits::Limits;
 use super::source::TomlSource;

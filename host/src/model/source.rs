@@ -1,4 +1,4 @@
-//! The text of a TOML file, which knows the line and column of every part.
+//! The text of a TOML file: finds the line and column of every part.
 
 use super::toml_reason::TomlReason;
 use crate::error::{Error, Place, Result};

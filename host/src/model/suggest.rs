@@ -1,4 +1,4 @@
-//! "Did you mean": names and units for keys that are none.
+//! Suggests the nearest known name, or the unit that a key lacks.
 
 /// Which of the known names was meant, and which there are.
 pub fn suggest(name: &str, known: &[impl AsRef<str>]) -> String {

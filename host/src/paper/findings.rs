@@ -173,7 +173,7 @@ fn delays(computed: &Computed) -> Result<(String, Shown)> {
     let falls = |delay_s: f64, case: &Case| {
         let mut case = case.clone();
         case.drives.delay_periods = delay_s / TS_S;
-        Ok(!case.run(0.1f64.to_radians())?.outcome.fell_s.is_none())
+        Ok(case.run(0.1f64.to_radians())?.outcome.fell_s.is_some())
     };
     let plain = sampled(computed);
     let plain_s = edge(|delay| falls(delay, &plain), 0.0, 0.05)?;

@@ -19,7 +19,7 @@ mod tests;
 pub use case::handstand;
 pub use checked::{Row, Verdict, check};
 pub use computed::{Computed, ServoFacts, Zeros};
-pub use figure::{Curve, Figure, Holds, Ink, Panel};
+pub use figure::{Figure, Holds};
 pub use findings::{Finding, Shown, findings};
 pub use page::html;
 pub use printed::{PRINTED, Printed, Quantity};

@@ -4,9 +4,10 @@ use super::case::{
     Case, ECCENTRIC_RAD, SECONDS, STARTS, Seen, sampled, stepped, with_dead_zone, with_gyro,
 };
 use super::computed::Computed;
-use super::figure::{Curve, Figure, Holds, Ink, Panel};
+use super::figure::{Figure, Holds};
 use crate::error::Result;
 use crate::number::short;
+use crate::plot::{Chart, Curve, Tone};
 use crate::sim::closed_loop::{Outcome, Velocity};
 
 /// Sampling time that stands for the continuous gains, s.
@@ -37,28 +38,32 @@ fn end(outcome: &Outcome) -> String {
 }
 
 /// Angles above, torques below, of runs side by side; of one run, side by side.
-fn panels(runs: &[(&str, &Seen)]) -> Vec<Panel> {
-    let inks = [Ink::Blue, Ink::Orange, Ink::Green];
-    let joints = ["q1 arms", "q2 shoulder", "q3 hip"];
-    let angle = |(name, seen): &(&str, &Seen)| Panel {
-        title: format!("{name}: {}", end(&seen.outcome)),
-        x_label: "time, s",
-        y_label: "angle, deg",
-        curves: (0..3)
-            .map(|i| Curve::line(joints[i], inks[i], seen.angles[i].clone()))
-            .collect(),
+fn charts(runs: &[(&str, &Seen)]) -> Vec<Chart> {
+    let angles = |(name, seen): &(&str, &Seen)| {
+        let title = format!("{name}: {}", end(&seen.outcome));
+        Chart::new(title, "time, s", "angle, deg", joints(0, &seen.angles))
     };
-    let torque = |(name, seen): &(&str, &Seen)| Panel {
-        title: format!("{name}: {} N m RMS", short(seen.outcome.rms_torque_nm)),
-        x_label: "time, s",
-        y_label: "torque, N m",
-        curves: (0..2)
-            .map(|i| Curve::line(joints[i + 1], inks[i + 1], seen.torques[i].clone()))
-            .collect(),
+    let torques = |(name, seen): &(&str, &Seen)| {
+        let title = format!("{name}: {} N m RMS", short(seen.outcome.rms_torque_nm));
+        Chart::new(title, "time, s", "torque, N m", joints(1, &seen.torques))
     };
-    runs.iter()
-        .map(angle)
-        .chain(runs.iter().map(torque))
+    let angles = runs.iter().map(angles);
+    angles.chain(runs.iter().map(torques)).collect()
+}
+
+/// A curve for each joint from the `first` on.
+fn joints(first: usize, points: &[Vec<(f64, f64)>]) -> Vec<Curve> {
+    let looks = [
+        ("q1 arms", Tone::Blue),
+        ("q2 shoulder", Tone::Orange),
+        ("q3 hip", Tone::Green),
+    ];
+    let curve = |((name, tone), points): (_, &Vec<_>)| Curve::line(name, tone, points.clone());
+    looks
+        .into_iter()
+        .skip(first)
+        .zip(points)
+        .map(curve)
         .collect()
 }
 
@@ -88,7 +93,7 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
             limit.to_degrees(),
             short(below.largest_rad.to_degrees())
         ),
-        panels: panels(&[("without", &without), ("with", &with)]),
+        charts: charts(&[("without", &without), ("with", &with)]),
     })
 }
 
@@ -149,7 +154,7 @@ fn resolution(computed: &Computed) -> Result<Figure> {
             end(&differenced),
             short(differenced.rms_torque_nm)
         ),
-        panels: panels(&[("exact", &exact), ("300 deg / 2^10", &coarse)]),
+        charts: charts(&[("exact", &exact), ("300 deg / 2^10", &coarse)]),
     })
 }
 
@@ -182,7 +187,7 @@ fn gyro(computed: &Computed) -> Result<Figure> {
             short(seen.outcome.rms_torque_nm),
             short(before.rms_torque_nm)
         ),
-        panels: panels(&[("gyro, perturbed", &seen)]),
+        charts: charts(&[("gyro, perturbed", &seen)]),
     })
 }
 
@@ -212,6 +217,6 @@ fn dead_zone(computed: &Computed) -> Result<Figure> {
              {SECONDS:.0} s, swinging by {swing:.1} deg (median), as long as the speeds of shoulder and hip are exact; with \
              speeds from differences of the position steps, as the servos give them, {differenced_stood} of {STARTS} stand."
         ),
-        panels: panels(&[("exact speeds", &seen), ("differenced", &fallen)]),
+        charts: charts(&[("exact speeds", &seen), ("differenced", &fallen)]),
     })
 }

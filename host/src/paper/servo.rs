@@ -1,11 +1,12 @@
 //! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq. (2).
 
 use super::computed::servo_estimate;
-use super::figure::{Curve, Figure, Holds, Ink, Panel};
+use super::figure::{Figure, Holds};
 use crate::error::Result;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::interval;
+use crate::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
@@ -137,7 +138,7 @@ fn unfitted(number: &'static str, title: &'static str, claim: &'static str, why:
         number,
         title,
         claim,
-        panels: Vec::new(),
+        charts: Vec::new(),
         holds: Holds::No,
         sentence: format!("The simulated log gives no fit: {why}."),
     }
@@ -157,15 +158,15 @@ fn dead_zone(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: "speed against command, unloaded".to_string(),
-            x_label: "command, % of full range",
-            y_label: "speed, rad/s",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
-                Curve::line("fitted dead zone", Ink::Orange, line(&map, 0.4)),
+        charts: vec![Chart::new(
+            "speed against command, unloaded",
+            "command, % of full range",
+            "speed, rad/s",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+                Curve::line("fitted dead zone", Tone::Orange, line(&map, 0.4)),
             ],
-        }],
+        )],
         holds: match edges.iter().all(|edge| edge.holds(0.085)) {
             true => Holds::Yes,
             false => Holds::InPart,
@@ -217,15 +218,15 @@ fn supply(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: "speed error against supply".to_string(),
-            x_label: "supply, V",
-            y_label: "speed error, % of the command",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, percent(&errors)),
-                Curve::line("fitted line", Ink::Orange, percent(&ends)),
+        charts: vec![Chart::new(
+            "speed error against supply",
+            "supply, V",
+            "speed error, % of the command",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, percent(&errors)),
+                Curve::line("fitted line", Tone::Orange, percent(&ends)),
             ],
-        }],
+        )],
         holds: match right.holds(9.8) && slope.low > 0.0 {
             true => Holds::Yes,
             false => Holds::InPart,
@@ -268,15 +269,15 @@ fn torque(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
-            x_label: "command, % of full range",
-            y_label: "torque, N m",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
-                Curve::line("fitted map", Ink::Orange, line(&map, 1.0)),
+        charts: vec![Chart::new(
+            format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
+            "command, % of full range",
+            "torque, N m",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+                Curve::line("fitted map", Tone::Orange, line(&map, 1.0)),
             ],
-        }],
+        )],
         holds: if seen { Holds::Yes } else { Holds::InPart },
         sentence: format!(
             "In simulation the torque stops at {} N m and rises by {} N m per full command; turned round, 1 N m needs a \
@@ -308,22 +309,17 @@ fn identification() -> Vec<Figure> {
     let own = score(&found.model, std::slice::from_ref(&training));
     let simulated = found.model.simulated(&fresh.input);
     let passed = scored.tests.iter().all(|test| test.passed);
-    let chart = |title: &str, curves: Vec<Curve>| Panel {
-        title: title.to_string(),
-        x_label: "time, s",
-        y_label: "speed, rad/s",
-        curves,
-    };
+    let chart = |title: &str, curves| Chart::new(title, "time, s", "speed, rad/s", curves);
     vec![
         Figure {
             number: "9",
             title: "Servo identification data",
             claim: claim_data,
-            panels: vec![chart(
+            charts: vec![chart(
                 "first 6 s",
                 vec![
-                    Curve::line("commanded", Ink::Quiet, seconds(&training.input)),
-                    Curve::line("estimated speed", Ink::Dark, seconds(&training.output)),
+                    Curve::line("commanded", Tone::Grey, seconds(&training.input)),
+                    Curve::line("estimated speed", Tone::Ink, seconds(&training.output)),
                 ],
             )],
             holds: Holds::Yes,
@@ -337,11 +333,11 @@ fn identification() -> Vec<Figure> {
             number: "10",
             title: "Servo validation data",
             claim,
-            panels: vec![chart(
+            charts: vec![chart(
                 "first 6 s",
                 vec![
-                    Curve::line("estimated speed", Ink::Dark, seconds(&fresh.output)),
-                    Curve::line("simulated by the model", Ink::Orange, seconds(&simulated)),
+                    Curve::line("estimated speed", Tone::Ink, seconds(&fresh.output)),
+                    Curve::line("simulated by the model", Tone::Orange, seconds(&simulated)),
                 ],
             )],
             holds: if passed { Holds::Yes } else { Holds::InPart },

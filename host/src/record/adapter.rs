@@ -1,14 +1,14 @@
 //! Servos read one by one, through an adapter.
 
 use super::sample::{Joint, Sample};
-use super::source::{LetGo, Source, say_twice};
+use super::source::{EmergencyOff, Source, send_twice};
 use crate::error::Result;
-use crate::link::{Link, ServoError, Servos};
+use crate::link::{Link, Servos};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
 use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request};
-use handstand_shared::raw::{Position, Signed, TorqueLimit};
+use handstand_shared::raw::{Position, TorqueLimit};
 use std::time::Duration;
 
 /// Servos behind an adapter, read one by one.
@@ -43,27 +43,18 @@ impl<L: Link> Adapter<L> {
 
     fn read(&mut self, place: usize) -> Result<Joint> {
         let id = self.ids[place];
-        let reading = match self.servos.read(id, PRESENT_POSITION.address, 8) {
-            Ok(reading) => reading,
-            Err(ServoError::Port(error)) => return Err(error),
-            Err(_) => {
-                return Ok(Joint {
-                    goal_rad: self.goals[place].map(Position::to_rad),
-                    ..Joint::default()
-                });
+        let goal_rad = self.goals[place].map(Position::to_rad);
+        let joint = match self.servos.read(id, PRESENT_POSITION.address, 8) {
+            Ok(reading) => {
+                self.danger = self.danger.take().or_else(|| danger(id, reading.error));
+                Joint::of_reading(&reading).unwrap_or_default()
+            }
+            Err(error) => {
+                error.port()?;
+                Joint::default()
             }
         };
-        let word = |at: usize| u16::from_le_bytes([reading.data[at], reading.data[at + 1]]);
-        self.danger = self.danger.take().or_else(|| danger(id, reading.error));
-        Ok(Joint {
-            position_rad: Some(Position(word(0)).to_rad()),
-            speed_rad_s: Some(f64::from(Signed(word(2)).get()) * Signed::SPEED_LSB_RAD_S),
-            load: Some(f64::from(Signed(word(4)).get()) * Signed::OUTPUT_LSB),
-            goal_rad: self.goals[place].map(Position::to_rad),
-            supply_v: Some(f64::from(reading.data[6]) * 0.1),
-            temperature_celsius: Some(f64::from(reading.data[7])),
-            error: Some(reading.error.0),
-        })
+        Ok(Joint { goal_rad, ..joint })
     }
 
     fn send_goals(&mut self, goals_rad: &[f64]) -> Result<()> {
@@ -121,15 +112,15 @@ impl<L: Link> Source for Adapter<L> {
         Ok(())
     }
 
-    fn let_go(&mut self) -> Option<LetGo> {
+    fn emergency_off(&mut self) -> Option<EmergencyOff> {
         let mut packet = [0; 16];
         let off = Request::Write {
             address: TORQUE_ENABLE.address,
             data: &[0],
         };
         let length = off.emit(BROADCAST, &mut packet)?;
-        let voice = self.servos.link().second_voice()?;
-        Some(say_twice(voice, packet[..length].to_vec()))
+        let voice = self.servos.link().second_writer()?;
+        Some(send_twice(voice, packet[..length].to_vec()))
     }
 
     fn danger(&self) -> Option<String> {

@@ -6,19 +6,25 @@
 mod adapter;
 mod cdr;
 mod csv;
+mod latency;
 mod mcap;
+mod motion;
 mod read;
 mod recorder;
 mod sample;
 mod source;
 mod stream;
+mod tally;
 
 pub use adapter::Adapter;
+pub use latency::{LatencyBudget, RoundTrip, no_response};
+pub use motion::GoalMotion;
 pub use read::{Recording, read};
 pub use recorder::{Format, Recorder};
 pub use sample::{Joint, Sample};
-pub use source::{LetGo, Source};
+pub use source::{EmergencyOff, Source};
 pub use stream::Stream;
+pub use tally::{Quantiles, Rms, Tally};
 
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]

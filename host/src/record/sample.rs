@@ -1,4 +1,7 @@
-//! What was measured at one moment.
+//! Measured values at one moment.
+
+use crate::link::Reading;
+use handstand_shared::raw::{Position, Signed, Supply};
 
 /// One servo. What it did not say is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -20,6 +23,36 @@ pub struct Joint {
 }
 
 impl Joint {
+    /// From the codes of the registers 38 to 43 and the error flags; position and goal are `None`.
+    pub fn measured(speed: u16, load: u16, supply: u8, temperature: u8, flags: u8) -> Self {
+        let signed = |code| f64::from(Signed(code).get());
+        Joint {
+            speed_rad_s: Some(signed(speed) * Signed::SPEED_LSB_RAD_S),
+            load: Some(signed(load) * Signed::OUTPUT_LSB),
+            supply_v: Some(Supply(supply).to_v()),
+            temperature_celsius: Some(f64::from(temperature)),
+            error: Some(flags),
+            ..Joint::default()
+        }
+    }
+
+    /// From a reading of the registers 36 to 43; `None` if it has other than 8 bytes.
+    pub fn of_reading(reading: &Reading) -> Option<Self> {
+        let data: [u8; 8] = reading.data[..].try_into().ok()?;
+        let [p0, p1, s0, s1, l0, l1, supply, temperature] = data;
+        let word = |low, high| u16::from_le_bytes([low, high]);
+        Some(Joint {
+            position_rad: Some(Position(word(p0, p1)).to_rad()),
+            ..Joint::measured(
+                word(s0, s1),
+                word(l0, l1),
+                supply,
+                temperature,
+                reading.error.0,
+            )
+        })
+    }
+
     /// Its values in the order of [`Joint::NAMES`].
     pub fn values(&self) -> [Option<f64>; 7] {
         [

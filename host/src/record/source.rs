@@ -2,15 +2,15 @@
 
 use super::sample::Sample;
 use crate::error::Result;
-use crate::link::Voice;
+use crate::link::LineWriter;
 use std::time::Duration;
 
 /// Switches torque off, whatever else is going on.
-pub type LetGo = Box<dyn FnOnce() + Send>;
+pub type EmergencyOff = Box<dyn FnOnce() + Send>;
 
 /// Says these bytes twice, some time apart: what else was being said may have garbled the first, or have been a goal, which
 /// switches torque on.
-pub(super) fn say_twice(mut voice: Voice, bytes: Vec<u8>) -> LetGo {
+pub(super) fn send_twice(mut voice: LineWriter, bytes: Vec<u8>) -> EmergencyOff {
     const APART: Duration = Duration::from_millis(50);
     Box::new(move || {
         for _ in 0..2 {
@@ -43,7 +43,7 @@ pub trait Source {
 
     /// What switches torque off from another thread, should the program have to end at once; none where nothing outlives
     /// it.
-    fn let_go(&mut self) -> Option<LetGo>;
+    fn emergency_off(&mut self) -> Option<EmergencyOff>;
 
     /// Why the robot must be stopped, if it must.
     fn danger(&self) -> Option<String>;

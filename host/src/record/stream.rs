@@ -1,12 +1,12 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
 use super::sample::{Joint, Sample};
-use super::source::{LetGo, Source, say_twice};
+use super::source::{EmergencyOff, Source, send_twice};
 use crate::error::{Error, Result};
 use crate::link::{Link, Session, condition_words};
 use handstand_shared::message::{Command, Condition, Mode, Report, ServoList};
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::{Position, Signed};
+use handstand_shared::raw::Position;
 use std::time::Duration;
 
 /// Servos behind a CM-5 that reads them itself and reports 100 times a second.
@@ -88,17 +88,14 @@ impl<L: Link> Source for Stream<L> {
                     continue;
                 }
                 if let Some(joint) = self.housekeeping.get_mut(place) {
-                    joint.speed_rad_s = Some(
-                        f64::from(Signed(u16::from_le_bytes(housekeeping.speed)).get())
-                            * Signed::SPEED_LSB_RAD_S,
+                    let (speed, load) = (housekeeping.speed, housekeeping.load);
+                    *joint = Joint::measured(
+                        u16::from_le_bytes(speed),
+                        u16::from_le_bytes(load),
+                        housekeeping.supply,
+                        housekeeping.temperature,
+                        housekeeping.error,
                     );
-                    joint.load = Some(
-                        f64::from(Signed(u16::from_le_bytes(housekeeping.load)).get())
-                            * Signed::OUTPUT_LSB,
-                    );
-                    joint.supply_v = Some(f64::from(housekeeping.supply) * 0.1);
-                    joint.temperature_celsius = Some(f64::from(housekeeping.temperature));
-                    joint.error = Some(housekeeping.error);
                 }
             }
             let stood = (0..self.count).map(|place| report.position(place).map(Position));
@@ -143,10 +140,10 @@ impl<L: Link> Source for Stream<L> {
         Ok(self.session.obey(&Command::Disarm, "switch torque off")?)
     }
 
-    fn let_go(&mut self) -> Option<LetGo> {
+    fn emergency_off(&mut self) -> Option<EmergencyOff> {
         let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
         let off = off.map(|command| self.session.bytes(&command)).concat();
-        Some(say_twice(self.session.link().second_voice()?, off))
+        Some(send_twice(self.session.link().second_writer()?, off))
     }
 
     fn danger(&self) -> Option<String> {

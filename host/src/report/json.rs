@@ -4,7 +4,8 @@ use super::Report;
 use crate::diagnose::Diagnosis;
 use serde_json::{Map, Value};
 
-/// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number become `null`.
+/// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number
+/// become `null`.
 pub fn json(report: &Report) -> Value {
     let mut value = plain(report);
     if let Some(diagnosis) = &report.diagnosis {
@@ -14,7 +15,8 @@ pub fn json(report: &Report) -> Value {
 }
 
 /// A diagnosis: its fields as they are, but the `parameters` of effects keyed by name:
-/// `{"torque_nm": {"value", "low", "high", "unit", "on_bound"}}`. Values that are no number become `null`.
+/// `{"torque_nm": {"value", "low", "high", "unit", "on_bound"}}`. Values that are no number become
+/// `null`.
 pub fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
     let mut value = plain(diagnosis);
     key_effects(&mut value);
@@ -47,7 +49,7 @@ fn keyed(parameters: Value) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
+    use super::super::tests::sample;
     use super::*;
 
     #[test]

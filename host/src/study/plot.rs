@@ -1,4 +1,4 @@
-//! Studies as pictures.
+//! Studies as SVG files.
 
 use super::merge::Merged;
 use super::quantity::{Levels, Quantity};
@@ -6,8 +6,11 @@ use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::number::given;
-use crate::report::{Curve, Panel, panels};
+use crate::plot::{Chart, Curve, Tone, svg_file};
 use std::path::Path;
+
+/// Colours of a chart's curves.
+const TONES: [Tone; 2] = [Tone::Blue, Tone::Orange];
 
 /// A sweep: share stabilised, region of attraction, angles and effort over the levels.
 pub fn sweep_svg((quantity, levels): (&Quantity, &Levels), ran: &Sweep, robot: &str) -> String {
@@ -15,55 +18,43 @@ pub fn sweep_svg((quantity, levels): (&Quantity, &Levels), ran: &Sweep, robot: &
         "" => quantity.title.to_string(),
         unit => format!("{}, {unit}", quantity.title),
     };
-    let steps: Vec<String> = ran.levels.iter().map(|level| level.label.clone()).collect();
-    let panel = |title: &str, curves: Vec<Curve>| Panel {
-        title: title.to_string(),
-        steps: steps.clone(),
-        across: across.clone(),
-        curves,
+    let chart = |y_label: &str, curves| Chart {
+        categories: ran.levels.iter().map(|level| level.label.clone()).collect(),
+        ..Chart::new("", &across, y_label, curves)
     };
-    let percent = |level: &Level| {
-        let figures = level.figures.as_ref();
-        figures.map_or([0.0; 2], |f| {
-            [100.0 * f.stabilised_low, 100.0 * f.stabilised_high]
-        })
-    };
-    let mut stabilised = curve(ran, "", |f| Some(100.0 * f.stabilised_share));
-    stabilised.intervals = ran.levels.iter().map(percent).collect();
-    let border = Curve {
-        values: ran
-            .levels
-            .iter()
-            .map(|level| level.tilt_border_rad.map(f64::to_degrees))
-            .collect(),
-        ..curve(ran, "", |_| None)
-    };
-    panels(
+    let degrees = |angle_rad: Option<f64>| angle_rad.map(f64::to_degrees);
+    let mut stabilised = curve(ran, "", TONES[0], |f| Some(100.0 * f.stabilised_share));
+    stabilised.intervals = ran.levels.iter().map(stabilised_percent).collect();
+    let borders = ran
+        .levels
+        .iter()
+        .map(|level| degrees(level.tilt_border_rad));
+    let border = Curve::by_category("", TONES[0], borders);
+    let angles = vec![
+        curve(ran, "rms", TONES[0], |f| degrees(f.rms_angle_rad)),
+        curve(ran, "limit cycle", TONES[1], |f| degrees(f.limit_cycle_rad)),
+    ];
+    let torque = curve(ran, "", TONES[0], |f| f.rms_torque_nm);
+    svg_file(
         &format!("{robot}: sweep of the {}", quantity.title),
         &[
-            panel("stabilised runs, %, with 95 % interval", vec![stabilised]),
-            panel("largest tilt it recovers from, deg", vec![border]),
-            panel(
-                "angles, deg",
-                vec![
-                    curve(ran, "rms", |f| f.rms_angle_rad.map(f64::to_degrees)),
-                    curve(ran, "limit cycle", |f| {
-                        f.limit_cycle_rad.map(f64::to_degrees)
-                    }),
-                ],
-            ),
-            panel("rms torque, N m", vec![curve(ran, "", |f| f.rms_torque_nm)]),
+            chart("stabilised runs, %, with 95 % interval", vec![stabilised]),
+            chart("largest tilt it recovers from, deg", vec![border]),
+            chart("angles, deg", angles),
+            chart("rms torque, N m", vec![torque]),
         ],
     )
 }
 
-fn curve(ran: &Sweep, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
-    let value = |level: &Level| level.figures.as_ref().and_then(of);
-    Curve {
-        name: name.to_string(),
-        values: ran.levels.iter().map(value).collect(),
-        intervals: Vec::new(),
-    }
+fn stabilised_percent(level: &Level) -> [f64; 2] {
+    let figures = level.figures.as_ref();
+    let ends = figures.map(|f| [f.stabilised_low, f.stabilised_high]);
+    ends.map_or([0.0; 2], |ends| ends.map(|end| 100.0 * end))
+}
+
+fn curve(ran: &Sweep, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f64>) -> Curve {
+    let figures = ran.levels.iter().map(|level| level.figures.as_ref());
+    Curve::by_category(name, tone, figures.map(|figures| figures.and_then(&of)))
 }
 
 /// Parts into which an uncertain value's range is cut.
@@ -78,27 +69,25 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let rows = merged.values(file)?;
     let place = |name: &str| columns.iter().position(|column| column == name);
     let (Some(stabilised), Some(radius)) = (place("stabilised"), place("spectral_radius")) else {
-        return Ok(panels("no runs", &[]));
+        return Ok(svg_file("no runs", &[]));
     };
-    let is_stabilised = move |row: &[f64]| row[stabilised] == 1.0;
-    let unstable = move |row: &[f64]| row[radius] >= 1.0;
+    let is_stabilised = |row: &[f64]| row[stabilised] == 1.0;
+    let unstable = |row: &[f64]| row[radius] >= 1.0;
+    let chart = |(value, name): (usize, &String)| {
+        let parts = Parts::of(&rows, value);
+        let curves = vec![
+            parts.share("stabilised", TONES[0], &rows, is_stabilised),
+            parts.share("unstable in the small", TONES[1], &rows, unstable),
+        ];
+        Chart {
+            categories: parts.centres.iter().map(|centre| given(*centre)).collect(),
+            ..Chart::new("", name, "share of runs, %, with 95 % interval", curves)
+        }
+    };
     let uncertain = columns.iter().enumerate();
-    let charts = uncertain
-        .filter(|(_, name)| name.contains(':'))
-        .map(|(value, name)| {
-            let parts = Parts::of(&rows, value);
-            Panel {
-                title: "share of runs, %, with 95 % interval".to_string(),
-                steps: parts.centres.iter().map(|centre| given(*centre)).collect(),
-                across: name.clone(),
-                curves: vec![
-                    parts.share("stabilised", &rows, is_stabilised),
-                    parts.share("unstable in the small", &rows, unstable),
-                ],
-            }
-        });
-    let charts: Vec<Panel> = charts.collect();
-    Ok(panels("Stability over every uncertain value", &charts))
+    let uncertain = uncertain.filter(|(_, name)| name.contains(':'));
+    let charts: Vec<Chart> = uncertain.map(chart).collect();
+    Ok(svg_file("Stability over every uncertain value", &charts))
 }
 
 /// Runs sorted by one of their values.
@@ -122,20 +111,24 @@ impl Parts {
     }
 
     /// Percentage of each part's runs that are so.
-    fn share(&self, name: &str, rows: &[Vec<f64>], so: impl Fn(&[f64]) -> bool) -> Curve {
+    fn share(
+        &self,
+        name: &str,
+        tone: Tone,
+        rows: &[Vec<f64>],
+        so: impl Fn(&[f64]) -> bool,
+    ) -> Curve {
         let mut counts = [(0, 0); PARTS];
         for (part, row) in self.of.iter().zip(rows) {
             counts[*part].0 += usize::from(so(row));
             counts[*part].1 += 1;
         }
-        let share =
-            |(of, all): &(usize, usize)| (*all > 0).then(|| 100.0 * *of as f64 / *all as f64);
+        let share = |(of, all): (usize, usize)| (all > 0).then(|| 100.0 * of as f64 / all as f64);
         let interval =
             |(of, all): &(usize, usize)| share_interval(*of, *all).map(|end| 100.0 * end);
         Curve {
-            name: name.to_string(),
-            values: counts.iter().map(share).collect(),
             intervals: counts.iter().map(interval).collect(),
+            ..Curve::by_category(name, tone, counts.map(share))
         }
     }
 }

@@ -7,7 +7,8 @@ use nalgebra::DMatrix;
 /// Singular values below this share of the largest count as zero.
 const ZERO: f64 = 1e-10;
 
-/// Controllability of a plant's modes by its inputs; of the transposed plant, observability by its outputs.
+/// Controllability of a plant's modes by its inputs; of the transposed plant, observability by its
+/// outputs.
 #[derive(Debug, Clone)]
 pub struct Controllability {
     /// Rank of [B, AB, A^2 B, ..], its blocks scaled to equal size.

@@ -31,7 +31,8 @@ pub struct Design {
     pub x0: Vec<f64>,
     /// The inputs that hold it, SI.
     pub u0: Vec<f64>,
-    /// Effects of the model that the design leaves out: they have no derivative at the operating point.
+    /// Effects of the model that the design leaves out: they have no derivative at the operating
+    /// point.
     pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,

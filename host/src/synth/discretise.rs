@@ -1,9 +1,10 @@
 //! Sampling with inputs held between samples, and arriving late.
 //!
-//! Van Loan, IEEE Trans. Automatic Control 23 (1978) 395: exp([A B; 0 0] t) = [e^{At} int_0^t e^{As} ds B; 0 I].
-//! With a delay of `whole` samples and `late` seconds, the input of sample k - whole - 1 still acts for `late`:
-//! x(k+1) = e^{A Ts} x(k) + e^{A (Ts - late)} S(late) B u(k-whole-1) + S(Ts - late) B u(k-whole), S(t) the integral
-//! (Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 2.3).
+//! Van Loan, IEEE Trans. Automatic Control 23 (1978) 395: exp([A B; 0 0] t) = [e^{At} int_0^t
+//! e^{As} ds B; 0 I]. With a delay of `whole` samples and `late` seconds, the input of sample k -
+//! whole - 1 still acts for `late`: x(k+1) = e^{A Ts} x(k) + e^{A (Ts - late)} S(late) B
+//! u(k-whole-1) + S(Ts - late) B u(k-whole), S(t) the integral (Astrom, Wittenmark,
+//! Computer-Controlled Systems, 3rd ed., section 2.3).
 
 use super::error::DesignError;
 use super::system::{Continuous, Discrete};
@@ -18,8 +19,8 @@ const MOST_DELAYED: usize = 100;
 /// The plant sampled every `ts_s`, its inputs held between samples and `delay_s` late.
 ///
 /// # Errors
-/// A sampling time that is not positive, a delay that is negative or longer than 100 samples, a plant that grows beyond
-/// all numbers within a sample.
+/// A sampling time that is not positive, a delay that is negative or longer than 100 samples, a
+/// plant that grows beyond all numbers within a sample.
 pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete, DesignError> {
     check(ts_s, delay_s)?;
     let (n, m) = (plant.a.nrows(), plant.b.ncols());

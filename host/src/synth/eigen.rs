@@ -26,13 +26,15 @@ pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
 pub struct Mode {
     /// Its eigenvalue, 1/s or per sample.
     pub pole: Complex<f64>,
-    /// Least singular value of [A - pole I, B] (or of that over C), over the largest of A or B (or C): 0 where uncontrollable.
+    /// Least singular value of [A - pole I, B] (or of that over C), over the largest of A or B (or
+    /// C): 0 where uncontrollable.
     pub margin: f64,
     /// The state in which it shows most, counted from 0.
     pub state: usize,
 }
 
-/// The modes of A with how far each is from being uncontrollable through B (Popov, Belevitch, Hautus).
+/// The modes of A with how far each is from being uncontrollable through B (Popov, Belevitch,
+/// Hautus).
 ///
 /// # Errors
 /// As [`poles`].

@@ -41,8 +41,8 @@ pub fn rounding_variance(step: f64) -> f64 {
     step * step / 12.0
 }
 
-/// The stationary Kalman filter of x(k+1) = A x + B u + w, y = C x + v, with covariances `process` (N x N, or of the plant's own states) of w
-/// and `measurement` (p x p) of v.
+/// The stationary Kalman filter of x(k+1) = A x + B u + w, y = C x + v, with covariances `process`
+/// (N x N, or of the plant's own states) of w and `measurement` (p x p) of v.
 ///
 /// # Errors
 /// Covariances of the wrong size or sign; plants whose unstable modes the outputs do not show.

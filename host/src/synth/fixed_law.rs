@@ -1,6 +1,7 @@
 //! A control law in fixed point of any word length, and what its rounding costs.
 //!
-//! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for studies.
+//! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for
+//! studies.
 
 use super::eigen::poles;
 use super::error::DesignError;
@@ -17,7 +18,8 @@ pub struct FixedLaw {
     pub bits: u32,
     /// Gains, m x n, in steps of input step / state step / 2^shift.
     pub k: DMatrix<i64>,
-    /// Input at the operating point times 2^shift, and the half that makes the shift round; one per input.
+    /// Input at the operating point times 2^shift, and the half that makes the shift round; one per
+    /// input.
     pub bias: Vec<i64>,
     /// Places by which the sum is shifted right; one per input.
     pub shift: Vec<u32>,
@@ -147,7 +149,8 @@ impl FixedLaw {
         })
     }
 
-    /// The canonical bytes of a 16-bit table: those of [`handstand_shared::gains::GainTable::bytes`].
+    /// The canonical bytes of a 16-bit table: those of
+    /// [`handstand_shared::gains::GainTable::bytes`].
     pub fn bytes(&self) -> Vec<u8> {
         let (m, n) = self.k.shape();
         let word = |value: i64| (value as i16).to_le_bytes();

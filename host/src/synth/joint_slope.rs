@@ -121,7 +121,8 @@ impl<'a> JointAt<'a> {
         sum
     }
 
-    /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within `slack_nm`.
+    /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within
+    /// `slack_nm`.
     pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held, DesignError> {
         let (at, mut omitted) = (self.at_rest(), Vec::new());
         for site in [Site::Command, Site::Friction, Site::Sensor] {
@@ -164,7 +165,8 @@ impl<'a> JointAt<'a> {
         }
     }
 
-    /// Duty that makes `needed_nm`, by Newton's iteration: one step where the torque is linear in the duty.
+    /// Duty that makes `needed_nm`, by Newton's iteration: one step where the torque is linear in
+    /// the duty.
     fn duty(&self, needed_nm: f64, omitted: &mut Vec<OmittedEffect>) -> Result<Duty, DesignError> {
         let mut at = self.at_rest();
         let (full_torque_nm, motor) = (at.full_torque_nm, self.drive.motor());
@@ -188,8 +190,8 @@ impl<'a> JointAt<'a> {
         })
     }
 
-    /// Torque of the drive at a duty, with its slopes. An effect without a slope still limits the torque: beyond a
-    /// limit nothing holds the pose.
+    /// Torque of the drive at a duty, with its slopes. An effect without a slope still limits the
+    /// torque: beyond a limit nothing holds the pose.
     fn driven(&self, mut at: AtRest, omitted: &mut Vec<OmittedEffect>) -> (f64, Duty) {
         let state = DriveState {
             speed_rad_s: 0.0,

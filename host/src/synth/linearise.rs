@@ -1,7 +1,8 @@
 //! The linear model about a pose at rest, exact: no differences are taken.
 //!
-//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so dq''/dq = M^-1 (dtorque/dq - dG/dq). The
-//! Coriolis torques are quadratic in the speeds and leave nothing.
+//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so
+//! dq''/dq = M^-1 (dtorque/dq - dG/dq). The Coriolis torques are quadratic in the speeds and
+//! leave nothing.
 
 use super::error::DesignError;
 use super::joint_slope::JointSlope;
@@ -24,9 +25,9 @@ pub struct Linearised {
 
 /// The linear model of `model` about `pose_rad` (its own convention of angles).
 ///
-/// Body effects, joint torques and drives count with their exact slopes at rest; effects without a derivative there
-/// (Coulomb friction, dead zones, ..) are left out and listed. A delay does not count: it is [`zoh`](super::zoh)'s
-/// matter, see [`input_delay_s`](super::input_delay_s).
+/// Body effects, joint torques and drives count with their exact slopes at rest; effects without a
+/// derivative there (Coulomb friction, dead zones, ..) are left out and listed. A delay does not
+/// count: it is [`zoh`](super::zoh)'s matter, see [`input_delay_s`](super::input_delay_s).
 ///
 /// # Errors
 /// A pose that is no equilibrium of the smooth effects, nothing driven.
@@ -295,7 +296,8 @@ input = {{ column = "u3", unit = "rad/s" }}
         );
     }
 
-    /// A limit at the very torque that the pose takes is left out; below that nothing holds the pose.
+    /// A limit at the very torque that the pose takes is left out; below that nothing holds the
+    /// pose.
     #[test]
     fn a_torque_limit_counts_by_what_the_pose_takes() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
@@ -313,7 +315,8 @@ input = {{ column = "u3", unit = "rad/s" }}
         assert_eq!(linearise(&model, &pose).unwrap().omitted, []);
     }
 
-    /// What `handstand virtual --robot` simulates: position servos, viscous friction on the bar, Coulomb in the gears.
+    /// What `handstand virtual --robot` simulates: position servos, viscous friction on the bar,
+    /// Coulomb in the gears.
     #[test]
     fn the_robot_behind_its_servos_has_a_linear_model() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/robot.toml");

@@ -1,7 +1,7 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
-//! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `controllability`,
-//! `zeros` look at plants; `quantise` -> `fixed_law` is what
+//! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` ->
+//! `controllability`, `zeros` look at plants; `quantise` -> `fixed_law` is what
 //! ships; `design` is all of it as one value, `export` writes that;
 //! `robust` makes one gain for many plants.
 

@@ -3,7 +3,8 @@
 use crate::effects::{Effect, Site};
 use std::fmt;
 
-/// An effect without a derivative at the operating point: the linear model does without it, the robot does not.
+/// An effect without a derivative at the operating point: the linear model does without it, the
+/// robot does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmittedEffect {
     /// The effect.

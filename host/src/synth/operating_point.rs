@@ -1,4 +1,5 @@
-//! The operating point of a linear model: what holds the robot in a pose, and how each joint answers small changes.
+//! The operating point of a linear model: what holds the robot in a pose, and how each joint
+//! answers small changes.
 
 use super::error::DesignError;
 use super::joint_slope::{JointAt, JointSlope};
@@ -25,10 +26,12 @@ pub(super) struct OperatingPoint {
 }
 
 impl OperatingPoint {
-    /// The operating point of a model in `pose_rad` (the model's convention of angles), by its smooth effects.
+    /// The operating point of a model in `pose_rad` (the model's convention of angles), by its
+    /// smooth effects.
     ///
     /// # Errors
-    /// A pose that is no equilibrium of the smooth effects, or that asks more of a drive than it can give.
+    /// A pose that is no equilibrium of the smooth effects, or that asks more of a drive than it
+    /// can give.
     pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint, DesignError> {
         check_size(model, pose_rad)?;
         let relative_rad = relative(model, pose_rad);

@@ -24,10 +24,11 @@ pub fn upright(model: &Model) -> Vec<f64> {
         .collect()
 }
 
-/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they balance.
+/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they
+/// balance.
 ///
-/// This is the angle compensation that links with eccentric centres of mass need. Friction and other effects without a
-/// derivative do not count: sticking may hold the robot elsewhere too.
+/// This is the angle compensation that links with eccentric centres of mass need. Friction and
+/// other effects without a derivative do not count: sticking may hold the robot elsewhere too.
 ///
 /// # Errors
 /// No equilibrium within reach of Newton's iteration.

@@ -1,9 +1,10 @@
 //! Choosing the steps of a fixed-point law: powers of two, from declared ranges.
 //!
-//! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift / (input step). It is
-//! made as large as gains and sum allow: every gain fits a word, and sum |k| 2^(bits-1) + |bias| < 2^(2 bits-1), so that no
-//! states whatever overflow the sum. The shift is then as many whole bytes as the input's range needs: an 8-bit machine
-//! shifts by bytes for nothing.
+//! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift /
+//! (input step). It is made as large as gains and sum allow: every gain fits a word, and sum |k|
+//! 2^(bits-1) + |bias| < 2^(2 bits-1), so that no states whatever overflow the sum. The shift is
+//! then as many whole bytes as the input's range needs: an 8-bit machine shifts by bytes for
+//! nothing.
 
 use super::error::DesignError;
 use super::fixed_law::FixedLaw;
@@ -129,11 +130,13 @@ impl GainRow {
         most < word && sum * word + bias < 2.0 * word * word - 1.0
     }
 
-    /// The largest scale that fits, and its split into bytes of shift and a step that the range needs.
+    /// The largest scale that fits, and its split into bytes of shift and a step that the range
+    /// needs.
     fn shift_and_step(&self) -> (u32, f64) {
         let word = 2f64.powi(self.bits as i32 - 1) - 1.0;
         let most_shift = self.bits.next_multiple_of(8);
-        // The step must let the range fit, so 2^shift / step has a largest value for the longest shift.
+        // The step must let the range fit, so 2^shift / step has a largest value for the longest
+        // shift.
         let least_step = power_of_two_above(self.range.max(self.u0.abs()) / word);
         let mut scale = 2f64.powi(most_shift as i32) / least_step;
         while !self.fits(scale, most_shift) {

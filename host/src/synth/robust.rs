@@ -1,11 +1,13 @@
 //! One gain for many plants: the multi-model regulator.
 //!
-//! Minimises the mean, over plants, of trace(P_i), the cost x'Qx + u'Ru summed from every start of unit size, by
-//! gradient. With S_i the sum of x x' over those runs,
-//! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control 15 (1970) 44, told
-//! for sampled plants and several of them: Makila, Toivonen, IEEE Trans. Automatic Control 32 (1987) 658). The step is
-//! quasi-Newton (BFGS). A gain that one plant escapes has infinite cost, so the search never leaves the gains that
-//! hold all of them; it has to start from one, which [`multi_model_continuation`] finds by widening the spread of the plants in stages.
+//! Minimises the mean, over plants, of trace(P_i), the cost x'Qx + u'Ru summed from every start of
+//! unit size, by gradient. With S_i the sum of x x' over those runs,
+//! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control
+//! 15 (1970) 44, told for sampled plants and several of them: Makila, Toivonen, IEEE Trans.
+//! Automatic Control 32 (1987) 658). The step is quasi-Newton (BFGS). A gain that one plant escapes
+//! has infinite cost, so the search never leaves the gains that hold all of them; it has to start
+//! from one, which [`multi_model_continuation`] finds by widening the spread of the plants in
+//! stages.
 
 use super::error::DesignError;
 use super::gains::dlqr;
@@ -20,7 +22,8 @@ const STILL: f64 = 1e-9;
 
 /// Largest modulus of the eigenvalues of a square matrix: below 1, A^k dies out.
 ///
-/// By squaring: the growth of |A^N| for N = 2^24, exact to about ln(condition)/N. Never fails to converge.
+/// By squaring: the growth of |A^N| for N = 2^24, exact to about ln(condition)/N. Never fails to
+/// converge.
 pub fn spectral_radius(a: &DMatrix<f64>) -> f64 {
     const SQUARINGS: i32 = 24;
     let (mut power, mut log_scale, mut share) = (a.clone(), 0.0, 1.0);
@@ -94,8 +97,8 @@ pub fn multi_model(
     Ok(k)
 }
 
-/// The multi-model gain for the plants that `spread(share)` gives, `share` growing to 1 in `stages` equal steps from
-/// the regulator of `spread(0)`'s first plant.
+/// The multi-model gain for the plants that `spread(share)` gives, `share` growing to 1 in `stages`
+/// equal steps from the regulator of `spread(0)`'s first plant.
 ///
 /// # Errors
 /// Plants that part too far: no gain that holds all of them was found on the way.
@@ -140,7 +143,8 @@ fn mean_cost(
     (cost > 0.0 && cost.is_finite()).then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
 }
 
-/// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if it has no end.
+/// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if
+/// it has no end.
 fn summed(a: &DMatrix<f64>, w: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     // 2^22 terms: a radius nearer to 1 than 1e-5 counts as fallen.
     const DOUBLINGS: usize = 22;
@@ -182,8 +186,9 @@ fn search(
     None
 }
 
-/// The update of the inverse curvature from a step and the change of slope along it (Nocedal, Wright, Numerical
-/// Optimization, 2nd ed., equation 6.17); skipped where the cost does not curve upwards.
+/// The update of the inverse curvature from a step and the change of slope along it (Nocedal,
+/// Wright, Numerical Optimization, 2nd ed., equation 6.17); skipped where the cost does not curve
+/// upwards.
 fn bfgs(inverse: &mut DMatrix<f64>, moved: &DVector<f64>, turned: &DVector<f64>) {
     let along = moved.dot(turned);
     if along <= 1e-12 * moved.norm() * turned.norm() {

@@ -31,8 +31,9 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
     }
 }
 
-/// The largest input that makes sense for a drive: its torque limit where the model has one, else 2 N m (the torque at which the paper's
-/// servos saturate); full duty; half a turn; the no-load speed.
+/// The largest input that makes sense for a drive: its torque limit where the model has one, else 2
+/// N m (the torque at which the paper's servos saturate); full duty; half a turn; the no-load
+/// speed.
 pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     let limit = model
         .effects

@@ -32,7 +32,8 @@ pub(super) fn check(
 /// A symmetric matrix for so many states (inputs, outputs), of a sign.
 ///
 /// # Errors
-/// Another size, entries that are no numbers, not symmetric, of another sign: each with what was found.
+/// Another size, entries that are no numbers, not symmetric, of another sign: each with what was
+/// found.
 pub(super) fn of(
     name: &'static str,
     m: &DMatrix<f64>,

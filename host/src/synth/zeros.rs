@@ -1,7 +1,8 @@
 //! Transmission zeros: where the Rosenbrock pencil [A - s I, B; C, D] loses rank.
 //!
-//! Emami-Naeini, Van Dooren, Automatica 18 (1982) 415: orthogonal steps strip the pencil of what is infinite or
-//! singular until D is square and of full rank; what is left has the zeros as the eigenvalues of A - B D^-1 C.
+//! Emami-Naeini, Van Dooren, Automatica 18 (1982) 415: orthogonal steps strip the pencil of what is
+//! infinite or singular until D is square and of full rank; what is left has the zeros as the
+//! eigenvalues of A - B D^-1 C.
 
 use super::eigen::poles;
 use super::error::DesignError;
@@ -18,8 +19,9 @@ struct Reduced {
     d: DMatrix<f64>,
 }
 
-/// The finite transmission zeros of x' = A x + B u, y = C x, those with the largest real part first; inputs as many
-/// as outputs or not. A zero with a positive real part (sampled: beyond the unit circle) makes it non-minimum phase.
+/// The finite transmission zeros of x' = A x + B u, y = C x, those with the largest real part
+/// first; inputs as many as outputs or not. A zero with a positive real part (sampled: beyond the
+/// unit circle) makes it non-minimum phase.
 ///
 /// # Errors
 /// Entries that are no numbers.

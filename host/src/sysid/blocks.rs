@@ -3,8 +3,8 @@
 use super::record::OutputQuantity;
 use crate::log::Motion;
 
-/// Most the input may change over a block and the one before, as a share of its whole range: more is a step, and
-/// what follows one is not rest.
+/// Most the input may change over a block and the one before, as a share of its whole range: more
+/// is a step, and what follows one is not rest.
 const STEP: f64 = 0.05;
 
 /// Means over a stretch of time.
@@ -18,10 +18,12 @@ pub struct BlockMean {
     pub supply_v: f64,
 }
 
-/// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right after a step of
-/// the input, and the first of a motion, whose past is not known; what is left at a motion's end is dropped.
+/// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right
+/// after a step of the input, and the first of a motion, whose past is not known; what is left at a
+/// motion's end is dropped.
 ///
-/// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a passive joint: none.
+/// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a
+/// passive joint: none.
 pub fn blocks(
     motions: &[Motion],
     joint: usize,

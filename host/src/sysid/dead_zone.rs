@@ -1,4 +1,5 @@
-//! A dead zone, a line on either side of it, and saturation: the shape of the paper's Figures 4 and 7.
+//! A dead zone, a line on either side of it, and saturation: the shape of the paper's Figures 4 and
+//! 7.
 
 use super::blocks::BlockMean;
 use super::dynamics::Interval;
@@ -146,7 +147,8 @@ impl DeadZoneCurve {
         self.edge + self.limit / self.slope
     }
 
-    /// NormalEquations matrix and gradient; rows and columns of what the points do not touch stay zero.
+    /// NormalEquations matrix and gradient; rows and columns of what the points do not touch stay
+    /// zero.
     fn normal(&self, points: &[(f64, f64)]) -> (Matrix3<f64>, Vector3<f64>) {
         let (mut matrix, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
         for (u, y) in points {

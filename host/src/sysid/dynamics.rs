@@ -1,4 +1,5 @@
-//! What a fitted model says of the servo: static gain, poles, settling, each with its 95 % interval.
+//! What a fitted model says of the servo: static gain, poles, settling, each with its 95 %
+//! interval.
 
 use super::estimate::Estimate;
 use super::polynomial::{at_one, roots};
@@ -57,13 +58,13 @@ pub struct Dynamics {
     pub gain: Interval,
     /// Poles, largest first; of a pair both.
     pub poles: Vec<Pole>,
-    /// Time after a step from which the output stays within 2 % of its end, s; none if it never does in 10 000
-    /// samples.
+    /// Time after a step from which the output stays within 2 % of its end, s; none if it never
+    /// does in 10 000 samples.
     pub settling_s: Option<f64>,
 }
 
-/// Of a fitted model, sampled every `ts_s`. Intervals are by the delta method: the covariance of the coefficients
-/// through the derivatives of gain and poles.
+/// Of a fitted model, sampled every `ts_s`. Intervals are by the delta method: the covariance of
+/// the coefficients through the derivatives of gain and poles.
 pub fn dynamics(estimate: &Estimate, ts_s: f64) -> Dynamics {
     Dynamics {
         gain: gain(estimate),

@@ -1,7 +1,7 @@
 //! The prediction-error method: coefficients that make the one-step errors smallest.
 //!
-//! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that makes the
-//! error larger, so that the noise model and its inverse stay stable.
+//! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that
+//! makes the error larger, so that the noise model and its inverse stay stable.
 
 use super::model::TransferModel;
 use super::record::Record;

@@ -1,5 +1,5 @@
-//! A servo as a black box: discrete-time models from commanded to measured speed, by the prediction-error method,
-//! and static maps of what it does at rest.
+//! A servo as a black box: discrete-time models from commanded to measured speed, by the
+//! prediction-error method, and static maps of what it does at rest.
 
 mod blocks;
 mod dead_zone;

@@ -53,7 +53,8 @@ impl Record {
 pub enum OutputQuantity {
     /// The measured quantity as it is.
     AsMeasured,
-    /// The speed estimated from a measured angle, `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1).
+    /// The speed estimated from a measured angle, `(theta(t) - theta(t - 1)) / Ts`, the paper's eq.
+    /// (1).
     Velocity,
 }
 
@@ -67,11 +68,12 @@ pub fn sampling_period_s(motions: &[Motion]) -> f64 {
     steps.get(steps.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Joint `joint` of the motion (from 0) as a record. Taken as measured, input and output count from their first
-/// samples; of a velocity estimate the first sample does not count.
+/// Joint `joint` of the motion (from 0) as a record. Taken as measured, input and output count from
+/// their first samples; of a velocity estimate the first sample does not count.
 ///
 /// # Errors
-/// A joint that nothing drives; a time step more than a quarter off `ts_s`: a sample is missing there.
+/// A joint that nothing drives; a time step more than a quarter off `ts_s`: a sample is missing
+/// there.
 pub fn record(motion: &Motion, joint: usize, output: OutputQuantity, ts_s: f64) -> Result<Record> {
     for (k, pair) in motion.time_s.windows(2).enumerate() {
         let step = pair[1] - pair[0];
@@ -105,7 +107,8 @@ pub fn record(motion: &Motion, joint: usize, output: OutputQuantity, ts_s: f64) 
     })
 }
 
-/// `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1); 0 for the first sample, which has none before it.
+/// `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1); 0 for the first sample, which has none
+/// before it.
 pub fn velocity(angle_rad: &[f64], ts_s: f64) -> Vec<f64> {
     let pairs = angle_rad.windows(2);
     let speeds = pairs.map(|pair| (pair[1] - pair[0]) / ts_s);

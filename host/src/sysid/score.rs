@@ -10,7 +10,8 @@ use serde::Serialize;
 pub struct FitScore {
     /// Samples that counted.
     pub samples: usize,
-    /// 100 (1 - |y - yhat| / |y - mean y|) with yhat from the input alone, as MATLAB's `compare`; 100 is perfect.
+    /// 100 (1 - |y - yhat| / |y - mean y|) with yhat from the input alone, as MATLAB's `compare`;
+    /// 100 is perfect.
     pub simulated_fit_percent: f64,
     /// The same with yhat predicted one step ahead.
     pub predicted_fit_percent: f64,

@@ -1,4 +1,5 @@
-//! Order selection: the structure with the fewest coefficients that predicts new data as well as the best.
+//! Order selection: the structure with the fewest coefficients that predicts new data as well as
+//! the best.
 
 use super::estimate::{Estimate, Unfitted, estimate};
 use super::record::Record;
@@ -50,9 +51,9 @@ pub fn try_all(
         .collect()
 }
 
-/// The trial to keep: of those whose squared one-step errors on `validation` are not above the best one's by more
-/// than twice the standard error of the difference, the one with the fewest coefficients; among equals the best.
-/// A model whose validation error is no number is never kept.
+/// The trial to keep: of those whose squared one-step errors on `validation` are not above the best
+/// one's by more than twice the standard error of the difference, the one with the fewest
+/// coefficients; among equals the best. A model whose validation error is no number is never kept.
 pub fn select(trials: &[Candidate], validation: &[Record]) -> Option<usize> {
     let fitted: Vec<(usize, &FittedModel)> = trials
         .iter()

@@ -39,8 +39,8 @@ struct Regressor<'a> {
     delay: usize,
 }
 
-/// Weights of `columns` that come nearest to `target` over the scored samples. With `instruments`, one per column,
-/// the error is made orthogonal to them instead (Ljung 1999, eq. 7.118).
+/// Weights of `columns` that come nearest to `target` over the scored samples. With `instruments`,
+/// one per column, the error is made orthogonal to them instead (Ljung 1999, eq. 7.118).
 fn regress(
     records: &[Record],
     target: &[Vec<f64>],
@@ -175,8 +175,8 @@ fn instrumented(structure: &Structure, records: &[Record]) -> Option<TransferMod
     ))
 }
 
-/// B/F by least squares on signals filtered by the denominator found before (Steiglitz & McBride, IEEE Trans.
-/// Automatic Control 10, 1965, 461-464).
+/// B/F by least squares on signals filtered by the denominator found before (Steiglitz & McBride,
+/// IEEE Trans. Automatic Control 10, 1965, 461-464).
 fn steiglitz_mcbride(
     structure: &Structure,
     records: &[Record],
@@ -196,7 +196,8 @@ fn steiglitz_mcbride(
     Some(model)
 }
 
-/// An ARX model's A becomes F, and C/D is fitted to what B/F leaves (Hannan & Rissanen, Biometrika 69, 1982, 81-94).
+/// An ARX model's A becomes F, and C/D is fitted to what B/F leaves (Hannan & Rissanen, Biometrika
+/// 69, 1982, 81-94).
 fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) -> TransferModel {
     let mut model = TransferModel {
         a: vec![1.0],
@@ -241,7 +242,8 @@ fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) 
     model
 }
 
-/// Whether the predictor and the noise model are stable: C and F, and D, have their roots inside the circle.
+/// Whether the predictor and the noise model are stable: C and F, and D, have their roots inside
+/// the circle.
 pub(super) fn is_usable(model: &TransferModel) -> bool {
     super::polynomial::is_stable(&multiply(&multiply(&model.c, &model.f), &model.d))
 }

@@ -50,8 +50,8 @@ pub fn errors(blocks: &[BlockMean]) -> Vec<(f64, f64)> {
 impl SupplyLine {
     /// Fits the line; `output` of the blocks is a speed in the unit of their `input`.
     ///
-    /// The interval of the supply at which the error is zero is Fieller's (1954): exact, and unbounded where the
-    /// slope is not significant.
+    /// The interval of the supply at which the error is zero is Fieller's (1954): exact, and
+    /// unbounded where the slope is not significant.
     ///
     /// # Errors
     /// Too few blocks, or a supply that does not change.
@@ -94,7 +94,8 @@ impl SupplyLine {
     }
 }
 
-/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within `reach` standard errors of it.
+/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within `reach` standard
+/// errors of it.
 fn zero(
     (mean_v, mean): (f64, f64),
     slope: f64,
@@ -103,7 +104,8 @@ fn zero(
 ) -> Interval {
     let z = reach * reach;
     let value = mean_v - mean / slope;
-    // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v - mean_v.
+    // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v -
+    // mean_v.
     let a = slope * slope - z * slope_variance;
     let b = mean * slope;
     let c = mean * mean - z * mean_variance;

@@ -147,7 +147,7 @@ fn a_monitor_shows_rounds_and_marks_the_silent() {
         (servos[0]["supply_v"].as_f64().unwrap() * 10.0).round(),
         96.0
     );
-    assert_eq!(servos[1]["errors"], serde_json::json!(["silent"]));
+    assert_eq!(servos[1]["error_flags"], serde_json::json!(["silent"]));
 }
 
 #[test]

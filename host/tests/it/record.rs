@@ -113,7 +113,7 @@ fn a_servo_in_danger_stops_the_robot_with_torque_off() {
         ran.json()["stopped"]
             .as_str()
             .unwrap()
-            .contains("servo 2 complains of: overheat"),
+            .contains("servo 2 reports: overheat"),
         "{ran:?}"
     );
     // The last words on the bus: WRITE torque enable 0, to all.

@@ -60,7 +60,10 @@ fn a_view_plays_the_handstand() {
     bench.put("handstand.toml", HANDSTAND);
     bench.put("run.csv", balanced(0.02));
     bench.put("other.csv", balanced(-0.01));
-    let ran = bench.run("view handstand.toml run.csv --model handstand.toml --beside other.csv -o view.html --horizon 0.2");
+    let ran = bench.run(
+        "view handstand.toml run.csv --model handstand.toml --overlay other.csv -o view.html \
+         --horizon 0.2",
+    );
     assert_eq!(ran.code, Some(0), "{ran:?}");
     is_drawn(&bench, "view");
     let again = bench.run("view handstand.toml run.csv -o view.html");
@@ -129,7 +132,8 @@ fn balanced(lean_rad: f64) -> String {
     text
 }
 
-/// `NAME.html` asks for nothing from elsewhere, and a browser makes a picture of it that is not blank.
+/// `NAME.html` asks for nothing from elsewhere, and a browser makes a picture of it that is not
+/// blank.
 fn is_drawn(bench: &Bench, name: &str) {
     let page = bench.get(&format!("{name}.html"));
     for loaded in [

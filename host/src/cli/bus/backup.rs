@@ -5,7 +5,7 @@
 
 use super::super::Outcome;
 use super::super::input;
-use super::super::port::{Ids, Port, id_list, no_response};
+use super::super::port::{Ids, Port, id_list};
 use super::super::talk::Talk;
 use super::changes::{self, Change};
 use super::scan::scan;
@@ -54,7 +54,7 @@ pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
         .map(|servo| servo.id)
         .collect();
     if ids.is_empty() {
-        return Err(no_response());
+        return Err(handstand::record::no_response());
     }
     let mut saved = Vec::new();
     for id in &ids {

@@ -6,9 +6,9 @@ use super::super::port::{Ids, Port, id_list};
 use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
-use handstand::link::ServoError;
+use handstand::link::Reading;
+use handstand::record::Joint;
 use handstand_shared::control_table::PRESENT_POSITION;
-use handstand_shared::raw::{Position, Signed};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -29,20 +29,20 @@ pub struct Args {
 }
 
 #[derive(Debug, Serialize)]
-struct Seen {
+struct ServoReading {
     id: u8,
     position_rad: Option<f64>,
     speed_rad_s: Option<f64>,
     load_share: Option<f64>,
     supply_v: Option<f64>,
     temperature_celsius: Option<u8>,
-    errors: Vec<&'static str>,
+    error_flags: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
 struct Round {
     time_s: f64,
-    servos: Vec<Seen>,
+    servos: Vec<ServoReading>,
 }
 
 /// Reads and shows round by round. With `--json` all rounds at the end.
@@ -60,9 +60,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         for id in &args.ids.0 {
             // Registers 36 to 43: position, speed, load, supply, temperature.
             seen.push(match servos.read(*id, PRESENT_POSITION.address, 8) {
-                Ok(reading) => Seen::of(*id, &reading.data, reading.error.names().collect()),
-                Err(ServoError::Port(error)) => return Err(error),
-                Err(_) => Seen::silent(*id),
+                Ok(reading) => ServoReading::of(*id, &reading),
+                Err(error) => {
+                    error.port()?;
+                    ServoReading::silent(*id)
+                }
             });
         }
         if talk.json {
@@ -85,38 +87,34 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-impl Seen {
-    fn of(id: u8, data: &[u8], errors: Vec<&'static str>) -> Self {
-        let word = |at: usize| {
-            data.get(at..at + 2)
-                .map(|b| u16::from_le_bytes([b[0], b[1]]))
-        };
-        let signed = |at: usize| word(at).map(|code| f64::from(Signed(code).get()));
-        Seen {
+impl ServoReading {
+    fn of(id: u8, reading: &Reading) -> Self {
+        let joint = Joint::of_reading(reading).unwrap_or_default();
+        ServoReading {
             id,
-            position_rad: word(0).map(|code| Position(code).to_rad()),
-            speed_rad_s: signed(2).map(|value| value * Signed::SPEED_LSB_RAD_S),
-            load_share: signed(4).map(|value| value * Signed::OUTPUT_LSB),
-            supply_v: data.get(6).map(|code| f64::from(*code) * 0.1),
-            temperature_celsius: data.get(7).copied(),
-            errors,
+            position_rad: joint.position_rad,
+            speed_rad_s: joint.speed_rad_s,
+            load_share: joint.load,
+            supply_v: joint.supply_v,
+            temperature_celsius: joint.temperature_celsius.map(|celsius| celsius as u8),
+            error_flags: reading.error.names().collect(),
         }
     }
 
     fn silent(id: u8) -> Self {
-        Seen {
+        ServoReading {
             id,
             position_rad: None,
             speed_rad_s: None,
             load_share: None,
             supply_v: None,
             temperature_celsius: None,
-            errors: vec!["silent"],
+            error_flags: vec!["silent"],
         }
     }
 }
 
-fn text(seen: &[Seen]) -> String {
+fn text(seen: &[ServoReading]) -> String {
     let mut shown = table([
         "Id",
         "Position",
@@ -143,7 +141,7 @@ fn text(seen: &[Seen]) -> String {
             ),
             or_dash(servo.supply_v.map(|value| format!("{value:.1} V"))),
             or_dash(servo.temperature_celsius.map(|value| format!("{value} C"))),
-            servo.errors.join(", "),
+            servo.error_flags.join(", "),
         ]);
     }
     shown.to_string()

@@ -1,7 +1,7 @@
 //! `bus scan`: pings every id and reads what answers.
 
 use super::super::Outcome;
-use super::super::port::{AnyLink, Ids, Port, id_list, no_response};
+use super::super::port::{AnyLink, Ids, Port, id_list};
 use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
@@ -32,7 +32,7 @@ pub struct Found {
     pub position_rad: f64,
     pub supply_v: f64,
     pub temperature_celsius: u16,
-    pub errors: Vec<&'static str>,
+    pub error_flags: Vec<&'static str>,
 }
 
 /// Asks, shows.
@@ -63,7 +63,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 format!("{:.1} deg", servo.position_rad.to_degrees()),
                 format!("{:.1} V", servo.supply_v),
                 format!("{} C", servo.temperature_celsius),
-                servo.errors.join(", "),
+                servo.error_flags.join(", "),
             ]);
         }
         talk.print(&shown.to_string())?;
@@ -74,7 +74,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         args.ids.0.len()
     ));
     if found.is_empty() {
-        return Err(no_response());
+        return Err(handstand::record::no_response());
     }
     Ok(Outcome::Done)
 }
@@ -117,7 +117,7 @@ fn read(servos: &mut Servos<AnyLink>, id: u8, error: ErrorBits) -> ServoResult<F
         position_rad: Position(servos.get(id, ct::PRESENT_POSITION)?).to_rad(),
         supply_v: f64::from(servos.get(id, ct::PRESENT_SUPPLY)?) * 0.1,
         temperature_celsius: servos.get(id, ct::PRESENT_TEMPERATURE)?,
-        errors: error.names().collect(),
+        error_flags: error.names().collect(),
     })
 }
 

@@ -4,7 +4,7 @@
 //! the answers to writes. A new id is given only while a single servo is connected: two of one id cannot be told apart.
 
 use super::super::Outcome;
-use super::super::port::{Ids, Port, id_list, no_response};
+use super::super::port::{Ids, Port, id_list};
 use super::super::talk::Talk;
 use super::changes::{self, Change};
 use super::scan::scan;
@@ -37,7 +37,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let found = scan(&mut servos, &args.ids.0, talk)?;
     let mut ids: Vec<u8> = found.iter().map(|servo| servo.id).collect();
     if ids.is_empty() {
-        return Err(no_response());
+        return Err(handstand::record::no_response());
     }
     let mut changes = Vec::new();
     if let Some(new) = args.new_id {

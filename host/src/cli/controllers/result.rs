@@ -2,7 +2,8 @@
 
 use super::super::show;
 use super::Row;
-use handstand::controllers::{Design, picture};
+use handstand::controllers::Design;
+use handstand::plot::heat_map;
 use handstand::study::{Condition, Region};
 use serde_json::{Value, json};
 
@@ -88,7 +89,7 @@ fn degrees(region: Region) -> String {
     format!("{sign}{:.1}", region.spread_rad.to_degrees())
 }
 
-/// Plot of the shares that were stabilised.
+/// Heat map of the shares that were stabilised.
 pub fn plot(
     rows: &[Row],
     designs: &[&'static dyn Design],
@@ -103,7 +104,7 @@ pub fn plot(
             own.map(|row| row.figures.stabilised_share).collect()
         })
         .collect();
-    picture(
+    heat_map(
         "Robots stabilised by each controller under each condition",
         &ids,
         &titles,

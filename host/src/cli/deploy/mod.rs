@@ -144,7 +144,8 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
     let (reduced, request, made) = gains::requested(&args.gains, talk)?;
     let design = deploy::state_design(&reduced, request, &board)?;
     let plan = deploy::plan(&model, BoardLaw::State(&design), &board)?;
-    gains::write(&args.gains, &design, &made, talk)?;
+    let data = handstand::synth::export::json(&design, &made);
+    gains::write(&args.gains, &design, &made, &data, talk)?;
     Ok(plan)
 }
 

@@ -1,4 +1,4 @@
-//! What all motions together can tell apart.
+//! Excitation of each joint over all motions: reversals, travel, speed, holds.
 
 use super::extremes::Extremes;
 use super::finding::Findings;
@@ -141,13 +141,15 @@ impl JointExcitation {
         }
         if range < 0.3 {
             let what = format!(
-                "{name} travels only {range:.3} rad: gravity and a constant torque can't be told apart"
+                "{name} travels only {range:.3} rad: gravity and a constant torque can't be told \
+                 apart"
             );
             warn(what, "record wider motions");
         }
         if top < 0.5 {
             let what = format!(
-                "{name} never exceeds {top:.2} rad/s: what grows with speed can't be told from what does not"
+                "{name} never exceeds {top:.2} rad/s: what grows with speed can't be told from what \
+                 does not"
             );
             warn(what, "record faster motions too");
         }

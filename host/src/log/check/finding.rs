@@ -32,8 +32,9 @@ impl Severity {
 /// One thing found in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFinding {
-    /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`, `payload`,
-    /// `turned`, `wrap`, `stuck`, `extreme`, `step`, `unit`, `relation`, `supply` or `excitation`.
+    /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`,
+    /// `payload`, `turned`, `wrap`, `stuck`, `extreme`, `step`, `unit`, `relation`, `supply` or
+    /// `excitation`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,

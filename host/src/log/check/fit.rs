@@ -37,8 +37,8 @@ impl Regression {
         self.count += 1;
     }
 
-    /// All coefficients; none while there are too few samples. A regressor that never differs from zero, or
-    /// that others explain, gets `t = 0`.
+    /// All coefficients; none while there are too few samples. A regressor that never differs from
+    /// zero, or that others explain, gets `t = 0`.
     pub fn solve(&self) -> Option<Vec<Coefficient>> {
         let n = self.xy.len();
         if self.count < 3 * n + 10 {

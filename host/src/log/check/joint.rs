@@ -134,7 +134,8 @@ impl JointCheck {
         }
     }
 
-    /// Keeps a still run that lasted while the input changed; the largest changes if there are many.
+    /// Keeps a still run that lasted while the input changed; the largest changes if there are
+    /// many.
     fn end_still(&mut self) {
         let Some(still) = self.still.take() else {
             return;

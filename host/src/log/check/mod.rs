@@ -1,7 +1,8 @@
-//! Is a log fit to be learned from? Streams it once, in memory that does not grow with it.
+//! Checks the quality of logs: one pass over the rows, in memory that does not grow with them.
 //!
-//! What is broken is refused; what looks wrong (unit, sign, zero, gaps, an end stop) or leaves a question open
-//! (too few reversals) is warned of; the rest is noted. Judging goes on after a finding.
+//! What is broken is refused; what looks wrong (unit, sign, zero, gaps, an end stop) or leaves a
+//! question open (too few reversals) is warned of; the rest is noted. Judging goes on after a
+//! finding.
 
 mod excitation;
 mod extremes;
@@ -31,7 +32,8 @@ use sampling::Sampling;
 
 /// Judges the requested logs against the model that is to explain them.
 ///
-/// Findings come in the order of the files; those about several files together come last, and without a place.
+/// Findings come in the order of the files; those about several files together come last, and
+/// without a place.
 ///
 /// # Errors
 /// Only what the system refuses; everything wrong with the content is a finding.

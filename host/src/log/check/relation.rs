@@ -13,8 +13,9 @@ use std::collections::VecDeque;
 const LAGS: [usize; 6] = [0, 1, 2, 4, 8, 16];
 /// A joint slower than this may be held by stiction, rad/s.
 const MOVING_RAD_S: f64 = 0.1;
-/// Standard errors for a sign to be believed. Under feedback the input follows the motion: an idle shoulder
-/// of a public double pendulum reaches -4.8 with the sign right, and a delayed PD loop shows no sign at all.
+/// Standard errors for a sign to be believed. Under feedback the input follows the motion: an idle
+/// shoulder of a public double pendulum reaches -4.8 with the sign right, and a delayed PD loop
+/// shows no sign at all.
 const SURE: f64 = 8.0;
 
 /// Running sums of one file.
@@ -239,8 +240,8 @@ impl Relations {
         if tilt.abs() > 0.35 && sine.t.hypot(cosine.t) > 3.0 * SURE {
             let name = &model.log.joints[0].position.name;
             let what = format!(
-                "gravity pulls {:.2} rad beside where {name} has it hang: a wrong angle_zero, sign or unit, or a tilted rig",
-                tilt
+                "gravity pulls {tilt:.2} rad beside where {name} has it hang: a wrong angle_zero, \
+                 sign or unit, or a tilted rig"
             );
             let remedy = "compare the resting angle in the log with the model's angle_zero";
             findings.warn("relation", place.clone(), (what, remedy));

@@ -1,4 +1,4 @@
-//! Time: does it increase, evenly, in the unit declared?
+//! Sampling times: order, jitter, gaps, unit.
 
 use super::finding::Findings;
 use crate::error::Place;
@@ -48,7 +48,7 @@ impl Sampling {
                 previous_s: previous,
             };
             findings.refuse("time", place(), &reason);
-            // After a restart the new time counts, so that it is told once.
+            // After a restart the new time counts, so that one restart is one finding.
             self.previous_s = Some(row.time_s);
             return false;
         }

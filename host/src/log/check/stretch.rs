@@ -67,7 +67,8 @@ impl Stretches {
         stretch
     }
 
-    /// Adds the stretch from the previous sample to `row`; inputs hold, the rest is joined by lines.
+    /// Adds the stretch from the previous sample to `row`; inputs hold, the rest is joined by
+    /// lines.
     fn sum(&mut self, row: &LogRow) {
         let Some(previous) = &mut self.previous else {
             return;

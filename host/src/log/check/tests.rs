@@ -1,4 +1,4 @@
-//! Each fault is found, and a good log is left in peace.
+//! The check finds each fault, and warns of nothing in a good log.
 
 use super::*;
 use crate::log::tests::fixture::{columns, model, motion, position_drive};
@@ -229,7 +229,8 @@ fn wraps_stops_and_steps_are_found() {
 
 #[test]
 fn what_is_kept_does_not_grow_with_the_log() {
-    // 200,000 rows, every hundredth late, every thousandth broken: all a check holds is of fixed size.
+    // 200,000 rows, every hundredth late, every thousandth broken: all a check holds is of fixed
+    // size.
     let mut text = String::from("t_s,q,u\n");
     for i in 0..200_000 {
         let t = f64::from(i) * 0.001 + f64::from(i / 100) * 0.02;

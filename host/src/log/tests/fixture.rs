@@ -1,4 +1,4 @@
-//! Columns, motions and files for this room's tests.
+//! Columns, motions and models for the log's tests.
 
 use super::{Motion, MotionSource};
 use crate::model::*;

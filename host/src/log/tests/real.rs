@@ -1,4 +1,5 @@
-//! The public logs: they read in full, pass with justified warnings only, and faults put into them show.
+//! The public logs: they read in full, pass with justified warnings only, and faults put into them
+//! show.
 //!
 //! The folder is named by `HANDSTAND_DATA`; without it these tests say so and pass.
 

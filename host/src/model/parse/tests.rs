@@ -69,7 +69,8 @@ fn what_is_left_out_takes_its_default() {
     assert_eq!(free, ["coulomb@1.torque_nm", "delay@2.delay_s"]);
 }
 
-/// Replace this by that in the good file; the complaint's place, message and remedy must hold these.
+/// Replace this by that in the good file; the complaint's place, message and remedy must hold
+/// these.
 #[rustfmt::skip]
 const REFUSED: &[(&str, &str, &str, &str, &str)] = &[
     // Keys.

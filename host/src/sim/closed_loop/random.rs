@@ -11,6 +11,9 @@ pub fn stream(seed: u64, index: u64) -> ChaCha8Rng {
 }
 
 /// A standard normal number (Box and Muller 1958).
+///
+/// `rand_distr` draws one in 3.4 ns, this in 26 ns; a run draws few, and another method would
+/// change every seeded figure.
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (std::f64::consts::TAU * rng.random::<f64>()).cos()

@@ -24,7 +24,8 @@ pub fn csv(design: &Design) -> String {
     text
 }
 
-/// Everything, matrices as lists of rows. `plant` is what python-control's `ss(a, b, c, d, ts)` takes.
+/// Everything, matrices as lists of rows. `plant` is what python-control's `ss(a, b, c, d, ts)`
+/// takes.
 pub fn json(design: &Design, made: &Provenance) -> Value {
     let [q, r] = &design.weights;
     let gains = &design.gains;
@@ -140,7 +141,8 @@ fn complex(values: &[Complex<f64>]) -> Vec<[f64; 2]> {
     values.iter().map(|z| [z.re, z.im]).collect()
 }
 
-/// A script that makes `plant`, `K` and, with an estimator, `controller`, in MATLAB's Control System Toolbox or Octave's control package.
+/// A script that makes `plant`, `K` and, with an estimator, `controller`, in MATLAB's Control
+/// System Toolbox or Octave's control package.
 pub fn matlab(design: &Design, made: &Provenance) -> String {
     let mut text = format!(
         "% `{}` by handstand {} from {}\n% sha256 {}\n% {}\n",

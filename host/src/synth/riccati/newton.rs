@@ -1,5 +1,5 @@
-//! Newton's iteration on a Riccati equation (Kleinman, IEEE Trans. Automatic Control 13 (1968) 114; Hewer, ibid. 16
-//! (1971) 382), with residuals in twice the digits.
+//! Newton's iteration on a Riccati equation (Kleinman, IEEE Trans. Automatic Control 13 (1968) 114;
+//! Hewer, ibid. 16 (1971) 382), with residuals in twice the digits.
 
 use super::problem::{Problem, Solution, TimeDomain, rms};
 use super::stein::{lyapunov, stein};

@@ -40,8 +40,8 @@ impl Problem<'_> {
         if let Some(solution) = direct.and_then(|x| newton::refine(self, x)) {
             return Some(solution);
         }
-        // Modes that Q does not see are left as they are by doubling, even if they grow. Newton's iteration needs
-        // only a gain that stabilises, such as one for a cost that sees everything.
+        // Modes that Q does not see are left as they are by doubling, even if they grow. Newton's
+        // iteration needs only a gain that stabilises, such as one for a cost that sees everything.
         let n = self.a.nrows();
         let size = self.q.amax().max(1e-3 * self.r.amax());
         let seen = self.q + DMatrix::identity(n, n) * size;

@@ -1,19 +1,26 @@
 //! The motion that a recording holds.
 
-use handstand::record::Recording;
-use handstand::{Error, Place, Result};
+use super::Recording;
+use crate::error::{Error, Place, Result};
 use std::path::Path;
 
 /// A motion to follow: times from 0, and a pose for each.
-pub struct Motion {
+#[derive(Debug, Clone, PartialEq)]
+pub struct GoalMotion {
+    /// Times, s, the first 0.
     pub time_s: Vec<f64>,
+    /// Goals at each time, rad, in the order of ids.
     pub goals_rad: Vec<Vec<f64>>,
+    /// Positions recorded at each time, rad.
     pub measured_rad: Vec<Vec<Option<f64>>>,
 }
 
-impl Motion {
-    /// Of a recording; `file` names it in errors.
-    pub fn of(recording: &Recording, file: &Path) -> Result<Motion> {
+impl GoalMotion {
+    /// The motion of a recording: its goals, or its positions where it has no goals; `file` names it in errors.
+    ///
+    /// # Errors
+    /// Fewer than two samples, times that do not grow, or a servo without goal and position.
+    pub fn of(recording: &Recording, file: &Path) -> Result<GoalMotion> {
         let refused = |what: &str, remedy: &str| Err(Error::data(Place::file(file), what, remedy));
         if recording.samples.len() < 2 {
             return refused(
@@ -26,7 +33,7 @@ impl Motion {
             .iter()
             .any(|sample| sample.joints.iter().any(|joint| joint.goal_rad.is_some()));
         let mut pose = vec![None; recording.ids.len()];
-        let mut motion = Motion {
+        let mut motion = GoalMotion {
             time_s: Vec::new(),
             goals_rad: Vec::new(),
             measured_rad: Vec::new(),

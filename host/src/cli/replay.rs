@@ -12,17 +12,13 @@
 //! `--json` prints `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions
 //! recorded), `stopped` (why, or null).
 
-mod motion;
-
 use super::flash::agreed;
 use super::interrupt::Interrupt;
-use super::record::Tally;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{Recorder, Sample, Source, read};
+use handstand::record::{GoalMotion, Recorder, Rms, Sample, Source, Tally, read};
 use handstand::{Error, Result};
-use motion::Motion;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -47,21 +43,6 @@ pub struct Args {
 /// Speed on the way to the first pose, rad/s.
 const APPROACH_RAD_S: f64 = 0.5;
 
-/// Sums of squares.
-#[derive(Default)]
-struct Rms(f64, u64);
-
-impl Rms {
-    fn add(&mut self, error: f64) {
-        self.0 += error * error;
-        self.1 += 1;
-    }
-
-    fn value(&self) -> Option<f64> {
-        (self.1 > 0).then(|| (self.0 / self.1 as f64).sqrt())
-    }
-}
-
 /// What it needs while it runs.
 struct Run<'a> {
     source: Box<dyn Source>,
@@ -76,7 +57,7 @@ struct Run<'a> {
 /// Follows the motion.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let recording = read(&args.motion)?;
-    let motion = Motion::of(&recording, &args.motion)?;
+    let motion = GoalMotion::of(&recording, &args.motion)?;
     let mut robot = args.robot.clone();
     robot.ids.0 = recording.ids.clone();
     if let Some(file) = &args.record {
@@ -105,7 +86,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         repeat: Rms::default(),
         talk,
     };
-    run.interrupt.at_once(run.source.let_go());
+    run.interrupt.at_once(run.source.emergency_off());
     run.source.arm()?;
     // Whatever happens, torque goes off before anything is told.
     let outcome = run.follow(&motion);
@@ -120,7 +101,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 impl Run<'_> {
     /// Why it was stopped, if it was.
-    fn follow(&mut self, motion: &Motion) -> Result<Option<String>> {
+    fn follow(&mut self, motion: &GoalMotion) -> Result<Option<String>> {
         let first = &motion.goals_rad[0];
         let Some(here) = self.step(None)? else {
             return Ok(self.why());
@@ -207,7 +188,7 @@ impl Run<'_> {
         let (tracking, repeat) = (self.tracking.value(), self.repeat.value());
         if self.talk.json {
             self.talk.data(&json!({
-                "samples": self.tally.samples(),
+                "samples": self.tally.samples,
                 "seconds": self.tally.seconds(),
                 "tracking_rms_rad": tracking,
                 "repeat_rms_rad": repeat,

@@ -1,5 +1,7 @@
 //! The page as a whole.
 
+pub(super) mod sample;
+
 use super::*;
 use crate::diagnose::Verdict;
 use proptest::prelude::*;
@@ -124,7 +126,7 @@ fn text_of_a_named_effect() {
 
     Error: 41.2 mrad, refitted as it is -> 6.31 mrad; floor 5.10 mrad.
     RMS over whole motions, on motions that took no part in the fit.
-    So the error falls by 85 % (95 % interval of the fall: 81 % to 88 %).
+    So the error falls by 85 % (95 % interval of the reduction: 81 % to 88 %).
 
     As good
       - Dead zone at joint 1: 6.50 mrad; width = 0.031 (0.020 to 0.050)

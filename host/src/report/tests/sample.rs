@@ -1,13 +1,13 @@
 //! A report made by hand, for tests and for looking at.
 
-use super::{LogFile, ModelFile, Provenance, Report};
 use crate::compare::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 use crate::diagnose::{
     Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
+use crate::report::{LogFile, ModelFile, Provenance, Report};
 
-pub(super) fn report() -> Report {
+pub(in crate::report) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
         name: name.into(),
         sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
@@ -35,7 +35,7 @@ pub(super) fn report() -> Report {
     }
 }
 
-pub(super) fn comparison(model: &str, error_mrad: f64) -> Comparison {
+pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison {
     Comparison {
         model: model.into(),
         horizon_s: None,
@@ -147,7 +147,7 @@ fn effect(kind: &str, title: &str, parameters: Vec<FittedValue>) -> FittedEffect
     }
 }
 
-pub(super) fn diagnosis() -> Diagnosis {
+pub(in crate::report) fn diagnosis() -> Diagnosis {
     let coulomb = fitted("coulomb@1.torque_nm", "N m", [0.0821, 0.0794, 0.0851]);
     let mut dead_zone = fitted("dead_zone@1.width", "1", [0.031, 0.02, 0.05]);
     dead_zone.on_bound = true;

@@ -1,22 +1,22 @@
-//! The effects explained to people: a page for each, and a table of all. Every word and curve comes from the
-//! descriptions and the laws.
+//! An effect explained on a terminal: a page for each, and a table of all. Every word and curve
+//! comes from the descriptions and the laws.
 
-use super::canvas::{plot, rounded};
-use super::signature::signature;
-use super::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site, named};
-use comfy_table::{ContentArrangement, Table, TableComponent, presets};
+use super::plain_table;
+use super::signatures::{chart, title};
+use crate::effects::signature::signature;
+use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use crate::number::given;
+use comfy_table::Table;
 
 /// Columns of a page.
 const WIDTH: usize = 90;
 
 /// One line for each effect.
-pub fn overview() -> Table {
+pub fn overview() -> String {
     let mut table = table(["Name", "Effect", "Law"]);
-    for effect in EFFECTS {
-        let info = effect.info();
-        table.add_row([info.id, info.title, info.law]);
-    }
-    table
+    let infos = EFFECTS.iter().map(|effect| effect.info());
+    table.add_rows(infos.map(|info| [info.id, info.title, info.law]));
+    table.to_string()
 }
 
 /// Everything there is to say of one effect, as plain text.
@@ -25,7 +25,7 @@ pub fn page(effect: &dyn Effect) -> String {
     let sections = [
         heading(info),
         section("Law", &wrapped(info.law)),
-        section("Parameters", &parameters(info).to_string()),
+        section("Parameters", &parameters(info)),
         section("What a log shows", &wrapped(info.looks_like)),
         section("Signature", &drawn(effect)),
         section("Confused with", &confusions(info)),
@@ -38,20 +38,20 @@ pub fn page(effect: &dyn Effect) -> String {
 fn heading(info: &EffectInfo) -> String {
     let title = format!("{} ({})", info.title, info.id);
     let rule = "=".repeat(title.chars().count());
-    let acts = format!("Acts on {}, at {}.", site(info.site), scope(info.scope));
-    let needs = match needs(info.needs) {
-        Some(needs) => format!("{acts} Needs {needs}."),
-        None => acts,
-    };
-    format!("{title}\n{rule}\n{}", wrapped(&needs))
+    let acts = format!(
+        "Acts on {}, at {}.{}",
+        site(info.site),
+        scope(info.scope),
+        needs(info.needs)
+    );
+    format!("{title}\n{rule}\n{}", wrapped(&acts))
 }
 
 fn section(name: &str, text: &str) -> String {
-    let indented: Vec<String> = text
+    let indented = text
         .lines()
-        .map(|line| format!("  {line}").trim_end().to_string())
-        .collect();
-    format!("{name}\n{}", indented.join("\n"))
+        .map(|line| format!("\n  {line}").trim_end_matches(' ').to_string());
+    indented.fold(name.to_string(), |section, line| section + &line)
 }
 
 fn site(site: Site) -> &'static str {
@@ -75,28 +75,28 @@ fn scope(scope: Scope) -> &'static str {
     }
 }
 
-fn needs(needs: Needs) -> Option<&'static str> {
+fn needs(needs: Needs) -> &'static str {
     match needs {
-        Needs::Nothing => None,
-        Needs::Supply => Some("the supply voltage in the log, and the nominal one in the model"),
-        Needs::GearLoad => Some("the torque through the gear, which the dynamics compute"),
-        Needs::BearingLoad => Some("the force in the bearing, which the dynamics compute"),
+        Needs::Nothing => "",
+        Needs::Supply => " Needs the supply voltage in the log, and the nominal one in the model.",
+        Needs::GearLoad => " Needs the torque through the gear, which the dynamics compute.",
+        Needs::BearingLoad => " Needs the force in the bearing, which the dynamics compute.",
     }
 }
 
-fn parameters(info: &EffectInfo) -> Table {
+fn parameters(info: &EffectInfo) -> String {
     let mut table = table(["Key", "Unit", "Off", "Typical", "Bounds", "Meaning"]);
     for parameter in info.parameters {
         table.add_row([
-            parameter.key.to_string(),
-            parameter.unit.to_string(),
-            off(parameter),
-            range(parameter.typical),
-            range(parameter.bounds),
-            parameter.meaning.to_string(),
+            parameter.key,
+            parameter.unit,
+            &off(parameter),
+            &range(parameter.typical),
+            &range(parameter.bounds),
+            parameter.meaning,
         ]);
     }
-    table
+    table.to_string()
 }
 
 fn off(parameter: &Parameter) -> String {
@@ -108,40 +108,28 @@ fn off(parameter: &Parameter) -> String {
 }
 
 fn range((low, high): (f64, f64)) -> String {
-    format!("{} to {}", rounded(low), rounded(high))
+    format!("{} to {}", given(low), given(high))
 }
 
 fn confusions(info: &EffectInfo) -> String {
-    let title = |id| named(id).map_or(id, |effect| effect.info().title);
-    let line = |(id, why): (&'static str, &str)| wrapped(&format!("{} ({id}): {why}", title(id)));
-    let lines: Vec<String> = info
-        .confused_with
-        .iter()
-        .map(|c| line((c.with, c.why)))
-        .collect();
-    lines.join("\n")
+    let lines = info.confused_with.iter().map(|confusion| {
+        let id = confusion.with;
+        wrapped(&format!("{} ({id}): {}", title(id), confusion.why))
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// The signature with its axes, and what it is drawn for.
 fn drawn(effect: &dyn Effect) -> String {
     let signature = signature(effect);
-    let pairs = effect.info().parameters.iter().zip(&signature.values);
-    let values: Vec<String> = pairs
-        .map(|(parameter, value)| format!("{} = {}", parameter.key, rounded(*value)))
-        .collect();
-    let exaggerated = effect
-        .info()
-        .parameters
-        .iter()
-        .zip(&signature.values)
-        .any(beyond_typical);
-    let note = if exaggerated {
-        " (more than typical, to be seen)"
-    } else {
-        ""
+    let chart = chart(effect, &signature);
+    let mut values = effect.info().parameters.iter().zip(&signature.values);
+    let note = match values.any(beyond_typical) {
+        true => " (more than typical, to be seen)",
+        false => "",
     };
-    let legend = format!("line: with {}{note}; dots: without", values.join(", "));
-    format!("{}\n{}", plot(&signature), wrapped(&legend))
+    let legend = format!("line: {}{note}; dots: without", chart.curves[1].name);
+    format!("{}\n{}", chart.text(), wrapped(&legend))
 }
 
 fn beyond_typical((parameter, value): (&Parameter, &f64)) -> bool {
@@ -150,14 +138,8 @@ fn beyond_typical((parameter, value): (&Parameter, &f64)) -> bool {
 }
 
 fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH as u16)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
+    let mut table = plain_table(header);
+    table.set_width(WIDTH as u16);
     table
 }
 
