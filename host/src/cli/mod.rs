@@ -89,7 +89,7 @@ pub enum Command {
     /// Add an effect to a model, its values fitted to logs
     Add(add::Args),
     /// Find gains that balance a model, and write them for firmware
-    Gains(Box<deploy::Gains>),
+    Gains(Box<deploy::GainsCommand>),
     /// See what the closed loop of robot and controller bears
     #[command(subcommand)]
     Study(study::Command),
@@ -113,7 +113,7 @@ pub enum Command {
     Robust(robust::Args),
     /// Watch the whole loop on such a bench
     Demo(demo::Args),
-    /// Communicate with servos: scan, read, write, set up, monitor, back up, restore, find faults
+    /// Communicate with servos: scan, read, write, set up, monitor, back up, diagnose
     #[command(subcommand)]
     Bus(bus::Command),
     /// Record what servos do
