@@ -5,7 +5,9 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::sim::closed_loop::{
+    ClosedLoop, Commands, InitialState, PosedPlant, StateFeedback, stream,
+};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -23,12 +25,12 @@ fn runs(c: &mut Criterion) {
     let text = include_str!("../models/handstand.toml");
     let model = Model::parse(text, Path::new("handstand.toml")).expect("our own model");
     let pose = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
-    let dense = Plant::new(&model, &pose).expect("our own model");
-    let chain = dense.clone().by_articulated_bodies();
+    let dense = PosedPlant::new(&model, &pose, Commands::Torque).expect("our own model");
+    let general = dense.clone().by_general_simulation();
     let controller = StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec());
-    let start = Start::at([0.01, -0.02, 0.02]);
-    for (name, plant) in [("dense", dense), ("articulated bodies", chain)] {
-        let closed = ClosedLoop::ideal(plant, 0.01);
+    let start = InitialState::at([0.01, -0.02, 0.02]);
+    for (name, plant) in [("dense", dense), ("general", general)] {
+        let closed = ClosedLoop::around(plant, 0.01);
         let starts = vec![start.clone(); 32];
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let one = one.expect("a thread can be started");

@@ -31,7 +31,8 @@ fn synth(c: &mut Criterion) {
     for links in [3, 10, 30] {
         let model = model(links);
         let pose = upright(&model);
-        let plant = linearise(&model, &pose).expect("upright is an equilibrium");
+        let linear = linearise(&model, &pose).expect("upright is an equilibrium");
+        let plant = linear.plant;
         let sampled = zoh(&plant, 0.01, 0.0).expect("it can be sampled");
         let (n, m) = plant.b.shape();
         let (q, r) = (DMatrix::identity(n, n), DMatrix::identity(m, m));

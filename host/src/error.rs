@@ -1,5 +1,7 @@
-//! What can go wrong, said with the place, what was found there, and the remedy.
+//! Errors of the whole crate: place, what was found there, exit code and remedy.
 
+use std::any::Any;
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +13,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub struct Place {
     /// The file as the user named it.
     pub file: PathBuf,
-    /// Line, if the trouble sits on one.
+    /// Line, if it is on one.
     pub line: Option<usize>,
     /// Column: a character in TOML, a field in CSV.
     pub column: Option<usize>,
@@ -50,118 +52,143 @@ impl fmt::Display for Place {
     }
 }
 
+/// What is wrong, as data to match on: each module has a small enum of its own.
+///
+/// `Display` is the sentence that people read: what was found, and why it is refused.
+pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
+    /// What to do about it.
+    fn remedy(&self) -> Cow<'_, str>;
+}
+
+/// A reason that nobody matches on.
+#[derive(Debug)]
+struct PlainReason {
+    what: String,
+    remedy: String,
+}
+
+impl fmt::Display for PlainReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.what)
+    }
+}
+
+impl Reason for PlainReason {
+    fn remedy(&self) -> Cow<'_, str> {
+        Cow::Borrowed(&self.remedy)
+    }
+}
+
+/// A reason in words alone.
+pub(crate) fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
+    PlainReason {
+        what: what.into(),
+        remedy: remedy.into(),
+    }
+}
+
 /// An error with everything its reader needs to mend it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The command line asks for something that makes no sense.
-    #[error("{what}")]
-    Usage {
-        /// What is wrong with the request.
-        what: String,
-        /// How to ask instead.
-        remedy: String,
-    },
+    #[error("{0}")]
+    Usage(Box<dyn Reason>),
     /// A file's content is refused.
-    #[error("{place}: {what}")]
+    #[error("{place}: {reason}")]
     Data {
         /// File, line and column.
         place: Place,
-        /// What was found, and why it is refused.
-        what: String,
-        /// What to do about it.
-        remedy: String,
+        /// What was found there.
+        reason: Box<dyn Reason>,
     },
     /// The operating system refused a file.
-    #[error("{path}: cannot {action}: {reason}", path = path.display())]
+    #[error("{path}: cannot {action}: {refusal}", path = path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// What was tried: "read", "write", ...
         action: &'static str,
-        /// The system's own reason. Part of the message, hence no `source`, which a chain would say again.
-        reason: std::io::Error,
+        /// The system's own reason. Part of the message, hence no `source`, which a chain would
+        /// say again.
+        refusal: std::io::Error,
     },
     /// Model, weights and timing are well formed, but no design follows from them.
-    #[error("{what}")]
-    Design {
-        /// What stands in the way.
-        what: String,
-        /// What to change.
-        remedy: String,
-    },
+    #[error("{0}")]
+    Design(Box<dyn Reason>),
     /// A device (serial port, servo) failed or fell silent.
-    #[error("{what}")]
-    Device {
-        /// What failed.
-        what: String,
-        /// What to try.
-        remedy: String,
-    },
+    #[error("{0}")]
+    Device(Box<dyn Reason>),
 }
 
 impl Error {
     /// A file's content is refused: `what` was found at `place`; `remedy` mends it.
     pub fn data(place: Place, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Error::refused(place, words(what, remedy))
+    }
+
+    /// A file's content is refused for a reason that callers can match on.
+    pub fn refused(place: Place, reason: impl Reason) -> Self {
         Error::Data {
             place,
-            what: what.into(),
-            remedy: remedy.into(),
+            reason: Box::new(reason),
         }
     }
 
     /// The request makes no sense.
     pub fn usage(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Usage {
-            what: what.into(),
-            remedy: remedy.into(),
-        }
+        Error::Usage(Box::new(words(what, remedy)))
     }
 
     /// No design follows from what was given: `what` stands in the way.
     pub fn design(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Design {
-            what: what.into(),
-            remedy: remedy.into(),
-        }
+        Error::Design(Box::new(words(what, remedy)))
     }
 
     /// A device failed or fell silent.
     pub fn device(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Device {
-            what: what.into(),
-            remedy: remedy.into(),
-        }
+        Error::Device(Box::new(words(what, remedy)))
     }
 
     /// The system refused `action` on `path`.
-    pub fn file(path: impl AsRef<Path>, action: &'static str, reason: std::io::Error) -> Self {
+    pub fn file(path: impl AsRef<Path>, action: &'static str, refusal: std::io::Error) -> Self {
         Error::File {
             path: path.as_ref().to_path_buf(),
             action,
-            reason,
+            refusal,
         }
     }
 
     /// The process exit code of this error: 2 usage, 3 bad data or file, 4 device.
     ///
-    /// 5 is kept for a drive stopped for safety, 1 is an answer (no), and 101 a bug; none of them is an error.
+    /// 5 is kept for a drive stopped for safety, 1 is an answer (no), and 101 a bug; none of them
+    /// is an error.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Error::Usage { .. } => 2,
-            Error::Data { .. } | Error::Design { .. } | Error::File { .. } => 3,
-            Error::Device { .. } => 4,
+            Error::Usage(_) => 2,
+            Error::Data { .. } | Error::Design(_) | Error::File { .. } => 3,
+            Error::Device(_) => 4,
         }
     }
 
-    /// What the reader can do about it, if anything is known.
-    pub fn remedy(&self) -> Option<&str> {
+    fn any_reason(&self) -> Option<&dyn Reason> {
         match self {
-            Error::Usage { remedy, .. }
-            | Error::Data { remedy, .. }
-            | Error::Design { remedy, .. }
-            | Error::Device { remedy, .. } => Some(remedy),
+            Error::Usage(reason)
+            | Error::Data { reason, .. }
+            | Error::Design(reason)
+            | Error::Device(reason) => Some(&**reason),
             Error::File { .. } => None,
         }
+    }
+
+    /// What is wrong as the data of one module, such as `model::TomlReason`;
+    /// `None` if the reason is of another kind.
+    pub fn reason<T: Reason>(&self) -> Option<&T> {
+        (self.any_reason()? as &dyn Any).downcast_ref()
+    }
+
+    /// What the reader can do about it, if anything is known.
+    pub fn remedy(&self) -> Option<Cow<'_, str>> {
+        self.any_reason().map(Reason::remedy)
     }
 }
 

@@ -1,11 +1,14 @@
-//! Model a chain of links, compare it with measured logs, and find the physical effect that is missing.
+//! Model a chain of links, compare it with measured logs, and find the physical effect that is
+//! missing.
 //!
-//! Numbers for people are written by `number`, which every layer may read. Layers read downward only: `model` -> `dynamics` -> `effects` -> `sim`; `sim` + `log` -> `identify` ->
-//! `diagnose` -> `report`; `model` + `dynamics` + `effects` -> `synth`; `model` + `dynamics` -> `closed_loop`;
-//! `synth` + `closed_loop` -> `study`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing depends on it.
+//! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
+//! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
+//! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
+//! `paper`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing
+//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for
+//! people.
 
 pub mod challenge;
-pub mod closed_loop;
 pub mod compare;
 pub mod controllers;
 pub mod deploy;
@@ -20,6 +23,7 @@ pub mod model;
 pub mod number;
 pub mod output;
 pub mod paper;
+pub mod plot;
 pub mod record;
 pub mod report;
 pub mod sim;

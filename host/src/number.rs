@@ -5,36 +5,45 @@ pub(crate) const NONE: &str = "–";
 
 /// Three significant digits; `–` for what is no number.
 pub(crate) fn short(value: f64) -> String {
-    if let Some(text) = special(value) {
-        return text;
-    }
-    let power = power(value);
-    if !(-4..=5).contains(&power) {
-        return format!("{value:.2e}");
-    }
-    plain(value, decimals(2 - power))
+    special(value).unwrap_or_else(|| significant(value, 3))
 }
 
 /// Four significant digits, for values that go on into a file or another command.
 pub fn exact(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
+    match value == 0.0 || !value.is_finite() {
+        true => value.to_string(),
+        false => significant(value, 4),
     }
+}
+
+/// With an exponent below 1e-4 and from 1e6.
+fn significant(value: f64, digits: i32) -> String {
     let power = power(value);
-    if (-4..6).contains(&power) {
-        format!("{value:.*}", decimals(3 - power))
-    } else {
-        format!("{value:.3e}")
+    match (-4..6).contains(&power) {
+        true => plain(value, decimals(digits - 1 - power)),
+        false => format!("{value:.*e}", decimals(digits - 1)),
     }
+}
+
+/// Bytes in lower-case hexadecimal.
+pub fn hex(bytes: impl AsRef<[u8]>) -> String {
+    let bytes = bytes.as_ref().iter();
+    bytes.map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
 pub(crate) fn given(value: f64) -> String {
     let text = short(value);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
+    let (digits, power) = text.split_at(text.find('e').unwrap_or(text.len()));
+    match digits.contains('.') {
+        true => {
+            digits
+                .trim_end_matches('0')
+                .trim_end_matches('.')
+                .to_string()
+                + power
+        }
+        false => text,
     }
 }
 
@@ -43,7 +52,7 @@ pub(crate) fn mrad(value_rad: f64) -> String {
     short(1e3 * value_rad)
 }
 
-/// As [`mrad`], with three digits at most behind the point, as columns that are compared bear them.
+/// As [`mrad`], with three digits at most behind the point, as columns that are compared have them.
 pub(crate) fn mrad_in_column(value_rad: f64) -> String {
     let value = 1e3 * value_rad;
     let digits = match value.abs() {
@@ -141,6 +150,11 @@ mod tests {
         assert_eq!(short(1.5e-9), "1.50e-9");
         assert_eq!(given(0.1), "0.1");
         assert_eq!(given(100.0), "100");
+        assert_eq!(given(0.0), "0");
+        assert_eq!(given(-1.5), "-1.5");
+        assert_eq!(given(0.012345), "0.0123");
+        assert_eq!(given(50.0), "50");
+        assert_eq!(given(1e-5), "1e-5");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
         assert_eq!(exact(0.0123456), "0.01235");

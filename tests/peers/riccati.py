@@ -1,9 +1,9 @@
 """Random linear-quadratic problems and a long chain, for SciPy, mpmath and the library alike.
 
-Problems come from splitmix64, written out here and in `host/tests/riccati.rs`, so both sides solve the same bits:
+Problems come from splitmix64, written out here and in `host/tests/it/riccati.rs`, so both sides solve the same bits:
 `problem(seed)` gives A, B, Q, R. `chain(n)` is n equal links standing upright, joint 1 passive, sampled at 10 ms.
 
-As a program, writes the fixtures of `host/tests/riccati.rs`, little-endian doubles, matrices row by row:
+As a program, writes the fixtures of `host/tests/it/riccati.rs`, little-endian doubles, matrices row by row:
 
   riccati_random.f64   for seeds 0..999 the discrete K, by SciPy and to 60 digits by mpmath, then the continuous K
   riccati_chain.f64    A, B of the chain of 30, then its K to 60 digits; Q = I, R = I

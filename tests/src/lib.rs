@@ -6,4 +6,5 @@ pub mod bench;
 pub mod hidden;
 #[cfg(unix)]
 pub mod kills;
+pub mod measured;
 pub mod peers;

@@ -3,10 +3,13 @@
 //! The truth has its own equations and its own integrator and calls nothing of the library: a mistake in the
 //! library's laws shows up as an effect that isn't found, instead of cancelling out.
 
-mod goal;
+mod bench_arm;
+mod error;
+mod hidden_effect;
 mod motion;
 mod physics;
-mod rig;
+mod reference;
+mod rounding;
 mod score;
 mod seal;
 mod text;
@@ -15,45 +18,21 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use rig::{KINDS, kind_named};
-pub use score::{Score, ScoredValue, score};
-pub use seal::{seal, unseal};
+pub use error::{ChallengeError, SealError};
+pub use hidden_effect::{Hidden, KINDS, kind_named};
+pub use score::{ChallengeScore, ScoredValue, score};
+pub use seal::{ChallengeAnswer, seal, unseal};
 
-use crate::error::{Error, Result};
-use motion::{Recording, record};
+use crate::error::Error;
+use bench_arm::{BenchArm, STALL_NM};
+use hidden_effect::HiddenEffect;
+use motion::{ArmRecording, record};
 use physics::{Mount, Physics};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rig::{Rig, STALL_NM, Secret, rounded};
-use serde::{Deserialize, Serialize};
+use rounding::rounded;
 use std::fs;
 use std::path::Path;
-
-/// What a challenge hides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hidden {
-    /// Any effect, or once in twelve nothing.
-    Random,
-    /// Nothing: the model is complete but for its friction values.
-    Nothing,
-    /// This effect, one of [`KINDS`]; see [`kind_named`]. Any other name hides nothing.
-    Effect(&'static str),
-}
-
-/// What was hidden.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Answer {
-    /// Seed of the challenge.
-    pub seed: u64,
-    /// Id of the effect; none if nothing is hidden.
-    pub kind: Option<String>,
-    /// Joint it acts on, counted from 1.
-    pub joint: usize,
-    /// Its values, by the keys of its card.
-    pub parameters: Vec<(String, f64)>,
-    /// The model with true friction and the effect.
-    pub true_model_toml: String,
-}
 
 /// A model, logs it doesn't fully explain, and why.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +42,7 @@ pub struct Challenge {
     /// File name and content of each log.
     pub logs: Vec<(String, String)>,
     /// What is missing from the model.
-    pub answer: Answer,
+    pub answer: ChallengeAnswer,
 }
 
 /// Makes the challenge of this seed; equal arguments give equal bytes.
@@ -83,7 +62,7 @@ pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
     Challenge {
         model_toml: text::model_toml(&rig, rig.believed, None),
         logs,
-        answer: Answer {
+        answer: ChallengeAnswer {
             seed,
             kind: secret.as_ref().map(|secret| secret.kind.to_owned()),
             joint: 1,
@@ -96,9 +75,9 @@ pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
 }
 
 /// The rig, what it hides, and its three motions.
-fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
+fn stage(seed: u64, hidden: Hidden) -> (BenchArm, Option<HiddenEffect>, [ArmRecording; 3]) {
     let mut secret = secret(seed, hidden);
-    let rig = Rig::random(&mut stream(seed, 1), secret.as_ref());
+    let rig = BenchArm::random(&mut stream(seed, 1), secret.as_ref());
     let mut payload = stream(seed, 2);
     let mounts = [
         (0.0, false),
@@ -110,7 +89,7 @@ fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
         let truth = rig.physics(secret.as_ref());
         let recordings = motions(seed, &truth, &rig, mounts);
         match &mut secret {
-            Some(Secret {
+            Some(HiddenEffect {
                 kind: "torque_saturation",
                 parameters,
             }) if spared(&recordings, parameters[0].1) => {
@@ -123,10 +102,10 @@ fn stage(seed: u64, hidden: Hidden) -> (Rig, Option<Secret>, [Recording; 3]) {
 
 /// What this seed hides. Each kind draws its values from a stream of its own: at one seed they lie at different
 /// places of their ranges.
-fn secret(seed: u64, hidden: Hidden) -> Option<Secret> {
-    let kind = Secret::kind(&mut stream(seed, 0), hidden)?;
+fn secret(seed: u64, hidden: Hidden) -> Option<HiddenEffect> {
+    let kind = HiddenEffect::kind(&mut stream(seed, 0), hidden)?;
     let place = KINDS.iter().position(|known| *known == kind)?;
-    Some(Secret::random(
+    Some(HiddenEffect::random(
         &mut stream(seed, SECRETS + place as u64),
         kind,
     ))
@@ -135,7 +114,7 @@ fn secret(seed: u64, hidden: Hidden) -> Option<Secret> {
 /// First of the streams from which the values of hidden effects are drawn; those of the rig lie below.
 const SECRETS: u64 = 100;
 
-fn motions(seed: u64, truth: &Physics, rig: &Rig, mounts: [Mount; 3]) -> [Recording; 3] {
+fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [ArmRecording; 3] {
     let believed = rig.physics(None);
     let mut number = 2;
     mounts.map(|mount| {
@@ -145,7 +124,7 @@ fn motions(seed: u64, truth: &Physics, rig: &Rig, mounts: [Mount; 3]) -> [Record
 }
 
 /// Whether fewer than 3 % of the samples ask for more than the limit, N m.
-fn spared(recordings: &[Recording], limit_nm: f64) -> bool {
+fn spared(recordings: &[ArmRecording], limit_nm: f64) -> bool {
     let duties = || {
         recordings
             .iter()
@@ -165,28 +144,31 @@ fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
 }
 
 /// Writes the files of a challenge into `dir`, which is made if need be and must be empty.
-pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
-    match fs::read_dir(dir) {
-        Ok(mut entries) => {
-            if entries.next().is_some() {
-                return Err(Error::usage(
-                    format!("{} is not empty", dir.display()),
-                    "name a new directory: nothing is overwritten",
-                ));
-            }
+///
+/// # Errors
+/// The folder is not empty, or the system refuses a file.
+pub fn write(challenge: &Challenge, dir: &Path) -> Result<(), ChallengeError> {
+    match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
+        Ok(true) => return Err(ChallengeError::NotEmpty(dir.to_path_buf())),
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(Error::file(dir, "read", error).into());
         }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
-        Err(error) => return Err(Error::file(dir, "read", error)),
+        _ => {}
     }
     fs::create_dir_all(dir).map_err(|error| Error::file(dir, "create", error))?;
-    let put = |name: &str, content: &str| {
+    let sealed = seal(&challenge.answer);
+    let logs = challenge
+        .logs
+        .iter()
+        .map(|(name, log)| (name.as_str(), log.as_str()));
+    let others = [
+        ("nominal.toml", challenge.model_toml.as_str()),
+        ("answer.sealed", &sealed),
+        ("README.txt", text::README),
+    ];
+    for (name, content) in others.into_iter().chain(logs) {
         let path = dir.join(name);
-        fs::write(&path, content).map_err(|error| Error::file(&path, "write", error))
-    };
-    put("nominal.toml", &challenge.model_toml)?;
-    for (name, content) in &challenge.logs {
-        put(name, content)?;
+        fs::write(&path, content).map_err(|error| Error::file(&path, "write", error))?;
     }
-    put("answer.sealed", &seal(&challenge.answer))?;
-    put("README.txt", text::README)
+    Ok(())
 }

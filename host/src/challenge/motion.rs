@@ -1,8 +1,9 @@
 //! A motion as a bench would log it: a host-side controller reads the rounded angle at 100 Hz and sends duty.
 
-use super::goal::{Goal, MOTION_S};
+use super::bench_arm::NOMINAL_SUPPLY_V;
 use super::physics::{Mount, Physics};
-use super::rig::{NOMINAL_SUPPLY_V, rounded};
+use super::reference::{MOTION_S, Reference};
+use super::rounding::rounded;
 use super::truth::{Arm, Commands};
 use handstand_shared::raw::Position;
 use rand::Rng;
@@ -29,7 +30,7 @@ const MOST_CLIPPED: f64 = 0.04;
 
 /// What one log says.
 #[derive(Debug, Clone)]
-pub struct Recording {
+pub struct ArmRecording {
     /// Times, duty, torque on, and the true supply.
     pub commands: Commands,
     /// Rounded readings, rad.
@@ -46,14 +47,14 @@ pub fn record(
     believed: &Physics,
     mount: Mount,
     rng: &mut ChaCha8Rng,
-) -> Recording {
-    let goal = Goal::random(rng);
-    let supply = Supply::random(rng);
+) -> ArmRecording {
+    let goal = Reference::random(rng);
+    let supply = SupplyDrift::random(rng);
     let mut gentleness = 1.0;
     loop {
         // Every attempt meets the same noise.
         let mut noise = rng.clone();
-        let controller = Controller::new(believed, mount, gentleness);
+        let controller = PdController::new(believed, mount, gentleness);
         let goal = goal.scaled(gentleness);
         let recording = attempt(truth, mount, &goal, &supply, controller, &mut noise);
         if recording.is_tame() || gentleness < 0.1 {
@@ -66,11 +67,11 @@ pub fn record(
 fn attempt(
     truth: &Physics,
     mount: Mount,
-    goal: &Goal,
-    supply: &Supply,
-    mut controller: Controller,
+    goal: &Reference,
+    supply: &SupplyDrift,
+    mut controller: PdController,
     rng: &mut ChaCha8Rng,
-) -> Recording {
+) -> ArmRecording {
     let samples = (MOTION_S / PERIOD_S) as usize + 1;
     let times: Vec<f64> = (0..samples)
         .map(|k| rounded((k as f64 * PERIOD_S + JITTER_S * normal(rng)).max(0.0), 6))
@@ -95,7 +96,7 @@ fn attempt(
             noise = kept * noise + (1.0 - kept * kept).sqrt() * NOISE.0 * normal(rng);
         }
     }
-    Recording {
+    ArmRecording {
         commands,
         position,
         mount,
@@ -111,7 +112,7 @@ fn span_before(times: &[f64], k: usize) -> f64 {
     }
 }
 
-impl Recording {
+impl ArmRecording {
     /// Largest reading, rad.
     pub fn widest(&self) -> f64 {
         self.position.iter().fold(0.0, |most, q| most.max(q.abs()))
@@ -165,7 +166,7 @@ impl Recording {
 }
 
 /// Proportional and derivative gain on the reading, and what the believed arm needs for the goal.
-struct Controller<'a> {
+struct PdController<'a> {
     believed: &'a Physics,
     mount: Mount,
     gains: [f64; 2],
@@ -173,10 +174,10 @@ struct Controller<'a> {
     speed: f64,
 }
 
-impl<'a> Controller<'a> {
+impl<'a> PdController<'a> {
     fn new(believed: &'a Physics, mount: Mount, gentleness: f64) -> Self {
         let inertia = believed.inertia_at_joint(mount);
-        Controller {
+        PdController {
             believed,
             mount,
             gains: [130.0, 10.0].map(|gain| gentleness * gain * inertia),
@@ -186,7 +187,7 @@ impl<'a> Controller<'a> {
     }
 
     /// Duty, with six digits, for the reading, rad, `span_s` after the one before.
-    fn duty(&mut self, asked: &super::goal::Asked, reading: f64, span_s: f64) -> f64 {
+    fn duty(&mut self, asked: &super::reference::Setpoint, reading: f64, span_s: f64) -> f64 {
         let moved = reading - self.before.replace(reading).unwrap_or(reading);
         self.speed += 0.5 * (moved / span_s - self.speed);
         let forward = self.believed.holding(self.mount, asked.angle)
@@ -199,19 +200,19 @@ impl<'a> Controller<'a> {
 }
 
 /// A battery or a bench supply that drifts.
-struct Supply {
+struct SupplyDrift {
     ends: [f64; 2],
     wobble: [f64; 2],
 }
 
-impl Supply {
+impl SupplyDrift {
     /// From 8.3 to 11.3 V, at least 1 V apart from end to end.
-    fn random(rng: &mut ChaCha8Rng) -> Supply {
+    fn random(rng: &mut ChaCha8Rng) -> SupplyDrift {
         loop {
             let ends = [rng.random_range(8.5..11.1), rng.random_range(8.5..11.1)];
             if f64::abs(ends[0] - ends[1]) >= 1.0 {
                 let wobble = [rng.random_range(0.05..0.2), rng.random_range(0.0..TAU)];
-                return Supply { ends, wobble };
+                return SupplyDrift { ends, wobble };
             }
         }
     }
@@ -229,7 +230,8 @@ fn quantised(angle: f64) -> f64 {
     (angle / Position::LSB_RAD).round().clamp(-512.0, 511.0) * Position::LSB_RAD + 0.0
 }
 
-/// A draw from the standard normal distribution (Box and Muller).
+/// A draw from the standard normal distribution (Box and Muller): another method, as in the crate `rand_distr`, would
+/// change every bench and with it the figures of the benchmark.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()

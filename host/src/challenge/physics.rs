@@ -7,7 +7,7 @@ pub const GRAVITY_M_S2: f64 = 9.81;
 pub const PAYLOAD_AT_M: f64 = 0.15;
 
 /// Everything that acts on the arm; [`Physics::ideal`] has no effect switched on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Physics {
     /// Joint to centre of mass, m.
     pub com_m: f64,
@@ -28,7 +28,8 @@ pub struct Physics {
     half_difference: f64,
     dead_width: f64,
     dead_punch: f64,
-    delay_s: f64,
+    /// Seconds by which a command arrives late.
+    pub delay_s: f64,
     sensitivity: f64,
     sag: f64,
     torque_factor: f64,
@@ -44,8 +45,10 @@ pub struct Physics {
     ripple_phase: f64,
     encoder_factor: f64,
     encoder_offset: f64,
-    gap: f64,
-    lag_s: f64,
+    /// Free play before the encoder, flank to flank, rad.
+    pub gap: f64,
+    /// Time constant of the encoder's filter, s.
+    pub lag_s: f64,
 }
 
 /// Conditions of one motion.
@@ -59,7 +62,7 @@ pub struct Mount {
 
 /// What drives the arm at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub struct DriveCommand {
     /// Commanded duty, -1 to 1, already delayed.
     pub duty: f64,
     /// Supply, V.
@@ -83,37 +86,17 @@ impl Physics {
             inertia_kg_m2,
             stall_nm,
             nominal_supply_v,
-            viscous: 0.0,
-            drag: 0.0,
-            coulomb: 0.0,
-            excess: 0.0,
             stribeck_speed: 1.0,
-            load_factor: 0.0,
-            half_difference: 0.0,
-            dead_width: 0.0,
-            dead_punch: 0.0,
-            delay_s: 0.0,
-            sensitivity: 0.0,
-            sag: 0.0,
             torque_factor: 1.0,
             no_load_speed: f64::INFINITY,
             torque_limit: f64::INFINITY,
-            com_angle: 0.0,
-            armature: 0.0,
-            stiffness: 0.0,
-            rest_angle: 0.0,
-            tilt: 0.0,
-            ripple: 0.0,
             ripple_periods: 1.0,
-            ripple_phase: 0.0,
             encoder_factor: 1.0,
-            encoder_offset: 0.0,
-            gap: 0.0,
-            lag_s: 0.0,
+            ..Physics::default()
         }
     }
 
-    /// Switches on the effect `kind` with `values` in the order of its card; false if there is no such effect
+    /// Switches on the effect `kind` with `values` in the order of its parameters; false if there is no such effect
     /// or it has another number of values.
     pub fn switch_on(&mut self, kind: &str, values: &[f64]) -> bool {
         match (kind, values) {
@@ -152,11 +135,6 @@ impl Physics {
         true
     }
 
-    /// Seconds by which a command arrives late.
-    pub fn delay_s(&self) -> f64 {
-        self.delay_s
-    }
-
     /// Inertia about the joint, kg m^2.
     pub fn inertia_at_joint(&self, mount: Mount) -> f64 {
         self.inertia_kg_m2
@@ -174,7 +152,7 @@ impl Physics {
     }
 
     /// Torque of the motor at the joint, N m.
-    pub fn drive(&self, push: Push, speed: f64) -> f64 {
+    pub fn drive(&self, push: DriveCommand, speed: f64) -> f64 {
         if !push.torque_on {
             return 0.0;
         }
@@ -216,15 +194,5 @@ impl Physics {
     /// What a perfect counter of the encoder's axis would read, rad.
     pub fn encoded(&self, angle: f64) -> f64 {
         self.encoder_factor * angle + self.encoder_offset
-    }
-
-    /// Free play before the encoder, flank to flank, rad.
-    pub fn gap(&self) -> f64 {
-        self.gap
-    }
-
-    /// Time constant of the encoder's filter, s.
-    pub fn lag_s(&self) -> f64 {
-        self.lag_s
     }
 }

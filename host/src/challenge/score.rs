@@ -1,10 +1,9 @@
 //! A model against the answer of its challenge.
 
-use super::{Answer, unseal};
-use crate::diagnose::Candidate;
-use crate::error::{Error, Result};
-use crate::fitting::rms_rad;
-use crate::fitting::{Data, Horizon, settle};
+use super::error::ChallengeError;
+use super::seal::{ChallengeAnswer, unseal};
+use crate::error::Error;
+use crate::fitting::{Candidate, FitData, Horizon, fit_start_states};
 use crate::log::{LogRequest, read};
 use crate::model::{EffectInstance, Model};
 use serde::Serialize;
@@ -12,14 +11,14 @@ use std::path::Path;
 
 /// How well a model names what was hidden.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Score {
+pub struct ChallengeScore {
     /// The hidden effect; absent when nothing was.
     pub hidden: Option<String>,
     /// Effects the model has beyond `nominal.toml`.
     pub added: Vec<String>,
     /// Whether exactly the hidden effect was added, and none where none was hidden.
     pub solved: bool,
-    /// The hidden effect's values beside those of the model.
+    /// The hidden effect's values, true and estimated.
     pub values: Vec<ScoredValue>,
     /// Root-mean-square error of `nominal.toml` on `c.csv`, rad.
     pub nominal_error_rad: f64,
@@ -29,41 +28,41 @@ pub struct Score {
     pub true_error_rad: f64,
 }
 
-/// A value beside its truth.
+/// A true value and its estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScoredValue {
     /// Its key.
     pub key: String,
     /// The truth.
-    pub hidden: f64,
+    pub true_value: f64,
     /// The model's, if it has the effect.
-    pub found: Option<f64>,
+    pub estimate: Option<f64>,
 }
 
 /// Opens the answer of the challenge in `dir` and scores `model` by it.
 ///
 /// # Errors
 /// Files of the challenge that are missing or were changed.
-pub fn score(dir: &Path, model: &Model) -> Result<Score> {
-    let sealed = dir.join("answer.sealed");
-    let text =
-        std::fs::read_to_string(&sealed).map_err(|error| Error::file(&sealed, "read", error))?;
-    let answer = unseal(&text, &sealed)?;
+pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore, ChallengeError> {
+    let file = dir.join("answer.sealed");
+    let text = std::fs::read_to_string(&file).map_err(|error| Error::file(&file, "read", error))?;
+    let answer = unseal(&text).map_err(|what| ChallengeError::Sealed {
+        file: file.clone(),
+        what,
+    })?;
     let nominal = Model::load(&dir.join("nominal.toml"))?;
-    let truth = Model::parse(&answer.true_model_toml, &sealed)?;
+    let truth = Model::parse(&answer.true_model_toml, &file)?;
     let added = beyond(model, &nominal);
-    let names: Vec<String> = added.iter().map(|effect| name(effect)).collect();
-    let hidden = beyond(&truth, &nominal).first().map(|effect| name(effect));
+    let name = |effect: &&EffectInstance| Candidate::from(*effect).to_string();
+    let names: Vec<String> = added.iter().map(name).collect();
+    let hidden = beyond(&truth, &nominal).first().map(name);
     let last = LogRequest::whole(dir.join("c.csv"));
-    let error = |model: &Model| -> Result<f64> {
-        let data = Data::new(
-            model,
-            read(std::slice::from_ref(&last), &model.log)?,
-            Horizon::Whole,
-        );
-        Ok(rms_rad(&settle(model, &data), &data))
+    let error = |model: &Model| -> Result<f64, Error> {
+        let motions = read(std::slice::from_ref(&last), &model.log)?;
+        let data = FitData::new(model, motions, Horizon::Whole);
+        Ok(fit_start_states(model, &data).rms_rad(&data))
     };
-    Ok(Score {
+    Ok(ChallengeScore {
         solved: names.iter().eq(hidden.iter()),
         values: values(&answer, &added),
         hidden,
@@ -76,37 +75,25 @@ pub fn score(dir: &Path, model: &Model) -> Result<Score> {
 
 /// Effects of `model` that `base` has not.
 fn beyond<'a>(model: &'a Model, base: &Model) -> Vec<&'a EffectInstance> {
-    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.card().id, effect.joint);
+    let new = |effect: &&EffectInstance| !base.has_effect(effect.effect.info().id, effect.joint);
     model.effects.iter().filter(new).collect()
 }
 
-fn name(effect: &EffectInstance) -> String {
-    let candidate = Candidate {
-        effect: effect.effect,
-        joint: effect.joint,
-    };
-    candidate.to_string()
-}
-
-fn values(answer: &Answer, added: &[&EffectInstance]) -> Vec<ScoredValue> {
-    let kind = answer.kind.as_deref();
-    let found = added
-        .iter()
-        .find(|effect| Some(effect.effect.card().id) == kind);
-    let value = |key: &str| {
-        let effect = found?;
-        let at = effect
-            .effect
-            .card()
-            .parameters
+fn values(answer: &ChallengeAnswer, added: &[&EffectInstance]) -> Vec<ScoredValue> {
+    let id = |effect: &EffectInstance| effect.effect.info().id;
+    let mut added = added.iter();
+    let found = added.find(|effect| Some(id(effect)) == answer.kind.as_deref());
+    let estimate = |key: &str| {
+        let parameters = found?.effect.info().parameters;
+        let at = parameters
             .iter()
-            .position(|p| p.key == key)?;
-        effect.values.get(at).copied()
+            .position(|parameter| parameter.key == key)?;
+        found?.values.get(at).copied()
     };
-    let hidden = answer.parameters.iter().map(|(key, hidden)| ScoredValue {
+    let values = answer.parameters.iter().map(|(key, value)| ScoredValue {
         key: key.clone(),
-        hidden: *hidden,
-        found: value(key),
+        true_value: *value,
+        estimate: estimate(key),
     });
-    hidden.collect()
+    values.collect()
 }

@@ -2,14 +2,27 @@
 //!
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can open it.
 
-use super::Answer;
-use crate::error::{Error, Place, Result};
+use super::error::SealError;
+use crate::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
-use std::path::Path;
 
 const NOTE: &str = "The answer, sealed. It keeps honest people from peeking, no more.";
+
+/// What was hidden.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChallengeAnswer {
+    /// Seed of the challenge.
+    pub seed: u64,
+    /// Id of the effect; none if nothing is hidden.
+    pub kind: Option<String>,
+    /// Joint it acts on, counted from 1.
+    pub joint: usize,
+    /// Its values, by the keys of its parameters.
+    pub parameters: Vec<(String, f64)>,
+    /// The model with true friction and the effect.
+    pub true_model_toml: String,
+}
 
 #[derive(Serialize, Deserialize)]
 struct Sealed {
@@ -21,37 +34,30 @@ struct Sealed {
 }
 
 /// The content of `answer.sealed`.
-pub fn seal(answer: &Answer) -> String {
+pub fn seal(answer: &ChallengeAnswer) -> String {
     let plain = serde_json::to_vec(answer).expect("an answer is plain data");
     let sealed = Sealed {
         note: NOTE.to_owned(),
-        sha256: hex(&Sha256::digest(&plain)),
-        sealed: hex(&masked(&plain)),
+        sha256: hex(Sha256::digest(&plain)),
+        sealed: hex(masked(&plain)),
     };
     let mut text = serde_json::to_string_pretty(&sealed).expect("strings are plain data");
     text.push('\n');
     text
 }
 
-/// Opens the content of the file `file`; refuses one that was changed.
-pub fn unseal(text: &str, file: &Path) -> Result<Answer> {
-    let refuse = |what: &str| {
-        Error::data(
-            Place::file(file),
-            what,
-            "take the file as `challenge` wrote it, or generate the challenge again",
-        )
-    };
-    let sealed: Sealed = serde_json::from_str(text).map_err(|_| refuse("not a sealed answer"))?;
-    let bytes =
-        unhex(&sealed.sealed).ok_or_else(|| refuse("the sealed answer is not hexadecimal"))?;
+/// Opens the content of `answer.sealed`.
+///
+/// # Errors
+/// It was changed, or is no sealed answer.
+pub fn unseal(text: &str) -> Result<ChallengeAnswer, SealError> {
+    let sealed: Sealed = serde_json::from_str(text).map_err(|_| SealError::NotSealed)?;
+    let bytes = unhex(&sealed.sealed).ok_or(SealError::NotHexadecimal)?;
     let plain = masked(&bytes);
-    if hex(&Sha256::digest(&plain)) != sealed.sha256 {
-        return Err(refuse(
-            "the sealed answer was changed: its SHA-256 does not match",
-        ));
+    if hex(Sha256::digest(&plain)) != sealed.sha256 {
+        return Err(SealError::Changed);
     }
-    serde_json::from_slice(&plain).map_err(|_| refuse("the sealed answer is of another version"))
+    serde_json::from_slice(&plain).map_err(|_| SealError::OtherVersion)
 }
 
 /// `bytes` xor SHA-256 of a counter; undoes itself.
@@ -65,13 +71,6 @@ fn masked(bytes: &[u8]) -> Vec<u8> {
         out.extend(block.iter().zip(key).map(|(byte, key)| byte ^ key));
     }
     out
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 fn unhex(text: &str) -> Option<Vec<u8>> {

@@ -1,9 +1,9 @@
-use super::physics::{Mount, Physics, Push};
+use super::physics::{DriveCommand, Mount, Physics};
 use super::truth::Arm;
 use super::*;
 use std::path::PathBuf;
 
-const RELEASED: Push = Push {
+const RELEASED: DriveCommand = DriveCommand {
     duty: 0.0,
     supply_v: 9.8,
     torque_on: false,
@@ -51,7 +51,7 @@ fn a_stuck_arm_stays_put() {
     let mut arm = Arm::at_rest(&physics, Mount::default(), held);
     arm.advance(5.0, |_| RELEASED);
     assert_eq!((arm.angle, arm.speed), (held, 0.0));
-    let pushed = Push {
+    let pushed = DriveCommand {
         duty: -0.01,
         torque_on: true,
         ..RELEASED
@@ -101,7 +101,7 @@ fn the_arm_stays_clear_of_upright_and_moves_enough() {
     for kind in KINDS {
         for seed in 0..5 {
             let (_, secret, recordings) = stage(seed, Hidden::Effect(kind));
-            let duty = |r: &Recording| {
+            let duty = |r: &ArmRecording| {
                 r.commands
                     .duty
                     .iter()
@@ -121,16 +121,18 @@ fn the_arm_stays_clear_of_upright_and_moves_enough() {
 fn a_sealed_answer_opens_and_a_changed_one_does_not() {
     let answer = generate(11, Hidden::Effect("cogging")).answer;
     let text = seal(&answer);
-    let file = PathBuf::from("answer.sealed");
     assert!(!text.contains("cogging"));
-    assert_eq!(unseal(&text, &file).unwrap(), answer);
+    assert_eq!(unseal(&text).unwrap(), answer);
     let at = text.find("\"sealed\": \"").unwrap() + 20;
     let mut changed = text.clone();
     let other = if &text[at..=at] == "0" { "1" } else { "0" };
     changed.replace_range(at..=at, other);
-    let error = unseal(&changed, &file).unwrap_err();
+    let error = unseal(&changed).unwrap_err();
+    assert_eq!(error, SealError::Changed);
+    let file = PathBuf::from("answer.sealed");
+    let error = Error::from(ChallengeError::Sealed { file, what: error });
     assert_eq!(error.exit_code(), 3);
-    assert!(unseal("{}", &file).is_err());
+    assert_eq!(unseal("{}").unwrap_err(), SealError::NotSealed);
 }
 
 #[test]
@@ -174,7 +176,8 @@ fn files_are_written_once() {
     ] {
         assert!(inside.join(name).is_file(), "{name}");
     }
-    assert_eq!(write(&challenge, &inside).unwrap_err().exit_code(), 2);
+    let again = Error::from(write(&challenge, &inside).unwrap_err());
+    assert_eq!(again.exit_code(), 2);
     assert!(!challenge.model_toml.contains("backlash"));
     assert!(challenge.answer.true_model_toml.contains("backlash"));
 }

@@ -1,12 +1,13 @@
 //! The files of a challenge that are written in words.
 
+use super::bench_arm::{BenchArm, Friction, NOMINAL_SUPPLY_V, STALL_NM};
+use super::hidden_effect::HiddenEffect;
 use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
-use super::rig::{Friction, NOMINAL_SUPPLY_V, Rig, STALL_NM, Secret};
 use handstand_shared::raw::Position;
 use std::fmt::Write;
 
 /// The rig as a model file, with `friction` and, if given, the secret.
-pub fn model_toml(rig: &Rig, friction: Friction, secret: Option<&Secret>) -> String {
+pub fn model_toml(rig: &BenchArm, friction: Friction, secret: Option<&HiddenEffect>) -> String {
     let (com_m, mass_kg, inertia_kg_m2) = (rig.com_m, rig.mass_kg, rig.inertia_kg_m2);
     let mut text = format!(
         r#"[rig]

@@ -4,7 +4,7 @@
 //! the error to which three logs tell a delay. Dry friction is an impulse that can stop the arm but never reverse
 //! it, so that an arm at rest stays there until it is pushed harder than the breakaway torque.
 
-use super::physics::{Mount, Physics, Push};
+use super::physics::{DriveCommand, Mount, Physics};
 
 /// Longest integration step, s.
 const STEP_S: f64 = 1.0 / 20_000.0;
@@ -41,7 +41,7 @@ impl<'a> Arm<'a> {
     /// Where the arm comes to rest by itself within 2 s, let go at hanging; starts there.
     pub fn settled(physics: &'a Physics, mount: Mount) -> Self {
         let mut arm = Arm::at_rest(physics, mount, 0.0);
-        let released = Push {
+        let released = DriveCommand {
             duty: 0.0,
             supply_v: physics.nominal_supply_v,
             torque_on: false,
@@ -51,7 +51,7 @@ impl<'a> Arm<'a> {
     }
 
     /// Goes on for `span_s`; `push` tells the drive's state, given the seconds since the beginning of the span.
-    pub fn advance(&mut self, span_s: f64, push: impl Fn(f64) -> Push) {
+    pub fn advance(&mut self, span_s: f64, push: impl Fn(f64) -> DriveCommand) {
         let steps = (span_s / STEP_S).ceil().max(1.0);
         let h = span_s / steps;
         for step in 0..steps as usize {
@@ -60,7 +60,7 @@ impl<'a> Arm<'a> {
     }
 
     /// `push` is that of the middle of the step.
-    fn step(&mut self, h: f64, push: Push) {
+    fn step(&mut self, h: f64, push: DriveCommand) {
         self.angle += 0.5 * h * self.speed;
         let halfway = self.kicked(0.5 * h, push, self.speed);
         self.speed = self.kicked(h, push, halfway);
@@ -69,7 +69,7 @@ impl<'a> Arm<'a> {
     }
 
     /// Speed after all torques have acted for `h` seconds, as they are at this angle and `at_speed`.
-    fn kicked(&self, h: f64, push: Push, at_speed: f64) -> f64 {
+    fn kicked(&self, h: f64, push: DriveCommand, at_speed: f64) -> f64 {
         let holding = self.physics.holding(self.mount, self.angle);
         let drive = self.physics.drive(push, at_speed);
         let smooth = self.physics.smooth(self.angle, at_speed);
@@ -81,11 +81,11 @@ impl<'a> Arm<'a> {
     }
 
     fn sense(&mut self, h: f64) {
-        let half = self.physics.gap() / 2.0;
+        let half = self.physics.gap / 2.0;
         let follower = self.follower;
         let encoded = self.physics.encoded(self.angle);
         self.follower = follower.clamp(encoded - half, encoded + half);
-        let lag_s = self.physics.lag_s();
+        let lag_s = self.physics.lag_s;
         if lag_s > 0.0 {
             let middle = 0.5 * (follower + self.follower);
             self.lagged += (middle - self.lagged) * h / (lag_s + h / 2.0);
@@ -134,7 +134,7 @@ impl Commands {
 
     /// Carries `arm` on from the last command by `span_s`.
     pub(super) fn carry(&self, arm: &mut Arm, last: usize, span_s: f64) {
-        let (from_s, delay_s) = (self.time_s[last], arm.physics.delay_s());
+        let (from_s, delay_s) = (self.time_s[last], arm.physics.delay_s);
         let (supply_v, torque_on) = (self.supply_v[last], self.torque_on[last]);
         let sent = |since_s: f64| {
             if delay_s == 0.0 {
@@ -143,7 +143,7 @@ impl Commands {
                 self.arriving(from_s + since_s, delay_s, last)
             }
         };
-        arm.advance(span_s, |since_s| Push {
+        arm.advance(span_s, |since_s| DriveCommand {
             duty: sent(since_s),
             supply_v,
             torque_on,

@@ -26,21 +26,21 @@ use handstand::Result;
 /// What to do with servos.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Find servos
+    /// Scan the bus for servos
     Scan(scan::Args),
     /// Read registers of a servo
     Read(registers::ReadArgs),
     /// Write a register of a servo, and read it back
     Write(registers::WriteArgs),
-    /// Prepare servos for 100 Hz: return delay 0, status level 1; or give one servo its id
+    /// Configure servos for 100 Hz (return delay 0, status level 1), or set one servo's id
     Setup(setup::Args),
-    /// Watch position, load, supply and temperature
+    /// Monitor position, load, supply and temperature
     Monitor(monitor::Args),
-    /// Save the servos' settings to a file
+    /// Back up the servos' settings to a file
     Backup(backup::BackupArgs),
-    /// Write saved settings back to the servos
+    /// Restore saved settings to the servos
     Restore(backup::RestoreArgs),
-    /// Find out why a servo gives no status packet
+    /// Diagnose why a servo returns no status packet
     Doctor(doctor::Args),
 }
 

@@ -1,7 +1,7 @@
 //! `handstand challenge`: a virtual bench arm with a hidden effect, to try oneself or the program on.
 //!
 //! `new` writes a folder with `nominal.toml` (what the arm's owner believes), logs `a.csv`, `b.csv`, `c.csv`,
-//! and the sealed answer. `score` opens the answer and sets a model beside it.
+//! and the sealed answer. `score` opens the answer and scores a model by it.
 //!
 //! ```console
 //! $ handstand challenge new --seed 7 -o riddle
@@ -9,11 +9,12 @@
 //! ```
 //!
 //! `score` exits with 1 when the model does not name what was hidden. `--json` prints `hidden`, `added`,
-//! `solved`, `values` (`key`, `hidden`, `found`), `nominal_error_rad`, `error_rad`, `true_error_rad`.
+//! `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`, `true_error_rad`.
 
 use super::talk::Talk;
-use super::{Outcome, name, show};
-use handstand::challenge::{self, Hidden, Score, kind_named};
+use super::{Outcome, show};
+use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
+use handstand::fitting::effect_named;
 use handstand::number::exact;
 use handstand::{Error, Model, Result};
 use serde_json::json;
@@ -22,19 +23,19 @@ use std::path::PathBuf;
 /// What can be done with challenges.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Make a virtual bench with a hidden effect
+    /// Create a virtual bench with a hidden effect
     New(New),
-    /// Open the answer and set a model beside it
+    /// Score a model against the hidden effect
     Score(ScoreArgs),
 }
 
-/// Make a virtual bench with a hidden effect.
+/// Create a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct New {
     /// Seed: the same one makes the same bench
     #[arg(long, value_name = "N")]
     seed: u64,
-    /// The effect to hide, or `none`; by lot without it
+    /// The effect to hide, or `none`; random without it
     #[arg(long, value_name = "NAME")]
     effect: Option<String>,
     /// Folder to make
@@ -42,7 +43,7 @@ pub struct New {
     output: PathBuf,
 }
 
-/// Open the answer and set a model beside it.
+/// Score a model against the hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct ScoreArgs {
     /// Folder of the challenge
@@ -95,7 +96,7 @@ fn hidden(named: Option<&str>) -> Result<Hidden> {
     if named == "none" {
         return Ok(Hidden::Nothing);
     }
-    let id = name::effect(named)?.card().id;
+    let id = effect_named(named)?.info().id;
     kind_named(id).map(Hidden::Effect).ok_or_else(|| {
         Error::usage(
             format!("`{id}` cannot be hidden in the bench arm"),
@@ -105,8 +106,8 @@ fn hidden(named: Option<&str>) -> Result<Hidden> {
 }
 
 /// A score for people.
-pub fn text(score: &Score) -> String {
-    let mut table = show::table(["", "Hidden", "Found"]);
+pub fn text(score: &ChallengeScore) -> String {
+    let mut table = show::table(["", "True", "Estimated"]);
     let nothing = || "nothing".to_string();
     let found = match score.added.as_slice() {
         [] => nothing(),
@@ -118,8 +119,8 @@ pub fn text(score: &Score) -> String {
         found,
     ]);
     for value in &score.values {
-        let found = value.found.map_or("-".to_string(), exact);
-        table.add_row([value.key.clone(), exact(value.hidden), found]);
+        let estimate = value.estimate.map_or("-".to_string(), exact);
+        table.add_row([value.key.clone(), exact(value.true_value), estimate]);
     }
     let truth = exact(1e3 * score.true_error_rad);
     table.add_row([

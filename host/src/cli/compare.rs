@@ -1,7 +1,7 @@
 //! `handstand compare MODEL LOG... [--model OTHER]...`: how far models are from what was measured, and where.
 //!
 //! The models run along the logs' inputs, each as its file says; nothing is fitted but where each run starts.
-//! (`handstand add` tells another fall of the error: there the model before is refitted without the effect.)
+//! (`handstand add` gives another reduction of the error: there the model before is refitted without the effect.)
 //! Several stand side by side, over the same horizon: the first one's, unless one is given.
 //!
 //! ```console
@@ -20,7 +20,7 @@ use handstand::report::{html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
-/// Compare models with logs.
+/// Compare a model's simulation with measured logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -31,9 +31,8 @@ pub struct Args {
     /// Another model file to set beside it
     #[arg(long = "model", value_name = "OTHER.toml")]
     others: Vec<PathBuf>,
-    /// Seconds the models run without correction, or `whole`; chosen by the first one's stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
+    #[command(flatten)]
+    run: input::RunLength,
     #[command(flatten)]
     page: PageFile,
 }
@@ -41,7 +40,7 @@ pub struct Args {
 /// Compares, prints, writes the page.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     args.page.vacant()?;
-    let mut horizon = args.horizon;
+    let mut horizon = args.run.horizon;
     let mut comparisons = Vec::new();
     let mut split = Split::default();
     let files: Vec<&PathBuf> = std::iter::once(&args.model).chain(&args.others).collect();
@@ -49,16 +48,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let model = Model::load(file)?;
         // Each model names columns and zeros its own way.
         split.training = read(&args.logs, &model.log)?;
-        let name = file
-            .file_name()
-            .unwrap_or(file.as_os_str())
-            .to_string_lossy();
+        let name = page::file_name(file);
         let comparison = compare::compare(&model, &name, &split.training, horizon);
-        horizon = horizon.or(Some(
-            comparison
-                .horizon_s
-                .map_or(Horizon::Whole, Horizon::Seconds),
-        ));
+        horizon = Some(Horizon::from_seconds(comparison.horizon_s));
         comparisons.push(comparison);
     }
     let text = compare::text(&comparisons);

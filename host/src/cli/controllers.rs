@@ -1,35 +1,36 @@
 //! `handstand controllers [MODEL]`: the controllers the library knows, tried on robots under everything the paper found.
 //!
 //! Without a model, a line for each controller and each condition. With one: from each of `--robots` random starts at
-//! rest, within `--spread-deg` of the pose in each angle, every controller under every condition. Held is who never
-//! leans a link more than 45 deg and keeps every joint within 10 deg of the pose over the last two seconds. The region
-//! is the largest spread of starts of which 95 % are held.
+//! rest, within `--spread-deg` of the pose in each angle, every controller under every condition. A robot is stabilised
+//! if no link leans more than 45 deg and every joint stays within 10 deg of the pose over the last two seconds. The
+//! region is the largest spread of starts of which 95 % are stabilised. Every effect of the model acts in the simulation;
+//! the designs leave out those without a derivative.
 //!
 //! A controller knows the nominal model and what can be measured beforehand (sampling time, delay, nominal dead zone,
 //! limit, resolutions); it does not know a robot's own dead zone (within a fifth of 10 %), where its masses lie beside
-//! their lines (within 2 mm), or what they weigh (within 10 %), unless its page says so.
+//! their lines (within 2 mm), or what they weigh (within 10 %), unless its description says so.
 //!
 //! ```console
 //! $ handstand controllers handstand.toml --robots 200 --condition all
 //! ```
 //!
-//! Exit code 1 when under some condition no controller holds 95 %. `--json` prints a list of `controller`,
-//! `condition`, `robots`, `held`, `fell`, `rms_angle_rad`, `swing_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
+//! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of `controller`,
+//! `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::talk::Talk;
-use super::{Outcome, input};
-use handstand::controllers::{
-    CONDITIONS, Condition, DESIGNS, Design, Known, REGION_RUNS, Region, Robots, Tried, condition,
-    design, region, try_out,
+use super::{Outcome, input, show};
+use handstand::controllers::{DESIGNS, Design, design};
+use handstand::study::{
+    CONDITIONS, Case, Condition, Figures, Judging, REGION_JUDGEMENTS, Region, STABILISED_SHARE,
+    condition, judge, region,
 };
-use handstand::synth::upright;
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 
 mod list;
 mod result;
 
-/// Try controllers under everything the robot does to them.
+/// Simulate controllers in closed loop with the robot's non-idealities.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file; without it, what there is
@@ -61,7 +62,7 @@ pub struct Args {
     /// Write the figures as a table
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Draw the shares that were held
+    /// Draw the shares that were stabilised
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Replace the files if they exist
@@ -73,7 +74,7 @@ pub struct Args {
 struct Row {
     design: &'static dyn Design,
     condition: &'static Condition,
-    tried: Tried,
+    figures: Figures,
     region: Option<Region>,
 }
 
@@ -89,7 +90,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if args.seconds <= 2.0 {
         return Err(Error::usage(
             format!(
-                "--seconds {}: held is who stands still for the last 2 s",
+                "--seconds {}: a robot is judged by its last 2 s",
                 args.seconds
             ),
             "give more than 2",
@@ -99,6 +100,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         input::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
+    show::omitted(&model, talk)?;
     let rows = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
         output::write_new(file, &result::csv(&rows), args.force)?;
@@ -116,8 +118,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk.print(&result::text(&rows, &designs, &conditions))?;
     }
     let answered = |condition: &&Condition| {
-        rows.iter()
-            .any(|row| row.condition.id == condition.id && row.tried.held >= 0.95)
+        rows.iter().any(|row| {
+            row.condition.id == condition.id && row.figures.stabilised_share >= STABILISED_SHARE
+        })
     };
     Ok(match conditions.iter().all(answered) {
         true => Outcome::Done,
@@ -132,37 +135,33 @@ fn trials(
     conditions: &[&'static Condition],
     talk: &Talk,
 ) -> Result<Vec<Row>> {
-    let pose_rad = upright(model);
-    let ideal = Known::ideal(model, &pose_rad, args.ts)?;
-    let robots = Robots {
-        model,
-        pose_rad: &pose_rad,
-        period_s: args.ts,
-        count: args.robots as usize,
-        spread_rad: args.spread_deg.to_radians(),
+    let judging = Judging {
+        runs: args.robots as usize,
+        start_rad: args.spread_deg.to_radians(),
         seconds: args.seconds,
         seed: args.seed,
     };
-    let few = Robots {
-        count: args.region_robots as usize,
-        ..robots.clone()
+    let few = Judging {
+        runs: args.region_robots as usize,
+        ..judging
     };
     let bar = talk.bar();
-    let each = robots.count + REGION_RUNS * few.count;
+    let each = judging.runs + REGION_JUDGEMENTS * few.runs;
     bar.set_length((each * designs.len() * conditions.len()) as u64);
     let mut rows = Vec::new();
     for condition in conditions {
-        let known = condition.tell(&ideal);
         for design in designs {
-            bar.set_message(format!("{} under {}", design.card().title, condition.title));
+            bar.set_message(format!("{} under {}", design.info().title, condition.title));
             let done = || bar.inc(1);
+            let mut case = Case::ideal(model.clone(), *design, args.ts);
+            let uncertain = condition.apply(&mut case);
             rows.push(Row {
                 design: *design,
                 condition,
-                tried: try_out(&robots, *design, condition, &known, &done)?,
-                region: match few.count {
+                figures: judge(&case, &uncertain, &judging, &done)?,
+                region: match few.runs {
                     0 => None,
-                    _ => Some(region(&few, *design, condition, &known, &done)?),
+                    _ => Some(region(&case, &uncertain, &few, &done)?),
                 },
             });
             bar.set_position((each * rows.len()) as u64);
@@ -182,7 +181,7 @@ pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
             unknown(
                 "controller",
                 name,
-                DESIGNS.iter().map(|design| design.card().id),
+                DESIGNS.iter().map(|design| design.info().id),
             )
         })
     };

@@ -1,33 +1,35 @@
-//! `handstand delays MODEL`: the longest delay each controller survives, and whether the robot's is shorter.
+//! `handstand delays MODEL`: the longest delay each controller tolerates, and whether the robot's is shorter.
 //!
-//! Four figures for each controller, in ms. In the linear loop with the nominal plant: told there is no delay, told
-//! one sample, told each delay as it comes. In simulation: told each delay, how long it holds 95 % of the robots under
-//! `--condition` (all troubles at once). Every shorter delay of the search is survived too, except where a shortest one
-//! is given: told one sample, a controller may need that delay.
+//! Four figures for each controller, in ms. In the linear loop with the nominal plant: uncompensated, designed for a delay
+//! of one sample, and designed for each delay as it comes (compensated). In simulation: compensated, up to which delay 95 %
+//! of the robots are stabilised under `--condition` (all non-idealities at once). Every shorter delay of the search is
+//! tolerated too, except where a shortest one is given: designed for one sample, a controller may need that delay.
 //!
-//! Then the ways from sample to torque, what each takes with and without the servo's own dead time (17 to 50 ms), how
-//! many controllers are stable with that, and which hold the robots.
+//! Then the latency budget: the ways from sample to torque, what each takes with and without the servo's own dead time
+//! (17 to 50 ms), how many controllers are stable with that, and which stabilise the robots.
 //!
 //! ```console
 //! $ handstand delays handstand.toml --controller dlqr --controller best
 //! ```
 //!
-//! `--json` prints `controllers` (`controller`, `untold`, `told_one_sample`, `told`, `held`, each with
-//! `shortest_s`, `delay_s` and `open`) and `chains` (`chain`, `bus_s`, `line_s`, `servo_s`, `total_s`, `stable`, `held`: the
-//! controllers that survive the total, told it).
+//! `--json` prints `controllers` (`controller`, `uncompensated`, `compensated_one_sample`, `compensated`, `stabilised`,
+//! each with `shortest_s`, `delay_s` and `open`) and `paths` (`path`, `bus_s`, `line_s`, `servo_s`, `total_s`, `stable`,
+//! `stabilised`: the compensated controllers that tolerate the total).
 
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::controllers::{
-    CHAINS, Chain, Design, Known, Longest, Robots, SERVO_DEAD_TIME_S, longest_held, longest_linear,
+use handstand::controllers::{Design, DesignModel};
+use handstand::study::{
+    Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
+    longest_stabilised,
 };
 use handstand::synth::upright;
 use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Find the longest delay each controller survives.
+/// Find the delay margin of each controller.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -35,7 +37,7 @@ pub struct Args {
     /// A controller, by name; all without it
     #[arg(long = "controller", value_name = "NAME")]
     controllers: Vec<String>,
-    /// What else troubles the simulated robots
+    /// Condition of the simulated robots
     #[arg(long, value_name = "NAME", default_value = "all")]
     condition: String,
     /// Robots simulated at each delay; 0 leaves the simulation out
@@ -55,13 +57,13 @@ pub struct Args {
     seed: u64,
 }
 
-/// What a controller survives.
+/// The delays that a controller tolerates.
 struct Row {
     design: &'static dyn Design,
-    untold: Longest,
-    one: Longest,
-    told: Longest,
-    held: Option<Longest>,
+    uncompensated: Longest,
+    one_sample: Longest,
+    compensated: Longest,
+    stabilised: Option<Longest>,
 }
 
 /// Searches and prints.
@@ -70,23 +72,23 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let model = Model::load(&args.model)?;
     let rows = search(args, &model, &designs, talk)?;
     if talk.json {
-        let chains: Vec<_> = CHAINS
+        let paths: Vec<_> = SIGNAL_PATHS
             .iter()
-            .flat_map(|chain| chain_data(chain, &rows))
+            .flat_map(|path| path_data(path, &rows))
             .collect();
         let controllers: Vec<_> = rows
             .iter()
             .map(|row| {
                 json!({
-                    "controller": row.design.card().id,
-                    "untold": row.untold,
-                    "told_one_sample": row.one,
-                    "told": row.told,
-                    "held": row.held,
+                    "controller": row.design.info().id,
+                    "uncompensated": row.uncompensated,
+                    "compensated_one_sample": row.one_sample,
+                    "compensated": row.compensated,
+                    "stabilised": row.stabilised,
                 })
             })
             .collect();
-        talk.data(&json!({ "controllers": controllers, "chains": chains }))?;
+        talk.data(&json!({ "controllers": controllers, "paths": paths }))?;
     } else {
         talk.print(&text(&rows, args))?;
     }
@@ -99,15 +101,11 @@ fn search(
     designs: &[&'static dyn Design],
     talk: &Talk,
 ) -> Result<Vec<Row>> {
-    let pose_rad = upright(model);
-    let known = Known::ideal(model, &pose_rad, args.ts)?;
+    let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let conditions = chosen_conditions(std::slice::from_ref(&args.condition))?;
-    let robots = Robots {
-        model,
-        pose_rad: &pose_rad,
-        period_s: args.ts,
-        count: args.robots as usize,
-        spread_rad: 2f64.to_radians(),
+    let judging = Judging {
+        runs: args.robots as usize,
+        start_rad: 2f64.to_radians(),
         seconds: 5.0,
         seed: args.seed,
     };
@@ -116,26 +114,26 @@ fn search(
     bar.set_length(designs.len() as u64);
     let mut rows = Vec::new();
     for design in designs {
-        bar.set_message(design.card().title.to_string());
-        let linear = |told: Option<f64>| longest_linear(*design, &known, told, step_s, until_s);
-        let (untold, one, told) = (linear(Some(0.0))?, linear(Some(args.ts))?, linear(None)?);
-        let held = match args.robots {
-            0 => None,
-            _ => Some(longest_held(
-                *design,
-                &robots,
-                conditions[0],
-                &known,
-                5.0 * step_s,
-                until_s,
-            )?),
-        };
+        bar.set_message(design.info().title.to_string());
+        let linear =
+            |known_s: Option<f64>| longest_linear(*design, &nominal, known_s, step_s, until_s);
+        let mut case = Case::ideal(model.clone(), *design, args.ts);
+        let uncertain = conditions[0].apply(&mut case);
         rows.push(Row {
             design: *design,
-            untold,
-            one,
-            told,
-            held,
+            uncompensated: linear(Some(0.0))?,
+            one_sample: linear(Some(args.ts))?,
+            compensated: linear(None)?,
+            stabilised: match args.robots {
+                0 => None,
+                _ => Some(longest_stabilised(
+                    &case,
+                    &uncertain,
+                    &judging,
+                    5.0 * step_s,
+                    until_s,
+                )?),
+            },
         });
         bar.inc(1);
     }
@@ -146,52 +144,57 @@ fn search(
 fn text(rows: &[Row], args: &Args) -> String {
     let mut table = show::table([
         "Controller",
-        "told none",
-        "told one sample",
-        "told",
-        "held, told",
+        "uncompensated",
+        "one sample compensated",
+        "compensated",
+        "stabilised, compensated",
     ]);
     for row in rows {
         table.add_row([
-            row.design.card().id.to_string(),
-            ms(row.untold),
-            ms(row.one),
-            ms(row.told),
-            row.held.map_or(String::new(), ms),
+            row.design.info().id.to_string(),
+            ms(row.uncompensated),
+            ms(row.one_sample),
+            ms(row.compensated),
+            row.stabilised.map_or(String::new(), ms),
         ]);
     }
-    let mut chains = show::table(["From sample to torque", "ms", "stable", "held, told"]);
-    for chain in CHAINS {
+    let mut paths = show::table([
+        "From sample to torque",
+        "ms",
+        "stable",
+        "stabilised, compensated",
+    ]);
+    for path in SIGNAL_PATHS {
         for dead_s in std::iter::once(0.0).chain(SERVO_DEAD_TIME_S) {
-            let total_s = chain.total_s() + dead_s;
+            let total_s = path.total_s() + dead_s;
             let title = match dead_s {
-                0.0 => chain.title.to_string(),
+                0.0 => path.title.to_string(),
                 dead_s => format!("  and a servo's dead time of {:.0} ms", 1e3 * dead_s),
             };
-            let stable = survivors(rows, total_s, |row| Some(row.told)).len();
-            chains.add_row([
+            let stable = tolerant(rows, total_s, |row| Some(row.compensated)).len();
+            paths.add_row([
                 title,
                 format!("{:.1}", 1e3 * total_s),
                 format!("{stable} of {}", rows.len()),
-                names(survivors(rows, total_s, |row| row.held)),
+                names(tolerant(rows, total_s, |row| row.stabilised)),
             ]);
         }
     }
     format!(
-        "Longest delay survived, ms; the linear loop, and robots held 95 % under `{}`:\n{table}\n\n{chains}",
+        "Longest delay tolerated, ms; the linear loop, and 95 % of robots stabilised under `{}`:\n{table}\n\n{paths}",
         args.condition
     )
 }
 
-fn survivors(
+fn tolerant(
     rows: &[Row],
     delay_s: f64,
     longest: impl Fn(&Row) -> Option<Longest>,
 ) -> Vec<&'static str> {
-    let survives = |row: &&Row| longest(row).is_some_and(|longest| longest.survives(delay_s));
+    let tolerates = |row: &&Row| longest(row).is_some_and(|longest| longest.tolerates(delay_s));
     rows.iter()
-        .filter(survives)
-        .map(|row| row.design.card().id)
+        .filter(tolerates)
+        .map(|row| row.design.info().id)
         .collect()
 }
 
@@ -213,17 +216,17 @@ fn ms(longest: Longest) -> String {
     }
 }
 
-fn chain_data(chain: &Chain, rows: &[Row]) -> Vec<serde_json::Value> {
+fn path_data(path: &SignalPath, rows: &[Row]) -> Vec<serde_json::Value> {
     let with = |dead_s: f64| {
-        let total_s = chain.total_s() + dead_s;
+        let total_s = path.total_s() + dead_s;
         json!({
-            "chain": chain.title,
-            "bus_s": chain.bus_s(),
-            "line_s": chain.line_s(),
+            "path": path.title,
+            "bus_s": path.bus_s(),
+            "line_s": path.line_s(),
             "servo_s": dead_s,
             "total_s": total_s,
-            "stable": survivors(rows, total_s, |row| Some(row.told)),
-            "held": survivors(rows, total_s, |row| row.held),
+            "stable": tolerant(rows, total_s, |row| Some(row.compensated)),
+            "stabilised": tolerant(rows, total_s, |row| row.stabilised),
         })
     };
     std::iter::once(0.0)

@@ -8,33 +8,41 @@
 //! $ handstand demo -o bench
 //! ```
 //!
+//! Without `-o` the folder is a new one among the system's temporary files; its place is said first.
+//!
 //! `--json` prints what `handstand challenge score --json` prints.
 
 use super::talk::Talk;
 use super::{Cli, Command, Outcome, challenge, diagnose};
 use clap::Parser as _;
+use handstand::diagnose::FittedEffect;
 use handstand::{Error, Model, Result};
 use std::path::PathBuf;
 
 /// Watch the whole loop on a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder to make
-    #[arg(long, short, value_name = "DIR", default_value = "handstand-demo")]
-    output: PathBuf,
+    /// Folder to make [default: a new one among the temporary files]
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Seed of the bench
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// The effect to hide, or `none`; by lot without it
+    /// The effect to hide, or `none`; random without it
     #[arg(long, value_name = "NAME")]
     effect: Option<String>,
 }
 
 /// Runs the loop.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let at = |name: &str| args.output.join(name).to_string_lossy().into_owned();
+    let output = match &args.output {
+        Some(output) => output.clone(),
+        None => temporary()?,
+    };
+    talk.say(&format!("Everything is written to {}", output.display()));
+    let at = |name: &str| output.join(name).to_string_lossy().into_owned();
     let (folder, nominal, model) = (
-        args.output.to_string_lossy(),
+        output.to_string_lossy(),
         at("nominal.toml"),
         at("model.toml"),
     );
@@ -49,9 +57,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     step(&["log", "check", &nominal, a, b, c], talk)?;
     talk.say("\nHow far is the model from what was measured, and where?");
     step(&["compare", &nominal, a, b, c], talk)?;
-    talk.say(
-        "\nWhat is missing? c.csv is held out: only the motions it foretells prove an effect.",
-    );
+    talk.say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
     let page = at("report.html");
     let found = missing(
         &[
@@ -92,7 +98,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     talk.say("\nThe answer:");
     announce(&["challenge", "score", &folder, &model], talk);
-    let score = handstand::challenge::score(&args.output, &Model::load(model.as_ref())?)?;
+    let score = handstand::challenge::score(&output, &Model::load(model.as_ref())?)?;
     if talk.json {
         talk.data(&score)?;
     } else {
@@ -100,6 +106,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
     talk.say(&format!("The page with the pictures: {page}"));
     Ok(Outcome::Done)
+}
+
+/// A place for a folder that nobody else uses; it stays for the user to look into.
+fn temporary() -> Result<PathBuf> {
+    let folder = tempfile::Builder::new().prefix("handstand-demo-").tempdir();
+    let refused = |error| Error::file(&std::env::temp_dir(), "write", error);
+    Ok(folder.map_err(refused)?.keep().join("bench"))
 }
 
 /// Says a command line and runs it.
@@ -115,10 +128,7 @@ fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found
-        .effects
-        .first()
-        .map(handstand::diagnose::words::address))
+    Ok(found.effects.first().map(FittedEffect::address))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

@@ -13,19 +13,17 @@
 
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;
-use super::{Outcome, input, log, name};
+use super::{Outcome, input, log};
 use handstand::compare::{Comparison, compare};
-use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL, address};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, ErrorFall, Verdict, diagnose};
-use handstand::effects;
-use handstand::fitting::Horizon;
-use handstand::log::{Finding, LogRequest, Severity, Split, read, split};
-use handstand::model::{EffectInstance, ParameterPath};
+use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::fitting::{Horizon, effect_named};
+use handstand::log::{LogFinding, LogRequest, Severity, Split, read, split};
 use handstand::report::{diagnosis_json, diagnosis_text, html};
 use handstand::{Model, Result};
 use std::path::PathBuf;
 
-/// Find the physical effect that is missing from a model.
+/// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -33,20 +31,23 @@ pub struct Args {
     /// Logs to learn from
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
-    /// Logs to judge by, which are not learned from
-    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
-    holdout: Vec<LogRequest>,
     /// Effect to leave out of the candidates
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Seconds the model runs without correction, or `whole`; chosen by its stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
+    #[command(flatten)]
+    judging: input::Judging,
     #[command(flatten)]
     page: PageFile,
+}
+
+impl Args {
+    /// The logs to learn from, then those to judge by.
+    fn all_logs(&self) -> Vec<LogRequest> {
+        [self.logs.as_slice(), &self.judging.holdout].concat()
+    }
 }
 
 /// Diagnoses, prints, writes the page.
@@ -58,27 +59,26 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     })
 }
 
-/// As [`run`], for who goes on with what was found.
+/// The diagnosis itself, printed and written as by [`run`].
 pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     args.page.vacant()?;
     for effect in &args.without {
-        name::effect(effect)?;
+        effect_named(effect)?;
     }
     let model = Model::load(&args.model)?;
-    let all: Vec<LogRequest> = args.logs.iter().chain(&args.holdout).cloned().collect();
-    let findings = handstand::log::check(&all, &model)?;
+    let findings = handstand::log::check(&args.all_logs(), &model)?;
     if log::refused(&findings) {
-        let diagnosis = unfit(&findings);
+        let diagnosis = Diagnosis::unfit(&findings);
         print(&diagnosis, talk)?;
         return Ok(diagnosis);
     }
-    let named = input::motions(&model, &args.logs, &args.holdout)?;
+    let named = input::motions(&model, &args.logs, &args.judging.holdout)?;
     let split = split(named.training, named.held_out);
     let mut diagnosis = try_all(&model, &split, args, talk);
     let warned = findings
         .iter()
         .filter(|finding| finding.severity == Severity::Warn);
-    diagnosis.warnings.extend(warned.map(Finding::statement));
+    diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
         *line = with_names(line, args);
     }
@@ -104,7 +104,7 @@ fn with_names(line: &str, args: &Args) -> String {
         words.join(" ")
     };
     // Without logs of its own to judge by, the whole is all there is.
-    let line = match args.holdout.as_slice() {
+    let line = match args.judging.holdout.as_slice() {
         [] => line
             .replace(&format!(" --holdout {HELD_OUT}"), "")
             .replace(HELD_OUT, LOGS),
@@ -128,7 +128,7 @@ fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis 
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
-        horizon: args.horizon,
+        horizon: args.judging.run.horizon,
         ..defaults
     };
     let bar = talk.bar();
@@ -152,70 +152,20 @@ fn print(diagnosis: &Diagnosis, talk: &Talk) -> Result<()> {
 
 /// The model as it is, and with the effects that were found.
 fn comparisons(model: &Model, diagnosis: &Diagnosis, args: &Args) -> Result<Vec<Comparison>> {
-    let all: Vec<LogRequest> = args.logs.iter().chain(&args.holdout).cloned().collect();
-    let motions = read(&all, &model.log)?;
-    let horizon = args.horizon.or(diagnosis.horizon_s.map(Horizon::Seconds));
+    let motions = read(&args.all_logs(), &model.log)?;
+    let judged_over = diagnosis.horizon_s.map(Horizon::Seconds);
+    let horizon = args.judging.run.horizon.or(judged_over);
     let before = compare(model, "the model as it is", &motions, horizon);
     if diagnosis.effects.is_empty() {
         return Ok(vec![before]);
     }
-    let horizon = before.horizon_s.map_or(Horizon::Whole, Horizon::Seconds);
-    let names: Vec<String> = diagnosis.effects.iter().map(address).collect();
+    let horizon = Some(Horizon::from_seconds(before.horizon_s));
+    let names: Vec<String> = diagnosis
+        .effects
+        .iter()
+        .map(FittedEffect::address)
+        .collect();
     let name = format!("with {}", names.join(", "));
-    let after = compare(&mended(model, diagnosis), &name, &motions, Some(horizon));
+    let after = compare(&diagnosis.applied_to(model), &name, &motions, horizon);
     Ok(vec![before, after])
-}
-
-/// The model with the diagnosis's effects and refitted values.
-fn mended(model: &Model, diagnosis: &Diagnosis) -> Model {
-    let mut model = model.clone();
-    for value in &diagnosis.base {
-        if let Ok(path) = value.path.parse::<ParameterPath>() {
-            // A value that is not the model's is none to set.
-            let _ = path.set(&mut model, value.value);
-        }
-    }
-    let found = diagnosis.effects.iter().filter_map(|found| {
-        Some(EffectInstance {
-            effect: effects::named(&found.kind)?,
-            joint: found.joint.map(|joint| joint - 1),
-            values: found.parameters.iter().map(|value| value.value).collect(),
-        })
-    });
-    model.effects.extend(found);
-    model
-}
-
-/// What is said of logs that were refused.
-fn unfit(findings: &[Finding]) -> Diagnosis {
-    let refused = || {
-        findings
-            .iter()
-            .filter(|finding| finding.severity == Severity::Refuse)
-    };
-    let reasons = refused().map(Finding::statement);
-    let said = "The logs cannot be learned from.".to_string();
-    Diagnosis {
-        verdict: Verdict::Unfit,
-        effects: Vec::new(),
-        error: ErrorFall {
-            unit: "rad".to_string(),
-            before: f64::NAN,
-            after: f64::NAN,
-            floor: f64::NAN,
-            held_out: false,
-            fall_low: f64::NAN,
-            fall_high: f64::NAN,
-        },
-        alternatives: Vec::new(),
-        base: Vec::new(),
-        ruled_out: Vec::new(),
-        remainder: None,
-        motions: Vec::new(),
-        collinear: Vec::new(),
-        summary: std::iter::once(said).chain(reasons).collect(),
-        next: refused().map(|finding| finding.remedy.clone()).collect(),
-        warnings: Vec::new(),
-        horizon_s: None,
-    }
 }

@@ -1,23 +1,24 @@
 //! `handstand effects [NAME]`: the physical effects the library knows.
 //!
-//! Without a name, a line for each; with one, its page: law, values, what a log shows, what it is taken for,
-//! and the experiment that tells.
+//! Without a name, a line for each; with one, its page: law, values, what a log shows, what it is
+//! taken for, and the experiment that tells.
 //!
 //! ```console
 //! $ handstand effects coulomb
 //! ```
 //!
-//! `--json` prints the cards: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`, `reference`,
-//! `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`), `confused_with` (`with`, `why`).
+//! `--json` prints the descriptions: `id`, `title`, `law`, `scope`, `looks_like`, `experiment`,
+//! `reference`, `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`),
+//! `confused_with` (`with`, `why`).
 
 use super::Outcome;
-use super::name;
 use super::talk::Talk;
 use handstand::Result;
-use handstand::effects::{Card, EFFECTS, Parameter, Scope, glossary};
-use serde_json::{Value, json};
+use handstand::effects::EFFECTS;
+use handstand::fitting::effect_named;
+use handstand::report::effect_page;
 
-/// Explain the physical effects the library knows.
+/// List and explain the physical effects of the library.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// One effect, such as `coulomb`; all of them without it
@@ -28,55 +29,21 @@ pub struct Args {
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     match &args.name {
         Some(name) => {
-            let effect = name::effect(name)?;
+            let effect = effect_named(name)?;
             if talk.json {
-                talk.data(&card(effect.card()))?;
+                talk.data(effect.info())?;
             } else {
-                talk.print(&glossary::page(effect))?;
+                talk.print(&effect_page::page(effect))?;
             }
         }
         None if talk.json => {
-            let cards: Vec<Value> = EFFECTS.iter().map(|effect| card(effect.card())).collect();
-            talk.data(&cards)?;
+            let infos = EFFECTS.iter().map(|effect| effect.info());
+            talk.data(&infos.collect::<Vec<_>>())?;
         }
         None => {
-            talk.print(&glossary::overview().to_string())?;
+            talk.print(&effect_page::overview())?;
             talk.say("`handstand effects NAME` explains one of them");
         }
     }
     Ok(Outcome::Done)
-}
-
-fn card(card: &Card) -> Value {
-    let confusions = card.confused_with.iter();
-    json!({
-        "id": card.id,
-        "title": card.title,
-        "law": card.law,
-        "scope": match card.scope {
-            Scope::AnyJoint => "any_joint",
-            Scope::DrivenJoint => "driven_joint",
-            Scope::PassiveJoint => "passive_joint",
-            Scope::WholeRig => "whole_rig",
-        },
-        "parameters": card.parameters.iter().map(parameter).collect::<Vec<_>>(),
-        "looks_like": card.looks_like,
-        "confused_with": confusions
-            .map(|other| json!({ "with": other.with, "why": other.why }))
-            .collect::<Vec<_>>(),
-        "experiment": card.experiment,
-        "reference": card.reference,
-    })
-}
-
-/// JSON knows no infinity: an effect that is off at infinity has `off: null`, as a shape parameter has.
-fn parameter(parameter: &Parameter) -> Value {
-    json!({
-        "key": parameter.key,
-        "unit": parameter.unit,
-        "meaning": parameter.meaning,
-        "off": parameter.off,
-        "typical": [parameter.typical.0, parameter.typical.1],
-        "bounds": [parameter.bounds.0, parameter.bounds.1],
-    })
 }

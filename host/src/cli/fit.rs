@@ -8,20 +8,18 @@
 //! ```
 //!
 //! Exit code 1, and no file, when the logs do not determine the values. `--json` prints `model` (the new file),
-//! `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error` (`unit`, `before`, `after`,
-//! `floor`, `held_out`), `horizon_s`, `converged`, `warnings`; or `refused` and `blind`.
+//! `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error` (`before_rad`, `after_rad`,
+//! `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or `refused` and `blind`.
 
-use super::fitting::Fitting;
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::fitting::{Extension, Undetermined, refit};
+use handstand::fitting::{Candidate, Refitted, Undetermined, free_parameters, refit};
 use handstand::log::LogRequest;
-use handstand::model::ParameterPath;
-use handstand::{Error, Model, Result, model::edit, output};
+use handstand::{Model, Result, model::edit, output};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Fit a model's free values to logs.
+/// Fit a model's free parameters to logs.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -33,68 +31,22 @@ pub struct Args {
     #[arg(long, value_name = "PATH")]
     free: Vec<String>,
     #[command(flatten)]
-    fitting: Fitting,
+    fit: input::FitArgs,
 }
 
 /// Fits, writes, prints.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
-    let free = free(&model, &args.free)?;
-    args.fitting.vacant()?;
-    let split = input::motions(&model, &args.logs, &args.fitting.holdout)?;
-    let extension = match refit(&model, &free, &split, args.fitting.horizon) {
-        Ok(extension) => extension,
+    let free = free_parameters(&model, &args.free)?;
+    let split = args.fit.motions(&model, &args.logs)?;
+    let refitted = match refit(&model, &free, &split, args.fit.judging.run.horizon) {
+        Ok(refitted) => refitted,
         Err(why) => return refuse(&why, talk),
     };
-    let text = edit::set_values(&text, &args.model, &values(&extension))?;
-    output::write_new(&args.fitting.output, &text, args.fitting.force)?;
-    report(
-        &extension,
-        "for the model as it was",
-        &args.fitting.output,
-        talk,
-    )
-}
-
-/// The values to fit: those named, or the model's own.
-fn free(model: &Model, named: &[String]) -> Result<Vec<ParameterPath>> {
-    let mut free: Vec<ParameterPath> = Vec::new();
-    for text in named {
-        let path: ParameterPath = text.parse()?;
-        match path.get(model) {
-            None => {
-                return Err(Error::usage(
-                    format!("`{text}` is not in this model"),
-                    "add its link, drive or effect to the model, or name another value",
-                ));
-            }
-            Some(value) if !value.is_finite() => {
-                return Err(Error::usage(
-                    format!("`{text}` is infinite, so nothing can be fitted"),
-                    "give it a value to start from in the model",
-                ));
-            }
-            Some(_) if free.contains(&path) => {}
-            Some(_) => free.push(path),
-        }
-    }
-    if named.is_empty() {
-        free.clone_from(&model.free);
-    }
-    if free.is_empty() {
-        return Err(Error::usage(
-            "no value is free to be fitted",
-            "name one by --free link1.com_m, or under [fit] in the model",
-        ));
-    }
-    Ok(free)
-}
-
-/// Addresses and values, for the model file.
-pub fn values(extension: &Extension) -> Vec<(ParameterPath, f64)> {
-    let values = extension.values.iter().map(|value| value.value);
-    extension.free.iter().copied().zip(values).collect()
+    let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
+    let before = "for the model as it was";
+    write(&refitted, &text, None, before, &args.fit, talk)
 }
 
 /// Says why there is no new model.
@@ -107,15 +59,26 @@ pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Refused)
 }
 
-/// Says what the new model holds; `before` says which model left the error before.
-pub fn report(extension: &Extension, before: &str, file: &Path, talk: &Talk) -> Result<Outcome> {
+/// Writes the new model and says what it holds; `before` says which model left the error before.
+pub fn write(
+    refitted: &Refitted,
+    text: &str,
+    added: Option<Candidate>,
+    before: &str,
+    args: &input::FitArgs,
+    talk: &Talk,
+) -> Result<Outcome> {
+    output::write_new(&args.output, text, args.force)?;
     if talk.json {
-        let mut data = show::extension_json(extension);
-        data["model"] = json!(file.to_string_lossy());
+        let mut data = show::refitted_json(refitted);
+        data["model"] = json!(args.output.to_string_lossy());
+        if let Some(added) = added {
+            data["effect"] = json!(added.to_string());
+        }
         talk.data(&data)?;
     } else {
-        talk.print(&show::extension(extension, before))?;
-        talk.say(&format!("wrote {}", file.display()));
+        talk.print(&show::refitted(refitted, before))?;
+        talk.say(&format!("wrote {}", args.output.display()));
     }
     Ok(Outcome::Done)
 }

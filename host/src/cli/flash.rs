@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Write a program into the CM-5.
+/// Flash firmware into the CM-5.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Raw binary; for --isp also HEX or ELF

@@ -1,26 +1,36 @@
 //! `handstand gains MODEL`: gains that balance a model at a pose, and the files that carry them on.
 //!
-//! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati equation, rounds the
-//! gains to fixed point with a proof against overflow. Weights are one number (times the identity), a diagonal
-//! `1,1,0.1`, or a CSV file of a matrix.
+//! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati
+//! equation, rounds the gains to fixed point with a proof against overflow. Any model that
+//! `handstand add` writes will do: effects without a derivative (Coulomb friction, dead zones, ..)
+//! are left out of the design, which says so; `--without` takes one out of the model altogether.
+//! Weights are one number (times the identity), a diagonal `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
 //! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
 //! ```
 //!
-//! `--json` prints everything: `k`, `riccati`, `residual`, `loop_poles`, `poles_1_s`, `zeros_1_s`, `continuous` and `sampled`
-//! (`a`, `b`, `c`, `d`, ..), `estimator`, `fixed`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
+//! Then the loop is simulated with every effect of the model, those that the design leaves out
+//! included: whether it is stabilised, from how far, and which effect limits it. Exit code 1 when
+//! it is not.
+//!
+//! `--json` prints everything: `omitted_effects`, `k`, `riccati`, `residual`, `loop_poles`,
+//! `poles_1_s`, `zeros_1_s`, `continuous` and `sampled` (`a`, `b`, `c`, `d`, ..), `estimator`,
+//! `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
-use super::given::{Given, weight};
 use super::talk::Talk;
+use super::weight_arg::{WeightArg, weight};
 use super::{Outcome, input, page};
 use handstand::model::Model;
 use handstand::output::write_new;
+use handstand::study::{left_out, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
 use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
+
+mod verification;
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -29,10 +39,10 @@ pub struct Args {
     model: PathBuf,
     /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    q: Option<Given>,
+    q: Option<WeightArg>,
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
-    r: Option<Given>,
+    r: Option<WeightArg>,
     /// Sampling time, s
     #[arg(
         long,
@@ -50,7 +60,7 @@ pub struct Args {
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
     balance: bool,
-    /// Design without this effect of the model
+    /// Take this effect out of the model altogether
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// For continuous time: no sampling, no fixed point
@@ -65,21 +75,22 @@ pub struct Args {
     /// Step of the gyro, rad/s [default: 10 degrees per second]
     #[arg(long, value_name = "RAD_S", requires = "lqg")]
     gyro_step: Option<f64>,
-    /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their limit]
+    /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their
+    /// limit]
     #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
-    process: Option<Given>,
+    process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    range: Option<Given>,
+    range: Option<WeightArg>,
     /// Largest inputs, SI [default: the drives' own; 2 N m for a torque]
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
-    limit: Option<Given>,
+    limit: Option<WeightArg>,
     /// SI value of one step of each state, where sensors set it [default: powers of two]
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    state_step: Option<Given>,
+    state_step: Option<WeightArg>,
     /// SI value of one step of each input, where drives set it
     #[arg(long, value_name = "LIST", value_parser = weight)]
-    input_step: Option<Given>,
+    input_step: Option<WeightArg>,
     /// Write the fixed-point law as a Rust file
     #[arg(long, value_name = "FILE.rs")]
     rust: Option<PathBuf>,
@@ -123,15 +134,24 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let (model, request, made) = requested(args, talk)?;
-    let design = Design::of(&model, &request)?;
+    let (part, request, made) = requested(args, talk)?;
+    let design = Design::of(&part, &request)?;
+    let whole = Model::load(&args.model)?;
+    let left_out = left_out(&whole, &part, &design);
+    let verified = verify(&whole, &design, &request, &left_out)?;
+    let mut data = export::json(&design, &made);
+    data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
     if talk.json {
-        talk.data(&export::json(&design, &made))?;
+        talk.data(&data)?;
     } else {
         talk.print(&export::text(&design))?;
+        talk.print(&verification::text(&verified))?;
     }
-    write(args, &design, &made, talk)?;
-    Ok(Outcome::Done)
+    write(args, &design, &made, &data, talk)?;
+    Ok(match verified.stabilised {
+        true => Outcome::Done,
+        false => Outcome::Refused,
+    })
 }
 
 impl Args {
@@ -180,17 +200,23 @@ pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Pro
         input::vacant(file, args.force)?;
     }
     let mut model = Model::load(&args.model)?;
-    leave_out(&mut model, &args.without, talk)?;
-    let request = request(args, &model, talk)?;
+    for id in leave_out(&mut model, &args.without)? {
+        talk.say(&format!("designed without {id}; the simulated loop has it"));
+    }
+    let (request, balance) = request(args, &model)?;
+    if let Some(said) = balance {
+        talk.say(&said);
+    }
     Ok((model, request, provenance(&args.model, talk)?))
 }
 
-fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
+/// Takes these effects out of the model; which ones they were.
+fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String]> {
     for id in without {
         let before = model.effects.len();
-        model.effects.retain(|e| e.effect.card().id != id);
+        model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
-            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.card().id).collect();
+            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
             return Err(Error::usage(
                 format!("`{}` holds no effect `{id}`", model.name),
                 match held.is_empty() {
@@ -199,22 +225,21 @@ fn leave_out(model: &mut Model, without: &[String], talk: &Talk) -> Result<()> {
                 },
             ));
         }
-        talk.say(&format!(
-            "designed without {id}: the loop must survive it all the same"
-        ));
     }
-    Ok(())
+    Ok(without)
 }
 
-fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
+/// The request, and where the pose was moved to if it was.
+fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
     let mut pose_rad = match &args.pose {
         Pose::Upright => upright(model),
         Pose::Angles(angles) => angles.clone(),
     };
+    let mut moved = None;
     if args.balance {
         pose_rad = balanced(model, &pose_rad)?;
         let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
-        talk.say(&format!("balanced at q = [{}] rad", said.join(", ")));
+        moved = Some(format!("balanced at q = [{}] rad", said.join(", ")));
     }
     let time = match args.continuous {
         true => Time::Continuous,
@@ -229,15 +254,15 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
         .iter()
         .filter(|joint| joint.drive.is_driven())
         .count();
-    let list = |given: &Option<Given>, name, size| {
+    let list = |given: &Option<WeightArg>, name, size| {
         given
             .as_ref()
             .map(|given| given.list(name, size))
             .transpose()
     };
-    let process = args.process.as_ref().map(Given::read).transpose()?;
+    let process = args.process.as_ref().map(WeightArg::read).transpose()?;
     let degree = std::f64::consts::PI / 180.0;
-    Ok(Request {
+    let request = Request {
         pose_rad,
         q: weighed(&args.q, 100.0)?,
         r: weighed(&args.r, 1.0)?,
@@ -251,22 +276,24 @@ fn request(args: &Args, model: &Model, talk: &Talk) -> Result<Request> {
         }),
         state_range: match &args.range {
             Some(range) => range.read()?,
-            // Half a radian, ten radians per second: more than a balancing robot ever comes back from.
+            // Half a radian, ten radians per second: more than a balancing robot ever comes back
+            // from.
             None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
         },
-        input_range: args.limit.as_ref().map(Given::read).transpose()?,
+        input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
         format: Format {
             bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
             input_step: list(&args.input_step, "--input-step", inputs)?,
         },
-    })
+    };
+    Ok((request, moved))
 }
 
-fn weighed(given: &Option<Given>, default: f64) -> Result<Weight> {
+fn weighed(given: &Option<WeightArg>, default: f64) -> Result<Weight> {
     given
         .as_ref()
-        .map_or(Ok(Weight::Scalar(default)), Given::read)
+        .map_or(Ok(Weight::Scalar(default)), WeightArg::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
@@ -278,7 +305,14 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
     })
 }
 
-pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk) -> Result<()> {
+/// Writes the files that the options ask for; `data` is what the JSON file holds.
+pub(super) fn write(
+    args: &Args,
+    design: &Design,
+    made: &Provenance,
+    data: &serde_json::Value,
+    talk: &Talk,
+) -> Result<()> {
     let put = |file: &Path, text: &str| -> Result<()> {
         write_new(file, text, args.force)?;
         talk.say(&format!("wrote {}", file.display()));
@@ -298,7 +332,7 @@ pub(super) fn write(args: &Args, design: &Design, made: &Provenance, talk: &Talk
     if let Some(file) = &args.state_space {
         let text = match file.extension().is_some_and(|ending| ending == "m") {
             true => export::matlab(design, made),
-            false => format!("{:#}\n", export::json(design, made)),
+            false => format!("{data:#}\n"),
         };
         put(file, &text)?;
     }

@@ -1,32 +1,32 @@
 //! `handstand identify LOG... [--orders bj:1,2,1,2,1]...`: a servo as a black box.
 //!
-//! Discrete-time models from what the servo was told to what it did, fitted by the prediction-error method. Of
-//! several orders the plainest is kept that foretells data it was not fitted to as well as the best one. From a
-//! measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
+//! Discrete-time models from command to measured output, fitted by the prediction-error method. Of
+//! several orders the one with the fewest coefficients is kept that predicts held-out data as well
+//! as the best one. From a measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
 //!
 //! ```console
 //! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg --validate other.csv
 //! ```
 //!
-//! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`, `bj:nb,nc,nd,nf,nk`,
-//! each a number or a range such as `1-3`. Without `--validate` the last third of each motion is held out.
-//! `docs/identify.md` explains the output; its keys as `--json` are in `docs/json.md`. Exit code 1: no model
-//! could be fitted.
+//! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`,
+//! `bj:nb,nc,nd,nf,nk`, each a number or a range such as `1-3`. Without `--validate` the last third
+//! of each motion is held out. `docs/identify.md` explains the output; its keys as `--json` are in
+//! `docs/json.md`. Exit code 1: no model could be fitted.
 
-use super::signals::{self, Chosen, Signals};
+use super::servo_columns::{self, ChosenColumns, ServoColumns};
 use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Known, Record, Structure, Trial, dynamics, record, sampling_period_s, select, structures,
-    try_all,
+    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
+    structures, try_all,
 };
 use handstand::{Error, Result};
 use serde_json::{Value, json};
 
 mod text;
 
-/// Orders tried unless told.
+/// Orders tried by default.
 const DEFAULT: [&str; 4] = [
     "arx:1-3,1-2,1",
     "armax:1-3,1-2,1-2,1",
@@ -50,7 +50,7 @@ pub struct Args {
     #[arg(long, value_name = "ORDERS", value_parser = orders)]
     orders: Vec<Grid>,
     #[command(flatten)]
-    signals: Signals,
+    columns: ServoColumns,
 }
 
 /// The structures of one `--orders`.
@@ -63,7 +63,7 @@ fn orders(text: &str) -> Result<Grid, String> {
 
 /// What is learned from and judged by.
 struct Data {
-    chosen: Chosen,
+    chosen: ChosenColumns,
     ts_s: f64,
     training: Vec<Record>,
     validation: Vec<Record>,
@@ -101,8 +101,8 @@ fn data(args: &Args) -> Result<Data> {
             "give a share between 0 and 1, such as --split 0.7",
         ));
     }
-    let chosen = args.signals.chosen()?;
-    let (logs, held_out) = signals::motions(&chosen, &args.logs, &args.validate)?;
+    let chosen = args.columns.chosen()?;
+    let (logs, held_out) = servo_columns::motions(&chosen, &args.logs, &args.validate)?;
     let all: Vec<Motion> = logs.iter().chain(&held_out).cloned().collect();
     let ts_s = sampling_period_s(&all);
     let records = |motions: &[Motion]| -> Result<Vec<Record>> {
@@ -121,8 +121,8 @@ fn data(args: &Args) -> Result<Data> {
     })
 }
 
-fn found_json(data: &Data, trials: &[Trial], chosen: Option<usize>) -> Value {
-    let trial = |trial: &Trial| match &trial.outcome {
+fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
+    let trial = |trial: &Candidate| match &trial.outcome {
         Ok(fitted) => json!({
             "orders": trial.structure.to_string(),
             "coefficients": trial.structure.count(),
@@ -142,7 +142,7 @@ fn found_json(data: &Data, trials: &[Trial], chosen: Option<usize>) -> Value {
             let halves = estimate.half_widths();
             let coefficients: Vec<Value> = (0..names.len())
                 .map(|k| {
-                    let known = Known::around(values[k], halves[k]);
+                    let known = Interval::around(values[k], halves[k]);
                     json!({ "name": names[k], "value": known.value, "low": known.low, "high": known.high })
                 })
                 .collect();

@@ -3,7 +3,51 @@
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, Split, read};
 use handstand::{Error, Model, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// How long models run.
+#[derive(Debug, clap::Args)]
+pub struct RunLength {
+    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable without it
+    #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
+    pub horizon: Option<Horizon>,
+}
+
+/// How models are judged.
+#[derive(Debug, clap::Args)]
+pub struct Judging {
+    /// Logs to judge by, which are not fitted
+    #[arg(long, num_args = 1.., value_name = "LOG", value_parser = log)]
+    pub holdout: Vec<LogRequest>,
+    /// How long models run
+    #[command(flatten)]
+    pub run: RunLength,
+}
+
+/// How a fit is judged, and where the new model goes.
+#[derive(Debug, clap::Args)]
+pub struct FitArgs {
+    /// How it is judged
+    #[command(flatten)]
+    pub judging: Judging,
+    /// New model file
+    #[arg(long, short, value_name = "NEW.toml")]
+    pub output: PathBuf,
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl FitArgs {
+    /// Reads the motions to fit and those to judge by; the new model's name is checked before that work.
+    ///
+    /// # Errors
+    /// As [`vacant`] and [`motions`].
+    pub fn motions(&self, model: &Model, logs: &[LogRequest]) -> Result<Split> {
+        vacant(&self.output, self.force)?;
+        motions(model, logs, &self.judging.holdout)
+    }
+}
 
 /// A log argument, its error with the remedy: `drop.csv`, `drop.csv:26-139`.
 pub fn log(text: &str) -> Result<LogRequest, String> {

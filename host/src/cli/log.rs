@@ -1,19 +1,20 @@
-//! `handstand log check MODEL LOG...`: are these logs fit to be learned from?
+//! `handstand log check MODEL LOG...`: checks logs before a model is fitted to them.
 //!
-//! Reads every row; the model says how columns are named and in which units. What is broken is refused, what
-//! looks wrong is warned of, each with file, line, column and remedy.
+//! Reads every row; the model says how columns are named and in which units. What is broken is
+//! refused, what looks wrong is warned of, each with file, line, column and remedy.
 //!
 //! ```console
 //! $ handstand log check arm.toml swing.csv drop.csv:26-139
 //! ```
 //!
-//! Exit code 1 when a log is refused, 0 otherwise, warnings or not. `--json` prints `verdict` (`clean`,
-//! `warned`, `refused`) and `findings` (`severity`, `file`, `line`, `column`, `what`, `remedy`).
+//! Exit code 1 when a log is refused, 0 otherwise, warnings or not. `--json` prints `verdict`
+//! (`clean`, `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`,
+//! `what`, `remedy`).
 
 use super::Outcome;
 use super::input;
 use super::talk::Talk;
-use handstand::log::{Finding, LogRequest, Severity};
+use handstand::log::{LogFinding, LogRequest, Severity};
 use handstand::{Model, Result};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -21,11 +22,11 @@ use std::path::PathBuf;
 /// What can be done with logs.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Judge logs before they are learned from
+    /// Check logs before a model is fitted to them
     Check(Args),
 }
 
-/// Judge logs before they are learned from.
+/// Check logs before a model is fitted to them.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file: it names the logs' columns and units
@@ -39,18 +40,20 @@ pub struct Args {
 pub fn check(args: &Args, talk: &Talk) -> Result<Outcome> {
     let model = Model::load(&args.model)?;
     let findings = handstand::log::check(&args.logs, &model)?;
+    let (verdict, sentence) = match findings.iter().map(|finding| finding.severity).max() {
+        Some(Severity::Refuse) => (
+            "refused",
+            "refused: mend what is refused above, then check again",
+        ),
+        Some(Severity::Warn) => ("warned", "fit for use, with the warnings above"),
+        Some(Severity::Note) | None => ("clean", "fit for use"),
+    };
     if talk.json {
-        talk.data(&json!({
-            "verdict": verdict(&findings),
-            "findings": findings.iter().map(finding).collect::<Vec<_>>(),
-        }))?;
+        let findings: Vec<Value> = findings.iter().map(finding).collect();
+        talk.data(&json!({ "verdict": verdict, "findings": findings }))?;
     } else {
         let mut lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
-        lines.push(match verdict(&findings) {
-            "refused" => "refused: mend what is refused above, then check again".to_string(),
-            "warned" => "fit for use, with the warnings above".to_string(),
-            _ => "fit for use".to_string(),
-        });
+        lines.push(sentence.to_string());
         talk.print(&lines.join("\n"))?;
     }
     Ok(match refused(&findings) {
@@ -60,30 +63,19 @@ pub fn check(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 /// Whether any finding makes the logs useless.
-pub fn refused(findings: &[Finding]) -> bool {
-    findings
-        .iter()
-        .any(|finding| finding.severity == Severity::Refuse)
+pub fn refused(findings: &[LogFinding]) -> bool {
+    let mut severities = findings.iter().map(|finding| finding.severity);
+    severities.any(|severity| severity == Severity::Refuse)
 }
 
-fn verdict(findings: &[Finding]) -> &'static str {
-    match findings.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Refuse) => "refused",
-        Some(Severity::Warn) => "warned",
-        Some(Severity::Note) | None => "clean",
-    }
-}
-
-fn finding(finding: &Finding) -> Value {
+fn finding(finding: &LogFinding) -> Value {
+    let place = finding.place.as_ref();
     json!({
-        "severity": match finding.severity {
-            Severity::Note => "note",
-            Severity::Warn => "warning",
-            Severity::Refuse => "refused",
-        },
-        "file": finding.place.as_ref().map(|place| place.file.to_string_lossy()),
-        "line": finding.place.as_ref().and_then(|place| place.line),
-        "column": finding.place.as_ref().and_then(|place| place.column),
+        "severity": finding.severity.name(),
+        "kind": finding.kind,
+        "file": place.map(|place| place.file.to_string_lossy()),
+        "line": place.and_then(|place| place.line),
+        "column": place.and_then(|place| place.column),
         "what": finding.what,
         "remedy": finding.remedy,
     })

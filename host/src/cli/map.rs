@@ -1,31 +1,33 @@
 //! `handstand map dead-zone LOG...`, `handstand map supply LOG...`: what a servo does at rest.
 //!
-//! `dead-zone` fits a dead zone, a line on either side and, where one is seen, a limit, from commanded to measured
-//! speed or torque, and turns the map round: which command makes which output. `supply` fits the relative speed
-//! error as a line over the supply voltage, and says at which supply the speed is right.
+//! `dead-zone` fits a dead zone, a line on either side and, where one is seen, a limit, from
+//! commanded to measured speed or torque, and turns the map round: which command makes which
+//! output. `supply` fits the relative speed error as a line over the supply voltage, and says at
+//! which supply the speed is right.
 //!
 //! ```console
 //! $ handstand map dead-zone ramp.csv --time t=s --input command=% --output angle=deg
 //! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg --supply volts=V
 //! ```
 //!
-//! Both work on means over blocks of time, so record slowly: an input that changes within a block blurs the edge.
+//! Both work on means over blocks of time, so record slowly: an input that changes within a block
+//! blurs the edge.
 
-use super::signals::{self, Signals};
+use super::servo_columns::{self, ServoColumns};
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::LogRequest;
 use handstand::number::exact;
-use handstand::sysid::{Block, DeadZone, Known, Side, Supply, blocks};
+use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
 use serde_json::{Value, json};
 
 /// What can be mapped.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Dead zone, slope and limit from command to speed or torque, and the map turned round
+    /// Estimate dead zone, slope and limit from command to speed or torque, and the inverse map
     DeadZone(Args),
-    /// Relative speed error over the supply voltage
+    /// Estimate the relative speed error over the supply voltage
     Supply(Args),
 }
 
@@ -39,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     block: f64,
     #[command(flatten)]
-    signals: Signals,
+    columns: ServoColumns,
 }
 
 /// Fits and prints.
@@ -51,22 +53,22 @@ pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
 }
 
 /// Means of the logs, and the units of input and output.
-fn measured(args: &Args) -> Result<(Vec<Block>, &'static str, &'static str)> {
+fn measured(args: &Args) -> Result<(Vec<BlockMean>, &'static str, &'static str)> {
     if !(args.block > 0.0 && args.block.is_finite()) {
         return Err(Error::usage(
             format!("blocks of {} s", args.block),
             "give a length above 0, such as --block 0.2",
         ));
     }
-    let chosen = args.signals.chosen()?;
-    let (motions, _) = signals::motions(&chosen, &args.logs, &[])?;
+    let chosen = args.columns.chosen()?;
+    let (motions, _) = servo_columns::motions(&chosen, &args.logs, &[])?;
     let blocks = blocks(&motions, chosen.joint, chosen.output, args.block);
     Ok((blocks, chosen.input_unit, chosen.output_unit))
 }
 
 fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
     let (blocks, input_unit, output_unit) = measured(args)?;
-    let map = match DeadZone::fit(&blocks) {
+    let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return refused(&why.to_string(), talk),
     };
@@ -120,7 +122,7 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
             "a speed error needs a commanded speed: give --input as a speed and --output as an angle or a speed",
         ));
     }
-    let line = match Supply::fit(&blocks) {
+    let line = match SupplyLine::fit(&blocks) {
         Ok(line) => line,
         Err(why) => return refused(&why.to_string(), talk),
     };
@@ -129,7 +131,7 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
         return Ok(Outcome::Done);
     }
     let per_v = line.error_per_v;
-    let percent = Known {
+    let percent = Interval {
         value: 100.0 * per_v.value,
         low: 100.0 * per_v.low,
         high: 100.0 * per_v.high,
@@ -160,7 +162,7 @@ fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Refused)
 }
 
-fn known(known: &Known) -> String {
+fn known(known: &Interval) -> String {
     format!(
         "{} ({} to {})",
         exact(known.value),

@@ -1,8 +1,8 @@
 //! Commands, one per file; each file's head is the command's manual.
 //!
-//! stdout carries data, stderr talk. Exit codes: 0 done, 1 the answer is no (a log refused, values that cannot
-//! be determined), 2 the request makes no sense, 3 a file or its content is refused, 4 a device failed, 5 a
-//! drive was stopped for safety, 101 a bug.
+//! stdout carries data, stderr messages. Exit codes: 0 done, 1 the answer is no (a log refused, values
+//! that cannot be determined), 2 the request makes no sense, 3 a file or its content is refused, 4
+//! a device failed, 5 a drive was stopped for safety, 101 a bug.
 
 mod add;
 mod bus;
@@ -15,17 +15,14 @@ mod deploy;
 mod diagnose;
 mod effects;
 mod fit;
-mod fitting;
 mod flash;
 mod gains;
-mod given;
 mod identify;
 mod input;
 mod interrupt;
 mod latency;
 mod log;
 mod map;
-mod name;
 mod page;
 mod paper;
 mod port;
@@ -33,13 +30,14 @@ mod record;
 mod replay;
 mod robot;
 mod robust;
+mod servo_columns;
 mod show;
-mod signals;
 mod simulated;
 mod study;
 mod talk;
 mod view;
 mod virtual_robot;
+mod weight_arg;
 
 use clap::{Parser, Subcommand};
 use handstand::Result;
@@ -48,17 +46,18 @@ use talk::Talk;
 /// Exit code of a bug.
 pub const BUG: u8 = 101;
 
-/// Compare a model of a servo arm or chain of links with measured logs, and find the missing physical effect.
+/// Compare a model of a servo arm or chain of links with measured logs, and find the missing
+/// physical effect.
 #[derive(Debug, Parser)]
 #[command(name = "handstand", version, max_term_width = 100, after_help = FIRST)]
 pub struct Cli {
     /// Print data as JSON on stdout
     #[arg(long, global = true)]
     json: bool,
-    /// Say nothing on stderr but errors
+    /// Print nothing on stderr but errors
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// What to do
+    /// The command to run
     #[command(subcommand)]
     pub command: Command,
 }
@@ -66,72 +65,72 @@ pub struct Cli {
 const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
 
 impl Cli {
-    /// Where this run's words go.
+    /// Where this run's output goes.
     pub fn talk(&self) -> Talk {
         Talk::new(self.json, self.quiet)
     }
 }
 
-/// What there is to do.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Compare models with logs
+    /// Compare a model's simulation with measured logs
     Compare(compare::Args),
-    /// Find the physical effect that is missing from a model
+    /// Diagnose which physical effect a model lacks, from logs
     Diagnose(diagnose::Args),
-    /// Explain the physical effects the library knows
+    /// List and explain the physical effects of the library
     Effects(effects::Args),
-    /// Judge logs before they are learned from
+    /// Check logs before a model is fitted to them
     #[command(subcommand)]
     Log(log::Command),
-    /// Fit a model's free values to logs
+    /// Fit a model's free parameters to logs
     Fit(fit::Args),
-    /// Add an effect to a model, its values fitted to logs
+    /// Add an effect to a model, its parameters fitted to logs
     Add(add::Args),
-    /// Find gains that balance a model, and write them for firmware
+    /// Synthesise LQR gains that balance a model, and export them for firmware
     Gains(Box<deploy::GainsCommand>),
-    /// See what the closed loop of robot and controller bears
+    /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::Command),
-    /// Identify a servo as a black box: discrete-time models by prediction error
+    /// Identify a servo's discrete-time black-box model by prediction error
     Identify(identify::Args),
-    /// Map what a servo does at rest: dead zone, saturation, supply
+    /// Estimate a servo's static maps: dead zone, saturation, supply
     #[command(subcommand)]
     Map(map::Command),
-    /// Play a motion on a page
+    /// Animate a motion on an HTML page
     View(view::Args),
-    /// The paper's numbers, figures and findings beside our own
+    /// Recompute the paper's numbers, figures and findings, and compare
     Paper(paper::Args),
-    /// Try yourself, or the program, on a virtual bench with a hidden effect
+    /// Practise diagnosis on a virtual bench with a hidden effect
     #[command(subcommand)]
     Challenge(challenge::Command),
-    /// Try controllers under everything the robot does to them
+    /// Simulate controllers in closed loop with the robot's non-idealities
     Controllers(controllers::Args),
-    /// Find the longest delay each controller survives
+    /// Find the delay margin of each controller
     Delays(delays::Args),
-    /// See what gains make of robots whose masses are not the model's
+    /// Verify the robustness of gains to errors of the masses
     Robust(robust::Args),
-    /// Watch the whole loop on such a bench
+    /// Demonstrate compare, diagnose and add on a virtual bench
     Demo(demo::Args),
-    /// Communicate with servos: scan, read, write, set up, monitor, back up, diagnose
+    /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
     Bus(bus::Command),
-    /// Record what servos do
+    /// Record servo states to a log
     Record(record::Args),
-    /// Let servos repeat a recording
+    /// Replay a recording on servos
     Replay(replay::Args),
-    /// Measure where the time between PC and servos goes
+    /// Measure the latency between PC and servos, stage by stage
     Latency(latency::Args),
-    /// Bring gains for a model onto the CM-5, and read them back
+    /// Deploy a model's gains to the CM-5, and read them back
     Deploy(Box<deploy::Args>),
-    /// Write a program into the CM-5
+    /// Flash firmware into the CM-5
     Flash(flash::Args),
-    /// Offer simulated servos to any program as a serial port
+    /// Simulate servos behind a virtual serial port
     Virtual(virtual_robot::Args),
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the command.
     ///
     /// # Errors
     /// Requests that make no sense, files that cannot be read or are refused.

@@ -5,6 +5,7 @@ use super::talk::Talk;
 use handstand::compare::Comparison;
 use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
+use handstand::number::hex;
 use handstand::report::{LogFile, ModelFile, Provenance, Report};
 use handstand::{Error, Result, output};
 use sha2::{Digest as _, Sha256};
@@ -92,16 +93,15 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
 /// [`Error::File`] if it cannot be read.
 pub fn hashed(file: &Path) -> Result<ModelFile> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
-    let hash = Sha256::digest(&bytes);
     Ok(ModelFile {
-        name: name(file),
-        sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+        name: file_name(file),
+        sha256: hex(Sha256::digest(&bytes)),
     })
 }
 
 fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
     for motion in motions {
-        let name = name(&motion.source.path);
+        let name = file_name(&motion.source.path);
         match logs
             .iter_mut()
             .find(|log| log.name == name && log.held_out == held_out)
@@ -117,7 +117,8 @@ fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
     }
 }
 
-fn name(file: &Path) -> String {
+/// The last part of a file's path.
+pub fn file_name(file: &Path) -> String {
     file.file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy()

@@ -18,7 +18,7 @@ use handstand::Result;
 use handstand::paper::{Computed, Row, STEPS, Study, Verdict, check, html, study};
 use serde_json::{Value, json};
 
-/// The paper's numbers, figures and findings beside our own.
+/// Recompute the paper's numbers, figures and findings, and compare.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Also judge the figures and all that the paper found

@@ -1,31 +1,32 @@
-//! `handstand robust MODEL`: what gains make of robots whose masses are not the model's.
+//! `handstand robust MODEL`: robustness of gains against wrong masses.
 //!
 //! Draws `--draws` robots, each mass evenly within `--masses` percent of the model's, each by itself; samples each and
 //! closes the loop with a gain made for the model: the paper's (Q = 100 I and Q = I, R = I), and one made for the
-//! model and the corners of its mass errors at once. Lost is a robot whose loop has a spectral radius not below 1.
+//! model and the corners of its mass errors at once. Unstable is a robot whose loop has a spectral radius not below 1.
 //! The design sees no draw, so every seed is fresh.
 //!
 //! ```console
 //! $ handstand robust handstand.toml
 //! ```
 //!
-//! Exit code 1 when the multi-model gain loses more than 2 %. `--json` prints a list of `gain`, `lost`,
-//! `median_radius`, `worst_radius`, `largest_error` (of which 2 % are lost) and `k`, by rows.
+//! Exit code 1 when the multi-model gain leaves more than 2 % unstable. `--json` prints a list of `gain`, `unstable`,
+//! `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable) and `k`, by rows.
 
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::controllers::{SHARE, Uncertain, WEIGHTS, robust_gain};
+use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::number::exact;
-use handstand::synth::{Discrete, dlqr, lost_share, spectral_radius, upright};
+use handstand::study::{Case, MassErrors, radii, unstable_share};
+use handstand::synth::{dlqr, upright, zoh};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Share of the robots that a robust gain may lose.
-const LOST: f64 = 0.02;
+/// Share of the robots that may be unstable under a robust gain.
+const UNSTABLE: f64 = 0.02;
 
-/// See what gains make of robots whose masses are not the model's.
+/// Verify the robustness of gains to errors of the masses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file
@@ -37,10 +38,10 @@ pub struct Args {
     #[arg(long)]
     with_inertia: bool,
     /// Error the multi-model gain is designed for, %
-    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * SHARE, value_parser = input::positive)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * MASS_ERROR, value_parser = input::positive)]
     design: f64,
     /// Weight of every state in that design
-    #[arg(long, value_name = "Q", default_value_t = WEIGHTS, value_parser = input::positive)]
+    #[arg(long, value_name = "Q", default_value_t = WEIGHT, value_parser = input::positive)]
     q: f64,
     /// Robots drawn
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..))]
@@ -53,7 +54,7 @@ pub struct Args {
     seed: u64,
 }
 
-/// A gain and what it makes of the robots.
+/// A gain and the loops of the drawn robots under it.
 struct Row {
     gain: String,
     k: DMatrix<f64>,
@@ -62,8 +63,8 @@ struct Row {
 }
 
 impl Row {
-    fn lost(&self) -> f64 {
-        self.radii.iter().filter(|radius| **radius >= 1.0).count() as f64 / self.radii.len() as f64
+    fn unstable(&self) -> f64 {
+        unstable_share(&self.radii)
     }
 }
 
@@ -82,7 +83,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let data = rows.iter().map(|row| {
             json!({
                 "gain": row.gain,
-                "lost": row.lost(),
+                "unstable": row.unstable(),
                 "median_radius": row.radii[row.radii.len() / 2],
                 "worst_radius": row.radii[row.radii.len() - 1],
                 "largest_error": row.largest_error,
@@ -93,37 +94,47 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     } else {
         talk.print(&text(args, &rows))?;
     }
-    Ok(match rows.last().is_some_and(|row| row.lost() <= LOST) {
-        true => Outcome::Done,
-        false => Outcome::Refused,
-    })
+    Ok(
+        match rows.last().is_some_and(|row| row.unstable() <= UNSTABLE) {
+            true => Outcome::Done,
+            false => Outcome::Refused,
+        },
+    )
 }
 
 fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
-    let pose_rad = upright(model);
-    let uncertain = |percent: f64| Uncertain {
-        mass: percent / 100.0,
+    let case = Case::ideal(model.clone(), DEFAULT, args.ts);
+    let errors = MassErrors {
+        case: &case,
         with_inertia: args.with_inertia,
-        period_s: args.ts,
-        delay_s: 0.0,
+        draws: args.draws as usize,
+        seed: args.seed,
     };
-    let draw =
-        |percent: f64| uncertain(percent).draw(model, &pose_rad, args.draws as usize, args.seed);
     let bar = talk.bar();
     bar.set_length(4);
     bar.set_message("drawing robots");
-    let plants = draw(args.masses)?;
-    let nominal = uncertain(0.0).plant(model, &pose_rad, &vec![0.0; model.link_count()])?;
-    let (n, m) = nominal.b.shape();
-    let unit = DMatrix::identity(n, n);
-    let paper = |q: f64| Ok::<_, Error>(dlqr(&nominal, &(&unit * q), &DMatrix::identity(m, m))?.k);
-    let multi = robust_gain(model, &pose_rad, &uncertain(args.design), &(&unit * args.q))?;
+    let plants = errors.plants(args.masses / 100.0)?;
+    let nominal = DesignModel::new(model, &upright(model), args.ts)?;
+    let sampled = zoh(&nominal.plant, args.ts, 0.0)?;
+    let regulator = |q: f64| {
+        let (q, r) = DesignModel {
+            q,
+            ..nominal.clone()
+        }
+        .weights();
+        Ok::<_, Error>(dlqr(&sampled, &q, &r)?.k)
+    };
+    let multi = MultiModel {
+        mass_error: args.design / 100.0,
+        with_inertia: args.with_inertia,
+        weight: args.q,
+    };
     let gains = [
-        ("DLQR, Q = 100 I, R = I".to_string(), paper(100.0)?),
-        ("DLQR, Q = I, R = I".to_string(), paper(1.0)?),
+        ("DLQR, Q = 100 I, R = I".to_string(), regulator(100.0)?),
+        ("DLQR, Q = I, R = I".to_string(), regulator(1.0)?),
         (
             format!("multi-model, {} % of each mass", exact(args.design)),
-            multi,
+            multi.gain(&nominal)?,
         ),
     ];
     bar.inc(1);
@@ -132,7 +143,7 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         bar.set_message(gain.clone());
         rows.push(Row {
             radii: radii(&plants, &k),
-            largest_error: largest_error(&draw, &k)?,
+            largest_error: errors.largest(&k, UNSTABLE)?,
             gain,
             k,
         });
@@ -142,40 +153,18 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Spectral radii of the loops, in order.
-fn radii(plants: &[Discrete], k: &DMatrix<f64>) -> Vec<f64> {
-    let radius = |plant: &Discrete| spectral_radius(&(&plant.a - &plant.b * k));
-    let mut radii: Vec<f64> = plants.iter().map(radius).collect();
-    radii.sort_by(f64::total_cmp);
-    radii
-}
-
-/// Largest error of the masses of which no more than 2 % of the robots are lost, a share; to a quarter of a percent.
-fn largest_error(draw: &impl Fn(f64) -> Result<Vec<Discrete>>, k: &DMatrix<f64>) -> Result<f64> {
-    let (mut held, mut lost) = (0.0, 64.0);
-    while lost - held > 0.25 {
-        let middle = (held + lost) / 2.0;
-        if lost_share(&draw(middle)?, k) <= LOST {
-            held = middle;
-        } else {
-            lost = middle;
-        }
-    }
-    Ok(held / 100.0)
-}
-
 fn text(args: &Args, rows: &[Row]) -> String {
     let mut table = show::table([
         "Gain",
-        "lost %",
+        "unstable %",
         "median radius",
         "worst radius",
-        "2 % lost at, %",
+        "2 % unstable at, %",
     ]);
     for row in rows {
         table.add_row([
             row.gain.clone(),
-            format!("{:.1}", 100.0 * row.lost()),
+            format!("{:.1}", 100.0 * row.unstable()),
             format!("{:.4}", row.radii[row.radii.len() / 2]),
             format!("{:.4}", row.radii[row.radii.len() - 1]),
             format!("{:.1}", 100.0 * row.largest_error),

@@ -1,21 +1,17 @@
 //! Tables and figures as every command shows them.
 
-use comfy_table::{ContentArrangement, Table, TableComponent, presets};
-use handstand::diagnose::FittedValue;
-use handstand::fitting::Horizon;
-use handstand::fitting::{Extension, Fall, Undetermined};
+use super::talk::Talk;
+use comfy_table::{ContentArrangement, Table};
+use handstand::fitting::{Horizon, Refitted, Undetermined};
 use handstand::number::exact;
+use handstand::report::plain_table;
+use handstand::synth::{linearise, upright};
+use handstand::{Model, Result};
 use serde_json::{Value, json};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
+    let mut table = plain_table(header);
     if table.width().is_none() {
         table.set_width(100);
     }
@@ -29,10 +25,10 @@ pub fn wide_table() -> Table {
     table
 }
 
-/// An extension for people: its values, then its errors; `before` says which model left the error before.
-pub fn extension(extension: &Extension, before: &str) -> String {
+/// A refitted model for people: its values, then its errors; `before` says which model left the error before.
+pub fn refitted(refitted: &Refitted, before: &str) -> String {
     let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
-    for value in &extension.values {
+    for value in &refitted.values {
         table.add_row([
             value.path.clone(),
             exact(value.value),
@@ -41,69 +37,46 @@ pub fn extension(extension: &Extension, before: &str) -> String {
             if value.on_bound { "on its bound" } else { "" }.to_string(),
         ]);
     }
+    let error = &refitted.error;
+    let motions = if error.held_out { "held out" } else { "fitted" };
+    let [old, new, floor] =
+        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| exact(1e3 * rad));
     let mut lines = vec![
         table.to_string(),
         String::new(),
-        fall(&extension.error, before),
+        format!(
+            "Error on the motions {motions}: {old} mrad {before} -> {new} mrad for the new one; \
+             noise alone leaves {floor} mrad."
+        ),
     ];
-    if let Horizon::Seconds(seconds) = extension.horizon {
+    if let Horizon::Seconds(seconds) = refitted.horizon {
         lines.push(format!("The model ran {} s at a time.", exact(seconds)));
     }
-    lines.extend(
-        warnings(extension)
-            .iter()
-            .map(|line| format!("warning: {line}")),
-    );
+    let warnings = warnings(refitted).into_iter();
+    lines.extend(warnings.map(|line| format!("warning: {line}")));
     lines.join("\n")
 }
 
-fn fall(error: &Fall, before: &str) -> String {
-    let whose = if error.held_out {
-        "on the motions held out"
-    } else {
-        "on the motions fitted"
-    };
-    format!(
-        "Error {whose}: {} mrad {before} -> {} mrad for the new one; noise alone leaves {} mrad.",
-        exact(1e3 * error.before_rad),
-        exact(1e3 * error.after_rad),
-        exact(1e3 * error.floor_rad)
-    )
-}
-
-/// What to be wary of in an extension.
-fn warnings(extension: &Extension) -> Vec<String> {
-    let stuck = |value: &&FittedValue| value.on_bound;
-    let mut warnings: Vec<String> = extension
-        .values
-        .iter()
-        .filter(stuck)
+/// What to be wary of in a refitted model.
+fn warnings(refitted: &Refitted) -> Vec<String> {
+    let on_bound = refitted.values.iter().filter(|value| value.on_bound);
+    let mut warnings: Vec<String> = on_bound
         .map(|value| format!("`{}` lies on its bound: no measurement of it", value.path))
         .collect();
-    if !extension.converged {
+    if !refitted.converged {
         warnings.push("the fit had not come to rest when its iterations ran out".to_string());
     }
     warnings
 }
 
-/// An extension for programs.
-pub fn extension_json(extension: &Extension) -> Value {
-    let error = &extension.error;
+/// A refitted model for programs.
+pub fn refitted_json(refitted: &Refitted) -> Value {
     json!({
-        "values": extension.values,
-        "error": {
-            "unit": "rad",
-            "before": error.before_rad,
-            "after": error.after_rad,
-            "floor": error.floor_rad,
-            "held_out": error.held_out,
-        },
-        "horizon_s": match extension.horizon {
-            Horizon::Whole => None,
-            Horizon::Seconds(seconds) => Some(seconds),
-        },
-        "converged": extension.converged,
-        "warnings": warnings(extension),
+        "values": refitted.values,
+        "error": refitted.error,
+        "horizon_s": refitted.horizon.seconds(),
+        "converged": refitted.converged,
+        "warnings": warnings(refitted),
     })
 }
 
@@ -112,4 +85,21 @@ pub fn undetermined(refused: &Undetermined) -> String {
     format!(
         "refused: {refused}; nothing is written. Fit fewer values, or record motions that show them."
     )
+}
+
+/// Says which effects of the model a linear design leaves out.
+pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
+    let model = handstand::sim::bare_motors(model);
+    let omitted = linearise(&model, &upright(&model))?.omitted;
+    if !omitted.is_empty() {
+        let each = omitted.iter().map(|omitted| {
+            let joint = omitted.joint + 1;
+            format!("{} at joint {joint}", omitted.effect.info().title)
+        });
+        talk.say(&format!(
+            "the designs leave out {}; the simulation has them",
+            each.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    Ok(())
 }

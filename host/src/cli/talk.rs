@@ -1,16 +1,16 @@
-//! Where words go: data to stdout, talk to stderr, progress only to a terminal.
+//! Console output: data to stdout, messages to stderr, progress only to a terminal.
 
 use handstand::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::io::{ErrorKind, Write as _};
 
-/// One run's manner of speaking.
+/// Where the output of one run goes, and in which form.
 #[derive(Debug, Clone)]
 pub struct Talk {
-    /// Data as JSON.
+    /// Whether data is JSON.
     pub json: bool,
-    /// The command line that says it again.
+    /// The command line of this run.
     pub command: String,
     quiet: bool,
     /// Whether data goes to stderr too, as part of a transcript.
@@ -18,7 +18,7 @@ pub struct Talk {
 }
 
 impl Talk {
-    /// Data to stdout, as JSON if asked; talk to stderr unless quiet.
+    /// Data to stdout, as JSON if asked; messages to stderr unless quiet.
     pub fn new(json: bool, quiet: bool) -> Self {
         let words = std::env::args_os().skip(1);
         let words = words.map(|word| format!(" {}", word.to_string_lossy()));
@@ -30,7 +30,7 @@ impl Talk {
         }
     }
 
-    /// For a step of a longer run: its data are part of the talk.
+    /// For a step of a longer run: its data go to stderr, as messages do.
     pub fn transcript(&self, command: String) -> Self {
         Talk {
             json: false,
@@ -40,10 +40,10 @@ impl Talk {
         }
     }
 
-    /// A line of talk.
+    /// Prints one line to stderr unless quiet.
     pub fn say(&self, line: &str) {
         if !self.quiet {
-            // Who has closed stderr does not want to hear.
+            // A closed stderr is no error.
             let _ = writeln!(std::io::stderr(), "{line}");
         }
     }
@@ -88,7 +88,8 @@ impl Talk {
         bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
     }
 
-    /// An error with its remedy. Lines are not broken, so that `file:line:column` can be clicked and searched.
+    /// An error with its remedy. Lines are not broken, so that `file:line:column` can be clicked
+    /// and searched.
     pub fn error(&self, error: Error) {
         let handler = miette::MietteHandlerOpts::new().wrap_lines(false).build();
         let shown = Shown(&handler, &error);

@@ -1,26 +1,26 @@
 //! `handstand view MODEL LOG... -o page.html`: a page that plays a motion.
 //!
-//! One file that needs nothing but itself: the chain drawn to the model's lengths, what its drives were told, the
-//! trail of its tip, the angles over time; play, pause, scrub, speed, keys. `--model OTHER.toml` adds what a model
-//! foretells for the log's inputs, `--beside LOG` another log, each drawn over the measurement.
+//! One file that needs nothing but itself: the chain drawn to the model's lengths, the input of
+//! each drive, the trail of its tip, the angles over time; play, pause, scrub, speed, keys.
+//! `--model OTHER.toml` adds what a model predicts for the log's inputs, `--overlay LOG` another
+//! log, each drawn over the measurement.
 //!
 //! ```console
 //! $ handstand view handstand.toml run.csv --model handstand.toml -o run.html
 //! ```
 //!
-//! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in `#t=1.5` opens the
-//! page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
+//! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
+//! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
 use super::talk::Talk;
-use super::{Outcome, input};
+use super::{Outcome, input, page};
 use handstand::compare::compare;
-use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 
-/// Play a motion on a page.
+/// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Model file: lengths to draw, columns of the log
@@ -36,10 +36,9 @@ pub struct Args {
     others: Vec<PathBuf>,
     /// Another log to draw over it
     #[arg(long, value_name = "LOG", value_parser = input::log)]
-    beside: Vec<LogRequest>,
-    /// Seconds the models run without correction, or `whole`; chosen by their stability without it
-    #[arg(long, value_name = "SECONDS", value_parser = input::horizon, allow_negative_numbers = true)]
-    horizon: Option<Horizon>,
+    overlay: Vec<LogRequest>,
+    #[command(flatten)]
+    run: input::RunLength,
     /// Replace the page if it exists
     #[arg(long)]
     force: bool,
@@ -64,14 +63,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 "draw models of one chain over each other",
             ));
         }
-        let name = file
-            .file_name()
-            .unwrap_or(file.as_os_str())
-            .to_string_lossy();
+        let name = page::file_name(file);
         let motions = read(&args.logs, &other.log)?;
-        scene.add_model(&other, &compare(&other, &name, &motions, args.horizon));
+        scene.add_model(&other, &compare(&other, &name, &motions, args.run.horizon));
     }
-    scene.add_beside(&model, &read(&args.beside, &model.log)?);
+    scene.add_overlay(&model, &read(&args.overlay, &model.log)?);
     let page = html(&scene, &talk.command)
         .map_err(|error| Error::file(&args.output, "write", error.into()))?;
     output::write_new(&args.output, &page, args.force)?;

@@ -1,95 +1,51 @@
-//! Conditions under which a model may fail, each in words and as a question to a moment.
+//! Conditions under which a model may fail, each in words and as a question to a sample's features.
 //!
 //! Adding one is an entry in [`CONDITIONS`]. A condition that always holds, or never, is never a finding.
 
-use super::moment::{Moment, STILL_SHARE};
+use super::sample_features::{STILL_SHARE, SampleFeatures};
 
-/// A condition.
-pub(super) struct Condition {
-    /// As it ends a sentence.
-    pub words: &'static str,
-    /// Whether a moment meets it.
-    pub holds: fn(&Moment) -> bool,
-}
+/// A condition as it ends a sentence, and whether a sample meets it.
+type Condition = (&'static str, fn(&SampleFeatures) -> bool);
 
 /// All but the ranges of angle, which depend on the motion.
 pub(super) const CONDITIONS: &[Condition] = &[
-    Condition {
-        words: "within 80 ms after a reversal",
-        holds: |m| m.since_reversal_s <= 0.08,
-    },
-    Condition {
-        words: "near standstill",
-        holds: |m| m.speed.abs() < STILL_SHARE,
-    },
-    Condition {
-        words: "while the joint is held still",
-        holds: |m| m.still_s >= 0.25,
-    },
-    Condition {
-        words: "at high speed (fastest fifth)",
-        holds: |m| m.speed_rank > 0.8,
-    },
-    Condition {
-        words: "while moving in positive direction",
-        holds: |m| m.speed > STILL_SHARE,
-    },
-    Condition {
-        words: "while moving in negative direction",
-        holds: |m| m.speed < -STILL_SHARE,
-    },
-    Condition {
-        words: "while moving up, against gravity",
-        holds: |m| m.against_gravity > 0.0,
-    },
-    Condition {
-        words: "while moving down, with gravity",
-        holds: |m| m.against_gravity < 0.0,
-    },
-    Condition {
-        words: "under high load (upper fifth)",
-        holds: |m| m.load_rank > 0.8,
-    },
-    Condition {
-        words: "at low supply (lowest quarter)",
-        holds: |m| m.supply_rank < 0.25,
-    },
-    Condition {
-        words: "at high supply (highest quarter)",
-        holds: |m| m.supply_rank > 0.75,
-    },
-    Condition {
-        words: "while the drive is asked for little (below 15 % of its most)",
-        holds: |m| m.energised && m.demand.abs() < 0.15,
-    },
-    Condition {
-        words: "while the drive is asked for much (above 85 % of its most)",
-        holds: |m| m.energised && m.demand.abs() > 0.85,
-    },
-    Condition {
-        words: "within 0.2 s after the command jumps",
-        holds: |m| m.since_jump_s <= 0.2,
-    },
-    Condition {
-        words: "while the drive is released",
-        holds: |m| !m.energised,
-    },
-    Condition {
-        words: "early in a motion (first third)",
-        holds: |m| m.run < 1.0 / 3.0,
-    },
-    Condition {
-        words: "late in a motion (last third)",
-        holds: |m| m.run > 2.0 / 3.0,
-    },
-    Condition {
-        words: "with payload",
-        holds: |m| m.payload,
-    },
-    Condition {
-        words: "with the rig turned round",
-        holds: |m| m.turned,
-    },
+    ("within 80 ms after a reversal", |m| {
+        m.since_reversal_s <= 0.08
+    }),
+    ("near standstill", |m| m.speed.abs() < STILL_SHARE),
+    ("while the joint is held still", |m| m.still_s >= 0.25),
+    ("at high speed (fastest fifth)", |m| m.speed_rank > 0.8),
+    ("while moving in positive direction", |m| {
+        m.speed > STILL_SHARE
+    }),
+    ("while moving in negative direction", |m| {
+        m.speed < -STILL_SHARE
+    }),
+    ("while moving up, against gravity", |m| {
+        m.against_gravity > 0.0
+    }),
+    ("while moving down, with gravity", |m| {
+        m.against_gravity < 0.0
+    }),
+    ("under high load (upper fifth)", |m| m.load_rank > 0.8),
+    ("at low supply (lowest quarter)", |m| m.supply_rank < 0.25),
+    ("at high supply (highest quarter)", |m| m.supply_rank > 0.75),
+    (
+        "while the drive is asked for little (below 15 % of its most)",
+        |m| m.energised && m.demand.abs() < 0.15,
+    ),
+    (
+        "while the drive is asked for much (above 85 % of its most)",
+        |m| m.energised && m.demand.abs() > 0.85,
+    ),
+    ("within 0.2 s after the command jumps", |m| {
+        m.since_jump_s <= 0.2
+    }),
+    ("while the drive is released", |m| !m.energised),
+    ("early in a motion (first third)", |m| m.run < 1.0 / 3.0),
+    ("late in a motion (last third)", |m| m.run > 2.0 / 3.0),
+    ("with payload", |m| m.payload),
+    ("with the rig turned round", |m| m.turned),
 ];
 
 /// Parts into which the range of angle is cut.
@@ -99,26 +55,26 @@ const ANGLE_PARTS: usize = 6;
 pub(super) struct Met {
     /// The condition in words.
     pub words: String,
-    /// One flag per moment.
+    /// One flag per sample.
     pub holds: Vec<bool>,
 }
 
-/// Every condition, ranges of angle included, asked of every moment.
-pub(super) fn met(moments: &[Moment]) -> Vec<Met> {
+/// Every condition, ranges of angle included, asked of every sample.
+pub(super) fn met(features: &[SampleFeatures]) -> Vec<Met> {
     let mut all: Vec<Met> = CONDITIONS
         .iter()
-        .map(|condition| Met {
-            words: condition.words.to_string(),
-            holds: moments.iter().map(condition.holds).collect(),
+        .map(|(words, holds)| Met {
+            words: words.to_string(),
+            holds: features.iter().map(holds).collect(),
         })
         .collect();
-    all.extend(angle_ranges(moments));
+    all.extend(angle_ranges(features));
     all
 }
 
 /// Sixths of the range between the smallest and the largest angle.
-fn angle_ranges(moments: &[Moment]) -> Vec<Met> {
-    let angles = || moments.iter().map(|m| m.angle_rad);
+fn angle_ranges(features: &[SampleFeatures]) -> Vec<Met> {
+    let angles = || features.iter().map(|m| m.angle_rad);
     let low = angles().fold(f64::INFINITY, f64::min);
     let high = angles().fold(f64::NEG_INFINITY, f64::max);
     if high.partial_cmp(&low) != Some(std::cmp::Ordering::Greater) {

@@ -1,8 +1,8 @@
 //! Where the error is: conditions that hold more of it than their share of the samples.
 
 use super::conditions::{Met, met};
-use super::moment::moments;
-use super::{Failure, SignalError};
+use super::result::{Failure, SignalError};
+use super::sample_features::features;
 use crate::log::Motion;
 use crate::model::Model;
 
@@ -32,8 +32,8 @@ pub(super) fn failures(
     for (joint, signal) in signals.iter().enumerate() {
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
-            let conditions = met(&moments(model, motions, joint));
-            let ranked = ranked(&error, signal.floor, conditions);
+            let conditions = met(&features(model, motions, joint));
+            let ranked = ranked(&error, signal.floor_rad, conditions);
             all.extend(ranked.into_iter().map(|r| r.told(joint, signals.len() > 1)));
         }
     }

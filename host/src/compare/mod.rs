@@ -2,12 +2,12 @@
 
 mod conditions;
 mod failure;
-mod moment;
 mod order;
 mod predicted;
 mod residual_tests;
 mod result;
 mod run;
+mod sample_features;
 mod text;
 
 #[cfg(test)]

@@ -1,37 +1,27 @@
 //! Measured and predicted angles of whole motions, side by side.
 
-use crate::fitting::{Data, Node};
+use crate::fitting::{FitData, Node, predicted_rad};
 use crate::model::Model;
-use crate::sim::{Memory, Plant, predict};
 use rayon::prelude::*;
 
 /// Predicted angles, rad, `[motion][joint][sample]`, every window started from its node.
 ///
 /// Unlike the fit's residuals these are not capped, so an error counts in full however small the noise is. From
 /// where a prediction runs away to infinity its last finite value stands.
-pub(super) fn predicted(model: &Model, data: &Data, nodes: &[Node]) -> Vec<Vec<Vec<f64>>> {
+pub(super) fn predicted(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Vec<Vec<f64>>> {
     (0..data.motions.len())
         .into_par_iter()
         .map(|motion| one_motion(model, data, nodes, motion))
         .collect()
 }
 
-fn one_motion(model: &Model, data: &Data, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
+fn one_motion(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
-    let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
-    let mut angles = vec![Vec::with_capacity(log.len()); plant.len()];
-    for (window, node) in data.windows.iter().zip(nodes) {
-        if window.motion != motion || window.samples.is_empty() {
-            continue;
-        }
-        let samples = window.samples.len();
-        let mut readings = vec![0.0; samples * plant.len()];
-        let start = node.start(&plant);
-        let stretch = window.samples.clone();
-        predict(&plant, log, stretch, &start, &mut memory, &mut readings);
-        for (joint, part) in readings.chunks(samples).enumerate() {
-            let mut last = node.reading_rad[joint];
+    let mut angles = vec![Vec::with_capacity(log.len()); data.joints()];
+    let windows = predicted_rad(model, data, nodes, motion);
+    for ((index, window), readings) in data.windows_of(motion).zip(windows) {
+        for (joint, part) in readings.chunks(window.samples.len()).enumerate() {
+            let mut last = nodes[index].unknowns[joint];
             angles[joint].extend(part.iter().map(|value| {
                 if value.is_finite() {
                     last = *value;
@@ -44,7 +34,7 @@ fn one_motion(model: &Model, data: &Data, nodes: &[Node], motion: usize) -> Vec<
 }
 
 /// Measured minus predicted, rad, per motion; not a number where nothing was measured.
-pub(super) fn residual(data: &Data, predicted: &[Vec<Vec<f64>>], joint: usize) -> Vec<Vec<f64>> {
+pub(super) fn residual(data: &FitData, predicted: &[Vec<Vec<f64>>], joint: usize) -> Vec<Vec<f64>> {
     let pairs = data.motions.iter().zip(predicted);
     pairs
         .map(|(motion, predicted)| {

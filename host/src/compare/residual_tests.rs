@@ -2,8 +2,9 @@
 //!
 //! Samples are counted, not timed. Motions stand end to end, but no product reaches across their borders.
 
-use super::ResidualTest;
+use super::result::ResidualTest;
 use crate::log::Motion;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Lags looked at, in samples, as in MATLAB's `resid`.
 const LAGS: usize = 25;
@@ -11,8 +12,6 @@ const LAGS: usize = 25;
 const MEMORY: usize = 400;
 /// A test on fewer samples says nothing.
 const LEAST_SAMPLES: usize = 40;
-/// Normal quantile of 99 %, one-sided.
-const Z_99: f64 = 2.3263;
 /// Normal quantile of 1 - 0.01 / (2 * 51): the largest of 51 lags, two-sided (Bonferroni).
 const Z_99_OF_51: f64 = 3.725;
 
@@ -43,7 +42,7 @@ pub(super) fn residual_tests(
 
 /// Whether each residual is free of its predecessors: Ljung & Box (1978), Biometrika 65, 297-303.
 ///
-/// The mean stays in: a constant error is no chance. Chi-square quantile by Wilson & Hilferty (1931).
+/// The mean stays in: a constant error is no chance.
 pub(crate) fn whiteness(residual: &[Vec<f64>]) -> ResidualTest {
     let samples: usize = residual.iter().map(Vec::len).sum();
     let power = product_sum(residual, residual, 0);
@@ -183,6 +182,5 @@ fn centred(signal: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// 99 % quantile of chi-square with this many degrees of freedom.
 fn chi_square_99(freedom: f64) -> f64 {
-    let spread = 2.0 / (9.0 * freedom.max(1.0));
-    freedom * (1.0 - spread + Z_99 * spread.sqrt()).powi(3)
+    ChiSquared::new(freedom).map_or(f64::INFINITY, |chi_square| chi_square.inverse_cdf(0.99))
 }

@@ -24,16 +24,14 @@ pub struct Comparison {
 pub struct SignalError {
     /// Joint counted from 1.
     pub joint: usize,
-    /// Unit of `rms`, `floor`, `largest`: `rad`.
-    pub unit: &'static str,
-    /// Root-mean-square error.
-    pub rms: f64,
-    /// Largest error.
-    pub largest: f64,
+    /// Root-mean-square error, rad.
+    pub rms_rad: f64,
+    /// Largest error, rad.
+    pub largest_rad: f64,
     /// 100 (1 - |y - yhat| / |y - mean y|), as MATLAB's `compare` defines it; 100 is perfect.
     pub fit_percent: f64,
-    /// What resolution and noise alone leave.
-    pub floor: f64,
+    /// What resolution and noise alone leave, rad.
+    pub floor_rad: f64,
     /// Share of the squared error above the floor, 0 to 1.
     pub share_above_floor: f64,
     /// Tests of what is left.

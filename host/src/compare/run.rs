@@ -3,8 +3,8 @@
 use super::failure::failures;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
-use super::{Comparison, HorizonError, SignalError, Trace};
-use crate::fitting::{Data, Horizon, longest_stable, settle};
+use super::result::{Comparison, HorizonError, SignalError, Trace};
+use crate::fitting::{FitData, Horizon, fit_start_states, longest_stable};
 use crate::log::Motion;
 use crate::model::Model;
 
@@ -25,10 +25,10 @@ pub fn compare(
     motions: &[Motion],
     horizon: Option<Horizon>,
 ) -> Comparison {
-    let whole = Data::new(model, motions.to_vec(), Horizon::Whole);
+    let whole = FitData::new(model, motions.to_vec(), Horizon::Whole);
     let horizon = horizon.unwrap_or_else(|| longest_stable(model, &whole));
     let data = whole.recut(horizon);
-    let settled = settle(model, &data);
+    let settled = fit_start_states(model, &data);
     let predicted = predicted(model, &data, &settled.nodes);
     let joints = 0..model.link_count();
     let residuals: Vec<Vec<Vec<f64>>> = joints.map(|j| residual(&data, &predicted, j)).collect();
@@ -39,18 +39,11 @@ pub fn compare(
         .collect();
     Comparison {
         model: name.to_string(),
-        horizon_s: seconds(horizon),
+        horizon_s: horizon.seconds(),
         horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
         failures: failures(model, &data.motions, &residuals, &signals),
         traces: traces(&data, &predicted),
         signals,
-    }
-}
-
-fn seconds(horizon: Horizon) -> Option<f64> {
-    match horizon {
-        Horizon::Whole => None,
-        Horizon::Seconds(seconds) => Some(seconds),
     }
 }
 
@@ -68,7 +61,7 @@ fn rms<'a>(residuals: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     }
 }
 
-fn signal(data: &Data, joint: usize, residual: &[Vec<f64>]) -> SignalError {
+fn signal(data: &FitData, joint: usize, residual: &[Vec<f64>]) -> SignalError {
     let rms = rms(residual.iter());
     let floor = data.sigma_rad[joint];
     let measured: Vec<&[f64]> = data
@@ -76,17 +69,13 @@ fn signal(data: &Data, joint: usize, residual: &[Vec<f64>]) -> SignalError {
         .iter()
         .map(|m| m.position_rad[joint].as_slice())
         .collect();
+    let errors = residual.iter().flatten().map(|e| e.abs());
     SignalError {
         joint: joint + 1,
-        unit: "rad",
-        rms,
-        largest: residual
-            .iter()
-            .flatten()
-            .map(|e| e.abs())
-            .fold(0.0, f64::max),
+        rms_rad: rms,
+        largest_rad: errors.fold(0.0, f64::max),
         fit_percent: fit_percent(&measured, residual),
-        floor,
+        floor_rad: floor,
         share_above_floor: share_above(rms, floor),
         tests: residual_tests(&data.motions, joint, residual),
     }
@@ -120,22 +109,21 @@ pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
 }
 
 /// The error over ever longer runs, up to the horizon of the comparison, whose error is known.
-fn horizons(model: &Model, data: &Data, horizon: Horizon, known_rad: f64) -> Vec<HorizonError> {
-    let mut longest: f64 = 0.0;
+fn horizons(model: &Model, data: &FitData, horizon: Horizon, known_rad: f64) -> Vec<HorizonError> {
+    let longest = data.longest_s();
     let (mut time, mut intervals) = (0.0, 0.0);
     for motion in &data.motions {
-        longest = longest.max(motion.duration_s());
         time += motion.duration_s();
         intervals += motion.len().saturating_sub(1) as f64;
     }
     let least_s = LEAST_SAMPLES * time / f64::max(intervals, 1.0);
-    let limit_s = seconds(horizon).unwrap_or(longest).min(longest);
+    let limit_s = horizon.seconds().unwrap_or(longest).min(longest);
     let mut ladder: Vec<HorizonError> = LADDER_S
         .into_iter()
         .filter(|s| *s >= 0.99 * least_s && *s < 0.99 * limit_s)
         .map(|s| {
             let data = data.recut(Horizon::Seconds(s));
-            let predicted = predicted(model, &data, &settle(model, &data).nodes);
+            let predicted = predicted(model, &data, &fit_start_states(model, &data).nodes);
             let residuals: Vec<Vec<f64>> = (0..model.link_count())
                 .flat_map(|joint| residual(&data, &predicted, joint))
                 .collect();
@@ -146,13 +134,13 @@ fn horizons(model: &Model, data: &Data, horizon: Horizon, known_rad: f64) -> Vec
         })
         .collect();
     ladder.push(HorizonError {
-        horizon_s: seconds(horizon),
+        horizon_s: horizon.seconds(),
         rms_rad: known_rad,
     });
     ladder
 }
 
-fn traces(data: &Data, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
+fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
     let mut traces = Vec::new();
     for (motion, predicted) in data.motions.iter().zip(predicted) {
         let stride = motion.len().div_ceil(DRAWN).max(1);

@@ -2,12 +2,12 @@
 
 use super::conditions::{CONDITIONS, Met, met};
 use super::failure::{failures, ranked};
-use super::moment::{moments, speed_rad_s};
 use super::residual_tests::{independence, linearity, whiteness};
 use super::run::fit_percent;
+use super::sample_features::{features, speed_rad_s};
 use super::*;
 use crate::fitting::Horizon;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::mrad_in_column;
 use proptest::prelude::*;
@@ -42,7 +42,7 @@ fn pendulum() -> Model {
 fn motion(time_s: Vec<f64>, position_rad: Vec<f64>) -> Motion {
     Motion {
         name: "hand-made".into(),
-        source: Source {
+        source: MotionSource {
             path: "hand-made".into(),
             sha256: String::new(),
             lines: (2, time_s.len() + 1),
@@ -193,7 +193,7 @@ fn an_error_after_reversals_is_named_so() {
                 }
         })
         .collect();
-    let all = ranked(&error, 1e-4, met(&moments(&model, &motions, 0)));
+    let all = ranked(&error, 1e-4, met(&features(&model, &motions, 0)));
     assert_eq!(all[0].words, "within 80 ms after a reversal");
     assert!(all[0].error_share > 0.95 && all[0].sample_share < 0.12);
 }
@@ -226,9 +226,9 @@ fn a_joint_at_its_floor_has_no_failures() {
     let comparison = compare(&pendulum(), "right", &motions, None);
     assert_eq!(comparison.horizon_s, None);
     let signal = &comparison.signals[0];
-    assert!(signal.rms < 1e-4, "{}", signal.rms);
+    assert!(signal.rms_rad < 1e-4, "{}", signal.rms_rad);
     assert!(signal.fit_percent > 99.9);
-    assert!(signal.share_above_floor <= 0.1 || signal.rms < 2.0 * signal.floor);
+    assert!(signal.share_above_floor <= 0.1 || signal.rms_rad < 2.0 * signal.floor_rad);
     let signals = [SignalError {
         share_above_floor: 0.05,
         ..signal.clone()
@@ -242,13 +242,17 @@ fn missing_friction_shows_and_grows_with_the_run() {
     let motions = [swing(0.8, 0.02, 500), swing(-0.5, 0.02, 300)];
     let comparison = compare(&pendulum(), "no Coulomb", &motions, Some(Horizon::Whole));
     let signal = &comparison.signals[0];
-    assert!(signal.rms > 20.0 * signal.floor, "{}", signal.rms);
+    assert!(
+        signal.rms_rad > 20.0 * signal.floor_rad,
+        "{}",
+        signal.rms_rad
+    );
     assert!(!signal.tests[0].passed);
     let rungs: Vec<Option<f64>> = comparison.horizons.iter().map(|h| h.horizon_s).collect();
     assert_eq!(rungs, [Some(0.1), Some(0.3), Some(1.0), Some(3.0), None]);
     let errors: Vec<f64> = comparison.horizons.iter().map(|h| h.rms_rad).collect();
     assert!(errors.is_sorted(), "{errors:?}");
-    assert_eq!(*errors.last().unwrap(), signal.rms);
+    assert_eq!(*errors.last().unwrap(), signal.rms_rad);
     assert_eq!(comparison.traces.len(), 2);
     assert_eq!(comparison.traces[0].time_s.len(), 500);
 }
@@ -292,7 +296,7 @@ fn milliradians_bear_three_digits() {
 
 #[test]
 fn conditions_are_worded_to_end_a_sentence() {
-    let mut words: Vec<&str> = CONDITIONS.iter().map(|c| c.words).collect();
+    let mut words: Vec<&str> = CONDITIONS.iter().map(|(words, _)| *words).collect();
     assert!(
         words
             .iter()
@@ -306,7 +310,7 @@ fn conditions_are_worded_to_end_a_sentence() {
 #[test]
 fn no_motion_at_all_is_no_panic() {
     let nothing = compare(&pendulum(), "nothing", &[], None);
-    assert_eq!(nothing.signals[0].rms, 0.0);
+    assert_eq!(nothing.signals[0].rms_rad, 0.0);
     assert!(text(std::slice::from_ref(&nothing)).contains("nothing"));
     assert_eq!(waterfall(&[nothing]).lines().count(), 2);
     assert!(text(&[]).is_empty() && waterfall(&[]).is_empty());
@@ -328,10 +332,10 @@ proptest! {
             short.position_rad[0][0] = f64::NAN;
         }
         let motions = [short.clone(), short];
-        let moments = moments(&pendulum(), &motions, 0);
-        prop_assert_eq!(moments.len(), 2 * rows.len());
-        let error: Vec<f64> = moments.iter().map(|m| m.angle_rad).collect();
-        for ranked in ranked(&error, 0.0, met(&moments)) {
+        let features = features(&pendulum(), &motions, 0);
+        prop_assert_eq!(features.len(), 2 * rows.len());
+        let error: Vec<f64> = features.iter().map(|m| m.angle_rad).collect();
+        for ranked in ranked(&error, 0.0, met(&features)) {
             prop_assert!((0.0..=1.0 + 1e-12).contains(&ranked.error_share));
             prop_assert!((0.0..=1.0).contains(&ranked.sample_share));
         }

@@ -1,6 +1,6 @@
 //! A comparison as text: models side by side, then where the last of them fails.
 
-use super::{Comparison, SignalError};
+use super::result::{Comparison, SignalError};
 use crate::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
@@ -22,10 +22,8 @@ pub fn text(comparisons: &[Comparison]) -> String {
         );
     }
     for other in others {
-        let where_ = match other.failures.first() {
-            Some(failure) => failure.sentence.clone(),
-            None => NOWHERE.to_string(),
-        };
+        let worst = other.failures.first();
+        let where_ = worst.map_or(NOWHERE, |failure| failure.sentence.as_str());
         let _ = write!(text, "\nWhere {} fails most\n  {where_}\n", other.model);
     }
     let _ = write!(text, "\nWhere {} fails\n", last.model);
@@ -51,10 +49,10 @@ const NOWHERE: &str = "no condition holds more than its share of the error";
 pub fn waterfall(comparisons: &[Comparison]) -> String {
     let mut steps: Vec<(&str, f64)> = comparisons
         .iter()
-        .map(|c| (c.model.as_str(), together(c, |s| s.rms)))
+        .map(|c| (c.model.as_str(), together(c, |s| s.rms_rad)))
         .collect();
     if let Some(last) = comparisons.last() {
-        steps.push(("floor", together(last, |s| s.floor)));
+        steps.push(("floor", together(last, |s| s.floor_rad)));
     }
     let most = steps.iter().map(|step| step.1).fold(0.0, f64::max);
     let width = steps.iter().map(|s| s.0.chars().count()).max().unwrap_or(0);
@@ -138,10 +136,10 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
         String::new()
     };
     let lines: [(&str, Cell); 6] = [
-        ("rms, mrad", |s| mrad_in_column(s.rms)),
-        ("largest, mrad", |s| mrad_in_column(s.largest)),
+        ("rms, mrad", |s| mrad_in_column(s.rms_rad)),
+        ("largest, mrad", |s| mrad_in_column(s.largest_rad)),
         ("fit, %", |s| format!("{:.1}", s.fit_percent)),
-        ("floor, mrad", |s| mrad_in_column(s.floor)),
+        ("floor, mrad", |s| mrad_in_column(s.floor_rad)),
         ("squared error above floor, %", |s| {
             format!("{:.0}", 100.0 * s.share_above_floor)
         }),

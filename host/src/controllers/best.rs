@@ -1,29 +1,29 @@
 //! All of it together: what holds the robot under everything at once.
 
 use super::observed::{Law, Observed, Options};
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::Controller;
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::Controller;
 
 /// LQG from angles and gyro, balance estimated, delay in the model, commands through the dead zone's inverse.
 #[derive(Debug)]
 pub struct Best;
 
-static CARD: Card = Card {
+static INFO: ControllerInfo = ControllerInfo {
     id: "best",
     title: "LQG, offsets, delay, inverse",
     law: "u = inverse(-K [x - x_balance, past u]), all estimated",
     speeds: Speeds::Estimated,
-    told_balance: false,
+    known_equilibrium: false,
     reference: "the parts above",
 };
 
 impl Design for Best {
-    fn card(&self) -> &Card {
-        &CARD
+    fn info(&self) -> &ControllerInfo {
+        &INFO
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         Ok(Box::new(Observed::new(known, &options())?))
     }
 }

@@ -1,14 +1,13 @@
 //! The inverse of a dead zone.
 //!
-//! Commands within the zone do nothing, so none is sent: a wish below half of the least command that surely passes
-//! becomes nothing, one above becomes that least command, and what was given too little or too much is carried to
-//! the next sample. On average over a few samples the torque is the one wished for: a first-order sigma-delta
+//! Commands within the zone do nothing, so none is sent: a raw command below half of the least one that passes in every
+//! robot becomes 0, one above becomes that least command, and the difference is carried to the next sample. On average over a few samples the torque is the raw command: a first-order sigma-delta
 //! modulator, whose error lies at frequencies the robot's inertia swallows.
 
 use super::paper;
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::{Controller, Seen, StateFeedback};
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
 
 /// Commands this much beyond the nominal zone pass every robot's own zone, which may differ by a fifth.
 const SURELY: f64 = 1.21;
@@ -24,31 +23,31 @@ pub(super) struct Drive {
 
 impl Drive {
     /// From what is known.
-    pub fn of(known: &Known) -> Self {
+    pub fn of(known: &DesignModel) -> Self {
         Drive {
             least_nm: SURELY * known.dead_zone_nm,
             limit_nm: known.limit_nm,
         }
     }
 
-    /// The command for a wish; the torque it gives is the same number. `carry` is what is still owed.
+    /// The applied command for a raw one; the torque it gives is the same number. `carry` is the difference so far.
     #[inline]
-    pub fn command(&self, wish_nm: f64, carry_nm: &mut f64) -> f64 {
+    pub fn command(&self, raw_nm: f64, carry_nm: &mut f64) -> f64 {
         if self.least_nm == 0.0 {
             *carry_nm = 0.0;
-            return wish_nm.clamp(-self.limit_nm, self.limit_nm);
+            return raw_nm.clamp(-self.limit_nm, self.limit_nm);
         }
-        let owed = wish_nm + *carry_nm;
+        let owed = raw_nm + *carry_nm;
         let half = self.least_nm / 2.0;
-        let given = if owed.abs() < half {
+        let applied = if owed.abs() < half {
             0.0
         } else {
             let size = owed.abs().max(self.least_nm).min(self.limit_nm);
             size.copysign(owed)
         };
         // What the limit holds back is not owed: it would come when it is no longer wanted.
-        *carry_nm = (owed - given).clamp(-half, half);
-        given
+        *carry_nm = (owed - applied).clamp(-half, half);
+        applied
     }
 }
 
@@ -71,10 +70,10 @@ impl<C: Controller> Controller for Inverted<C> {
         self.inner.reset(inner);
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
         let (carry, inner) = memory.split_at_mut(self.drives);
-        self.inner.control(inner, seen, torque_nm);
-        for (torque, carry) in torque_nm.iter_mut().zip(carry) {
+        self.inner.control(inner, measured, command_nm);
+        for (torque, carry) in command_nm.iter_mut().zip(carry) {
             *torque = self.drive.command(*torque, carry);
         }
     }
@@ -84,21 +83,21 @@ impl<C: Controller> Controller for Inverted<C> {
 #[derive(Debug)]
 pub struct DeadZoneInverse;
 
-static CARD: Card = Card {
+static INFO: ControllerInfo = ControllerInfo {
     id: "dead-zone-inverse",
     title: "DLQR with dead-zone inverse",
     law: "u = inverse(-K (x - x_balance))",
     speeds: Speeds::True,
-    told_balance: true,
+    known_equilibrium: true,
     reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996)",
 };
 
 impl Design for DeadZoneInverse {
-    fn card(&self) -> &Card {
-        &CARD
+    fn info(&self) -> &ControllerInfo {
+        &INFO
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         Ok(Box::new(Inverted {
             inner: StateFeedback::new(known.joints(), paper::rows(&paper::gain(known)?)),
             drive: Drive::of(known),
@@ -118,12 +117,12 @@ mod tests {
 
     #[test]
     fn no_command_falls_into_the_zone_and_the_mean_is_the_wish() {
-        for wish in [-0.2, -0.03, 0.01, 0.1, 0.124, 0.2, 0.7] {
+        for raw in [-0.2, -0.03, 0.01, 0.1, 0.124, 0.2, 0.7] {
             let mut carry = 0.0;
-            let given: Vec<f64> = (0..1000).map(|_| DRIVE.command(wish, &mut carry)).collect();
-            assert!(given.iter().all(|g| *g == 0.0 || g.abs() >= 0.25));
-            let mean = given.iter().sum::<f64>() / 1000.0;
-            assert!((mean - wish).abs() < 1e-3, "{wish}: {mean}");
+            let applied: Vec<f64> = (0..1000).map(|_| DRIVE.command(raw, &mut carry)).collect();
+            assert!(applied.iter().all(|g| *g == 0.0 || g.abs() >= 0.25));
+            let mean = applied.iter().sum::<f64>() / 1000.0;
+            assert!((mean - raw).abs() < 1e-3, "{raw}: {mean}");
         }
     }
 

@@ -6,9 +6,9 @@
 //! stabilised through a stable washout.)
 
 use super::paper;
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::{Controller, Seen};
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
 use nalgebra::DMatrix;
 
@@ -19,21 +19,21 @@ const INTEGRAL_WEIGHT: f64 = 100.0;
 #[derive(Debug)]
 pub struct Integral;
 
-static CARD: Card = Card {
+static INFO: ControllerInfo = ControllerInfo {
     id: "integral",
     title: "DLQR with integrals",
     law: "u = -K [x, sum of driven angles]",
     speeds: Speeds::True,
-    told_balance: false,
+    known_equilibrium: false,
     reference: "Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 4.5",
 };
 
 impl Design for Integral {
-    fn card(&self) -> &Card {
-        &CARD
+    fn info(&self) -> &ControllerInfo {
+        &INFO
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         let plant = zoh(&known.plant, known.period_s, 0.0)?;
         let (n, m) = plant.b.shape();
         let mut a = plant.a.resize(n + m, n + m, 0.0);
@@ -47,7 +47,7 @@ impl Design for Integral {
             a,
             ..plant
         };
-        let (q, r) = known.paper_weights();
+        let (q, r) = known.weights();
         let mut q = q.resize(n + m, n + m, 0.0);
         for sum in n..n + m {
             q[(sum, sum)] = INTEGRAL_WEIGHT;
@@ -75,22 +75,22 @@ impl Controller for Summing {
         self.driven.len()
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
-        let state = seen
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
+        let state = measured
             .angle_rad
             .iter()
-            .chain(seen.speed_rad_s)
+            .chain(measured.speed_rad_s)
             .chain(&*memory);
-        for (torque, row) in torque_nm.iter_mut().zip(&self.gains) {
+        for (torque, row) in command_nm.iter_mut().zip(&self.gains) {
             *torque = -row
                 .iter()
                 .zip(state.clone())
                 .map(|(k, x)| k * x)
                 .sum::<f64>();
         }
-        if torque_nm.iter().all(|torque| torque.abs() < self.limit_nm) {
+        if command_nm.iter().all(|torque| torque.abs() < self.limit_nm) {
             for (sum, &joint) in memory.iter_mut().zip(&self.driven) {
-                *sum += self.period_s * seen.angle_rad[joint];
+                *sum += self.period_s * measured.angle_rad[joint];
             }
         }
     }

@@ -1,50 +1,40 @@
-//! Control laws for the handstand: one file each, told only what a designer can know, and tried under what the robot
-//! does to them.
+//! Control laws for the handstand, one file each, designed with what a designer can know.
 //!
-//! `known` -> designs ([`DESIGNS`]) -> `trial` (starts held, per [`CONDITIONS`]) and `delay` (longest survived).
-//! Adding a controller is one file and one line in [`DESIGNS`].
+//! `design_model` (what is known) -> designs ([`DESIGNS`]) -> [`Controller`](crate::sim::closed_loop::Controller). The
+//! studies try them. Adding a controller is one file and one line in [`DESIGNS`].
 
 mod best;
-mod card;
-mod chain;
-mod conditions;
 mod dead_zone;
-mod delay;
+mod design_model;
+mod info;
 mod integral;
-mod known;
+mod known_equilibrium;
+mod linear_law;
 mod lqg;
 mod observed;
 mod offset;
 mod on_board;
 mod paper;
-mod picture;
 mod plant;
+mod regulator;
 mod robust;
 mod servo;
 mod sliding;
-mod trial;
-mod uncertain;
 
-#[cfg(test)]
-mod tests;
-
-pub use card::{Card, Design, Speeds};
-pub use chain::{CHAINS, Chain, SERVO_DEAD_TIME_S};
-pub use conditions::{CONDITIONS, Condition, condition};
-pub use delay::{Longest, longest_held, longest_linear};
-pub use known::Known;
+pub use design_model::DesignModel;
+pub use info::{ControllerInfo, Design, Speeds};
+pub use known_equilibrium::KnownEquilibrium;
+pub use linear_law::LinearLaw;
 pub use on_board::{OnBoard, Timing};
-pub use picture::picture;
-pub use robust::{SHARE, WEIGHTS, gain as robust_gain};
-pub use servo::ServoLag;
-pub use trial::{REGION_RUNS, Region, Robots, Tried, region, try_out};
-pub use uncertain::Uncertain;
+pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
+pub use servo::{ServoLag, Through};
 
 /// Every controller, plainest first.
 pub const DESIGNS: &[&dyn Design] = &[
     &paper::PLAIN,
     &paper::DIFFERENCED,
     &paper::COMPENSATED,
+    DEFAULT,
     &dead_zone::DeadZoneInverse,
     &integral::Integral,
     &offset::OffsetObserver,
@@ -56,7 +46,10 @@ pub const DESIGNS: &[&dyn Design] = &[
     &best::Best,
 ];
 
+/// The controller of a study that names none.
+pub const DEFAULT: &dyn Design = &regulator::Regulator;
+
 /// The controller of this name.
 pub fn design(id: &str) -> Option<&'static dyn Design> {
-    DESIGNS.iter().copied().find(|d| d.card().id == id)
+    DESIGNS.iter().copied().find(|d| d.info().id == id)
 }

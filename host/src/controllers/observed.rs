@@ -3,12 +3,12 @@
 //! The filter's gains are computed beforehand, sample by sample from the first reading on, until they stand still.
 //! Rounding to a step counts as noise of step / sqrt(12) (Widrow, Kollar, Quantization Noise (2008)).
 
-use super::Known;
+use super::DesignModel;
 use super::dead_zone::Drive;
 use super::plant::{Parts, plant};
 use super::sliding::Surface;
-use crate::closed_loop::{Controller, Seen};
 use crate::error::{Error, Result};
+use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, Gains, dlqr};
 use nalgebra::DMatrix;
 
@@ -99,7 +99,7 @@ impl Observed {
     ///
     /// # Errors
     /// Plants that cannot be held, or not be observed.
-    pub fn new(known: &Known, options: &Options) -> Result<Self> {
+    pub fn new(known: &DesignModel, options: &Options) -> Result<Self> {
         let parts = Parts {
             offsets: options.offsets,
             delay: options.delay,
@@ -132,7 +132,7 @@ impl Observed {
 }
 
 /// The law on the state without offsets, spread over the whole state: the offsets act as the angles' negatives.
-fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
+fn law(known: &DesignModel, options: &Options, parts: Parts) -> Result<Surface> {
     let without = plant(
         known,
         Parts {
@@ -154,7 +154,11 @@ fn law(known: &Known, options: &Options, parts: Parts) -> Result<Surface> {
 }
 
 /// The regulator on the state without offsets, with these weights.
-pub(super) fn regulator(known: &Known, options: &Options, without: &Discrete) -> Result<Gains> {
+pub(super) fn regulator(
+    known: &DesignModel,
+    options: &Options,
+    without: &Discrete,
+) -> Result<Gains> {
     let (size, m, joints) = (without.a.nrows(), known.drives(), known.joints());
     let mut q = DMatrix::zeros(size, size);
     for i in 0..joints {
@@ -163,12 +167,12 @@ pub(super) fn regulator(known: &Known, options: &Options, without: &Discrete) ->
             q[(part * joints + i, part * joints + i)] = weight.copied().unwrap_or(0.0);
         }
     }
-    dlqr(without, &q, &DMatrix::identity(m, m))
+    Ok(dlqr(without, &q, &DMatrix::identity(m, m))?)
 }
 
 /// The Kalman filter's gains from the first sample on.
 fn filter(
-    known: &Known,
+    known: &DesignModel,
     options: &Options,
     believed: &Discrete,
     reads: &[usize],
@@ -208,8 +212,8 @@ fn filter(
     let mut gains: Vec<Vec<f64>> = Vec::new();
     for _ in 0..LONGEST_START {
         let crossed = p.select_columns(reads);
-        let seen = crossed.select_rows(reads) + &noise;
-        let inverse = seen.cholesky().ok_or_else(unobserved)?;
+        let measured = crossed.select_rows(reads) + &noise;
+        let inverse = measured.cholesky().ok_or_else(unobserved)?;
         let gain = inverse.solve(&crossed.transpose()).transpose();
         p -= &gain * crossed.transpose();
         p = &believed.a * &p * believed.a.transpose() + &process;
@@ -244,12 +248,12 @@ pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<f64> {
 }
 
 impl Controller for Observed {
-    /// The state, what the inverse owes, how many samples were seen, and room to compute in.
+    /// The state, what the inverse owes, how many samples were measured, and room to compute in.
     fn memory_len(&self) -> usize {
         2 * self.states + self.drives + 1
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
         let (state, rest) = memory.split_at_mut(self.states);
         let (room, rest) = rest.split_at_mut(self.states);
         let (carry, count) = rest.split_at_mut(self.drives);
@@ -260,16 +264,16 @@ impl Controller for Observed {
         room.copy_from_slice(state);
         for (reading, &place) in self.reads.iter().enumerate() {
             let value = match place.checked_sub(self.joints) {
-                None => seen.angle_rad[place],
-                Some(joint) => seen.speed_rad_s[joint],
+                None => measured.angle_rad[place],
+                Some(joint) => measured.speed_rad_s[joint],
             };
-            let surprise = value - state[place];
+            let innovation = value - state[place];
             for (estimate, gains) in room.iter_mut().zip(filter.chunks_exact(readings)) {
-                *estimate += gains[reading] * surprise;
+                *estimate += gains[reading] * innovation;
             }
         }
-        self.law.torque(room, torque_nm);
-        for (torque, carry) in torque_nm.iter_mut().zip(carry) {
+        self.law.torque(room, command_nm);
+        for (torque, carry) in command_nm.iter_mut().zip(carry) {
             *torque = self.drive.command(*torque, carry);
         }
         let models = self
@@ -277,7 +281,7 @@ impl Controller for Observed {
             .chunks_exact(self.states)
             .zip(self.b.chunks_exact(self.drives));
         for (next, (a, b)) in state.iter_mut().zip(models) {
-            *next = dot(a, room) + dot(b, torque_nm);
+            *next = dot(a, room) + dot(b, command_nm);
         }
     }
 }

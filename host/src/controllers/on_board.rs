@@ -9,11 +9,11 @@
 //! innovation = y - C s        raw_command = -K (s + L innovation)        next = A (s + L innovation) + B applied
 //! ```
 
-use super::conditions::GYRO_STEP_RAD_S;
 use super::observed::{Options, regulator};
 use super::plant::{Parts, continuous, plant};
-use super::{Known, best};
+use super::{DesignModel, best};
 use crate::error::{Error, Result};
+use crate::sim::closed_loop::GYRO_STEP_RAD_S;
 use crate::synth::{Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
@@ -79,7 +79,7 @@ impl OnBoard {
     /// # Errors
     /// Robots of other than three joints, two of them driven; effects or readings later than three periods; plants that
     /// cannot be held or are not seen.
-    pub fn new(known: &Known, timing: &Timing) -> Result<OnBoard> {
+    pub fn new(known: &DesignModel, timing: &Timing) -> Result<OnBoard> {
         if (known.joints(), known.drives()) != (JOINTS, INPUTS) {
             return Err(Error::design(
                 format!(
@@ -90,7 +90,7 @@ impl OnBoard {
                 "the CM-5 balances three joints of which two are driven",
             ));
         }
-        let known = Known {
+        let known = DesignModel {
             delay_s: timing.effect_s,
             ..known.clone()
         };
@@ -153,7 +153,7 @@ const OFFSETS: Parts = Parts {
 };
 
 /// The regulator's gains; offsets act as the angles' negatives.
-fn gains(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
+fn gains(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
     let without = plant(
         known,
         Parts {
@@ -169,7 +169,7 @@ fn gains(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
 }
 
 /// The sampled plant with offsets and as many past inputs as the CM-5 keeps.
-fn widened(known: &Known) -> Result<Discrete> {
+fn widened(known: &DesignModel) -> Result<Discrete> {
     let late = plant(known, OFFSETS)?;
     if late.delayed_inputs > DELAYS {
         return Err(too_late(known.delay_s));
@@ -206,8 +206,8 @@ fn too_late(delay_s: f64) -> Error {
     )
 }
 
-/// What each reading tells of [x, offsets, past inputs], applied its age.
-fn outputs(known: &Known, timing: &Timing) -> Result<DMatrix<f64>> {
+/// What each reading tells of [x, offsets, past inputs], given its age.
+fn outputs(known: &DesignModel, timing: &Timing) -> Result<DMatrix<f64>> {
     let mut c = DMatrix::zeros(READINGS, ESTIMATED + PAST);
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
         let ago = ago(known, timing.effect_s, age_s)?;
@@ -220,7 +220,7 @@ fn outputs(known: &Known, timing: &Timing) -> Result<DMatrix<f64>> {
 ///
 /// Input u(k - n) begins to act at `effect_s` - n periods. Backwards over a span h under one input,
 /// x(t - h) = e^{-Ah} (x(t) - S(h) B u).
-fn ago(known: &Known, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
+fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
     let now = plant(
         known,
         Parts {
@@ -253,7 +253,7 @@ fn ago(known: &Known, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
 }
 
 /// Covariance of what is not known, per sample; past inputs are known.
-fn process(known: &Known, options: &Options) -> Result<DMatrix<f64>> {
+fn process(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
     let held = plant(
         known,
         Parts {

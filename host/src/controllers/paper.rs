@@ -1,53 +1,53 @@
 //! The paper's sampled regulator (Q = 100 I, R = I), with and without its angle compensation.
 
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::{Controller, Seen, StateFeedback};
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
 use crate::synth::{dlqr, zoh};
 use nalgebra::DMatrix;
 
 /// One of the paper's set-ups.
 #[derive(Debug)]
-pub struct Paper(Card);
+pub struct Paper(ControllerInfo);
 
-const CARD: Card = Card {
+const INFO: ControllerInfo = ControllerInfo {
     id: "dlqr",
     title: "DLQR of the paper",
     law: "u = -K x",
     speeds: Speeds::True,
-    told_balance: false,
+    known_equilibrium: false,
     reference: "the paper, section IV, Figure 12",
 };
 
 /// Given the true speeds, not told of eccentric masses.
-pub const PLAIN: Paper = Paper(CARD);
+pub const PLAIN: Paper = Paper(INFO);
 
 /// With the only speeds the servos tell.
-pub const DIFFERENCED: Paper = Paper(Card {
+pub const DIFFERENCED: Paper = Paper(ControllerInfo {
     id: "dlqr-differences",
     title: "DLQR, speeds by equation 1",
     law: "u = -K [q, (q(k) - q(k-1)) / Ts]",
     speeds: Speeds::Differenced,
-    told_balance: true,
+    known_equilibrium: true,
     reference: "the paper, equation 1",
 });
 
 /// Told at which angles the robot balances.
-pub const COMPENSATED: Paper = Paper(Card {
+pub const COMPENSATED: Paper = Paper(ControllerInfo {
     id: "dlqr-compensated",
     title: "DLQR with angle compensation",
     law: "u = -K (x - x_balance)",
-    told_balance: true,
+    known_equilibrium: true,
     reference: "the paper, section IV, Figures 12 to 14",
-    ..CARD
+    ..INFO
 });
 
 impl Design for Paper {
-    fn card(&self) -> &Card {
+    fn info(&self) -> &ControllerInfo {
         &self.0
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         let inner = StateFeedback::new(known.joints(), rows(&gain(known)?));
         if self.0.speeds == Speeds::Differenced {
             return Ok(Box::new(Differencing {
@@ -61,8 +61,8 @@ impl Design for Paper {
 }
 
 /// The paper's gain for this plant.
-pub(super) fn gain(known: &Known) -> Result<DMatrix<f64>> {
-    let (q, r) = known.paper_weights();
+pub(super) fn gain(known: &DesignModel) -> Result<DMatrix<f64>> {
+    let (q, r) = known.weights();
     Ok(dlqr(&zoh(&known.plant, known.period_s, 0.0)?, &q, &r)?.k)
 }
 
@@ -88,25 +88,25 @@ impl Controller for Differencing {
         self.inner.hold.len() + 1
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
-        let joints = seen.angle_rad.len();
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
+        let joints = measured.angle_rad.len();
         let (before, rest) = memory.split_at_mut(joints);
         let (speed_rad_s, started) = rest.split_at_mut(joints);
-        speed_rad_s.copy_from_slice(seen.speed_rad_s);
+        speed_rad_s.copy_from_slice(measured.speed_rad_s);
         for &joint in &self.driven {
-            let moved = seen.angle_rad[joint] - before[joint];
+            let moved = measured.angle_rad[joint] - before[joint];
             speed_rad_s[joint] = if started[0] == 0.0 {
                 0.0
             } else {
                 moved / self.period_s
             };
         }
-        before.copy_from_slice(seen.angle_rad);
+        before.copy_from_slice(measured.angle_rad);
         started[0] = 1.0;
-        let seen = Seen {
-            angle_rad: seen.angle_rad,
+        let measured = Measurement {
+            angle_rad: measured.angle_rad,
             speed_rad_s,
         };
-        self.inner.control(&mut [], seen, torque_nm);
+        self.inner.control(&mut [], measured, command_nm);
     }
 }

@@ -1,6 +1,6 @@
 //! The plant as the observers believe it: sampled, with late inputs, servos and the angles at which it balances.
 
-use super::{Known, ServoLag};
+use super::{DesignModel, ServoLag};
 use crate::error::Result;
 use crate::synth::{Continuous, Discrete, zoh};
 use nalgebra::DMatrix;
@@ -17,7 +17,7 @@ pub(super) struct Parts {
 }
 
 /// z(k+1) = A z + B u with z = [angles, speeds, offsets, past inputs, servos].
-pub(super) fn plant(known: &Known, parts: Parts) -> Result<Discrete> {
+pub(super) fn plant(known: &DesignModel, parts: Parts) -> Result<Discrete> {
     let continuous = continuous(known, parts.offsets);
     let delay_s = if parts.delay { known.delay_s } else { 0.0 };
     let sampled = zoh(&continuous, known.period_s, delay_s)?;
@@ -28,7 +28,7 @@ pub(super) fn plant(known: &Known, parts: Parts) -> Result<Discrete> {
 }
 
 /// x' = A x + B u, with the angles of balance behind the state if they are wanted.
-pub(super) fn continuous(known: &Known, offsets: bool) -> Continuous {
+pub(super) fn continuous(known: &DesignModel, offsets: bool) -> Continuous {
     let Continuous { a, b, .. } = &known.plant;
     let (n, m, joints) = (a.nrows(), b.ncols(), known.joints());
     let all = if offsets { n + joints } else { n };

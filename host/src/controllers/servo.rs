@@ -1,9 +1,9 @@
 //! The servo between command and torque, and the regulator that has it in its model.
 
 use super::observed::{Observed, Options};
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::{Controller, Seen};
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::{Controller, Measurement};
 
 /// A servo's answer to a command, sampled: y(k) = sum b_i u(k-i) - sum a_i y(k-i), of gain 1 at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,9 +34,9 @@ impl ServoLag {
 
 /// A controller whose commands reach the robot through such servos.
 #[derive(Debug)]
-pub(super) struct Through<'a> {
+pub struct Through<'a> {
     /// The controller.
-    pub inner: &'a dyn Controller,
+    pub inner: Box<dyn Controller + 'a>,
     /// Its servos.
     pub servo: ServoLag,
     /// How many.
@@ -56,10 +56,10 @@ impl Controller for Through<'_> {
         self.inner.reset(inner);
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
         let (servos, inner) = memory.split_at_mut(2 * self.drives);
-        self.inner.control(inner, seen, torque_nm);
-        for (torque, state) in torque_nm.iter_mut().zip(servos.chunks_exact_mut(2)) {
+        self.inner.control(inner, measured, command_nm);
+        for (torque, state) in command_nm.iter_mut().zip(servos.chunks_exact_mut(2)) {
             let command = torque.clamp(-self.limit_nm, self.limit_nm);
             *torque = state[0];
             state.copy_from_slice(&self.servo.next([state[0], state[1]], command));
@@ -71,21 +71,21 @@ impl Controller for Through<'_> {
 #[derive(Debug)]
 pub struct ServoModel;
 
-static CARD: Card = Card {
+static INFO: ControllerInfo = ControllerInfo {
     id: "servo-model",
     title: "LQG with the servo in its model",
     law: "u = -K [x, servo, past u], all estimated",
     speeds: Speeds::Estimated,
-    told_balance: false,
+    known_equilibrium: false,
     reference: "the paper, equation 2 and section V (future work)",
 };
 
 impl Design for ServoModel {
-    fn card(&self) -> &Card {
-        &CARD
+    fn info(&self) -> &ControllerInfo {
+        &INFO
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         let options = Options {
             offsets: true,
             delay: true,

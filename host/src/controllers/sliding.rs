@@ -7,9 +7,9 @@
 //! after Slotine, Li, Applied Nonlinear Control (1991), section 7.2).
 
 use super::observed::{Law, Observed, Options, dot, rows};
-use super::{Card, Design, Known, Speeds};
-use crate::closed_loop::{Controller, Seen};
+use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::{Error, Result};
+use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
 use nalgebra::DMatrix;
 
@@ -80,14 +80,14 @@ impl Surface {
 
     /// Torques for a state.
     #[inline]
-    pub fn torque(&self, state: &[f64], torque_nm: &mut [f64]) {
-        for (torque, row) in torque_nm
+    pub fn torque(&self, state: &[f64], command_nm: &mut [f64]) {
+        for (torque, row) in command_nm
             .iter_mut()
             .zip(self.k_rows.chunks_exact(state.len()))
         {
             *torque = -dot(row, state);
         }
-        for (torque, row) in torque_nm
+        for (torque, row) in command_nm
             .iter_mut()
             .zip(self.s_rows.chunks_exact(state.len()))
         {
@@ -98,34 +98,34 @@ impl Surface {
 
 /// Sliding mode on the true state, or on the estimated one.
 #[derive(Debug)]
-pub struct Sliding(Card);
+pub struct Sliding(ControllerInfo);
 
 /// On angles and true speeds, told where it balances.
-pub const PLAIN: Sliding = Sliding(Card {
+pub const PLAIN: Sliding = Sliding(ControllerInfo {
     id: "sliding",
     title: "sliding mode with boundary layer",
     law: "u = -K x - e sat(S x / width)",
     speeds: Speeds::True,
-    told_balance: true,
+    known_equilibrium: true,
     reference: "Gao, Wang, Homaifa (1995); Slotine, Li (1991); the paper, section V (future work)",
 });
 
 /// On the estimate, with offsets, delay and dead-zone inverse.
-pub const OBSERVED: Sliding = Sliding(Card {
+pub const OBSERVED: Sliding = Sliding(ControllerInfo {
     id: "sliding-observed",
     title: "sliding mode on the estimate",
     law: "u = inverse(-K z - e sat(S z / width))",
     speeds: Speeds::Estimated,
-    told_balance: false,
+    known_equilibrium: false,
     ..PLAIN.0
 });
 
 impl Design for Sliding {
-    fn card(&self) -> &Card {
+    fn info(&self) -> &ControllerInfo {
         &self.0
     }
 
-    fn build(&self, known: &Known) -> Result<Box<dyn Controller>> {
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         if self.0.speeds == Speeds::Estimated {
             let options = Options {
                 law: Law::Sliding,
@@ -134,7 +134,7 @@ impl Design for Sliding {
             return Ok(Box::new(Observed::new(known, &options)?));
         }
         let plant = zoh(&known.plant, known.period_s, 0.0)?;
-        let (q, r) = known.paper_weights();
+        let (q, r) = known.weights();
         let surface = Surface::sliding(&plant, &dlqr(&plant, &q, &r)?.riccati)?;
         Ok(Box::new(Direct { surface }))
     }
@@ -151,10 +151,10 @@ impl Controller for Direct {
         self.surface.k.ncols()
     }
 
-    fn control(&self, memory: &mut [f64], seen: Seen<'_>, torque_nm: &mut [f64]) {
-        let (angles, speeds) = memory.split_at_mut(seen.angle_rad.len());
-        angles.copy_from_slice(seen.angle_rad);
-        speeds.copy_from_slice(seen.speed_rad_s);
-        self.surface.torque(memory, torque_nm);
+    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
+        let (angles, speeds) = memory.split_at_mut(measured.angle_rad.len());
+        angles.copy_from_slice(measured.angle_rad);
+        speeds.copy_from_slice(measured.speed_rad_s);
+        self.surface.torque(memory, command_nm);
     }
 }

@@ -1,10 +1,9 @@
 //! The board's side of a plan: servos, limits, gyro and moments.
 
 use super::observer::WORD;
-use crate::effects::Rig;
+use crate::dynamics::EquationsOfMotion;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::synth::Equations;
 use handstand_shared::message::Attitude;
 use handstand_shared::observer::{INPUTS, JOINTS};
 use handstand_shared::plan::{Gyro, Joint, Law, Moment, Plan};
@@ -147,7 +146,8 @@ const MARGIN: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 pub(super) fn moments(model: &Model) -> [Moment; JOINTS] {
-    let equations = Equations::of(&Rig::of(model, false));
+    let rig = model.rig(false);
+    let equations = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad);
     let moments = equations.moments_kg_m();
     let most = moments
         .iter()
@@ -156,7 +156,7 @@ pub(super) fn moments(model: &Model) -> [Moment; JOINTS] {
     let scaled = |part: f64| (part / most * 16_384.0).round() as i16;
     let mut links = [Moment::ZERO; JOINTS];
     for (link, [along, aside]) in links.iter_mut().zip(moments) {
-        (link.along, link.aside) = (scaled(*along), scaled(*aside));
+        (link.along, link.aside) = (scaled(along), scaled(aside));
     }
     links
 }

@@ -17,7 +17,7 @@ pub use rust_file::plan_file;
 pub use state::state_design;
 pub use transfer::{upload, verify};
 
-use crate::controllers::{Known, OnBoard, Timing};
+use crate::controllers::{DesignModel, OnBoard, Timing};
 use crate::error::Result;
 use crate::model::Model;
 use crate::synth::{Design, upright};
@@ -39,9 +39,9 @@ pub enum BoardLaw<'a> {
 /// Absolute angles; as [`OnBoard::new`].
 pub fn observer_design(model: &Model, board: &Board, timing: &Timing) -> Result<OnBoard> {
     state::relative(model)?;
-    let known = Known {
+    let known = DesignModel {
         limit_nm: board.most_nm,
-        ..Known::ideal(model, &upright(model), board.period_s)?
+        ..DesignModel::new(model, &upright(model), board.period_s)?
     };
     OnBoard::new(&known, timing)
 }

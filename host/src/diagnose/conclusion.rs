@@ -1,216 +1,187 @@
 //! A verdict with all that belongs to it: values, errors, rivals, and what was ruled out.
 
-use super::bench::Bench;
-use super::findings::{
-    Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, RuledOut,
-};
-use super::score::{Score, fall};
-use super::trial::Trial;
-use super::verdict::Case;
+use super::block_errors::{BlockErrors, reduction};
+use super::evaluator::Evaluator;
+use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut};
+use super::hypothesis::Hypothesis;
+use super::verdict::Evidence;
 use super::words;
-use crate::fitting::{Data, Horizon, Interval, intervals, profiled};
+use crate::fitting::{ErrorReduction, FitData, FittedValue, fitted_values};
 use crate::number::percent;
 
+/// Correlation from which two values are hardly told apart.
+const COLLINEAR: f64 = 0.95;
+
 /// Draws the conclusion.
-pub(super) fn conclude(case: &Case) -> Diagnosis {
-    let rivals = case.rivals();
-    let chosen = case.chosen();
-    let base = &case.bench.base;
-    let verdict = case.verdict(&rivals);
-    let (values, collinear, determined) = fitted_values(chosen, case.bench);
-    let (base_values, added) = values.split_at(values.len() - chosen.added_values());
-    let (low, high) = match (base.deciding(), chosen.deciding()) {
-        (Some(before), Some(after)) => fall(before, after, case.seed),
-        _ => (0.0, 0.0),
-    };
-    let held_out = case.bench.held_out.is_some();
+pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
+    let rivals = evidence.rivals();
+    let (chosen, evaluator) = (evidence.chosen(), evidence.evaluator);
+    let (values, correlation) = fitted_values(chosen.fit(), &evaluator.training);
+    let (base, added) = values.split_at(values.len() - chosen.added_values());
+    let mut collinear = Vec::new();
+    for (a, value) in values.iter().enumerate().filter(|_| correlation.is_some()) {
+        for (b, other) in values[..a].iter().enumerate() {
+            let r = correlation.as_ref().map_or(0.0, |r| r[(a, b)]);
+            if r.abs() > COLLINEAR {
+                collinear.push((other.path.clone(), value.path.clone(), r));
+            }
+        }
+    }
     let mut diagnosis = Diagnosis {
-        verdict,
+        verdict: evidence.verdict(&rivals),
         effects: effects(chosen, added),
-        error: ErrorFall {
-            unit: "rad".to_string(),
-            before: base.deciding_rms_rad(),
-            after: chosen.deciding_rms_rad(),
-            floor: floor_rad(case.bench),
-            held_out,
-            fall_low: low,
-            fall_high: high,
-        },
-        alternatives: rivals.iter().map(|t| alternative(t, case.bench)).collect(),
-        base: base_values.to_vec(),
-        ruled_out: ruled_out(case, &rivals),
-        remainder: case.remainder.clone(),
-        motions: motions(case),
+        error: error(evidence),
+        alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
+        base: base.to_vec(),
+        ruled_out: ruled_out(evidence, &rivals),
+        residual_structure: evidence.residual_structure.clone(),
+        motions: motions(evidence),
         collinear,
         summary: Vec::new(),
         next: Vec::new(),
-        warnings: Vec::new(),
-        horizon_s: match case.bench.horizon {
-            Horizon::Whole => None,
-            Horizon::Seconds(seconds) => Some(seconds),
-        },
+        warnings: warnings(evidence, correlation.is_some()),
+        horizon_s: evaluator.horizon.seconds(),
     };
-    if !determined {
-        diagnosis.warnings.push(
-            "some fitted values have no effect on the residual: their intervals are unknown"
-                .to_string(),
-        );
-    }
-    if case.sham_ranks() {
-        diagnosis.warnings.push(
-            "a shuffled regressor gains as much as the best effect: nothing may be named"
-                .to_string(),
-        );
-    }
-    if case.inconstant() {
-        diagnosis.warnings.push(format!(
-            "values that fit one motion do not fit another: each by itself would leave {} less of the squared error",
-            percent(case.own_values_share.unwrap_or(0.0))
-        ));
-    }
     words::complete(&mut diagnosis);
     diagnosis
 }
 
-fn floor_rad(bench: &Bench) -> f64 {
-    let sigma = &bench.training.sigma_rad;
-    (sigma.iter().map(|s| s * s).sum::<f64>() / sigma.len().max(1) as f64).sqrt()
+fn error(evidence: &Evidence) -> ErrorReduction {
+    let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
+    let blocks = base.deciding().zip(chosen.deciding());
+    ErrorReduction {
+        before_rad: base.deciding_rms_rad(),
+        after_rad: chosen.deciding_rms_rad(),
+        floor_rad: evidence.evaluator.training.floor_rad(),
+        held_out: evidence.evaluator.held_out.is_some(),
+        reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
+    }
 }
 
-/// Values with intervals, strongly correlated pairs, and whether the data determine them at all.
-fn fitted_values(
-    trial: &Trial,
-    bench: &Bench,
-) -> (Vec<FittedValue>, Vec<(String, String, f64)>, bool) {
-    let fit = trial.fit();
-    let known = intervals(fit, &bench.training)
-        .map(|(intervals, correlation)| (profiled(fit, &bench.training, &intervals), correlation));
-    let on_bound = fit.on_bound();
-    let mut values = Vec::new();
-    for (i, (path, value)) in fit.free.iter().zip(fit.values()).enumerate() {
-        let unknown = Interval {
-            standard_error: f64::INFINITY,
-            low: path.bounds(&fit.model).0,
-            high: path.bounds(&fit.model).1,
-        };
-        let interval = known.as_ref().map_or(unknown, |k| k.0[i]);
-        values.push(FittedValue::of(*path, value, interval, on_bound[i]));
+fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if !determined {
+        warnings.push(
+            "some fitted values have no effect on the residual: their intervals are unknown"
+                .to_string(),
+        );
     }
-    let mut collinear = Vec::new();
-    if let Some((_, correlation)) = &known {
-        for a in 0..values.len() {
-            for b in 0..a {
-                let r = correlation[(a, b)];
-                if r.abs() > 0.95 {
-                    collinear.push((values[b].path.clone(), values[a].path.clone(), r));
-                }
-            }
+    if evidence.placebo_ranks() {
+        warnings.push(
+            "a placebo regressor gains as much as the best effect: nothing may be named"
+                .to_string(),
+        );
+    }
+    if evidence.values_vary() {
+        warnings.push(format!(
+            "values that fit one motion do not fit another: each by itself would leave {} less of the squared error",
+            percent(evidence.per_motion_reduction.unwrap_or(0.0))
+        ));
+    }
+    warnings
+}
+
+/// The effects of a hypothesis with their values, which come in the order of the set.
+fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEffect> {
+    let effect = |candidate: &crate::fitting::Candidate| {
+        let info = candidate.effect.info();
+        let (own, rest) = values.split_at(info.parameters.len());
+        values = rest;
+        FittedEffect {
+            kind: info.id.to_string(),
+            title: info.title.to_string(),
+            joint: candidate.joint.map(|j| j + 1),
+            parameters: own.to_vec(),
         }
-    }
-    (values, collinear, known.is_some())
+    };
+    hypothesis.set.iter().map(effect).collect()
 }
 
-/// The effects of a trial with their values, which come in the order of the set.
-fn effects(trial: &Trial, mut values: &[FittedValue]) -> Vec<FittedEffect> {
-    trial
-        .set
-        .iter()
-        .map(|candidate| {
-            let card = candidate.effect.card();
-            let (own, rest) = values.split_at(card.parameters.len());
-            values = rest;
-            FittedEffect {
-                kind: card.id.to_string(),
-                title: card.title.to_string(),
-                joint: candidate.joint.map(|j| j + 1),
-                parameters: own.to_vec(),
-            }
-        })
-        .collect()
-}
-
-fn alternative(trial: &Trial, bench: &Bench) -> Alternative {
-    let (values, _, _) = fitted_values(trial, bench);
+fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
+    let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
+    let added = values.len() - hypothesis.added_values();
     Alternative {
-        effects: effects(trial, &values[values.len() - trial.added_values()..]),
-        error: trial.deciding_rms_rad(),
+        effects: effects(hypothesis, &values[added..]),
+        error_rad: hypothesis.deciding_rms_rad(),
     }
 }
 
-fn ruled_out(case: &Case, rivals: &[&Trial]) -> Vec<RuledOut> {
-    let base = &case.bench.base;
-    case.trials
-        .iter()
-        .filter(|t| case.best.as_ref().is_none_or(|best| !t.adds(&best.set)))
-        .filter(|t| !rivals.iter().any(|r| r.adds(&t.set)))
-        .map(|t| RuledOut {
-            set: t.set.iter().map(ToString::to_string).collect(),
-            training_error: t.training_rms_rad(&case.bench.search),
-            held_out_error: t
-                .judged
-                .as_ref()
-                .and_then(|j| Some(j.held_out.as_ref()?.rms_rad())),
-            bic_change: case.bench.bic_change(base, t),
-            why: why_not(case, t),
-        })
-        .collect()
+fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
+    let (base, best) = (&evidence.evaluator.base, evidence.best.as_ref());
+    let kept = |h: &Hypothesis| {
+        best.into_iter()
+            .chain(rivals.iter().copied())
+            .any(|k| k.adds(&h.set))
+    };
+    let rest = evidence.hypotheses.iter().filter(|h| !kept(h));
+    rest.map(|h| RuledOut {
+        set: h.names(),
+        training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
+        held_out_error_rad: held_out(h).map(BlockErrors::rms_rad),
+        bic_change: evidence.evaluator.bic_change(base, h),
+        why: why_not(evidence, h),
+    })
+    .collect()
 }
 
-fn why_not(case: &Case, trial: &Trial) -> String {
-    let base = &case.bench.base;
-    if trial.rests_on_bound() {
-        return "its best value is on a bound, where it vanishes or stops being physical"
-            .to_string();
-    }
-    if trial.search_mean > 0.99 * base.search_mean {
-        return "it does not lower the error".to_string();
-    }
-    if case.bench.held_out.is_some() {
-        match trial.judged.as_ref().and_then(|j| j.held_out.as_ref()) {
-            None => return "others leave far less on the training motions".to_string(),
-            Some(held_out) if held_out.mean() > base.deciding_mean() => {
-                return "it fits the training motions and makes the held-out ones worse"
-                    .to_string();
+fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
+    hypothesis.evaluation.as_ref()?.held_out.as_ref()
+}
+
+fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
+    let (evaluator, base) = (evidence.evaluator, &evidence.evaluator.base);
+    let why = if hypothesis.rests_on_bound() {
+        "its best value is on a bound, where it vanishes or stops being physical"
+    } else if hypothesis.search_mean > 0.99 * base.search_mean {
+        "it does not lower the error"
+    } else if evaluator.held_out.is_some() && held_out(hypothesis).is_none() {
+        "others leave far less on the training motions"
+    } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
+        "it fits the training motions and makes the held-out ones worse"
+    } else {
+        match &evidence.best {
+            Some(best) if hypothesis.set.len() > best.set.len() => {
+                "one more effect brings no significant reduction"
             }
-            Some(_) => {}
+            Some(best) if evaluator.clearly_worse(hypothesis, best, base) => {
+                return format!("{} leaves significantly less", best.names().join(" + "));
+            }
+            Some(_) => "the chosen set does as well with fewer values",
+            None => "what it gains may be chance",
         }
-    }
-    match &case.best {
-        Some(best) if trial.set.len() > best.set.len() => {
-            "one more effect gains nothing sure".to_string()
-        }
-        Some(best) if case.bench.clearly_worse(trial, best, base) => {
-            format!("{} surely leaves less", best.name())
-        }
-        Some(_) => "the chosen set does as well with fewer values".to_string(),
-        None => "what it gains may be chance".to_string(),
-    }
+    };
+    why.to_string()
 }
 
-fn motions(case: &Case) -> Vec<MotionError> {
-    let (Some(before), Some(after)) = (&case.bench.base.judged, &case.chosen().judged) else {
+fn motions(evidence: &Evidence) -> Vec<MotionError> {
+    let evaluator = evidence.evaluator;
+    let evaluations = (&evaluator.base.evaluation, &evidence.chosen().evaluation);
+    let (Some(before), Some(after)) = evaluations else {
         return Vec::new();
     };
     let rms = |m: (f64, usize)| (m.0 / m.1.max(1) as f64).sqrt();
     let mut list = Vec::new();
-    let mut add = |data: &Data, before: &Score, after: &Score, held_out: bool| {
-        for (k, motion) in data.motions.iter().enumerate() {
-            list.push(MotionError {
-                motion: motion.name.clone(),
-                held_out,
-                before: rms(before.motions[k]),
-                after: rms(after.motions[k]),
-            });
-        }
+    let mut add = |data: &FitData, before: &BlockErrors, after: &BlockErrors, held_out: bool| {
+        list.extend(
+            data.motions
+                .iter()
+                .enumerate()
+                .map(|(k, motion)| MotionError {
+                    motion: motion.name.clone(),
+                    held_out,
+                    before_rad: rms(before.motions[k]),
+                    after_rad: rms(after.motions[k]),
+                }),
+        );
     };
     add(
-        &case.bench.training,
+        &evaluator.training,
         &before.training,
         &after.training,
         false,
     );
     if let (Some(data), Some(before), Some(after)) =
-        (&case.bench.held_out, &before.held_out, &after.held_out)
+        (&evaluator.held_out, &before.held_out, &after.held_out)
     {
         add(data, before, after, true);
     }

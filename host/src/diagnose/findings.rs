@@ -1,7 +1,9 @@
 //! The result of a diagnosis, as plain values for every writer: text, JSON, HTML.
 
-use crate::fitting::Interval;
-use crate::model::ParameterPath;
+use crate::effects;
+use crate::fitting::{Candidate, ErrorReduction, FittedValue};
+use crate::log::{LogFinding, Severity};
+use crate::model::{Model, ParameterPath};
 use serde::Serialize;
 
 /// What a diagnosis may end in.
@@ -20,40 +22,6 @@ pub enum Verdict {
     Unfit,
 }
 
-/// A value with its 95 % interval.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FittedValue {
-    /// Address in the model: `coulomb@1.torque_nm`.
-    pub path: String,
-    /// Key alone: `torque_nm`.
-    pub key: String,
-    /// Unit for people.
-    pub unit: String,
-    /// Fitted value.
-    pub value: f64,
-    /// Lower end of the interval.
-    pub low: f64,
-    /// Upper end of the interval.
-    pub high: f64,
-    /// Whether the value lies on a bound: a warning, not a result.
-    pub on_bound: bool,
-}
-
-impl FittedValue {
-    /// The value at this address.
-    pub fn of(path: ParameterPath, value: f64, interval: Interval, on_bound: bool) -> Self {
-        FittedValue {
-            path: path.to_string(),
-            key: path.key().to_string(),
-            unit: path.unit().to_string(),
-            value,
-            low: interval.low,
-            high: interval.high,
-            on_bound,
-        }
-    }
-}
-
 /// An effect with its fitted values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FittedEffect {
@@ -67,32 +35,13 @@ pub struct FittedEffect {
     pub parameters: Vec<FittedValue>,
 }
 
-/// Root-mean-square error before and after, on held-out motions where there are any.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ErrorFall {
-    /// Unit of the figures: `rad`.
-    pub unit: String,
-    /// With the model as it is, refitted.
-    pub before: f64,
-    /// With the named effects added.
-    pub after: f64,
-    /// What noise and resolution alone leave.
-    pub floor: f64,
-    /// Whether the figures are of motions that took no part in the fit.
-    pub held_out: bool,
-    /// 95 % interval of the relative fall, 1 - after / before, by block bootstrap: its lower end.
-    pub fall_low: f64,
-    /// Its upper end.
-    pub fall_high: f64,
-}
-
 /// A rival explanation that the data do not rule out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Alternative {
     /// Its effects.
     pub effects: Vec<FittedEffect>,
-    /// Error it leaves, in the unit of [`ErrorFall`].
-    pub error: f64,
+    /// Root-mean-square error it leaves, rad, on the motions of [`Diagnosis::error`].
+    pub error_rad: f64,
 }
 
 /// A candidate that was tried and not chosen.
@@ -101,18 +50,18 @@ pub struct RuledOut {
     /// Effects tried together, as `id@joint`.
     pub set: Vec<String>,
     /// Error it leaves on training motions, rad.
-    pub training_error: f64,
+    pub training_error_rad: f64,
     /// Error it leaves on held-out motions, rad, where it came that far.
-    pub held_out_error: Option<f64>,
-    /// Change of the Bayesian information criterion against the base model; negative is better.
+    pub held_out_error_rad: Option<f64>,
+    /// PredictionChange of the Bayesian information criterion against the base model; negative is better.
     pub bic_change: f64,
     /// Why it was not chosen, in words.
     pub why: String,
 }
 
-/// What is left after the best explanation.
+/// Structure of the residual that the best explanation leaves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Remainder {
+pub struct ResidualStructure {
     /// Share of the remaining squared error above the floor that a free-form term could still gain.
     pub explainable_share: f64,
     /// 95 % lower limit of that share.
@@ -129,9 +78,9 @@ pub struct MotionError {
     /// Whether it was held out.
     pub held_out: bool,
     /// Root-mean-square error of the base model, rad.
-    pub before: f64,
+    pub before_rad: f64,
     /// Root-mean-square error with the effects added, rad.
-    pub after: f64,
+    pub after_rad: f64,
 }
 
 /// Everything a diagnosis says.
@@ -141,16 +90,16 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// Effects that are missing: all of them when named, the best set when ambiguous, a partial set when unexplained.
     pub effects: Vec<FittedEffect>,
-    /// Error before, after and floor.
-    pub error: ErrorFall,
+    /// Error of the refitted base model, with the effects added, and of a perfect model.
+    pub error: ErrorReduction,
     /// Sets that do as well, when ambiguous.
     pub alternatives: Vec<Alternative>,
     /// Base values refitted along.
     pub base: Vec<FittedValue>,
     /// What was tried and ruled out, best first.
     pub ruled_out: Vec<RuledOut>,
-    /// What remains.
-    pub remainder: Option<Remainder>,
+    /// Structure of the residual.
+    pub residual_structure: Option<ResidualStructure>,
     /// Per motion.
     pub motions: Vec<MotionError>,
     /// Pairs of parameters the data hardly tell apart: addresses and correlation.
@@ -159,8 +108,73 @@ pub struct Diagnosis {
     pub summary: Vec<String>,
     /// What to do next.
     pub next: Vec<String>,
-    /// Things to be wary of: values on bounds, shams that rank, data warnings.
+    /// Things to be wary of: values on bounds, placebos that rank, data warnings.
     pub warnings: Vec<String>,
     /// Seconds of one window on which the judgement rests; absent for whole motions.
     pub horizon_s: Option<f64>,
+}
+
+impl FittedEffect {
+    /// The effect as `handstand add` takes it: `coulomb@1`.
+    pub fn address(&self) -> String {
+        match self.joint {
+            Some(joint) => format!("{}@{joint}", self.kind),
+            None => self.kind.clone(),
+        }
+    }
+
+    fn candidate(&self) -> Option<Candidate> {
+        Some(Candidate {
+            effect: effects::named(&self.kind)?,
+            joint: self.joint.map(|joint| joint - 1),
+        })
+    }
+}
+
+impl Diagnosis {
+    /// The model with the effects added and the base values refitted.
+    pub fn applied_to(&self, model: &Model) -> Model {
+        let mut model = model.clone();
+        for value in &self.base {
+            if let Ok(path) = value.path.parse::<ParameterPath>() {
+                // A value that is not the model's is none to set.
+                let _ = path.set(&mut model, value.value);
+            }
+        }
+        let found = self.effects.iter().filter_map(|effect| {
+            let values: Vec<f64> = effect.parameters.iter().map(|value| value.value).collect();
+            Some(effect.candidate()?.instance(&values))
+        });
+        model.effects.extend(found);
+        model
+    }
+
+    /// The diagnosis of logs that were refused: the findings say why.
+    pub fn unfit(findings: &[LogFinding]) -> Diagnosis {
+        let refused = || findings.iter().filter(|f| f.severity == Severity::Refuse);
+        let said = "The logs cannot be learned from.".to_string();
+        Diagnosis {
+            verdict: Verdict::Unfit,
+            effects: Vec::new(),
+            error: ErrorReduction {
+                before_rad: f64::NAN,
+                after_rad: f64::NAN,
+                floor_rad: f64::NAN,
+                held_out: false,
+                reduction: None,
+            },
+            alternatives: Vec::new(),
+            base: Vec::new(),
+            ruled_out: Vec::new(),
+            residual_structure: None,
+            motions: Vec::new(),
+            collinear: Vec::new(),
+            summary: std::iter::once(said)
+                .chain(refused().map(LogFinding::statement))
+                .collect(),
+            next: refused().map(|finding| finding.remedy.clone()).collect(),
+            warnings: Vec::new(),
+            horizon_s: None,
+        }
+    }
 }

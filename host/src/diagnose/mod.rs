@@ -1,28 +1,29 @@
 //! Which physical effect is missing: which candidates mend the model, what may be claimed, and in which words.
 
-mod bench;
-mod candidate;
+mod block_errors;
+mod budget;
+mod candidates;
 mod conclusion;
 mod consistency;
-mod evidence;
+mod evaluator;
 mod findings;
 mod horizon;
-mod opening;
+mod hypothesis;
+mod initial_guess;
+mod multistart;
 mod options;
 mod progress;
-mod remainder;
-mod restart;
-mod score;
+mod residual_structure;
+mod restarts;
 mod search;
+mod selection;
 mod terms;
-mod trial;
 mod verdict;
 pub mod words;
 
-pub use candidate::{Candidate, candidates};
+pub use candidates::candidates;
 pub use findings::{
-    Alternative, Diagnosis, ErrorFall, FittedEffect, FittedValue, MotionError, Remainder, RuledOut,
-    Verdict,
+    Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
 };
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

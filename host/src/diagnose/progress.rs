@@ -19,27 +19,27 @@ const STAGES: [&str; 5] = [
     "every effect alone",
     "pairs and swaps",
     "larger sets",
-    "what remains",
+    "residual structure",
 ];
 /// The stage of sets of one effect; the stage of pairs is 2.
 pub(super) const ALONE: usize = 1;
 /// The stage of three effects and more.
 pub(super) const LARGER: usize = 3;
-/// The stage of what remains.
-pub(super) const REMAINS: usize = 4;
+/// The stage of the residual structure.
+pub(super) const STRUCTURE: usize = 4;
 
 /// Counts the fits of a diagnosis, which run side by side, and tells who listens.
-pub(super) struct Steps<'a> {
+pub(super) struct StepCounter<'a> {
     heard: &'a (dyn Fn(Progress) + Sync),
     done: AtomicUsize,
     stage: AtomicUsize,
     total: usize,
 }
 
-impl<'a> Steps<'a> {
+impl<'a> StepCounter<'a> {
     /// None done yet of `total`.
     pub fn new(total: usize, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
-        let steps = Steps {
+        let steps = StepCounter {
             heard,
             done: AtomicUsize::new(0),
             stage: AtomicUsize::new(0),
@@ -77,12 +77,12 @@ mod tests {
     fn steps_never_pass_the_total() {
         let told = Mutex::new(Vec::new());
         let heard = |progress: Progress| told.lock().unwrap().push((progress.done, progress.what));
-        let steps = Steps::new(4, &heard);
+        let steps = StepCounter::new(4, &heard);
         steps.step(3);
         steps.step(3);
-        steps.begin(REMAINS, 4);
+        steps.begin(STRUCTURE, 4);
         let told = told.lock().unwrap();
-        let [model, remains] = [STAGES[0], STAGES[REMAINS]];
-        assert_eq!(*told, [(0, model), (3, model), (4, model), (4, remains)]);
+        let [model, structure] = [STAGES[0], STAGES[STRUCTURE]];
+        assert_eq!(*told, [(0, model), (3, model), (4, model), (4, structure)]);
     }
 }

@@ -1,54 +1,30 @@
 //! The search: every candidate alone, then pairs and swaps around the best, then larger sets while they pay.
 //!
 //! A forward-greedy search stops where no single effect helps although two together would; so sets grow from
-//! several leads, not one, and members of the best set are swapped.
+//! a beam of several, not from one, and members of the best set are swapped. Within a size, successive halving
+//! spends the iterations: all get a look, many a second, few are fitted to the end.
 
-use super::bench::{Bench, FINISH};
-use super::candidate::Candidate;
+use super::budget::{
+    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, PARTNERS, SECOND_LOOKS,
+    STRUCTURE_STEPS, steps_up_to,
+};
 use super::conclusion::conclude;
-use super::consistency::own_values_share;
+use super::consistency::per_motion_reduction;
+use super::evaluator::{Evaluator, every_change};
 use super::findings::Diagnosis;
-use super::opening::{Change, Lead, Opening, changes_like};
+use super::hypothesis::Hypothesis;
+use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use super::options::DiagnoseOptions;
-use super::progress::{ALONE, LARGER, Progress, REMAINS};
-use super::trial::Trial;
-use super::verdict::Case;
+use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
+use super::verdict::Evidence;
+use crate::effects::{CONTROLS, PLACEBO};
+use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// Iterations of a first look at a candidate.
-const LOOK: usize = 4;
-/// An opening that promises less than this share of what the candidate's best one does is not tried.
+/// A guess that promises less than this share of what the candidate's best one does is not tried.
 const WORTH: f64 = 0.05;
-/// Finalists of each size.
-const FINALISTS: usize = 6;
-/// Trials that get a second look.
-const SECOND_LOOKS: usize = 3 * FINALISTS;
-/// Sets from which larger ones grow.
-const LEADS: usize = 5;
-/// Partners tried for each lead.
-const PARTNERS: usize = 5;
-
-/// Steps of progress are short fits. To judge a trial takes as long as so many:
-const JUDGE_STEPS: usize = 2;
-/// The base model and the shams, likewise.
-const BASE_STEPS: usize = 10;
-/// The finals of one size.
-const FINALS_STEPS: usize = SECOND_LOOKS + FINALISTS * (1 + JUDGE_STEPS);
-/// What remains.
-const REMAINDER_STEPS: usize = 10;
-
-/// Steps until sets of `size` are done.
-fn steps_up_to(size: usize, candidates: usize) -> usize {
-    let larger = LEADS * PARTNERS + 2 * FINALS_STEPS;
-    BASE_STEPS + candidates + FINALS_STEPS + (size - 1) * larger
-}
-
-/// Steps of a diagnosis with so many candidates, when it does not end early.
-pub(super) fn planned_steps(candidates: usize, most_effects: usize) -> usize {
-    steps_up_to(most_effects.max(1), candidates) + REMAINDER_STEPS
-}
 
 /// Searches for the effects a model is missing.
 ///
@@ -61,43 +37,54 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
-    let mut bench = Bench::new(model, training, held_out, options, progress);
-    let (best, trials) = bench.search();
-    let all = steps_up_to(bench.most_effects.max(1), bench.candidates.len());
-    bench.steps.begin(REMAINS, all);
-    let chosen = best.as_ref().unwrap_or(&bench.base);
-    let case = Case {
-        bench: &bench,
-        remainder: bench.remainder(chosen),
-        own_values_share: own_values_share(chosen, &bench.training),
-        trials,
+    let mut evaluator = Evaluator::new(model, training, held_out, options, progress);
+    evaluator.placebos = evaluator.try_placebos();
+    let (best, hypotheses) = evaluator.search();
+    let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
+    evaluator.steps.begin(STRUCTURE, all);
+    let chosen = best.as_ref().unwrap_or(&evaluator.base);
+    let evidence = Evidence {
+        evaluator: &evaluator,
+        residual_structure: evaluator.residual_structure(chosen),
+        per_motion_reduction: per_motion_reduction(chosen, &evaluator.training),
+        hypotheses,
         best,
         seed: options.seed,
     };
-    let diagnosis = conclude(&case);
-    bench.steps.step(REMAINDER_STEPS);
+    let diagnosis = conclude(&evidence);
+    evaluator.steps.step(STRUCTURE_STEPS);
     diagnosis
 }
 
-fn by_error(a: &Trial, b: &Trial) -> std::cmp::Ordering {
-    a.search_mean.total_cmp(&b.search_mean)
-}
+impl Evaluator<'_> {
+    /// A placebo regressor at each joint, fitted and evaluated like a candidate.
+    fn try_placebos(&self) -> Vec<Hypothesis> {
+        let placebo = CONTROLS.iter().filter(|e| e.info().id == PLACEBO);
+        let at_joints = |&effect| {
+            let joints = (0..self.start.link_count()).map(Some);
+            joints.map(move |joint| Candidate { effect, joint })
+        };
+        let placebos: Vec<Candidate> = placebo.flat_map(at_joints).collect();
+        let changes = every_change(&self.base, &placebos, &self.search);
+        let mut placebos = self.first_look(&self.base, &changes, 1);
+        for placebo in &mut placebos {
+            self.evaluate(placebo);
+        }
+        placebos
+    }
 
-impl Bench<'_> {
     /// The smallest set that pays, if any does, and every set that was tried.
-    fn search(&mut self) -> (Option<Trial>, Vec<Trial>) {
+    fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
         self.steps.begin(ALONE, BASE_STEPS);
         let mut sizes = vec![self.singles()];
         let mut best = self.accepted(&self.base, &sizes[0]).cloned();
         for size in 2..=self.most_effects {
             // Where nothing but noise is left, there is nothing for more effects to explain.
-            if self.at_floor(best.as_ref().unwrap_or(&self.base)) {
+            if self.at_noise_floor(best.as_ref().unwrap_or(&self.base)) {
                 break;
             }
-            self.steps.begin(
-                size.min(LARGER),
-                steps_up_to(size - 1, self.candidates.len()),
-            );
+            let done = steps_up_to(size - 1, self.candidates.len());
+            self.steps.begin(size.min(LARGER), done);
             let larger = self.grow(&sizes[size - 2]);
             if larger.is_empty() {
                 break;
@@ -115,165 +102,142 @@ impl Bench<'_> {
         (best, sizes.into_iter().flatten().collect())
     }
 
-    fn singles(&mut self) -> Vec<Trial> {
+    fn singles(&mut self) -> Vec<Hypothesis> {
         let starts = if self.small() { 6 } else { 2 };
-        let trials = self.first_look(&self.base, &self.changes, starts);
-        let mut trials = self.heats(trials);
-        if !trials.iter().any(Trial::follows_windows) {
-            self.look_elsewhere(&mut trials);
-            trials.sort_by(by_error);
+        let hypotheses = self.first_look(&self.base, &self.changes, starts);
+        let mut hypotheses = self.successive_halving(hypotheses);
+        if !hypotheses.iter().any(Hypothesis::follows_windows) {
+            self.restart_jumping(&mut hypotheses);
+            hypotheses.sort_by(Hypothesis::by_error);
         }
-        if let Some(best) = trials.first_mut() {
+        if let Some(best) = hypotheses.first_mut() {
             self.shorten(best);
         }
-        self.judged(trials)
+        self.evaluated(hypotheses)
     }
 
-    /// Short fits of candidates on top of a trial, each from its best openings, at most `starts`; the better one
-    /// counts. `changes` are those of each candidate.
-    pub fn first_look(&self, from: &Trial, changes: &[Vec<Change>], starts: usize) -> Vec<Trial> {
-        let lead = Lead::new(&from.search);
-        changes
-            .par_iter()
-            .filter_map(|changes| {
-                let mut found = lead.openings(changes);
-                let best = found.first().map_or(0.0, |o| o.gain);
-                found.truncate(starts);
-                if !self.small() {
-                    found.retain(|o| o.gain >= WORTH * best);
-                }
+    /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most `starts`; the
+    /// better one counts. `changes` are those of each candidate.
+    fn first_look(
+        &self,
+        from: &Hypothesis,
+        changes: &[Vec<PredictionChange>],
+        starts: usize,
+    ) -> Vec<Hypothesis> {
+        let residual = ProjectedResidual::new(&from.search);
+        let look = |changes: &Vec<PredictionChange>| {
+            let mut guesses = residual.guesses(changes);
+            let best = guesses.first().map_or(0.0, |guess| guess.gain);
+            guesses.truncate(starts);
+            if !self.small() {
+                guesses.retain(|guess| guess.gain >= WORTH * best);
+            }
+            self.steps.step(1);
+            self.best_of(from, &guesses)
+        };
+        changes.par_iter().filter_map(look).collect()
+    }
+
+    fn best_of(&self, from: &Hypothesis, guesses: &[InitialGuess]) -> Option<Hypothesis> {
+        let looks = guesses.iter().map(|guess| self.look(from, guess));
+        let first = guesses.first().filter(|_| self.small());
+        let restarts = first.map(|guess| self.random_starts(from, guess));
+        let all = looks.chain(restarts.into_iter().flatten());
+        all.min_by(Hypothesis::by_error)
+    }
+
+    /// A short fit of one more effect.
+    fn look(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
+        from.with(guess.candidate, &guess.values, &self.search, LOOK)
+    }
+
+    /// Sorts hypotheses by training error and fits the best to the end: many get a second look, few go on.
+    fn successive_halving(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let rounds = [
+            (SECOND_LOOKS, FitOptions::iterations(LOOK).rough()),
+            (FINALISTS, FitOptions::iterations(FINISH)),
+        ];
+        for (survivors, options) in rounds {
+            hypotheses.sort_by(Hypothesis::by_error);
+            let best = hypotheses.par_iter_mut().take(survivors);
+            best.for_each(|hypothesis| {
+                hypothesis.resume(&self.search, options);
                 self.steps.step(1);
-                self.best_of(from, &found)
-            })
-            .collect()
+            });
+        }
+        hypotheses.sort_by(Hypothesis::by_error);
+        hypotheses
     }
 
-    fn best_of(&self, from: &Trial, openings: &[Opening]) -> Option<Trial> {
-        let looks = openings
-            .iter()
-            .map(|o| from.with(o.candidate, &o.values, &self.search, LOOK));
-        let restarts = openings
-            .first()
-            .filter(|_| self.small())
-            .map(|o| self.restarted(from, o))
-            .into_iter()
-            .flatten();
-        looks
-            .chain(restarts)
-            .min_by(|a, b| a.search_mean.total_cmp(&b.search_mean))
-    }
-
-    /// Sorts trials by training error, takes the best to the end and judges them.
-    fn finals(&self, trials: Vec<Trial>) -> Vec<Trial> {
-        let trials = self.heats(trials);
-        self.judged(trials)
-    }
-
-    /// Sorts trials by training error and takes the best to the end: many get a second look, few go on.
-    fn heats(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
-        trials.sort_by(by_error);
-        let seconds = SECOND_LOOKS.min(trials.len());
-        trials[..seconds].par_iter_mut().for_each(|trial| {
-            trial.look_again(&self.search, LOOK);
-            self.steps.step(1);
+    /// Evaluates the finalists.
+    fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let finalists = hypotheses.par_iter_mut().take(FINALISTS);
+        finalists.for_each(|hypothesis| {
+            self.evaluate(hypothesis);
+            self.steps.step(EVALUATION_STEPS);
         });
-        trials.sort_by(by_error);
-        let finalists = FINALISTS.min(trials.len());
-        trials[..finalists].par_iter_mut().for_each(|trial| {
-            trial.finish(&self.search, FINISH);
-            self.steps.step(1);
-        });
-        trials.sort_by(by_error);
-        trials
+        hypotheses
     }
 
-    /// Judges the finalists.
-    fn judged(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
-        let finalists = FINALISTS.min(trials.len());
-        trials[..finalists].par_iter_mut().for_each(|trial| {
-            self.judge(trial);
-            self.steps.step(JUDGE_STEPS);
-        });
-        trials
-    }
-
-    /// Larger sets: partners for each lead, chosen by what they would gain, then swaps in the best.
-    fn grow(&self, leads: &[Trial]) -> Vec<Trial> {
-        let mut tried: Vec<Trial> = Vec::new();
-        for lead in leads.iter().take(LEADS) {
-            let wanted = self.partners(lead, &tried);
-            let found: Vec<Trial> = wanted
-                .par_iter()
-                .map(|o| {
-                    self.steps.step(1);
-                    lead.with(o.candidate, &o.values, &self.search, LOOK)
-                })
-                .collect();
+    /// Larger sets: partners for each set of the beam, chosen by what they would gain, then swaps in the best.
+    fn grow(&self, beam: &[Hypothesis]) -> Vec<Hypothesis> {
+        let mut tried: Vec<Hypothesis> = Vec::new();
+        for from in beam.iter().take(BEAM) {
+            let partners = self.partners(from, &tried);
+            let found = partners.par_iter().map(|guess| {
+                self.steps.step(1);
+                self.look(from, guess)
+            });
+            let found: Vec<Hypothesis> = found.collect();
             tried.extend(found);
         }
-        let finals = self.finals(tried);
+        let finals = self.evaluated(self.successive_halving(tried));
         self.swapped(finals)
     }
 
-    /// The most promising openings on top of a trial that make a set not yet tried.
+    /// The most promising guesses on top of a hypothesis that make a set not yet tried.
     ///
-    /// Which candidates promise most is told by what they change in the base model's prediction; only those are
-    /// simulated on top of the trial.
-    fn partners(&self, from: &Trial, tried: &[Trial]) -> Vec<Opening> {
-        let lead = Lead::new(&from.search);
-        let mut promising: Vec<(&Change, f64)> = self
-            .changes
-            .par_iter()
-            .filter(|changes| {
-                changes.first().is_some_and(|c| {
-                    let mut set = from.set.clone();
-                    set.push(c.candidate);
-                    !from.set.contains(&c.candidate) && !tried.iter().any(|t| t.adds(&set))
-                })
+    /// Which candidates promise most shows in what they change in the base model's prediction; only those are
+    /// simulated on top of the hypothesis.
+    fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
+        let residual = ProjectedResidual::new(&from.search);
+        let is_new = |changes: &&Vec<PredictionChange>| {
+            changes.first().is_some_and(|change| {
+                let set = from.set_with(change.candidate);
+                !from.set.contains(&change.candidate) && !tried.iter().any(|t| t.adds(&set))
             })
-            .filter_map(|changes| {
-                let gains = changes.iter().map(|c| (c, lead.opening(c).gain));
-                gains.max_by(|a, b| a.1.total_cmp(&b.1))
-            })
-            .collect();
+        };
+        let new = self.changes.par_iter().filter(is_new);
+        let gains = new.filter_map(|changes| {
+            let gains = changes.iter().map(|c| (c, residual.guess(c).gain));
+            gains.max_by(|a, b| a.1.total_cmp(&b.1))
+        });
+        let mut promising: Vec<(&PredictionChange, f64)> = gains.collect();
         promising.sort_by(|a, b| b.1.total_cmp(&a.1));
         promising.truncate(2 * PARTNERS);
-        let mut openings: Vec<Opening> = promising
-            .par_iter()
-            .filter_map(|(like, _)| {
-                let changes = changes_like(&from.search, like, &self.search);
-                lead.openings(&changes).into_iter().next()
-            })
-            .collect();
-        openings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        openings.truncate(PARTNERS);
-        openings
+        let simulated = promising.par_iter().filter_map(|(like, _)| {
+            let changes = changes_like(&from.search, like, &self.search);
+            residual.guesses(&changes).into_iter().next()
+        });
+        let mut guesses: Vec<InitialGuess> = simulated.collect();
+        guesses.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        guesses.truncate(PARTNERS);
+        guesses
     }
 
     /// Tries to replace each older member of the best set: what led may no longer be needed.
-    fn swapped(&self, mut trials: Vec<Trial>) -> Vec<Trial> {
-        let Some(best) = trials.first().cloned() else {
-            return trials;
+    fn swapped(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let Some(best) = hypotheses.first().cloned() else {
+            return hypotheses;
         };
         for leaving in 0..best.set.len().saturating_sub(1) {
-            let kept: Vec<Candidate> = (0..best.set.len())
-                .filter(|&i| i != leaving)
-                .map(|i| best.set[i])
-                .collect();
-            let mut rest = best.without(leaving, &self.base);
-            rest.refit(&self.search, LOOK);
-            let wanted: Vec<Opening> = self
-                .partners(&rest, &trials)
-                .into_iter()
-                .filter(|o| !kept.contains(&o.candidate))
-                .take(2)
-                .collect();
-            let found: Vec<Trial> = wanted
-                .par_iter()
-                .map(|o| rest.with(o.candidate, &o.values, &self.search, LOOK))
-                .collect();
-            trials.extend(found);
+            let rest = best.without(leaving, &self.base, &self.search, LOOK);
+            let mut partners = self.partners(&rest, &hypotheses);
+            partners.truncate(2);
+            let found = partners.par_iter().map(|guess| self.look(&rest, guess));
+            let found: Vec<Hypothesis> = found.collect();
+            hypotheses.extend(found);
         }
-        self.finals(trials)
+        self.evaluated(self.successive_halving(hypotheses))
     }
 }

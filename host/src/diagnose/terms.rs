@@ -1,37 +1,37 @@
 //! The probes of which a free form is made: bumps, sines and shifts, each scaled to what the motions cover.
 
-use super::candidate::Candidate;
-use crate::effects::Along;
-use crate::fitting::Data;
+use crate::effects::ProbeVariable;
+use crate::fitting::Candidate;
+use crate::fitting::FitData;
 use crate::model::{Drive, Model};
 
 /// A probe with the amplitude at which its effect is measured.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Term {
-    pub along: Along,
+    pub variable: ProbeVariable,
     pub candidate: Candidate,
     pub values: [f64; 4],
 }
 
 /// The probes of every joint, scaled to the range its motions cover.
-pub(super) fn terms(model: &Model, data: &Data) -> Vec<Term> {
+pub(super) fn terms(model: &Model, data: &FitData) -> Vec<Term> {
     let mut terms = Vec::new();
     for joint in 0..model.link_count() {
         let range = Range::of(model, data, joint);
-        let mut add = |along: Along, amplitude: f64, centre: f64, width: f64| {
+        let mut add = |variable: ProbeVariable, amplitude: f64, centre: f64, width: f64| {
             terms.push(Term {
-                along,
+                variable,
                 candidate: Candidate {
-                    effect: along.probe(),
+                    effect: variable.probe(),
                     joint: Some(joint),
                 },
-                values: [amplitude, along.index(), centre, width],
+                values: [amplitude, variable.index(), centre, width],
             });
         };
         let torque = 0.01 * range.torque_nm;
         for share in [-1.0, -0.6, -0.3, -0.12, 0.0, 0.12, 0.3, 0.6, 1.0] {
             add(
-                Along::Speed,
+                ProbeVariable::Speed,
                 torque,
                 share * range.speed_rad_s,
                 0.35 * range.speed_rad_s,
@@ -40,36 +40,41 @@ pub(super) fn terms(model: &Model, data: &Data) -> Vec<Term> {
         let span = (range.high_rad - range.low_rad) / 6.0;
         for step in 0..7 {
             let centre = range.low_rad + f64::from(step) * span;
-            add(Along::Angle, torque, centre, span);
-            add(Along::SlideAtAngle, torque, centre, span);
-            add(Along::Reading, 1e-3, centre, span);
+            add(ProbeVariable::Angle, torque, centre, span);
+            add(ProbeVariable::FrictionInAngle, torque, centre, span);
+            add(ProbeVariable::Reading, 1e-3, centre, span);
         }
         for periods in [
             4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0,
         ] {
-            add(Along::SineOfAngle, 0.3 * torque, periods, 1.0);
-            add(Along::CosineOfAngle, 0.3 * torque, periods, 1.0);
+            add(ProbeVariable::SineOfAngle, 0.3 * torque, periods, 1.0);
+            add(ProbeVariable::CosineOfAngle, 0.3 * torque, periods, 1.0);
         }
         let moment = model.links[joint].inertia_kg_m2
             + model.links[joint].mass_kg * model.links[joint].com_m.powi(2);
-        add(Along::Inertia, 0.02 * moment, 0.0, 1.0);
-        add(Along::Mass, 0.02 * model.links[joint].mass_kg, 0.0, 1.0);
-        add(Along::Tilt, 3e-3, 0.0, 1.0);
-        add(Along::ReadingLag, 1e-3, 0.0, 1.0);
-        add(Along::ReadingPlay, 1e-3, 0.0, 1.0);
+        add(ProbeVariable::Inertia, 0.02 * moment, 0.0, 1.0);
+        add(
+            ProbeVariable::Mass,
+            0.02 * model.links[joint].mass_kg,
+            0.0,
+            1.0,
+        );
+        add(ProbeVariable::Tilt, 3e-3, 0.0, 1.0);
+        add(ProbeVariable::ReadingLag, 1e-3, 0.0, 1.0);
+        add(ProbeVariable::ReadingBacklash, 1e-3, 0.0, 1.0);
         if model.joints[joint].drive != Drive::Passive {
             for share in [-1.0, -0.5, -0.25, -0.1, 0.0, 0.1, 0.25, 0.5, 1.0] {
                 add(
-                    Along::DriveTorque,
+                    ProbeVariable::DriveTorque,
                     torque,
                     share * range.drive_nm,
                     0.3 * range.drive_nm,
                 );
             }
-            add(Along::SlideUnderDrive, 0.02, 0.0, 1.0);
-            add(Along::Supply, 0.02, 0.0, 1.0);
-            add(Along::BackEmf, 0.01 / range.speed_rad_s, 0.0, 1.0);
-            add(Along::Late, 1e-3, 0.0, 1.0);
+            add(ProbeVariable::FrictionUnderLoad, 0.02, 0.0, 1.0);
+            add(ProbeVariable::Supply, 0.02, 0.0, 1.0);
+            add(ProbeVariable::BackEmf, 0.01 / range.speed_rad_s, 0.0, 1.0);
+            add(ProbeVariable::Delay, 1e-3, 0.0, 1.0);
         }
     }
     terms
@@ -85,7 +90,7 @@ struct Range {
 }
 
 impl Range {
-    fn of(model: &Model, data: &Data, joint: usize) -> Range {
+    fn of(model: &Model, data: &FitData, joint: usize) -> Range {
         let positions = || {
             data.motions
                 .iter()

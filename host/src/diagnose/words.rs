@@ -38,7 +38,7 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
     let names = joined(&diagnosis.effects);
     let error = &diagnosis.error;
     match diagnosis.verdict {
-        Verdict::Nominal if error.before > NEAR * error.floor => {
+        Verdict::Nominal if error.before_rad > NEAR * error.floor_rad => {
             "No known effect brings the model closer to the measurement.".into()
         }
         Verdict::Nominal => "The model already explains the measurement.".into(),
@@ -70,7 +70,7 @@ fn rivals(diagnosis: &Diagnosis) -> String {
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = vec![headline(diagnosis)];
     if diagnosis.verdict == Verdict::Nominal
-        && diagnosis.error.before > NEAR * diagnosis.error.floor
+        && diagnosis.error.before_rad > NEAR * diagnosis.error.floor_rad
     {
         lines.push("What is left is far above the noise: the model fails in a way the library does not know, or the \
                     motions to judge by differ from those learned from.".into());
@@ -107,7 +107,7 @@ fn error_line(diagnosis: &Diagnosis) -> String {
     let error = &diagnosis.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =
-        [error.before, error.after, error.floor].map(|rad| short(1e3 * rad));
+        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(1e3 * rad));
     if diagnosis.effects.is_empty() {
         return format!(
             "The error on {motions} motions is {before} mrad; the floor is {floor} mrad."
@@ -151,7 +151,7 @@ fn commands(diagnosis: &Diagnosis) -> Vec<String> {
             0 => "better.toml".to_string(),
             index => format!("better{}.toml", index + 1),
         };
-        let address = address(effect);
+        let address = effect.address();
         lines.push(format!(
             "Add it: handstand add {from} {address} --fit {LOGS}{holdout} -o {to}"
         ));
@@ -183,7 +183,7 @@ fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
     kinds
         .into_iter()
         .filter_map(|effect| {
-            let experiment = crate::effects::named(&effect.kind)?.card().experiment;
+            let experiment = crate::effects::named(&effect.kind)?.info().experiment;
             Some(format!("To tell {} apart: {experiment}.", effect.title))
         })
         .collect()
@@ -251,14 +251,6 @@ pub(crate) fn listed(mut names: Vec<String>) -> String {
         (None, _) => "nothing".into(),
         (Some(last), []) => last,
         (Some(last), rest) => format!("{} and {last}", rest.join(", ")),
-    }
-}
-
-/// An effect as `handstand add` takes it: `coulomb@1`.
-pub fn address(effect: &FittedEffect) -> String {
-    match effect.joint {
-        Some(joint) => format!("{}@{joint}", effect.kind),
-        None => effect.kind.clone(),
     }
 }
 

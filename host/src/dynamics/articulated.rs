@@ -1,11 +1,13 @@
 //! Forward dynamics by articulated bodies, reduced to the plane.
 //!
-//! Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, with spatial vectors of three entries
-//! (moment, force x, force y) taken at each link's own joint in axes that do not turn. A held joint passes its
-//! inertia on whole and reports the torque that holds it: that is how friction keeps a joint at rest exactly.
+//! Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, with spatial vectors of three
+//! entries (moment, force x, force y) taken at each link's own joint in axes that do not turn. A
+//! held joint passes its inertia on whole and reports the torque that holds it: that is how
+//! friction keeps a joint at rest exactly.
 
 use super::chain::{Chain, ChainLink};
 use super::lanes::Lane;
+use super::link_motion::LinkMotion;
 
 /// Scratch memory of [`Chain::forward`], reused from call to call.
 #[derive(Debug, Clone)]
@@ -15,23 +17,19 @@ pub struct Workspace {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Scratch {
-    /// Joint to next joint, turned left: velocity of its end per rad/s.
-    lever: [f64; 2],
-    /// Centripetal acceleration at the link's end.
-    centripetal: [f64; 2],
-    /// Rigid first moment, turned left.
-    moment: [f64; 2],
-    speed_squared: f64,
-    /// Share of the link before's angular acceleration that the link takes on, the rest left to the joint; of a
-    /// held joint, its torque per unit of that acceleration.
+    motion: LinkMotion,
+    /// Share of the link before's angular acceleration that the link takes on, the rest left to the
+    /// joint; of a held joint, its torque per unit of that acceleration.
     carried: f64,
-    /// Angular acceleration per unit of the joint's acceleration (x, y); of a held joint, torque instead.
+    /// Angular acceleration per unit of the joint's acceleration (x, y); of a held joint, torque
+    /// instead.
     pull: [f64; 2],
     /// Angular acceleration with all else at rest; of a held joint, torque instead.
     own: f64,
 }
 
-/// What a subtree asks of the joint it hangs on: inertia [[inertia, b], [b, mass]], bias moment and force.
+/// What a subtree asks of the joint it hangs on: inertia [[inertia, b], [b, mass]], bias moment and
+/// force.
 #[derive(Debug, Clone, Copy, Default)]
 struct Subtree {
     inertia: f64,
@@ -53,9 +51,10 @@ impl Workspace {
 impl Chain {
     /// Accelerations of the joints, rad/s^2, into `out`.
     ///
-    /// `base_m_s2` is the acceleration of the base that stands for gravity, from [`Chain::base_m_s2`]. Where `held[i]`, the joint does not move (its speed
-    /// must be 0) and `out[i]` is instead the torque, N m, that must be added to `torque_nm[i]` to keep it so.
-    /// All slices have the chain's length.
+    /// `base_m_s2` is the acceleration of the base that stands for gravity, from
+    /// [`Chain::base_m_s2`]. Where `held[i]`, the joint does not move (its speed must be 0) and
+    /// `out[i]` is instead the torque, N m, that must be added to `torque_nm[i]` to keep it so. All
+    /// slices have the chain's length.
     #[inline]
     #[allow(clippy::too_many_arguments)]
     pub fn forward(
@@ -83,30 +82,13 @@ impl Chain {
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
             angle += angle_rad[i];
             speed += speed_rad_s[i];
-            let (sin, cos) = Lane::sin_cos(angle);
-            let (com_sin, com_cos) = if link.com_angle_rad == 0.0 {
-                (sin, cos)
-            } else {
-                Lane::sin_cos(angle + link.com_angle_rad)
-            };
-            let first_moment = link.mass_kg * link.com_m;
-            s.speed_squared = speed * speed;
-            s.lever = [link.length_m * cos, link.length_m * sin];
-            // The link's end lies at length * (sin, -cos); centripetal points back to the joint.
-            s.centripetal = [-s.speed_squared * s.lever[1], s.speed_squared * s.lever[0]];
-            s.moment = [first_moment * com_cos, first_moment * com_sin];
+            s.motion = LinkMotion::new(link, angle, speed);
         }
 
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
-            tree.shift(s.lever, s.centripetal);
-            tree.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
-            tree.b[0] += s.moment[0];
-            tree.b[1] += s.moment[1];
-            tree.mass[0] += link.mass_kg;
-            tree.mass[2] += link.mass_kg;
-            tree.force[0] -= s.speed_squared * s.moment[1];
-            tree.force[1] += s.speed_squared * s.moment[0];
+            tree.shift(s.motion.lever, s.motion.centripetal);
+            tree.add(link, &s.motion);
             let torque = torque_nm[i] - tree.moment;
             if held[i] {
                 // A held joint carries whatever moment comes.
@@ -133,16 +115,14 @@ impl Chain {
                 out[i] = value - angular;
                 angular = value;
             }
-            linear = [
-                linear[0] + s.centripetal[0] + angular * s.lever[0],
-                linear[1] + s.centripetal[1] + angular * s.lever[1],
-            ];
+            linear = s.motion.end_m_s2(linear, angular);
         }
     }
 }
 
 impl ChainLink {
-    /// [`Chain::forward`] of a chain of this link alone: a servo arm on its bench, which is fitted thousands of times.
+    /// [`Chain::forward`] of a chain of this link alone: a servo arm on its bench, which is fitted
+    /// thousands of times.
     #[inline]
     fn forward(&self, base_m_s2: [f64; 2], angle_rad: f64, torque_nm: f64, held: bool) -> f64 {
         let (sin, cos) = Lane::sin_cos(angle_rad + self.com_angle_rad);
@@ -174,7 +154,20 @@ impl Subtree {
         self.force = force;
     }
 
-    /// What is left for the link before when the joint gives way: `carried` of the inertia, the armature's share.
+    /// The link itself.
+    #[inline(always)]
+    fn add(&mut self, link: &ChainLink, at: &LinkMotion) {
+        self.inertia += link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
+        self.b[0] += at.moment[0];
+        self.b[1] += at.moment[1];
+        self.mass[0] += link.mass_kg;
+        self.mass[2] += link.mass_kg;
+        self.force[0] -= at.speed_squared * at.moment[1];
+        self.force[1] += at.speed_squared * at.moment[0];
+    }
+
+    /// What is left for the link before when the joint gives way: `carried` of the inertia, the
+    /// armature's share.
     #[inline]
     fn yield_to(&mut self, inverse: f64, carried: f64, torque: f64) {
         let (b, given) = (self.b, inverse * torque);

@@ -1,7 +1,5 @@
 //! The constants of a planar chain.
 
-use crate::model::Model;
-
 /// A planar chain on a fixed base. Angles are relative, joint 1's from hanging, counter-clockwise.
 #[derive(Debug, Clone)]
 pub struct Chain {
@@ -24,31 +22,12 @@ pub struct ChainLink {
     pub mass_kg: f64,
     /// Moment of inertia about the centre of mass, kg m^2.
     pub inertia_kg_m2: f64,
-    /// Rotor's inertia reflected through the gear, kg m^2: counts in the joint's own acceleration only.
+    /// Rotor's inertia reflected through the gear, kg m^2: counts in the joint's own acceleration
+    /// only.
     pub armature_kg_m2: f64,
 }
 
 impl Chain {
-    /// The chain of a model, without its effects.
-    pub fn of(model: &Model) -> Chain {
-        let links = model
-            .links
-            .iter()
-            .map(|link| ChainLink {
-                length_m: link.length_m,
-                com_m: link.com_m,
-                com_angle_rad: 0.0,
-                mass_kg: link.mass_kg,
-                inertia_kg_m2: link.inertia_kg_m2,
-                armature_kg_m2: 0.0,
-            })
-            .collect();
-        Chain {
-            links,
-            gravity_m_s2: model.gravity_m_s2,
-        }
-    }
-
     /// Number of links.
     pub fn len(&self) -> usize {
         self.links.len()
@@ -59,8 +38,8 @@ impl Chain {
         self.links.is_empty()
     }
 
-    /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned counter-clockwise by
-    /// `turn_rad`: against its pull.
+    /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned
+    /// counter-clockwise by `turn_rad`: against its pull.
     pub fn base_m_s2(&self, turn_rad: f64) -> [f64; 2] {
         let (sin, cos) = turn_rad.sin_cos();
         [-self.gravity_m_s2 * sin, self.gravity_m_s2 * cos]

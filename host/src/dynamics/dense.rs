@@ -1,15 +1,13 @@
 //! Equations of motion of a short chain with a dense mass matrix, in absolute angles.
 //!
-//! Lagrange's equations of a planar chain (Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006),
-//! chapter 7), with t_i the angle of link i from hanging and (p_j, r_j) the first moment that link j and all beyond
-//! it have about joint j, turned with the link:
-//!
-//! M_ij = L_i (cos t_i p_j + sin t_i r_j) for i < j, the velocity terms are its derivative times w^2, and gravity is
-//! base . (p_i, r_i). In absolute angles the diagonal is constant and no product w_i w_j appears. Solved by LDL^T.
-//! For few links that is faster than [`Chain::forward`]'s O(n), and [`Lanes`] run several chains at once.
+//! The closed form is that of [`EquationsOfMotion`](super::EquationsOfMotion); solved by LDL^T. For
+//! few links that is faster than [`Chain::forward`]'s O(n), and [`Lanes`] run several chains at
+//! once.
 
 use super::chain::Chain;
+use super::equations::{LinkTerms, Turned, coupling, weight};
 use super::lanes::{Lane, Lanes};
+use super::runge_kutta::runge_kutta;
 use std::array::from_fn;
 
 /// Constants of a chain of `N` links, or of several in lanes.
@@ -29,36 +27,18 @@ pub struct Dense<const N: usize, V = f64> {
 }
 
 impl<const N: usize> Dense<N> {
-    /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it has `N` links.
+    /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it
+    /// has `N` links.
     pub fn new(chain: &Chain, gravity_turn_rad: f64) -> Option<Self> {
-        if chain.len() != N {
-            return None;
-        }
-        let mut dense = Dense {
-            length_m: [0.0; N],
-            along: [0.0; N],
-            across: [0.0; N],
-            diagonal: [0.0; N],
-            armature: [0.0; N],
+        let terms: [LinkTerms; N] = LinkTerms::of(chain).try_into().ok()?;
+        Some(Dense {
+            length_m: terms.map(|t| t.length_m),
+            along: terms.map(|t| t.along),
+            across: terms.map(|t| t.across),
+            diagonal: terms.map(|t| t.diagonal),
+            armature: terms.map(|t| t.armature_kg_m2),
             base_m_s2: chain.base_m_s2(gravity_turn_rad),
-        };
-        let (mut beyond_kg, mut next_armature) = (0.0, 0.0);
-        for (i, link) in chain.links.iter().enumerate().rev() {
-            let (sin, cos) = link.com_angle_rad.sin_cos();
-            let moment = link.mass_kg * link.com_m;
-            dense.length_m[i] = link.length_m;
-            dense.along[i] = moment * cos + link.length_m * beyond_kg;
-            dense.across[i] = moment * sin;
-            dense.armature[i] = link.armature_kg_m2;
-            dense.diagonal[i] = link.inertia_kg_m2
-                + moment * link.com_m
-                + link.length_m * link.length_m * beyond_kg
-                + link.armature_kg_m2
-                + next_armature;
-            beyond_kg += link.mass_kg;
-            next_armature = link.armature_kg_m2;
-        }
-        Some(dense)
+        })
     }
 }
 
@@ -80,29 +60,27 @@ impl<const N: usize, const L: usize> Dense<N, Lanes<L>> {
 }
 
 impl<const N: usize, V: Lane> Dense<N, V> {
-    /// Absolute accelerations, rad/s^2, at absolute angles and speeds under a moment `load_nm` on each link.
+    /// Absolute accelerations, rad/s^2, at absolute angles and speeds under a moment `load_nm` on
+    /// each link.
     #[inline(always)]
     pub fn accelerate(&self, angle_rad: &[V; N], speed_rad_s: &[V; N], load_nm: &[V; N]) -> [V; N] {
         let zero = V::splat(0.0);
-        let (mut lever, mut moment) = ([[zero; 2]; N], [[zero; 2]; N]);
+        let mut turned = [Turned {
+            lever: [zero; 2],
+            moment: [zero; 2],
+        }; N];
         let (mut rest, mut square) = (*load_nm, [zero; N]);
         for i in 0..N {
-            let (sin, cos) = angle_rad[i].sin_cos();
-            lever[i] = [self.length_m[i] * cos, self.length_m[i] * sin];
-            moment[i] = [
-                self.along[i] * cos - self.across[i] * sin,
-                self.along[i] * sin + self.across[i] * cos,
-            ];
-            let weight = self.base_m_s2[0] * moment[i][0] + self.base_m_s2[1] * moment[i][1];
-            rest[i] = rest[i] - weight;
+            let moment = [self.along[i], self.across[i]];
+            turned[i] = Turned::new(self.length_m[i], moment, angle_rad[i].sin_cos());
+            rest[i] = rest[i] - weight(self.base_m_s2, &turned[i]);
             square[i] = speed_rad_s[i] * speed_rad_s[i];
         }
         let mut mass = [[zero; N]; N];
         for j in 0..N {
             for i in 0..j {
-                let ([a, b], [p, r]) = (lever[i], moment[j]);
-                mass[j][i] = a * p + b * r;
-                let slope = a * r - b * p;
+                let [entry, slope] = coupling(&turned[i], &turned[j]);
+                mass[j][i] = entry;
                 rest[i] = rest[i] + slope * square[j];
                 rest[j] = rest[j] - slope * square[i];
             }
@@ -114,7 +92,8 @@ impl<const N: usize, V: Lane> Dense<N, V> {
         solve(mass, rest)
     }
 
-    /// Runs `steps` steps of classical Runge-Kutta of fourth order, `step_s` each, under constant moments.
+    /// Runs `steps` steps of classical Runge-Kutta of fourth order, `step_s` each, under constant
+    /// moments.
     #[inline(always)]
     pub fn advance(
         &self,
@@ -124,29 +103,18 @@ impl<const N: usize, V: Lane> Dense<N, V> {
         step_s: V,
         steps: usize,
     ) {
-        let (half, sixth) = (step_s * V::splat(0.5), step_s * V::splat(1.0 / 6.0));
-        let two = V::splat(2.0);
-        let (mut q, mut w) = (*angle_rad, *speed_rad_s);
+        let mut state = (*angle_rad, *speed_rad_s);
         for _ in 0..steps {
-            let a1 = self.accelerate(&q, &w, load_nm);
-            let w2 = ahead(&w, half, &a1);
-            let a2 = self.accelerate(&ahead(&q, half, &w), &w2, load_nm);
-            let w3 = ahead(&w, half, &a2);
-            let a3 = self.accelerate(&ahead(&q, half, &w2), &w3, load_nm);
-            let w4 = ahead(&w, step_s, &a3);
-            let a4 = self.accelerate(&ahead(&q, step_s, &w3), &w4, load_nm);
-            for i in 0..N {
-                q[i] = q[i] + sixth * ((w[i] + w4[i]) + two * (w2[i] + w3[i]));
-                w[i] = w[i] + sixth * ((a1[i] + a4[i]) + two * (a2[i] + a3[i]));
-            }
+            // A closure that is called four times is not inlined by itself.
+            state = runge_kutta(
+                state,
+                step_s,
+                #[inline(always)]
+                |q, w| self.accelerate(q, w, load_nm),
+            );
         }
-        (*angle_rad, *speed_rad_s) = (q, w);
+        (*angle_rad, *speed_rad_s) = state;
     }
-}
-
-#[inline(always)]
-fn ahead<const N: usize, V: Lane>(x: &[V; N], span: V, slope: &[V; N]) -> [V; N] {
-    from_fn(|i| x[i] + span * slope[i])
 }
 
 /// Solves `mass x = right`; of the symmetric matrix only the lower triangle is read.

@@ -1,6 +1,15 @@
 //! Inverse dynamics by recursive Newton-Euler, in the plane.
 
 use super::chain::Chain;
+use super::link_motion::LinkMotion;
+
+/// Absolute angle, angular velocity and angular acceleration of a link, and the acceleration of its
+/// joint.
+#[derive(Clone, Copy)]
+struct Motion {
+    link: [f64; 3],
+    joint_m_s2: [f64; 2],
+}
 
 impl Chain {
     /// Joint torques, N m, into `out`, that give the chain these accelerations.
@@ -14,64 +23,10 @@ impl Chain {
         acceleration_rad_s2: &[f64],
         out: &mut [f64],
     ) {
-        let base = self.base_m_s2(gravity_turn_rad);
-        self.inverse_from(
-            0,
-            [0.0; 3],
-            base,
-            [angle_rad, speed_rad_s, acceleration_rad_s2],
-            out,
-        );
-    }
-
-    /// Torque at joint `i` into `out[i]`, and the force and moment link `i` asks of its joint.
-    fn inverse_from(
-        &self,
-        i: usize,
-        [angle, speed, acceleration]: [f64; 3],
-        linear: [f64; 2],
-        joints: [&[f64]; 3],
-        out: &mut [f64],
-    ) -> (f64, [f64; 2]) {
-        let Some(link) = self.links.get(i) else {
-            return (0.0, [0.0; 2]);
-        };
-        let angle = angle + joints[0][i];
-        let speed = speed + joints[1][i];
-        let acceleration = acceleration + joints[2][i];
-        let point = |radius: f64, at: f64| {
-            let (sin, cos) = at.sin_cos();
-            let (left, back) = (acceleration * radius, speed * speed * radius);
-            let arm = [radius * sin, -radius * cos];
-            let point_acceleration = [
-                linear[0] + left * cos - back * sin,
-                linear[1] + left * sin + back * cos,
-            ];
-            (arm, point_acceleration)
-        };
-        let cross = |arm: [f64; 2], force: [f64; 2]| arm[0] * force[1] - arm[1] * force[0];
-        let (end_arm, end_acceleration) = point(link.length_m, angle);
-        let (com_arm, com_acceleration) = point(link.com_m, angle + link.com_angle_rad);
-        let (child_moment, child_force) = self.inverse_from(
-            i + 1,
-            [angle, speed, acceleration],
-            end_acceleration,
-            joints,
-            out,
-        );
-        let own_force = [
-            link.mass_kg * com_acceleration[0],
-            link.mass_kg * com_acceleration[1],
-        ];
-        let moment = child_moment
-            + cross(end_arm, child_force)
-            + link.inertia_kg_m2 * acceleration
-            + cross(com_arm, own_force);
-        out[i] = moment + link.armature_kg_m2 * joints[2][i];
-        (
-            moment,
-            [own_force[0] + child_force[0], own_force[1] + child_force[1]],
-        )
+        let joints = [angle_rad, speed_rad_s, acceleration_rad_s2];
+        self.newton_euler(gravity_turn_rad, joints, |i, moment, _| {
+            out[i] = moment + self.links[i].armature_kg_m2 * acceleration_rad_s2[i];
+        });
     }
 
     /// Force each joint's bearing carries, N, into `out`, at these accelerations.
@@ -83,32 +38,57 @@ impl Chain {
         acceleration_rad_s2: &[f64],
         out: &mut [f64],
     ) {
-        let mut linear = self.base_m_s2(gravity_turn_rad);
-        let (mut angle, mut speed, mut acceleration) = (0.0, 0.0, 0.0);
-        let mut sum = [0.0, 0.0];
-        // Forces of the links add up from the tip; keep the running sum from the base and subtract.
-        let mut before = vec![[0.0, 0.0]; self.len()];
-        for (i, link) in self.links.iter().enumerate() {
-            angle += angle_rad[i];
-            speed += speed_rad_s[i];
-            acceleration += acceleration_rad_s2[i];
-            before[i] = sum;
-            let at = |radius: f64, angle: f64, linear: [f64; 2]| {
-                let (sin, cos) = angle.sin_cos();
-                [
-                    linear[0] + radius * (acceleration * cos - speed * speed * sin),
-                    linear[1] + radius * (acceleration * sin + speed * speed * cos),
-                ]
-            };
-            let com = at(link.com_m, angle + link.com_angle_rad, linear);
-            sum = [
-                sum[0] + link.mass_kg * com[0],
-                sum[1] + link.mass_kg * com[1],
-            ];
-            linear = at(link.length_m, angle, linear);
-        }
-        for (force, before) in out.iter_mut().zip(&before) {
-            *force = (sum[0] - before[0]).hypot(sum[1] - before[1]);
-        }
+        let joints = [angle_rad, speed_rad_s, acceleration_rad_s2];
+        self.newton_euler(gravity_turn_rad, joints, |i, _, force| {
+            out[i] = force[0].hypot(force[1]);
+        });
+    }
+
+    /// Calls `each` with every joint's index, moment, N m, and force, N, from the tip to the base.
+    fn newton_euler(
+        &self,
+        gravity_turn_rad: f64,
+        joints: [&[f64]; 3],
+        mut each: impl FnMut(usize, f64, [f64; 2]),
+    ) {
+        let base = Motion {
+            link: [0.0; 3],
+            joint_m_s2: self.base_m_s2(gravity_turn_rad),
+        };
+        self.newton_euler_from(0, base, joints, &mut each);
+    }
+
+    /// Motion outwards, then moment and force that link `i` and all beyond it ask of its joint.
+    fn newton_euler_from(
+        &self,
+        i: usize,
+        before: Motion,
+        joints: [&[f64]; 3],
+        each: &mut impl FnMut(usize, f64, [f64; 2]),
+    ) -> (f64, [f64; 2]) {
+        let Some(link) = self.links.get(i) else {
+            return (0.0, [0.0; 2]);
+        };
+        let own = std::array::from_fn(|k| before.link[k] + joints[k][i]);
+        let [angle, speed, acceleration] = own;
+        let at = LinkMotion::new(link, angle, speed);
+        let linear = before.joint_m_s2;
+        let next = Motion {
+            link: own,
+            joint_m_s2: at.end_m_s2(linear, acceleration),
+        };
+        let (beyond_moment, beyond) = self.newton_euler_from(i + 1, next, joints, each);
+        let [x, y] = at.moment;
+        let force = [
+            beyond[0] + link.mass_kg * linear[0] + acceleration * x - at.speed_squared * y,
+            beyond[1] + link.mass_kg * linear[1] + acceleration * y + at.speed_squared * x,
+        ];
+        let inertia = link.inertia_kg_m2 + link.mass_kg * link.com_m * link.com_m;
+        let moment = beyond_moment
+            + (at.lever[0] * beyond[0] + at.lever[1] * beyond[1])
+            + inertia * acceleration
+            + (x * linear[0] + y * linear[1]);
+        each(i, moment, force);
+        (moment, force)
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers side by side, so that one instruction serves several runs.
 //!
-//! Lane by lane the operations are those of plain numbers in the same order, so the results are the same bit for bit.
+//! Lane by lane the operations are those of plain numbers in the same order, so the results are the
+//! same bit for bit.
 
 use super::sin_cos::sin_cos;
 use std::ops::{Add, Mul, Sub};

@@ -1,13 +1,19 @@
-//! The rigid planar chain: equations of motion in O(n), and dense ones for few links.
+//! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; the tests
+//! hold them to each other.
 
 mod articulated;
 mod chain;
 mod dense;
+mod equations;
 mod inverse;
 mod lanes;
+mod link_motion;
+mod runge_kutta;
 mod sin_cos;
 
 pub use articulated::Workspace;
 pub use chain::{Chain, ChainLink};
 pub use dense::Dense;
+pub use equations::EquationsOfMotion;
 pub use lanes::{Lane, Lanes};
+pub use runge_kutta::{RungeKutta, runge_kutta};

@@ -1,7 +1,12 @@
-//! Sine and cosine together, short enough to be inlined: the larger part of what a short chain's dynamics cost.
+//! Sine and cosine together, short enough to be inlined: the larger part of what a short chain's
+//! dynamics cost.
 //!
-//! Cody and Waite's reduction to an eighth of a turn, then the polynomials of FreeBSD's msun (k_sin.c, k_cos.c).
-//! Within 1e-15 of the truth up to a hundred thousand turns; beyond, the system's own functions.
+//! Cody and Waite's reduction to an eighth of a turn, then the polynomials of FreeBSD's msun
+//! (k_sin.c, k_cos.c). Within 1e-15 of the truth up to a hundred thousand turns; beyond, the
+//! system's own functions.
+//!
+//! Kept beside `wide` 0.7, which is as accurate: with it a step of three links takes 222 ns instead
+//! of 158 ns, in four lanes 432 ns instead of 345 ns, and 30 links by recursion a tenth longer.
 
 use std::array::from_fn;
 
@@ -9,7 +14,8 @@ use std::array::from_fn;
 const FAR: f64 = 6e5;
 /// Adding it rounds to an integer, which the last bits of the sum then hold.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
-/// Pi / 2 in three parts; the first two have 33 bits, so that their products with the quarter are exact.
+/// Pi / 2 in three parts; the first two have 33 bits, so that their products with the quarter are
+/// exact.
 const HALF_PI: [f64; 3] = [
     f64::from_bits(0x3FF9_21FB_5440_0000),
     f64::from_bits(0x3DD0_B461_1A60_0000),
@@ -56,7 +62,7 @@ pub(super) fn sin_cos<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
     let (odd, even) = (polynomial(SIN), polynomial(COS));
     let sin: [f64; L] = from_fn(|i| x[i] + x[i] * z[i] * odd[i]);
     let cos: [f64; L] = from_fn(|i| 1.0 - (0.5 * z[i] - z2[i] * even[i]));
-    // Swapped without a branch: which quarter comes next nobody can foretell.
+    // Swapped without a branch: the next quarter cannot be predicted.
     let quarter = rounded.map(f64::to_bits);
     let swap: [u64; L] =
         from_fn(|i| (sin[i].to_bits() ^ cos[i].to_bits()) & 0_u64.wrapping_sub(quarter[i] & 1));

@@ -1,12 +1,14 @@
 //! Air drag: resistance in proportion to the square of speed.
 
-use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// -c w |w|.
 #[derive(Debug)]
 pub struct AirDrag;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "air_drag",
     title: "air drag",
     site: Site::Joint,
@@ -43,8 +45,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for AirDrag {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

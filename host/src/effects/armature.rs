@@ -1,12 +1,12 @@
 //! Armature: the rotor, seen through the gear, adds inertia without weight.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// J + N^2 J_r at the joint, with gear ratio N and rotor inertia J_r.
 #[derive(Debug)]
 pub struct Armature;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "armature",
     title: "armature inertia",
     site: Site::Body,
@@ -41,8 +41,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Armature {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

@@ -1,12 +1,12 @@
 //! Backlash: play between joint and encoder.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap / 2 behind.
 #[derive(Debug)]
 pub struct Backlash;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "backlash",
     title: "backlash before the encoder",
     site: Site::Sensor,
@@ -46,8 +46,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Backlash {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn sense(

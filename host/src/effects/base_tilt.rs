@@ -1,13 +1,13 @@
 //! Base tilt: the rig does not stand plumb.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands turned by 180 degrees
 /// about the vertical.
 #[derive(Debug)]
 pub struct BaseTilt;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "base_tilt",
     title: "base tilt",
     site: Site::Body,
@@ -42,8 +42,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for BaseTilt {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {

@@ -1,12 +1,12 @@
 //! Load friction of a plain bearing: the weight it carries and the swing press on it.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
 #[derive(Debug)]
 pub struct BearingFriction;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "bearing_friction",
     title: "load friction of a plain bearing",
     site: Site::Friction,
@@ -42,8 +42,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for BearingFriction {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {

@@ -1,12 +1,14 @@
 //! Cable spring: a cable across the joint pulls it toward a rest angle.
 
-use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// -k (q - q_0).
 #[derive(Debug)]
 pub struct CableSpring;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "cable_spring",
     title: "cable spring",
     site: Site::Joint,
@@ -56,8 +58,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for CableSpring {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

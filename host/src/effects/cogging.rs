@@ -1,6 +1,8 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
-use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
+};
 use crate::dynamics::Lane;
 use std::f64::consts::PI;
 
@@ -8,7 +10,7 @@ use std::f64::consts::PI;
 #[derive(Debug)]
 pub struct Cogging;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     title: "cogging and gear ripple",
     site: Site::Joint,
@@ -69,8 +71,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Cogging {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -1,12 +1,12 @@
 //! Centre-of-mass angle: the centre of mass lies beside the line between the joints.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// m g l_c sin(q + a), for a link that hangs at q = 0.
 #[derive(Debug)]
 pub struct ComAngle;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "com_angle",
     title: "angle of the centre of mass",
     site: Site::Body,
@@ -55,8 +55,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for ComAngle {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

@@ -1,12 +1,12 @@
 //! Coulomb friction: the same resistance at every speed, and a hold at rest.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
 #[derive(Debug)]
 pub struct Coulomb;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "coulomb",
     title: "Coulomb friction",
     site: Site::Friction,
@@ -47,8 +47,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Coulomb {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn friction(&self, values: &[f64], _at: &Slide) -> f64 {

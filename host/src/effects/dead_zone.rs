@@ -1,12 +1,12 @@
 //! Dead zone: the drive swallows small commands.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
-/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed, never beyond full range.
+/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full range.
 #[derive(Debug)]
 pub struct DeadZone;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "dead_zone",
     title: "dead zone of the drive",
     site: Site::Command,
@@ -57,8 +57,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for DeadZone {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn difference(&self) -> f64 {
@@ -70,7 +70,9 @@ impl Effect for DeadZone {
         if duty.abs() <= *width {
             0.0
         } else {
-            (duty.abs() + punch).clamp(0.0, 1.0).copysign(duty)
+            (duty.abs() + punch)
+                .clamp(0.0, duty.abs().max(1.0))
+                .copysign(duty)
         }
     }
 }

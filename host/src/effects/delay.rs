@@ -1,12 +1,12 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// u(t - T).
 #[derive(Debug)]
 pub struct Delay;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "delay",
     title: "transport delay",
     site: Site::Timing,
@@ -39,8 +39,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Delay {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn delay_s(&self, values: &[f64]) -> f64 {

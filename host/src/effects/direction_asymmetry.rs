@@ -1,12 +1,12 @@
 //! Direction asymmetry: one direction resists more than the other.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
 #[derive(Debug)]
 pub struct DirectionAsymmetry;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "direction_asymmetry",
     title: "direction asymmetry of friction",
     site: Site::Friction,
@@ -42,8 +42,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for DirectionAsymmetry {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {

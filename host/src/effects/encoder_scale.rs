@@ -1,12 +1,12 @@
 //! Encoder scale: the reading stretches the angle.
 
-use super::{AtRest, Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// s q.
 #[derive(Debug)]
 pub struct EncoderScale;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "encoder_scale",
     title: "encoder scale",
     site: Site::Encoder,
@@ -49,8 +49,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for EncoderScale {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -1,12 +1,12 @@
 //! Encoder zero: the reading is off by a constant.
 
-use super::{AtRest, Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// q + o.
 #[derive(Debug)]
 pub struct EncoderZero;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "encoder_zero",
     title: "encoder zero",
     site: Site::Encoder,
@@ -48,8 +48,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for EncoderZero {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -1,12 +1,12 @@
 //! Load friction: what the gear transmits presses its teeth together.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
 pub struct LoadFriction;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "load_friction",
     title: "load-dependent friction of the gear",
     site: Site::Friction,
@@ -40,8 +40,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for LoadFriction {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {

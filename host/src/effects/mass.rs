@@ -1,6 +1,6 @@
 //! Mass: the link is heavier or lighter than in the model.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Rig, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
@@ -11,7 +11,7 @@ pub struct Mass;
 /// Smallest share of the mass that is left; a chain without inertia cannot be solved.
 const LEAST_SHARE: f64 = 0.01;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "mass",
     title: "mass or payload",
     site: Site::Body,
@@ -55,8 +55,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Mass {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

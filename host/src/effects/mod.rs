@@ -1,7 +1,8 @@
 //! The library of physical effects: each states its law once, and describes itself for people.
 //!
-//! Adding one is a file with a `card()` and the hook of its site, and a line in [`EFFECTS`]. The simulator,
-//! the glossary, the candidates, the fit's bounds and the law tests all iterate that list.
+//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`]. The
+//! simulator, the effect pages, the candidates, the fit's bounds and the law tests all iterate that
+//! list.
 
 mod air_drag;
 mod armature;
@@ -9,8 +10,6 @@ mod backlash;
 mod base_tilt;
 mod bearing_friction;
 mod cable_spring;
-mod canvas;
-mod card;
 mod cogging;
 mod com_angle;
 mod coulomb;
@@ -19,11 +18,12 @@ mod delay;
 mod direction_asymmetry;
 mod encoder_scale;
 mod encoder_zero;
+mod info;
 mod load_friction;
 mod mass;
+mod placebo;
 mod probe;
 mod sensor_lag;
-mod sham;
 mod speed_limit;
 mod stribeck;
 mod supply_sag;
@@ -32,18 +32,16 @@ mod torque_saturation;
 mod torque_scale;
 mod viscous;
 
-pub mod glossary;
 pub mod signature;
 
 #[cfg(test)]
 mod tests;
 
-pub use card::{Card, Confusion, Needs, Parameter, Scope, Site};
-pub use probe::{Along, Probe};
-pub use sham::SHAM;
+pub use info::{Confusion, EffectInfo, Needs, Parameter, Scope, Site};
+pub use placebo::PLACEBO;
+pub use probe::{Probe, ProbeVariable};
 
 use crate::dynamics::Chain;
-use crate::model::Model;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
@@ -76,7 +74,7 @@ pub const EFFECTS: &[&dyn Effect] = &[
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
 pub const CONTROLS: &[&dyn Effect] = &[
-    &sham::Sham,
+    &placebo::Placebo,
     &probe::TIMING_PROBE,
     &probe::DRIVE_PROBE,
     &probe::JOINT_PROBE,
@@ -94,19 +92,19 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
         .iter()
         .chain(CONTROLS)
         .copied()
-        .find(|effect| effect.card().id == id)
+        .find(|effect| effect.info().id == id)
 }
 
 /// A departure from the rigid chain with ideal drives and sensors.
 ///
-/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in the
-/// order of the card's parameters.
+/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in
+/// the order of its parameters.
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
-    fn card(&self) -> &'static Card;
+    fn info(&self) -> &'static EffectInfo;
 
-    /// Relative step of a finite difference in its values: large where the law jumps, so that a difference sees
-    /// the jumps pass.
+    /// Relative step of a finite difference in its values: large where the law jumps, so that a
+    /// difference sees the jumps pass.
     fn difference(&self) -> f64 {
         SMOOTH_DIFFERENCE
     }
@@ -134,8 +132,8 @@ pub trait Effect: Sync + fmt::Debug {
         0.0
     }
 
-    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it is the
-    /// breakaway torque: a joint at rest is held until pushed harder than that.
+    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it
+    /// is the breakaway torque: a joint at rest is held until pushed harder than that.
     fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
         0.0
     }
@@ -145,21 +143,21 @@ pub trait Effect: Sync + fmt::Debug {
         angle_rad
     }
 
-    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long changed by
-    /// `speed_rad_s`; `None` where the past decides.
+    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long
+    /// changed by `speed_rad_s`; `None` where the past decides.
     fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
         None
     }
 
-    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has none. Bodies and
-    /// delays need none: they are taken as they are.
+    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has
+    /// none. Bodies and delays need none: they are taken as they are.
     fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
         None
     }
 
-    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to `angle_rad`.
-    /// `memory` is the effect's own, [encoded angle, reading] of the call before; `None` before the first call
-    /// of a motion, which reads the angle itself.
+    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to
+    /// `angle_rad`. `memory` is the effect's own, [encoded angle, reading] of the call before;
+    /// `None` before the first call of a motion, which reads the angle itself.
     fn sense(
         &self,
         _values: &[f64],
@@ -173,7 +171,7 @@ pub trait Effect: Sync + fmt::Debug {
 
 impl PartialEq for dyn Effect {
     fn eq(&self, other: &dyn Effect) -> bool {
-        self.card().id == other.card().id
+        self.info().id == other.info().id
     }
 }
 
@@ -190,8 +188,8 @@ pub struct AtRest {
     pub full_torque_nm: f64,
 }
 
-/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as its site has
-/// it), and what it adds of its own.
+/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as
+/// its site has it), and what it adds of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slope {
     /// Per unit of what passes through.
@@ -225,24 +223,6 @@ pub struct Rig {
     pub turned: bool,
 }
 
-impl Rig {
-    /// The rig of a model, its body effects applied; `turned` as in [`Rig::turned`].
-    pub fn of(model: &Model, turned: bool) -> Rig {
-        let mut rig = Rig {
-            chain: Chain::of(model),
-            gravity_turn_rad: 0.0,
-            turned,
-        };
-        for instance in &model.effects {
-            if instance.effect.card().site == Site::Body {
-                let joint = instance.joint.unwrap_or(0);
-                instance.effect.body(&instance.values, joint, &mut rig);
-            }
-        }
-        rig
-    }
-}
-
 /// The motor at an instant.
 #[derive(Debug, Clone, Copy)]
 pub struct DriveState {
@@ -265,7 +245,7 @@ pub struct JointState {
     pub speed_rad_s: f64,
     /// Torque of the drive, N m.
     pub drive_nm: f64,
-    /// Measured speed of another moment, rad/s: what a sham acts on.
+    /// Measured speed of another moment, rad/s: what a placebo acts on.
     pub shuffled_rad_s: f64,
 }
 
@@ -288,7 +268,8 @@ pub struct Slide {
     pub speed_rad_s: f64,
     /// +1 or -1: the direction of motion, or of the push at rest.
     pub direction: f64,
-    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear transmits.
+    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear
+    /// transmits.
     pub gear_load_nm: f64,
     /// Magnitude of the force in the bearing, N.
     pub bearing_load_n: f64,

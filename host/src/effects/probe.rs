@@ -3,17 +3,17 @@
 //! What a sum of them gains on held-out motions is what a right term, still unknown, could gain: the measure of
 //! how much is left to explain.
 
-use super::{Card, DriveState, Effect, JointState, Needs, Parameter, Rig, Scope, Site};
+use super::{DriveState, Effect, EffectInfo, JointState, Needs, Parameter, Rig, Scope, Site};
 
 /// Which variable a probe bumps on; stored as its index in a probe's second value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Along {
+pub enum ProbeVariable {
     /// Torque, a bump in speed.
     Speed,
     /// Torque against the motion, a bump in angle.
-    SlideAtAngle,
+    FrictionInAngle,
     /// Torque against the motion, growing with the drive's torque.
-    SlideUnderDrive,
+    FrictionUnderLoad,
     /// Torque, a bump in angle.
     Angle,
     /// Torque, sin(N q); the centre is N.
@@ -27,7 +27,7 @@ pub enum Along {
     /// Drive torque falling with speed.
     BackEmf,
     /// The input late by the centre, s.
-    Late,
+    Delay,
     /// More inertia.
     Inertia,
     /// More mass.
@@ -39,64 +39,69 @@ pub enum Along {
     /// Reading, in proportion to speed.
     ReadingLag,
     /// Reading, by the sign of the speed.
-    ReadingPlay,
+    ReadingBacklash,
 }
 
-impl Along {
+impl ProbeVariable {
     /// Every one, in the order of its index.
-    pub const ALL: [Along; 16] = [
-        Along::Speed,
-        Along::SlideAtAngle,
-        Along::SlideUnderDrive,
-        Along::Angle,
-        Along::SineOfAngle,
-        Along::CosineOfAngle,
-        Along::DriveTorque,
-        Along::Supply,
-        Along::BackEmf,
-        Along::Late,
-        Along::Inertia,
-        Along::Mass,
-        Along::Tilt,
-        Along::Reading,
-        Along::ReadingLag,
-        Along::ReadingPlay,
+    pub const ALL: [ProbeVariable; 16] = [
+        ProbeVariable::Speed,
+        ProbeVariable::FrictionInAngle,
+        ProbeVariable::FrictionUnderLoad,
+        ProbeVariable::Angle,
+        ProbeVariable::SineOfAngle,
+        ProbeVariable::CosineOfAngle,
+        ProbeVariable::DriveTorque,
+        ProbeVariable::Supply,
+        ProbeVariable::BackEmf,
+        ProbeVariable::Delay,
+        ProbeVariable::Inertia,
+        ProbeVariable::Mass,
+        ProbeVariable::Tilt,
+        ProbeVariable::Reading,
+        ProbeVariable::ReadingLag,
+        ProbeVariable::ReadingBacklash,
     ];
 
-    /// Index in [`Along::ALL`], as a probe's second value.
+    /// Index in [`ProbeVariable::ALL`], as a probe's second value.
     pub fn index(self) -> f64 {
-        Along::ALL.iter().position(|a| *a == self).unwrap_or(0) as f64
+        ProbeVariable::ALL
+            .iter()
+            .position(|a| *a == self)
+            .unwrap_or(0) as f64
     }
 
     /// What the term depends on, in words.
     pub fn words(self) -> &'static str {
         match self {
-            Along::Speed => "a torque that depends on speed",
-            Along::SlideAtAngle => "friction that depends on the angle",
-            Along::SlideUnderDrive => "friction that depends on the load",
-            Along::Angle => "a torque that depends on the angle",
-            Along::SineOfAngle | Along::CosineOfAngle => "a torque that ripples with the angle",
-            Along::DriveTorque => "a drive torque that is not what it was told",
-            Along::Supply => "a drive torque that depends on the supply",
-            Along::BackEmf => "a drive torque that depends on the speed",
-            Along::Late => "an input that acts at another time",
-            Along::Inertia => "an inertia that is off",
-            Along::Mass => "a mass that is off",
-            Along::Tilt => "gravity from another direction",
-            Along::Reading => "a reading that depends on the angle",
-            Along::ReadingLag => "a reading that depends on the speed",
-            Along::ReadingPlay => "a reading that depends on the direction of motion",
+            ProbeVariable::Speed => "a torque that depends on speed",
+            ProbeVariable::FrictionInAngle => "friction that depends on the angle",
+            ProbeVariable::FrictionUnderLoad => "friction that depends on the load",
+            ProbeVariable::Angle => "a torque that depends on the angle",
+            ProbeVariable::SineOfAngle | ProbeVariable::CosineOfAngle => {
+                "a torque that ripples with the angle"
+            }
+            ProbeVariable::DriveTorque => "a drive torque that is not what it was told",
+            ProbeVariable::Supply => "a drive torque that depends on the supply",
+            ProbeVariable::BackEmf => "a drive torque that depends on the speed",
+            ProbeVariable::Delay => "an input that acts at another time",
+            ProbeVariable::Inertia => "an inertia that is off",
+            ProbeVariable::Mass => "a mass that is off",
+            ProbeVariable::Tilt => "gravity from another direction",
+            ProbeVariable::Reading => "a reading that depends on the angle",
+            ProbeVariable::ReadingLag => "a reading that depends on the speed",
+            ProbeVariable::ReadingBacklash => "a reading that depends on the direction of motion",
         }
     }
 
     /// The probe whose hook serves this variable.
     pub fn probe(self) -> &'static dyn Effect {
         match self {
-            Along::Supply | Along::BackEmf => &DRIVE_PROBE,
-            Along::Late => &TIMING_PROBE,
-            Along::Inertia | Along::Mass | Along::Tilt => &BODY_PROBE,
-            Along::Reading => &ENCODER_PROBE,
-            Along::ReadingLag | Along::ReadingPlay => &SENSOR_PROBE,
+            ProbeVariable::Supply | ProbeVariable::BackEmf => &DRIVE_PROBE,
+            ProbeVariable::Delay => &TIMING_PROBE,
+            ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => &BODY_PROBE,
+            ProbeVariable::Reading => &ENCODER_PROBE,
+            ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => &SENSOR_PROBE,
             _ => &JOINT_PROBE,
         }
     }
@@ -105,25 +110,25 @@ impl Along {
 /// A free-form term at one site; values are amplitude, variable, centre, width.
 #[derive(Debug)]
 pub struct Probe {
-    card: &'static Card,
+    info: &'static EffectInfo,
 }
 
 macro_rules! probe {
-    ($name:ident, $card:ident, $id:literal, $site:expr) => {
-        static $card: Card = card($id, $site);
-        pub(super) static $name: Probe = Probe { card: &$card };
+    ($name:ident, $info:ident, $id:literal, $site:expr) => {
+        static $info: EffectInfo = info($id, $site);
+        pub(super) static $name: Probe = Probe { info: &$info };
     };
 }
 
-probe!(TIMING_PROBE, TIMING_CARD, "timing_probe", Site::Timing);
-probe!(DRIVE_PROBE, DRIVE_CARD, "drive_probe", Site::Drive);
-probe!(JOINT_PROBE, JOINT_CARD, "joint_probe", Site::Joint);
-probe!(BODY_PROBE, BODY_CARD, "body_probe", Site::Body);
-probe!(ENCODER_PROBE, ENCODER_CARD, "encoder_probe", Site::Encoder);
-probe!(SENSOR_PROBE, SENSOR_CARD, "sensor_probe", Site::Sensor);
+probe!(TIMING_PROBE, TIMING_INFO, "timing_probe", Site::Timing);
+probe!(DRIVE_PROBE, DRIVE_INFO, "drive_probe", Site::Drive);
+probe!(JOINT_PROBE, JOINT_INFO, "joint_probe", Site::Joint);
+probe!(BODY_PROBE, BODY_INFO, "body_probe", Site::Body);
+probe!(ENCODER_PROBE, ENCODER_INFO, "encoder_probe", Site::Encoder);
+probe!(SENSOR_PROBE, SENSOR_INFO, "sensor_probe", Site::Sensor);
 
-const fn card(id: &'static str, site: Site) -> Card {
-    Card {
+const fn info(id: &'static str, site: Site) -> EffectInfo {
+    EffectInfo {
         id,
         title: "free-form term",
         site,
@@ -157,8 +162,8 @@ const fn value(key: &'static str, typical: f64) -> Parameter {
     }
 }
 
-fn along(values: &[f64]) -> Along {
-    Along::ALL[values[1] as usize]
+fn variable(values: &[f64]) -> ProbeVariable {
+    ProbeVariable::ALL[values[1] as usize]
 }
 
 /// A triangle of unit height, one at the centre and zero a width away.
@@ -167,8 +172,8 @@ fn bump(x: f64, values: &[f64]) -> f64 {
 }
 
 impl Effect for Probe {
-    fn card(&self) -> &'static Card {
-        self.card
+    fn info(&self) -> &'static EffectInfo {
+        self.info
     }
 
     fn delay_s(&self, values: &[f64]) -> f64 {
@@ -178,37 +183,39 @@ impl Effect for Probe {
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm
             + values[0]
-                * match along(values) {
-                    Along::Supply => torque_nm * (at.supply_ratio - 1.0),
+                * match variable(values) {
+                    ProbeVariable::Supply => torque_nm * (at.supply_ratio - 1.0),
                     _ => -at.full_torque_nm * at.speed_rad_s,
                 }
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         values[0]
-            * match along(values) {
-                Along::SlideAtAngle => -at.speed_rad_s.signum() * bump(at.angle_rad, values),
-                Along::SlideUnderDrive => -at.speed_rad_s.signum() * at.drive_nm.abs(),
-                Along::Angle => bump(at.angle_rad, values),
-                Along::SineOfAngle => (values[2] * at.angle_rad).sin(),
-                Along::CosineOfAngle => (values[2] * at.angle_rad).cos(),
-                Along::DriveTorque => bump(at.drive_nm, values),
+            * match variable(values) {
+                ProbeVariable::FrictionInAngle => {
+                    -at.speed_rad_s.signum() * bump(at.angle_rad, values)
+                }
+                ProbeVariable::FrictionUnderLoad => -at.speed_rad_s.signum() * at.drive_nm.abs(),
+                ProbeVariable::Angle => bump(at.angle_rad, values),
+                ProbeVariable::SineOfAngle => (values[2] * at.angle_rad).sin(),
+                ProbeVariable::CosineOfAngle => (values[2] * at.angle_rad).cos(),
+                ProbeVariable::DriveTorque => bump(at.drive_nm, values),
                 _ => bump(at.speed_rad_s, values),
             }
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         let link = &mut rig.chain.links[joint];
-        match along(values) {
-            Along::Inertia => link.armature_kg_m2 += values[0],
-            Along::Mass => link.mass_kg += values[0],
+        match variable(values) {
+            ProbeVariable::Inertia => link.armature_kg_m2 += values[0],
+            ProbeVariable::Mass => link.mass_kg += values[0],
             _ => rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] },
         }
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
-        match along(values) {
-            Along::Reading => angle_rad + values[0] * bump(angle_rad, values),
+        match variable(values) {
+            ProbeVariable::Reading => angle_rad + values[0] * bump(angle_rad, values),
             _ => angle_rad,
         }
     }
@@ -228,9 +235,9 @@ impl Effect for Probe {
         }
         angle_rad
             + values[0]
-                * match along(values) {
-                    Along::ReadingLag => moved / step_s,
-                    Along::ReadingPlay => moved.signum(),
+                * match variable(values) {
+                    ProbeVariable::ReadingLag => moved / step_s,
+                    ProbeVariable::ReadingBacklash => moved.signum(),
                     _ => 0.0,
                 }
     }

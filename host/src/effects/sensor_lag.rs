@@ -1,13 +1,13 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a straight line over the
 /// step.
 #[derive(Debug)]
 pub struct SensorLag;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "sensor_lag",
     title: "lag of the sensor",
     site: Site::Sensor,
@@ -45,8 +45,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for SensorLag {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {

@@ -2,6 +2,10 @@
 
 use super::{DriveState, Effect, JointState, Needs, Parameter, Rig, Site, Slide};
 use crate::dynamics::{Chain, ChainLink};
+use std::ops::Range;
+
+/// Points of a curve: x and y in the units of the labels.
+type Points = Vec<(f64, f64)>;
 
 /// One curve with the effect and one without it.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,10 +15,10 @@ pub struct Signature {
     /// What runs upward, with its unit.
     pub y_label: &'static str,
     /// The curve without the effect.
-    pub without: Vec<(f64, f64)>,
+    pub without: Points,
     /// The curve with it.
-    pub with: Vec<(f64, f64)>,
-    /// Values it is drawn for, in the order of the card's parameters.
+    pub with: Points,
+    /// Values it is drawn for, in the order of the effect's parameters.
     pub values: Vec<f64>,
 }
 
@@ -25,64 +29,47 @@ const POINTS: usize = 241;
 /// Share of the picture's height by which the curves must part to be seen.
 const VISIBLE_SHARE: f64 = 0.065;
 
-/// The signature of an effect at the far end of its typical range; where that is too small to be seen, at up
-/// to nine times as much.
+/// The signature of an effect at the far end of its typical range; where that is too small to be
+/// seen, at up to nine times as much.
 pub fn signature(effect: &dyn Effect) -> Signature {
-    [1.0, 3.0, 9.0]
-        .into_iter()
-        .map(|stretch| drawn_for(effect, shown_values(effect, stretch)))
-        .reduce(|seen, next| {
-            if parted(&seen) < VISIBLE_SHARE {
-                next
-            } else {
-                seen
-            }
-        })
-        .expect("there are three of them")
+    let drawn = |stretch| drawn_for(effect, shown_values(effect, stretch));
+    let mut seen = drawn(1.0);
+    for stretch in [3.0, 9.0] {
+        if parted(&seen) < VISIBLE_SHARE {
+            seen = drawn(stretch);
+        }
+    }
+    seen
 }
 
 /// Values at which the effect vanishes; the default for a shape parameter.
 pub fn off_values(effect: &dyn Effect) -> Vec<f64> {
     let off = |parameter: &Parameter| parameter.off.unwrap_or(parameter.starts[0]);
-    effect.card().parameters.iter().map(off).collect()
+    effect.info().parameters.iter().map(off).collect()
 }
 
+/// For each parameter the end of its typical range farther from off, `stretch` times as far.
 fn shown_values(effect: &dyn Effect, stretch: f64) -> Vec<f64> {
-    effect
-        .card()
-        .parameters
-        .iter()
-        .map(|parameter| shown(parameter, stretch))
-        .collect()
-}
-
-/// The end of the typical range farther from off, `stretch` times as far.
-fn shown(parameter: &Parameter, stretch: f64) -> f64 {
-    let (low, high) = parameter.typical;
-    match parameter.off {
-        None => parameter.starts[0],
-        Some(off) if off.is_infinite() => low,
-        Some(off) => {
-            let far = if (low - off).abs() > (high - off).abs() {
-                low
-            } else {
-                high
-            };
-            (off + stretch * (far - off)).clamp(parameter.bounds.0, parameter.bounds.1)
+    let shown = |parameter: &Parameter| {
+        let (low, high) = parameter.typical;
+        match parameter.off {
+            None => parameter.starts[0],
+            Some(off) if off.is_infinite() => low,
+            Some(off) => {
+                let low_is_far = (low - off).abs() > (high - off).abs();
+                let far = if low_is_far { low } else { high };
+                (off + stretch * (far - off)).clamp(parameter.bounds.0, parameter.bounds.1)
+            }
         }
-    }
+    };
+    effect.info().parameters.iter().map(shown).collect()
 }
 
 /// Largest distance of the two curves over the height of the picture.
 fn parted(signature: &Signature) -> f64 {
-    let heights = || {
-        signature
-            .without
-            .iter()
-            .chain(&signature.with)
-            .map(|point| point.1)
-    };
-    let height = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+    let points = || signature.without.iter().chain(&signature.with);
+    let highest = points().map(|point| point.1).fold(f64::MIN, f64::max);
+    let height = highest - points().map(|point| point.1).fold(f64::MAX, f64::min);
     let pairs = signature.without.iter().zip(&signature.with);
     let distance = pairs.map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max);
     if height > 0.0 { distance / height } else { 0.0 }
@@ -90,103 +77,91 @@ fn parted(signature: &Signature) -> f64 {
 
 fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
     let off = off_values(effect);
-    let axes = axes(effect, &values, &off);
+    let (x_label, y_label, range, y) = law(effect, &values, &off);
+    let points = |values: &[f64]| match effect.info().site {
+        Site::Encoder | Site::Sensor => reading(effect, values),
+        _ => over(&range, |x| y(effect, values, x)),
+    };
     Signature {
-        x_label: axes.x_label,
-        y_label: axes.y_label,
-        without: (axes.curve)(effect, &off),
-        with: (axes.curve)(effect, &values),
+        x_label,
+        y_label,
+        without: points(&off),
+        with: points(&values),
         values,
     }
 }
 
-/// Points of an effect with these values.
-type Curve = fn(&dyn Effect, &[f64]) -> Vec<(f64, f64)>;
-
-/// What to plot over what.
-struct Axes {
-    x_label: &'static str,
-    y_label: &'static str,
-    curve: Curve,
+/// `y` at evenly spaced places.
+fn over(range: &Range<f64>, y: impl Fn(f64) -> f64) -> Points {
+    let (wide, last) = (range.end - range.start, (POINTS - 1) as f64);
+    let places = (0..POINTS).map(|index| range.start + wide * index as f64 / last);
+    places.map(|x| (x, y(x))).collect()
 }
 
-impl Axes {
-    fn new(x_label: &'static str, y_label: &'static str, curve: Curve) -> Self {
-        Self {
-            x_label,
-            y_label,
-            curve,
+/// What to plot over what: labels of x and y, range of x, and y of the effect with its values at
+/// an x.
+type Law = (&'static str, &'static str, Range<f64>, Height);
+type Height = fn(&dyn Effect, &[f64], f64) -> f64;
+
+/// Each site has its plot; where a law may depend on more than one quantity, the law itself is
+/// asked.
+fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Law {
+    let full = 0.0..FULL_TORQUE_NM;
+    let over_delay: Height = |e, v, time_s| f64::from(time_s >= e.delay_s(v));
+    let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);
+    let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
+    let over_duty: Height = |e, v, duty| drive(e, v, duty, 0.0, 1.0);
+    let by_gear: Height = |e, v, load_nm| friction(e, v, 1.0, load_nm, 0.0);
+    let by_bearing: Height = |e, v, load_n| friction(e, v, 1.0, 0.0, load_n);
+    let by_speed: Height = |e, v, speed| friction(e, v, speed, 0.0, 0.0);
+    let at_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
+    let at_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
+    let command: Height = |e, v, duty| e.command(v, duty);
+    let encode: Height = |e, v, angle_rad| e.encode(v, angle_rad);
+    let varies = |y: Height, a: f64, b: f64| y(effect, values, a) != y(effect, values, b);
+    let weightless = gravity_nm(effect, values, 1.0) == gravity_nm(effect, off, 1.0);
+    let (at_full, joint) = ("torque at full duty, N m", "torque on the joint, N m");
+    match (effect.info().site, effect.info().needs) {
+        (Site::Timing, _) => ("time, s", "input that acts, 1", -0.1..0.3, over_delay),
+        (Site::Command, _) => ("commanded duty, 1", "applied duty, 1", -0.5..0.5, command),
+        (Site::Drive, Needs::Supply) => ("supply over nominal, 1", at_full, 0.7..1.3, over_supply),
+        (Site::Drive, _) if varies(over_speed, 0.0, 1.0) => {
+            ("speed, rad/s", at_full, 0.0..4.0, over_speed)
         }
-    }
-}
-
-/// Each site has its plot; where a law may depend on more than one quantity, the law itself is asked.
-fn axes(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Axes {
-    let card = effect.card();
-    match (card.site, card.needs) {
-        (Site::Timing, _) => Axes::new("time, s", "input that acts, 1", step),
-        (Site::Command, _) => Axes::new("commanded duty, 1", "applied duty, 1", command),
-        (Site::Drive, Needs::Supply) => Axes::new(
-            "supply over nominal, 1",
-            "torque at full duty, N m",
-            torque_over_supply,
-        ),
-        (Site::Drive, _) if depends_on_speed(effect, values) => Axes::new(
-            "speed, rad/s",
-            "torque at full duty, N m",
-            torque_over_speed,
-        ),
-        (Site::Drive, _) => Axes::new("duty, 1", "torque at rest, N m", torque_over_duty),
-        (Site::Friction, Needs::GearLoad) => Axes::new(
+        (Site::Drive, _) => ("duty, 1", "torque at rest, N m", -1.0..1.0, over_duty),
+        (Site::Friction, Needs::GearLoad) => (
             "torque through the gear, N m",
             "friction, N m",
-            friction_over_gear_load,
+            full,
+            by_gear,
         ),
-        (Site::Friction, Needs::BearingLoad) => Axes::new(
+        (Site::Friction, Needs::BearingLoad) => (
             "force in the bearing, N",
             "friction, N m",
-            friction_over_bearing_load,
+            0.0..30.0,
+            by_bearing,
         ),
-        (Site::Friction, _) => {
-            Axes::new("speed, rad/s", "resisting torque, N m", friction_over_speed)
+        (Site::Friction, _) => ("speed, rad/s", "resisting torque, N m", -2.0..2.0, by_speed),
+        (Site::Joint, _) if varies(at_angle, 0.1, 0.2) => {
+            ("angle, rad", joint, -1.6..1.6, at_angle)
         }
-        (Site::Joint, _) if depends_on_angle(effect, values) => {
-            Axes::new("angle, rad", "torque on the joint, N m", joint_over_angle)
-        }
-        (Site::Joint, _) => Axes::new("speed, rad/s", "torque on the joint, N m", joint_over_speed),
-        (Site::Body, _) if gravity(effect, values) == gravity(effect, off) => {
-            Axes::new("acceleration, rad/s^2", "torque it takes, N m", inertia)
-        }
-        (Site::Body, _) => Axes::new("angle from hanging, rad", "torque of gravity, N m", gravity),
+        (Site::Joint, _) => ("speed, rad/s", joint, -6.0..6.0, at_speed),
+        (Site::Body, _) if weightless => (
+            "acceleration, rad/s^2",
+            "torque it takes, N m",
+            -50.0..50.0,
+            inertia_nm,
+        ),
+        (Site::Body, _) => (
+            "angle from hanging, rad",
+            "torque of gravity, N m",
+            -1.6..1.6,
+            gravity_nm,
+        ),
         (Site::Encoder | Site::Sensor, _) => {
-            Axes::new("angle, to and fro, rad", "reading, rad", reading)
+            ("angle, to and fro, rad", "reading, rad", -0.2..0.2, encode)
         }
     }
-}
-
-fn depends_on_speed(effect: &dyn Effect, values: &[f64]) -> bool {
-    drive(effect, values, 1.0, 0.0, 1.0) != drive(effect, values, 1.0, 1.0, 1.0)
-}
-
-fn depends_on_angle(effect: &dyn Effect, values: &[f64]) -> bool {
-    let at = |angle_rad| effect.torque(values, &JointState::undriven(angle_rad, 0.0));
-    at(0.1) != at(0.2)
-}
-
-/// `y` at evenly spaced places.
-fn over(low: f64, high: f64, y: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-    let last = (POINTS - 1) as f64;
-    let place = |index| low + (high - low) * index as f64 / last;
-    (0..POINTS).map(place).map(|x| (x, y(x))).collect()
-}
-
-fn step(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    let delay_s = effect.delay_s(values);
-    over(-0.1, 0.3, |time_s| f64::from(time_s >= delay_s))
-}
-
-fn command(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(-0.5, 0.5, |duty| effect.command(values, duty))
 }
 
 fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64) -> f64 {
@@ -199,66 +174,16 @@ fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64
     effect.drive(values, FULL_TORQUE_NM * duty, &at)
 }
 
-fn torque_over_duty(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(-1.0, 1.0, |duty| drive(effect, values, duty, 0.0, 1.0))
-}
-
-fn torque_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(0.0, 4.0, |speed| drive(effect, values, 1.0, speed, 1.0))
-}
-
-fn torque_over_supply(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(0.7, 1.3, |supply| drive(effect, values, 1.0, 0.0, supply))
-}
-
 /// The hook's answer with the sign of the speed, so that what resists forwards is drawn upward.
-fn friction_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(-2.0, 2.0, |speed| {
-        let direction = if speed < 0.0 { -1.0 } else { 1.0 };
-        let slide = Slide {
-            speed_rad_s: speed.abs(),
-            direction,
-            gear_load_nm: 0.0,
-            bearing_load_n: 0.0,
-        };
-        direction * effect.friction(values, &slide)
-    })
-}
-
-fn friction_over_gear_load(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(0.0, FULL_TORQUE_NM, |gear_load_nm| {
-        let slide = Slide {
-            speed_rad_s: 1.0,
-            direction: 1.0,
-            gear_load_nm,
-            bearing_load_n: 0.0,
-        };
-        effect.friction(values, &slide)
-    })
-}
-
-fn friction_over_bearing_load(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(0.0, 30.0, |bearing_load_n| {
-        let slide = Slide {
-            speed_rad_s: 1.0,
-            direction: 1.0,
-            gear_load_nm: 0.0,
-            bearing_load_n,
-        };
-        effect.friction(values, &slide)
-    })
-}
-
-fn joint_over_angle(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(-1.6, 1.6, |angle_rad| {
-        effect.torque(values, &JointState::undriven(angle_rad, 0.0))
-    })
-}
-
-fn joint_over_speed(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    over(-6.0, 6.0, |speed_rad_s| {
-        effect.torque(values, &JointState::undriven(0.0, speed_rad_s))
-    })
+fn friction(effect: &dyn Effect, values: &[f64], speed: f64, gear_nm: f64, bearing_n: f64) -> f64 {
+    let direction = if speed < 0.0 { -1.0 } else { 1.0 };
+    let slide = Slide {
+        speed_rad_s: speed.abs(),
+        direction,
+        gear_load_nm: gear_nm,
+        bearing_load_n: bearing_n,
+    };
+    direction * effect.friction(values, &slide)
 }
 
 /// A bench arm, 0.3 kg at 0.12 m, as the effect changes it.
@@ -284,39 +209,36 @@ fn arm(effect: &dyn Effect, values: &[f64]) -> Rig {
     rig
 }
 
-fn gravity(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
+fn gravity_nm(effect: &dyn Effect, values: &[f64], angle_rad: f64) -> f64 {
     let rig = arm(effect, values);
     let link = &rig.chain.links[0];
     let peak_nm = link.mass_kg * rig.chain.gravity_m_s2 * link.com_m;
-    let turn_rad = link.com_angle_rad - rig.gravity_turn_rad;
-    over(-1.6, 1.6, |angle_rad| {
-        -peak_nm * (angle_rad + turn_rad).sin()
-    })
+    -peak_nm * (angle_rad + link.com_angle_rad - rig.gravity_turn_rad).sin()
 }
 
-fn inertia(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
-    let rig = arm(effect, values);
-    let link = &rig.chain.links[0];
+fn inertia_nm(effect: &dyn Effect, values: &[f64], acceleration_rad_s2: f64) -> f64 {
+    let link = &arm(effect, values).chain.links[0];
     let about_joint = link.mass_kg * link.com_m.powi(2) + link.inertia_kg_m2 + link.armature_kg_m2;
-    over(-50.0, 50.0, |acceleration| about_joint * acceleration)
+    about_joint * acceleration_rad_s2
 }
 
 /// Two periods of a triangle of 0.2 rad and 2 s, of which the second is drawn.
-fn reading(effect: &dyn Effect, values: &[f64]) -> Vec<(f64, f64)> {
+fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
     let step_s = 2.0 / (POINTS - 1) as f64;
     let triangle = |time_s: f64| {
         let phase = (time_s / 2.0).rem_euclid(1.0);
         0.2 * (1.0 - 4.0 * (phase - 0.5).abs())
     };
     let mut memory = None;
-    let mut points = Vec::new();
-    for index in 0..2 * POINTS - 1 {
-        let angle_rad = triangle(index as f64 * step_s);
+    let angles = (0..2 * POINTS - 1).map(|index| triangle(index as f64 * step_s));
+    let read = angles.map(|angle_rad| {
         let encoded_rad = effect.encode(values, angle_rad);
-        let read_rad = effect.sense(values, &mut memory, encoded_rad, step_s);
-        points.push((angle_rad, read_rad));
-    }
-    points.split_off(POINTS - 1)
+        (
+            angle_rad,
+            effect.sense(values, &mut memory, encoded_rad, step_s),
+        )
+    });
+    read.skip(POINTS - 1).collect()
 }
 
 #[cfg(test)]
@@ -328,7 +250,7 @@ mod tests {
     fn every_effect_has_one_that_can_be_seen() {
         for effect in EFFECTS {
             let signature = signature(*effect);
-            let id = effect.card().id;
+            let id = effect.info().id;
             assert_eq!(signature.with.len(), signature.without.len(), "{id}");
             let finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
             assert!(
@@ -347,12 +269,12 @@ mod tests {
     fn values_drawn_are_possible_ones() {
         for effect in EFFECTS {
             let values = signature(*effect).values;
-            for (parameter, value) in effect.card().parameters.iter().zip(values) {
+            for (parameter, value) in effect.info().parameters.iter().zip(values) {
                 let (low, high) = parameter.bounds;
                 assert!(
                     (low..=high).contains(&value),
                     "{} {}",
-                    effect.card().id,
+                    effect.info().id,
                     parameter.key
                 );
             }

@@ -1,12 +1,14 @@
 //! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
 
-use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// tau - tau_full w / w_0, with the no-load speed w_0.
 #[derive(Debug)]
 pub struct SpeedLimit;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "speed_limit",
     title: "speed limit by back-EMF",
     site: Site::Drive,
@@ -49,8 +51,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for SpeedLimit {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

@@ -1,6 +1,6 @@
 //! Stiction and Stribeck friction: more resistance at rest than in motion.
 
-use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
+use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
@@ -9,7 +9,7 @@ use super::{Card, Confusion, Effect, Needs, Parameter, Scope, Site, Slide};
 #[derive(Debug)]
 pub struct Stribeck;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "stribeck",
     title: "stiction and Stribeck friction",
     site: Site::Friction,
@@ -60,8 +60,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Stribeck {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn difference(&self) -> f64 {

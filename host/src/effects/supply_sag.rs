@@ -1,12 +1,14 @@
 //! Supply sag: the source gives way under the current the drive draws.
 
-use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// tau (1 - d |u|).
 #[derive(Debug)]
 pub struct SupplySag;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "supply_sag",
     title: "supply sag",
     site: Site::Drive,
@@ -50,8 +52,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for SupplySag {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

@@ -1,12 +1,14 @@
 //! Supply sensitivity: the torque follows the volts.
 
-use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// tau (1 + s (V / V_n - 1)).
 #[derive(Debug)]
 pub struct SupplySensitivity;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "supply_sensitivity",
     title: "torque depends on the supply",
     site: Site::Drive,
@@ -40,8 +42,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for SupplySensitivity {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

@@ -1,12 +1,14 @@
 //! Torque saturation: the drive gives no more than a limit.
 
-use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// max(-limit, min(limit, tau)).
 #[derive(Debug)]
 pub struct TorqueSaturation;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "torque_saturation",
     title: "torque saturation",
     site: Site::Drive,
@@ -39,8 +41,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for TorqueSaturation {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {

@@ -1,12 +1,14 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
-use super::{AtRest, Card, Confusion, DriveState, Effect, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// s tau.
 #[derive(Debug)]
 pub struct TorqueScale;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "torque_scale",
     title: "torque scale",
     site: Site::Drive,
@@ -50,8 +52,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for TorqueScale {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {

@@ -1,12 +1,14 @@
 //! Viscous friction: resistance in proportion to speed.
 
-use super::{AtRest, Card, Confusion, Effect, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
+};
 
 /// -c w.
 #[derive(Debug)]
 pub struct Viscous;
 
-static CARD: Card = Card {
+static INFO: EffectInfo = EffectInfo {
     id: "viscous",
     title: "viscous friction",
     site: Site::Joint,
@@ -50,8 +52,8 @@ static CARD: Card = Card {
 };
 
 impl Effect for Viscous {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -1,4 +1,4 @@
-//! Derivatives corrected by what a step brought, instead of taken anew at one simulation per unknown.
+//! Derivatives corrected by a step's residual, instead of differences that cost one simulation per unknown.
 //!
 //! The least change that makes them explain the step (Broyden 1965, Mathematics of Computation 19, 577), window by
 //! window: a window's residual depends on the shared values and on its own start state alone (Schubert 1970).
@@ -7,8 +7,8 @@ use super::normal::WindowJacobian;
 use nalgebra::{DMatrix, DVector};
 
 impl WindowJacobian {
-    /// The residual after a step, were it straight.
-    pub fn straight(&self, values: &DVector<f64>, node: &DVector<f64>) -> DVector<f64> {
+    /// The residual after a step, were it linear in the unknowns.
+    pub fn linear_residual(&self, values: &DVector<f64>, node: &DVector<f64>) -> DVector<f64> {
         let mut residual = self.residual.clone();
         residual.gemv(-1.0, &self.parameters, values, 1.0);
         residual.gemv(-1.0, &self.node, node, 1.0);
@@ -18,7 +18,7 @@ impl WindowJacobian {
     /// Corrects the derivatives by a step that led to `residual`. How much each unknown gets of the correction goes
     /// by how much of the step it was to make.
     pub fn correct(&mut self, values: &DVector<f64>, node: &DVector<f64>, residual: &[f64]) {
-        let missed = self.straight(values, node) - DVector::from_column_slice(residual);
+        let missed = self.linear_residual(values, node) - DVector::from_column_slice(residual);
         let (of_values, of_node) = (weights(&self.parameters, values), weights(&self.node, node));
         let all = of_values.dot(values) + of_node.dot(node);
         if all > 0.0 {
@@ -59,8 +59,8 @@ mod tests {
         window.correct(&values, &node, &after);
         assert_eq!(window.residual.as_slice(), after);
         window.residual.copy_from(&before.residual);
-        for (straight, after) in window.straight(&values, &node).iter().zip(after) {
-            assert!((straight - after).abs() < 1e-12, "{straight} {after}");
+        for (linear, after) in window.linear_residual(&values, &node).iter().zip(after) {
+            assert!((linear - after).abs() < 1e-12, "{linear} {after}");
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Stretches of time within which residuals may be correlated as they like, while those of different stretches
 //! are taken for independent.
 
-use super::covariance::project;
-use super::data::Data;
+use super::data::FitData;
 use super::fit::Fit;
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +20,7 @@ pub(super) struct Cluster {
 }
 
 /// The clusters of a fit, in order of motions and time; windows shorter than a cluster share it.
-pub(super) fn clusters(fit: &Fit, data: &Data) -> Vec<Cluster> {
+pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
     let total_s: f64 = data.motions.iter().map(|m| m.duration_s()).sum();
     let length_s = LENGTH_S.min(total_s / LEAST).max(1e-9);
     let count = fit.free.len();
@@ -34,7 +33,7 @@ pub(super) fn clusters(fit: &Fit, data: &Data) -> Vec<Cluster> {
         .zip(&fit.residuals.windows)
     {
         let motion = &data.motions[window.motion];
-        let columns = project(jacobian);
+        let columns = jacobian.reduced_parameters();
         let samples = window.samples.len();
         let place = |k: usize| {
             let pieces = (motion.duration_s() / length_s).round().max(1.0);

@@ -1,7 +1,7 @@
 //! How well the fitted values are known.
 
 use super::cluster::{Cluster, clusters};
-use super::data::Data;
+use super::data::FitData;
 use super::fit::Fit;
 use super::student::quantile_975;
 use nalgebra::DMatrix;
@@ -29,7 +29,7 @@ const TAKEN_OUT: f64 = 0.95;
 /// classical one (residual variance times inverse normal matrix) where that is larger. A value may rest on few
 /// clusters: the interval is Student's with as many degrees of freedom as clusters really carry it (Bell &
 /// McCaffrey 2002). Start states count as unknowns. `None` where the data do not determine the values at all.
-pub fn intervals(fit: &Fit, data: &Data) -> Option<(Vec<Interval>, DMatrix<f64>)> {
+pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let count = fit.free.len();
     let clusters = clusters(fit, data);
     let normal: DMatrix<f64> = clusters
@@ -109,16 +109,4 @@ fn freedom(clusters: &[Cluster], inverse: &DMatrix<f64>, i: usize) -> f64 {
         squares += part * part;
     }
     (sum * sum / squares).max(1.0)
-}
-
-/// Parameter columns with what the window's own start state could explain taken out.
-pub(super) fn project(window: &super::normal::WindowJacobian) -> DMatrix<f64> {
-    let own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
-    match own.cholesky() {
-        Some(cholesky) => {
-            let coupling = cholesky.solve(&window.node.tr_mul(&window.parameters));
-            &window.parameters - &window.node * coupling
-        }
-        None => window.parameters.clone(),
-    }
 }

@@ -14,6 +14,21 @@ pub enum Horizon {
     Seconds(f64),
 }
 
+impl Horizon {
+    /// Length of a window, s; absent for whole motions.
+    pub fn seconds(self) -> Option<f64> {
+        match self {
+            Horizon::Whole => None,
+            Horizon::Seconds(seconds) => Some(seconds),
+        }
+    }
+
+    /// Windows of this many seconds; whole motions without.
+    pub fn from_seconds(seconds: Option<f64>) -> Self {
+        seconds.map_or(Horizon::Whole, Horizon::Seconds)
+    }
+}
+
 /// A stretch of one motion that is simulated without a restart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
@@ -25,7 +40,7 @@ pub struct Window {
 
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
-pub struct Data {
+pub struct FitData {
     /// The motions.
     pub motions: Vec<Motion>,
     /// Windows in the order of motions and time.
@@ -34,47 +49,67 @@ pub struct Data {
     pub sigma_rad: Vec<f64>,
 }
 
-impl Data {
-    /// Cuts motions into windows; the noise is found from the motions and the declared resolution.
-    pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> Data {
+impl FitData {
+    /// Cuts motions into windows; the noise is estimated from the motions and the declared resolution.
+    pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
+        let resolution = |joint: usize| model.log.joints[joint].position.resolution;
         let sigma_rad = (0..model.link_count())
-            .map(|joint| noise_rad(&motions, joint, model.log.joints[joint].position.resolution))
+            .map(|joint| noise_rad(&motions, joint, resolution(joint)))
             .collect();
-        let windows = cut(&motions, horizon);
-        Data {
+        FitData {
+            windows: cut(&motions, horizon),
             motions,
-            windows,
             sigma_rad,
         }
     }
 
     /// The same motions and weights cut at another horizon.
-    pub fn recut(&self, horizon: Horizon) -> Data {
-        Data {
-            motions: self.motions.clone(),
+    pub fn recut(&self, horizon: Horizon) -> FitData {
+        FitData {
             windows: cut(&self.motions, horizon),
-            sigma_rad: self.sigma_rad.clone(),
+            ..self.clone()
         }
     }
 
     /// One of the motions, cut as it is here.
-    pub fn only(&self, motion: usize) -> Data {
-        let windows = self.windows.iter().filter(|w| w.motion == motion);
-        Data {
+    pub fn only(&self, motion: usize) -> FitData {
+        let windows = self.windows_of(motion).map(|(_, window)| Window {
+            motion: 0,
+            samples: window.samples.clone(),
+        });
+        FitData {
             motions: vec![self.motions[motion].clone()],
-            windows: windows
-                .map(|w| Window {
-                    motion: 0,
-                    samples: w.samples.clone(),
-                })
-                .collect(),
+            windows: windows.collect(),
             sigma_rad: self.sigma_rad.clone(),
         }
+    }
+
+    /// The windows of one motion with their indices, in order of time.
+    pub fn windows_of(&self, motion: usize) -> impl Iterator<Item = (usize, &Window)> {
+        let windows = self.windows.iter().enumerate();
+        windows.filter(move |(_, window)| window.motion == motion)
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.sigma_rad.len()
     }
 
     /// Number of samples in all windows.
     pub fn samples(&self) -> usize {
         self.windows.iter().map(|w| w.samples.len()).sum()
+    }
+
+    /// Duration of the longest motion, s.
+    pub fn longest_s(&self) -> f64 {
+        let durations = self.motions.iter().map(Motion::duration_s);
+        durations.fold(0.0, f64::max)
+    }
+
+    /// Root-mean-square error that a perfect model would show, rad, all joints together.
+    pub fn floor_rad(&self) -> f64 {
+        let squares: f64 = self.sigma_rad.iter().map(|sigma| sigma * sigma).sum();
+        (squares / self.joints().max(1) as f64).sqrt()
     }
 }
 
@@ -89,12 +124,10 @@ fn cut(motions: &[Motion], horizon: Horizon) -> Vec<Window> {
             }
         };
         let edge = |piece: usize| piece * log.len() / pieces;
-        for piece in 0..pieces {
-            windows.push(Window {
-                motion,
-                samples: edge(piece)..edge(piece + 1),
-            });
-        }
+        windows.extend((0..pieces).map(|piece| Window {
+            motion,
+            samples: edge(piece)..edge(piece + 1),
+        }));
     }
     windows
 }

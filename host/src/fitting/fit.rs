@@ -1,10 +1,9 @@
-//! A model fitted to motions: what may be asked, and what comes of it.
+//! A model fitted to motions: options and result.
 
-use super::data::Data;
-use super::node::{Guess, Node};
+use super::data::FitData;
+use super::node::Node;
 use super::normal::WindowJacobian;
 use super::residual::Residuals;
-use super::search::Search;
 use crate::model::{Model, ParameterPath};
 
 /// When to stop.
@@ -12,7 +11,7 @@ use crate::model::{Model, ParameterPath};
 pub struct FitOptions {
     /// Most iterations, each one linearisation.
     pub iterations: usize,
-    /// Stop when the cost falls by less than this share.
+    /// Stop when the cost is reduced by less than this share.
     pub tolerance: f64,
     /// Whether to leave out the derivatives at the end: for a fit that is only compared, or [resumed](Fit::resume).
     pub rough: bool,
@@ -24,6 +23,24 @@ impl Default for FitOptions {
             iterations: 30,
             tolerance: 1e-5,
             rough: false,
+        }
+    }
+}
+
+impl FitOptions {
+    /// The defaults, but for the number of iterations.
+    pub fn iterations(iterations: usize) -> Self {
+        FitOptions {
+            iterations,
+            ..FitOptions::default()
+        }
+    }
+
+    /// The same without the derivatives at the end.
+    pub fn rough(self) -> Self {
+        FitOptions {
+            rough: true,
+            ..self
         }
     }
 }
@@ -44,83 +61,42 @@ pub struct Fit {
     /// Simulations of the whole data that it took.
     pub simulations: usize,
     pub(super) jacobian: Vec<WindowJacobian>,
-    /// Whether the derivatives are those at the fitted values.
+    /// Whether the derivatives are those at the fitted values, not corrected ones of steps before.
     pub(super) fresh: bool,
 }
 
 impl Fit {
-    /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it lacks.
-    pub fn resume(&self, data: &Data, options: FitOptions) -> Fit {
-        if self.converged && (self.fresh || options.rough) {
-            return self.clone();
-        }
-        let iterations = if self.converged {
-            0
-        } else {
-            options.iterations
-        };
-        let options = FitOptions {
-            iterations,
-            ..options
-        };
-        let mut fit = Search::resume(self, data, guesses(data)).run(options);
-        fit.converged |= self.converged;
-        fit.simulations += self.simulations;
-        fit
-    }
-
     /// Fitted values in the order of `free`.
     pub fn values(&self) -> Vec<f64> {
-        self.free
-            .iter()
-            .map(|path| path.get(&self.model).unwrap_or(f64::NAN))
-            .collect()
+        let value = |path: &ParameterPath| path.get(&self.model).unwrap_or(f64::NAN);
+        self.free.iter().map(value).collect()
     }
 
     /// Which values lie on a bound: a warning, not a result.
     pub fn on_bound(&self) -> Vec<bool> {
-        self.free
-            .iter()
-            .zip(self.values())
-            .map(|(path, value)| {
-                let (low, high) = path.bounds(&self.model);
-                let near = |bound: f64| (value - bound).abs() <= 1e-9 * bound.abs().max(1e-6);
-                near(low) || near(high)
-            })
-            .collect()
+        let free = self.free.iter().zip(self.values());
+        free.map(|(path, value)| {
+            let (low, high) = path.bounds(&self.model);
+            let near = |bound: f64| (value - bound).abs() <= 1e-9 * bound.abs().max(1e-6);
+            near(low) || near(high)
+        })
+        .collect()
     }
-}
 
-/// Fits the free parameters and every window's start state; nodes are guessed where none are given.
-pub fn fit(
-    model: &Model,
-    free: &[ParameterPath],
-    data: &Data,
-    nodes: Option<&[Node]>,
-    options: FitOptions,
-) -> Fit {
-    let guesses = guesses(data);
-    let nodes = nodes.map_or_else(
-        || guesses.iter().map(|g| g.node.clone()).collect(),
-        <[Node]>::to_vec,
-    );
-    Search::new(model, free, data, guesses, nodes).run(options)
-}
-
-/// Fits only the windows' start states: how the model, as it is, does on these motions.
-pub fn settle(model: &Model, data: &Data) -> Fit {
-    fit(
-        model,
-        &[],
-        data,
-        None,
-        FitOptions {
-            iterations: 8,
-            ..FitOptions::default()
-        },
-    )
-}
-
-fn guesses(data: &Data) -> Vec<Guess> {
-    data.windows.iter().map(|w| Guess::of(data, w)).collect()
+    /// Root-mean-square position error, rad, over all joints and every sample of `data` that was measured; `data` are
+    /// those of the fit.
+    pub fn rms_rad(&self, data: &FitData) -> f64 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {
+            let motion = &data.motions[window.motion];
+            for (joint, part) in residuals.chunks(window.samples.len()).enumerate() {
+                let measured = &motion.position_rad[joint][window.samples.clone()];
+                for (residual, _) in part.iter().zip(measured).filter(|(_, m)| !m.is_nan()) {
+                    sum += (residual * data.sigma_rad[joint]).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        (sum / count.max(1) as f64).sqrt()
+    }
 }

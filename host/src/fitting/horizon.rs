@@ -1,6 +1,6 @@
 //! How long the model can run freely before an error in its start state swamps everything.
 
-use super::data::{Data, Horizon};
+use super::data::{FitData, Horizon};
 use super::node::Node;
 use super::residual::residuals;
 use crate::model::Model;
@@ -10,14 +10,9 @@ const MOST_GROWTH: f64 = 30.0;
 
 /// The longest horizon at which start errors grow by less than thirty times: a whole run for a stable plant,
 /// windows for an unstable or chaotic one.
-pub fn longest_stable(model: &Model, data: &Data) -> Horizon {
-    let longest = data
-        .motions
-        .iter()
-        .map(|m| m.duration_s())
-        .fold(0.0, f64::max);
+pub fn longest_stable(model: &Model, data: &FitData) -> Horizon {
     let mut horizon = Horizon::Whole;
-    let mut seconds = longest;
+    let mut seconds = data.longest_s();
     while growth(model, &data.recut(horizon)) > MOST_GROWTH && seconds > 0.2 {
         seconds /= 2.0;
         horizon = Horizon::Seconds(seconds);
@@ -26,7 +21,7 @@ pub fn longest_stable(model: &Model, data: &Data) -> Horizon {
 }
 
 /// Root-mean-square growth of a start error over the last fifth of the windows, against its size.
-fn growth(model: &Model, data: &Data) -> f64 {
+fn growth(model: &Model, data: &FitData) -> f64 {
     let nodes: Vec<Node> = data.windows.iter().map(|w| Node::guess(data, w)).collect();
     let base = residuals(model, data, &nodes);
     let joints = data.sigma_rad.len();
@@ -35,7 +30,7 @@ fn growth(model: &Model, data: &Data) -> f64 {
         let mut moved = nodes.clone();
         let delta = data.sigma_rad[joint];
         for node in &mut moved {
-            node.reading_rad[joint] += delta;
+            node.unknowns[joint] += delta;
         }
         let shifted = residuals(model, data, &moved);
         for (a, b) in base.windows.iter().zip(&shifted.windows) {

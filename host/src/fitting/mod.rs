@@ -1,33 +1,48 @@
 //! Fitting a model's free parameters to measured motions by multiple shooting.
+//!
+//! The solver is our own. With n joints, W windows and P free parameters there are P + 3 n W unknowns, and a general
+//! least-squares solver (the crate `levenberg-marquardt`) asks for the derivatives of each. A start state touches its own
+//! window alone: all windows are moved at once, so that P + 3 n simulations make the whole Jacobian, and eliminating the
+//! start states leaves a system of P unknowns (`normal`).
 
 mod broyden;
+mod candidate;
 mod cluster;
 mod covariance;
 mod data;
-mod extend;
+mod error_reduction;
 mod fit;
+mod fitted_value;
+mod free;
 mod horizon;
 mod jacobian;
+mod levenberg_marquardt;
 mod node;
 mod noise;
 mod normal;
 mod profile;
 mod projector;
+mod refit;
 mod residual;
-mod search;
+mod solve;
 mod staged;
 mod step;
 mod student;
 
+pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
-pub use data::{Data, Horizon, Window};
-pub use extend::{Extension, Fall, Undetermined, extend, refit, rms_rad};
-pub use fit::{Fit, FitOptions, fit, settle};
+pub use data::{FitData, Horizon, Window};
+pub use error_reduction::ErrorReduction;
+pub use fit::{Fit, FitOptions};
+pub use fitted_value::{FittedValue, fitted_values};
+pub use free::{FreeError, free_parameters};
 pub use horizon::longest_stable;
 pub use node::Node;
-pub use noise::{found_resolution_rad, noise_rad};
-pub use profile::profiled;
+pub use noise::{estimated_resolution_rad, noise_rad};
+pub use profile::profile_intervals;
 pub use projector::Projector;
-pub use residual::{Residuals, residuals};
-pub use staged::{approach, fit_staged};
+pub use refit::{Refitted, Undetermined, refit, refit_with};
+pub use residual::{Residuals, predicted_rad, residuals};
+pub use solve::{fit, fit_start_states};
+pub use staged::{fit_staged, initial_guess};
 pub(crate) use student::quantile_975;

@@ -8,7 +8,7 @@ use crate::log::Motion;
 /// leaks into them where sampling is slow; then neighbours agree, while those of noise alternate (correlation
 /// -6/7), and the resolution alone counts.
 pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Option<f64>) -> f64 {
-    let resolution = declared_resolution_rad.or_else(|| found_resolution_rad(motions, joint));
+    let resolution = declared_resolution_rad.or_else(|| estimated_resolution_rad(motions, joint));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
     let differences = differences(motions, joint, ORDER);
     let seen = difference_noise_rad(&differences);
@@ -20,7 +20,7 @@ pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Opti
 const ORDER: usize = 6;
 
 /// The step of a quantised position, rad, where all readings are multiples of one.
-pub fn found_resolution_rad(motions: &[Motion], joint: usize) -> Option<f64> {
+pub fn estimated_resolution_rad(motions: &[Motion], joint: usize) -> Option<f64> {
     let steps = || {
         motions
             .iter()

@@ -4,11 +4,11 @@
 //! start states window by window (Schur complement) leaves a system of the parameters' size, however many
 //! windows there are.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// One window's part.
 #[derive(Debug, Clone)]
-struct Block {
+struct NodeBlock {
     /// Inverse of the node's own normal matrix.
     inverse: DMatrix<f64>,
     /// Node rows of the gradient.
@@ -19,14 +19,12 @@ struct Block {
 
 /// Reduced normal equations and what is needed to recover the nodes' steps.
 #[derive(Debug, Clone)]
-pub(super) struct Normal {
+pub(super) struct NormalEquations {
     /// Parameter by parameter, nodes eliminated.
     pub matrix: DMatrix<f64>,
     /// Descent direction: J' r.
     pub gradient: DVector<f64>,
-    /// Per window: its share of the reduced gradient, for cluster-robust covariance.
-    pub scores: Vec<DVector<f64>>,
-    blocks: Vec<Block>,
+    blocks: Vec<NodeBlock>,
 }
 
 /// Derivatives of one window's residual: rows are residuals.
@@ -45,10 +43,41 @@ pub(super) struct WindowJacobian {
 }
 
 impl WindowJacobian {
+    /// Node by node, the prior included.
+    fn node_normal(&self) -> DMatrix<f64> {
+        self.node.tr_mul(&self.node) + DMatrix::from_diagonal(&self.node_precision)
+    }
+
+    /// Node rows of the descent direction, the prior included.
+    fn node_gradient(&self) -> DVector<f64> {
+        self.node.tr_mul(&self.residual) + self.node_precision.component_mul(&self.node_pull)
+    }
+
+    fn node_cholesky(&self) -> Option<Cholesky<f64, Dyn>> {
+        self.node_normal().cholesky()
+    }
+
+    /// Parameter columns without what the window's own start state could explain.
+    pub fn reduced_parameters(&self) -> DMatrix<f64> {
+        let Some(cholesky) = self.node_cholesky() else {
+            return self.parameters.clone();
+        };
+        let coupling = cholesky.solve(&self.node.tr_mul(&self.parameters));
+        &self.parameters - &self.node * coupling
+    }
+
+    /// A change of the residual without what the window's own start state could explain.
+    pub fn reduced(&self, change: DVector<f64>) -> DVector<f64> {
+        let Some(cholesky) = self.node_cholesky() else {
+            return change;
+        };
+        let step = cholesky.solve(&self.node.tr_mul(&change));
+        change - &self.node * step
+    }
+
     /// Takes unknowns out of the step that lie on their edge and would leave by it.
     pub fn hold_edges(&mut self) {
-        let gradient =
-            self.node.tr_mul(&self.residual) + self.node_precision.component_mul(&self.node_pull);
+        let gradient = self.node_gradient();
         for i in 0..self.node_edge.len() {
             if self.node_edge[i] * gradient[i] > 0.0 {
                 self.node.column_mut(i).fill(0.0);
@@ -58,35 +87,30 @@ impl WindowJacobian {
     }
 }
 
-impl Normal {
+impl NormalEquations {
     /// Normal equations of these windows with damping of the nodes' own part.
-    pub fn assemble(parameters: usize, windows: &[WindowJacobian], damping: f64) -> Normal {
-        let mut normal = Normal {
+    pub fn assemble(parameters: usize, windows: &[WindowJacobian], damping: f64) -> Self {
+        let mut normal = NormalEquations {
             matrix: DMatrix::zeros(parameters, parameters),
             gradient: DVector::zeros(parameters),
-            scores: Vec::with_capacity(windows.len()),
             blocks: Vec::with_capacity(windows.len()),
         };
         for window in windows {
-            let mut own =
-                window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
-            for i in 0..own.nrows() {
+            let mut own = window.node_normal();
+            let size = own.nrows();
+            for i in 0..size {
                 own[(i, i)] *= 1.0 + damping;
                 own[(i, i)] += 1e-12;
             }
-            let size = own.nrows();
             let inverse = own
                 .try_inverse()
                 .unwrap_or_else(|| DMatrix::zeros(size, size));
             let coupling = window.node.tr_mul(&window.parameters);
-            let gradient = window.node.tr_mul(&window.residual)
-                + window.node_precision.component_mul(&window.node_pull);
+            let gradient = window.node_gradient();
             let spent = coupling.tr_mul(&inverse);
-            let score = window.parameters.tr_mul(&window.residual) - &spent * &gradient;
             normal.matrix += window.parameters.tr_mul(&window.parameters) - &spent * &coupling;
-            normal.gradient += &score;
-            normal.scores.push(score);
-            normal.blocks.push(Block {
+            normal.gradient += window.parameters.tr_mul(&window.residual) - &spent * &gradient;
+            normal.blocks.push(NodeBlock {
                 inverse,
                 gradient,
                 coupling,

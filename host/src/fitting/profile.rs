@@ -7,9 +7,9 @@
 
 use super::cluster::clusters;
 use super::covariance::{Interval, inverse};
-use super::data::Data;
+use super::data::FitData;
 use super::fit::Fit;
-use super::normal::Normal;
+use super::normal::NormalEquations;
 use super::residual::residuals;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
 
 /// The intervals, each end moved out to the farthest value at which the squared error is no larger than a smooth
 /// one would be at the end. The other values and the start states go along as they would if all were straight.
-pub fn profiled(fit: &Fit, data: &Data, intervals: &[Interval]) -> Vec<Interval> {
+pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> Vec<Interval> {
     let count = fit.free.len();
     let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;
     let normal = clusters(fit, data)
@@ -28,7 +28,7 @@ pub fn profiled(fit: &Fit, data: &Data, intervals: &[Interval]) -> Vec<Interval>
     let Some(inverse) = inverse(&normal) else {
         return intervals.to_vec();
     };
-    let steps = Normal::assemble(count, &fit.jacobian, 0.0);
+    let steps = NormalEquations::assemble(count, &fit.jacobian, 0.0);
     let least = fit.residuals.cost();
     intervals
         .par_iter()
@@ -56,7 +56,7 @@ pub fn profiled(fit: &Fit, data: &Data, intervals: &[Interval]) -> Vec<Interval>
 }
 
 /// Squared weighted residuals with the values moved; infinite where one leaves its bounds.
-fn cost(fit: &Fit, data: &Data, steps: &Normal, moved: &DVector<f64>) -> f64 {
+fn cost(fit: &Fit, data: &FitData, steps: &NormalEquations, moved: &DVector<f64>) -> f64 {
     let mut model = fit.model.clone();
     for (path, moved) in fit.free.iter().zip(moved.iter()) {
         let value = path.get(&fit.model).unwrap_or(f64::NAN) + moved;
@@ -67,10 +67,7 @@ fn cost(fit: &Fit, data: &Data, steps: &Normal, moved: &DVector<f64>) -> f64 {
     }
     let mut nodes = fit.nodes.clone();
     for (window, node) in nodes.iter_mut().enumerate() {
-        let step = steps.node_step(window, moved);
-        for i in 0..node.unknowns() {
-            *node.at(i) += step[i];
-        }
+        node.unknowns += steps.node_step(window, moved);
     }
     residuals(&model, data, &nodes).cost()
 }

@@ -1,6 +1,5 @@
 //! What of a change in the prediction the fitted parameters and start states can't imitate.
 
-use super::covariance::project;
 use super::fit::Fit;
 use super::normal::WindowJacobian;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -17,7 +16,11 @@ pub struct Projector<'a> {
 impl<'a> Projector<'a> {
     /// Projection off everything this fit has freed.
     pub fn new(fit: &'a Fit) -> Self {
-        let reduced: Vec<DMatrix<f64>> = fit.jacobian.iter().map(project).collect();
+        let reduced: Vec<DMatrix<f64>> = fit
+            .jacobian
+            .iter()
+            .map(WindowJacobian::reduced_parameters)
+            .collect();
         let count = fit.free.len();
         let mut normal = DMatrix::zeros(count, count);
         for window in &reduced {
@@ -62,7 +65,7 @@ impl<'a> Projector<'a> {
         let mut left: Vec<DVector<f64>> = change
             .iter()
             .zip(self.windows)
-            .map(|(change, window)| off_node(DVector::from_column_slice(change), window))
+            .map(|(change, window)| window.reduced(DVector::from_column_slice(change)))
             .collect();
         if let Some(normal) = &self.normal {
             let mut right = DVector::zeros(self.reduced[0].ncols());
@@ -75,16 +78,5 @@ impl<'a> Projector<'a> {
             }
         }
         left.into_iter().map(|v| v.as_slice().to_vec()).collect()
-    }
-}
-
-fn off_node(change: DVector<f64>, window: &WindowJacobian) -> DVector<f64> {
-    let own = window.node.tr_mul(&window.node) + DMatrix::from_diagonal(&window.node_precision);
-    match own.cholesky() {
-        Some(cholesky) => {
-            let step = cholesky.solve(&window.node.tr_mul(&change));
-            change - &window.node * step
-        }
-        None => change,
     }
 }

@@ -1,9 +1,9 @@
-//! What the model predicts against what was measured, window by window.
+//! Predicted readings and weighted residuals of a model, window by window.
 
-use super::data::Data;
+use super::data::FitData;
 use super::node::Node;
 use crate::model::Model;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, SensorState, predict};
 use rayon::prelude::*;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, joint after joint.
@@ -13,8 +13,8 @@ pub struct Residuals {
     pub windows: Vec<Vec<f64>>,
 }
 
-/// A prediction that runs away counts as this far off, rad, so that a fit can turn back.
-const RUNAWAY_RAD: f64 = 10.0;
+/// A prediction that diverges counts as this far off, rad, so that a fit can turn back.
+const DIVERGED_RAD: f64 = 10.0;
 
 impl Residuals {
     /// Sum of squares.
@@ -26,10 +26,15 @@ impl Residuals {
     pub fn count(&self) -> usize {
         self.windows.iter().map(Vec::len).sum()
     }
+
+    /// Mean square; 1 is the noise.
+    pub fn mean_square(&self) -> f64 {
+        self.cost() / self.count().max(1) as f64
+    }
 }
 
 /// Residuals of a model from these nodes, motions in parallel.
-pub fn residuals(model: &Model, data: &Data, nodes: &[Node]) -> Residuals {
+pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
     let per_motion: Vec<Vec<Vec<f64>>> = (0..data.motions.len())
         .into_par_iter()
         .map(|motion| motion_residuals(model, data, nodes, motion))
@@ -39,47 +44,50 @@ pub fn residuals(model: &Model, data: &Data, nodes: &[Node]) -> Residuals {
     }
 }
 
-/// Residuals of one motion's windows, in order: sensor memory runs on from window to window.
-pub(super) fn motion_residuals(
+/// Readings that a model predicts for one motion's windows, rad, in order, joint after joint; every window starts
+/// from its node, and the sensors' memory runs on from window to window.
+pub fn predicted_rad(
     model: &Model,
-    data: &Data,
+    data: &FitData,
     nodes: &[Node],
     motion: usize,
 ) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
-    data.windows
-        .iter()
-        .zip(nodes)
-        .filter(|(window, _)| window.motion == motion)
-        .map(|(window, node)| {
-            let samples = window.samples.len();
-            let mut out = vec![0.0; samples * plant.len()];
-            let start = node.start(&plant);
-            predict(
-                &plant,
-                log,
-                window.samples.clone(),
-                &start,
-                &mut memory,
-                &mut out,
-            );
-            for (joint, part) in out.chunks_mut(samples).enumerate() {
-                let measured = &log.position_rad[joint][window.samples.clone()];
-                let weight = 1.0 / data.sigma_rad[joint];
-                for (value, measured) in part.iter_mut().zip(measured) {
-                    *value = if measured.is_nan() {
-                        0.0
-                    } else if value.is_nan() {
-                        RUNAWAY_RAD * weight
-                    } else {
-                        ((measured - *value) * weight)
-                            .clamp(-RUNAWAY_RAD * weight, RUNAWAY_RAD * weight)
-                    };
-                }
-            }
-            out
+    let mut memory = SensorState::default();
+    let windows = data.windows_of(motion);
+    windows
+        .map(|(index, window)| {
+            let samples = window.samples.clone();
+            let mut readings = vec![0.0; samples.len() * plant.len()];
+            let start = nodes[index].start(&plant);
+            predict(&plant, log, samples, &start, &mut memory, &mut readings);
+            readings
         })
         .collect()
+}
+
+/// Residuals of one motion's windows, in order.
+pub(super) fn motion_residuals(
+    model: &Model,
+    data: &FitData,
+    nodes: &[Node],
+    motion: usize,
+) -> Vec<Vec<f64>> {
+    let mut windows = predicted_rad(model, data, nodes, motion);
+    for (values, (_, window)) in windows.iter_mut().zip(data.windows_of(motion)) {
+        for (joint, part) in values.chunks_mut(window.samples.len()).enumerate() {
+            let measured = &data.motions[motion].position_rad[joint][window.samples.clone()];
+            let weight = 1.0 / data.sigma_rad[joint];
+            let most = DIVERGED_RAD * weight;
+            for (value, measured) in part.iter_mut().zip(measured) {
+                *value = match (measured.is_nan(), value.is_nan()) {
+                    (true, _) => 0.0,
+                    (false, true) => most,
+                    (false, false) => ((measured - *value) * weight).clamp(-most, most),
+                };
+            }
+        }
+    }
+    windows
 }

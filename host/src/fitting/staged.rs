@@ -4,8 +4,9 @@
 //! values are known best. Each stage starts where the one before ended (Bock 1981, multiple shooting; homotopy
 //! in the length of the windows).
 
-use super::data::{Data, Horizon};
-use super::fit::{Fit, FitOptions, fit};
+use super::data::{FitData, Horizon};
+use super::fit::{Fit, FitOptions};
+use super::solve::fit;
 use crate::model::{Model, ParameterPath};
 
 /// Seconds of one window, stage by stage.
@@ -22,11 +23,11 @@ const STAGE: FitOptions = FitOptions {
 const AT_FLOOR: f64 = 1.15;
 
 /// The model after the stages of short windows: near enough for [`super::longest_stable`] and a last fit.
-pub fn approach(model: &Model, free: &[ParameterPath], data: &Data) -> Model {
+pub fn initial_guess(model: &Model, free: &[ParameterPath], data: &FitData) -> Model {
     stages(model, free, data).0
 }
 
-fn stages(model: &Model, free: &[ParameterPath], data: &Data) -> (Model, usize) {
+fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> (Model, usize) {
     let longest = data.windows.iter().map(|w| w.samples.len()).max();
     let mut at = model.clone();
     let mut simulations = 0;
@@ -45,8 +46,8 @@ fn stages(model: &Model, free: &[ParameterPath], data: &Data) -> (Model, usize) 
 /// Fits the free parameters from values that may be several times off; windows as in `data`.
 ///
 /// A plain fit that leaves nothing but noise is taken as it is. Otherwise the better one counts of the plain fit
-/// and one that starts where [`approach`] ends.
-pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &Data) -> Fit {
+/// and one that starts where [`initial_guess`] ends.
+pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
     let plain = fit(model, free, data, None, FitOptions::default());
     let mean = plain.residuals.cost() / plain.residuals.count().max(1) as f64;
     if mean.sqrt() < AT_FLOOR {
@@ -137,7 +138,7 @@ input = { column = "u", unit = "N m" }
             .iter()
             .fold(0.0_f64, |most, q| most.max(q.abs()));
         assert!(farthest > 3.5, "{farthest}");
-        let data = Data::new(&model, motions, Horizon::Seconds(4.0));
+        let data = FitData::new(&model, motions, Horizon::Seconds(4.0));
         let free: Vec<ParameterPath> = ["link1.inertia_kg_m2", "viscous@1.coefficient_nm_s_rad"]
             .map(|text| text.parse().unwrap())
             .to_vec();

@@ -1,21 +1,19 @@
 //! One step of a fit, kept inside the bounds: a parameter on its bound whose descent points outward takes no part,
 //! and one that hits its bound stops there while the others are solved again.
 
-use super::normal::Normal;
-use super::search::Search;
-use crate::model::Model;
+use super::levenberg_marquardt::LevenbergMarquardt;
+use super::normal::NormalEquations;
+use crate::model::{Model, ParameterPath};
 use nalgebra::{DMatrix, DVector};
 
-impl Search<'_> {
+impl LevenbergMarquardt<'_> {
     /// The model after a damped, bounded step, and the step really taken.
-    pub fn moved(&self, normal: &Normal, damping: f64) -> (Model, DVector<f64>) {
-        let count = self.free.len();
-        let values: Vec<f64> = self
-            .free
-            .iter()
-            .map(|p| p.get(&self.model).unwrap_or(0.0))
-            .collect();
-        let bounds: Vec<(f64, f64)> = self.free.iter().map(|p| p.bounds(&self.model)).collect();
+    pub fn moved(&self, normal: &NormalEquations, damping: f64) -> (Model, DVector<f64>) {
+        let (free, model) = (&self.fit.free, &self.fit.model);
+        let count = free.len();
+        let value = |path: &ParameterPath| path.get(model).unwrap_or(0.0);
+        let values: Vec<f64> = free.iter().map(value).collect();
+        let bounds: Vec<(f64, f64)> = free.iter().map(|path| path.bounds(model)).collect();
         let mut fixed: Vec<bool> = (0..count)
             .map(|i| {
                 let outward = normal.gradient[i];
@@ -44,9 +42,9 @@ impl Search<'_> {
                 }
             }
         }
-        let mut model = self.model.clone();
+        let mut model = model.clone();
         for i in 0..count {
-            let known = self.free[i].set(&mut model, values[i] + moved[i]);
+            let known = free[i].set(&mut model, values[i] + moved[i]);
             debug_assert!(known, "a free parameter is one of the model's");
         }
         (model, moved)
@@ -55,7 +53,7 @@ impl Search<'_> {
 
 /// Solves (H + damping diag H) step = gradient over the unfixed parameters, given the fixed ones' steps.
 fn solve_damped(
-    normal: &Normal,
+    normal: &NormalEquations,
     fixed: &[bool],
     moved: &DVector<f64>,
     damping: f64,

@@ -1,12 +1,15 @@
-//! The JSON logs of Rhoban's BAM bench: one position-driven joint, angles in rad.
+//! Reads the JSON logs of Rhoban's BAM bench: one position-driven joint, angles in rad.
 //!
-//! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and `entries`, each
-//! with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`, `input_volts`, `torque_enable`.
+//! An object with facts of the run (`mass`, `length`, `kp`, `vin`, `motor`, `trajectory`) and
+//! `entries`, each with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`,
+//! `input_volts`, `torque_enable`.
 
 use super::read::LEAST_ROWS;
+use super::reason::LogReason;
 use super::request::LogRequest;
-use super::{Motion, Source};
+use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -14,41 +17,31 @@ use std::path::Path;
 /// Reads the log, or the entries asked for, as one motion.
 ///
 /// The mass in the file belongs to the model, so the motion carries no payload. Speed, supply and
-/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from 1.
+/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from
+/// 1.
 ///
 /// # Errors
-/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that does
-/// not increase; fewer than [`LEAST_ROWS`] entries.
+/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
+/// does not increase; fewer than [`LEAST_ROWS`] entries.
 pub(super) fn read(request: &LogRequest) -> Result<Motion> {
     let path = &request.path;
     let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
     let log: Value = serde_json::from_slice(&bytes).map_err(|error| {
-        Error::data(
-            Place::at(path, error.line().max(1), error.column().max(1)),
-            format!("not JSON: {error}"),
-            "was the recording broken off? Record again, or export CSV",
-        )
+        let place = Place::at(path, error.line().max(1), error.column().max(1));
+        let message = error.to_string();
+        Error::refused(place, LogReason::NotJson { message })
     })?;
-    let all = log
-        .get("entries")
-        .and_then(Value::as_array)
-        .ok_or_else(|| {
-            refuse(
-                path,
-                "no list 'entries'".into(),
-                "a BAM log is an object with a list 'entries'",
-            )
-        })?;
-    let (first, last) = request.rows.unwrap_or((0, all.len().saturating_sub(1)));
-    if first >= all.len() || last >= all.len() || last - first + 1 < LEAST_ROWS {
-        return Err(refuse(
-            path,
-            format!(
-                "entries {first}-{last} of {}; at least {LEAST_ROWS} are needed",
-                all.len()
-            ),
-            "entries count from 0; record longer if there are too few",
-        ));
+    let refuse = |reason| Error::refused(Place::file(path), reason);
+    let all = log.get("entries").and_then(Value::as_array);
+    let all = all.ok_or_else(|| refuse(LogReason::NoEntries))?;
+    let entries = all.len();
+    let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
+    if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
+        return Err(refuse(LogReason::EntryRange {
+            first,
+            last,
+            entries,
+        }));
     }
     let entries = Entries {
         path,
@@ -57,25 +50,17 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
     };
     let time_s = entries.numbers("timestamp")?;
     if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(refuse(
-            path,
-            format!(
-                "entry {}, timestamp: time does not increase: {} s after {} s",
-                first + late + 1,
-                time_s[late + 1],
-                time_s[late]
-            ),
-            "ask for a range of entries without the step, such as log.json:0-99",
-        ));
+        return Err(refuse(LogReason::EntryTime {
+            entry: first + late + 1,
+            time_s: time_s[late + 1],
+            previous_s: time_s[late],
+        }));
     }
     Ok(Motion {
         name: request.name(),
-        source: Source {
+        source: MotionSource {
             path: path.clone(),
-            sha256: Sha256::digest(&bytes)
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
+            sha256: hex(Sha256::digest(&bytes)),
             lines: (first + 1, last + 1),
         },
         position_rad: vec![entries.numbers("position")?],
@@ -96,14 +81,14 @@ struct Entries<'a> {
 }
 
 impl Entries<'_> {
-    fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+    fn numbers(&self, key: &'static str) -> Result<Vec<f64>> {
         let numbered = self.list.iter().enumerate();
         numbered
             .map(|(index, entry)| self.number(index, key, entry.get(key)))
             .collect()
     }
 
-    fn optional(&self, key: &str) -> Result<Option<Vec<f64>>> {
+    fn optional(&self, key: &'static str) -> Result<Option<Vec<f64>>> {
         match self.has(key) {
             true => self.numbers(key).map(Some),
             false => Ok(None),
@@ -128,7 +113,7 @@ impl Entries<'_> {
         Ok(goals)
     }
 
-    fn flags(&self, key: &str) -> Result<Option<Vec<bool>>> {
+    fn flags(&self, key: &'static str) -> Result<Option<Vec<bool>>> {
         if !self.has(key) {
             return Ok(None);
         }
@@ -142,30 +127,35 @@ impl Entries<'_> {
         flags.collect::<Result<_>>().map(Some)
     }
 
-    fn has(&self, key: &str) -> bool {
+    fn has(&self, key: &'static str) -> bool {
         self.list
             .iter()
             .all(|entry| entry.get(key).is_some_and(|value| !value.is_null()))
     }
 
-    fn number(&self, index: usize, key: &str, value: Option<&Value>) -> Result<f64> {
+    fn number(&self, index: usize, key: &'static str, value: Option<&Value>) -> Result<f64> {
         value
             .and_then(Value::as_f64)
             .ok_or_else(|| self.wrong(index, key, value, "a number"))
     }
 
-    fn wrong(&self, index: usize, key: &str, value: Option<&Value>, wanted: &str) -> Error {
+    fn wrong(
+        &self,
+        index: usize,
+        key: &'static str,
+        value: Option<&Value>,
+        expected: &'static str,
+    ) -> Error {
         let found = value.map_or("nothing".to_string(), |value| {
             value.to_string().chars().take(40).collect()
         });
-        refuse(
-            self.path,
-            format!(
-                "entry {}, {key}: {found} is not {wanted}",
-                self.first + index
-            ),
-            "leave the entry out by a range such as log.json:0-99, or record again",
-        )
+        let reason = LogReason::WrongEntry {
+            entry: self.first + index,
+            key,
+            found,
+            expected,
+        };
+        Error::refused(Place::file(self.path), reason)
     }
 }
 
@@ -173,8 +163,4 @@ fn flag(value: &Value) -> Option<bool> {
     value
         .as_bool()
         .or_else(|| value.as_f64().map(|number| number != 0.0))
-}
-
-fn refuse(path: &Path, what: String, remedy: &str) -> Error {
-    Error::data(Place::file(path), what, remedy)
 }

@@ -1,8 +1,9 @@
-//! The streaming core: a CSV log row by row, in memory that does not grow with it.
+//! Streams a CSV log row by row, in memory that does not grow with it.
 
-use super::header::Header;
+use super::header::LogHeader;
 use super::lines::Lines;
-use super::row::{Reader, Row};
+use super::row::LogRow;
+use super::row_reader::RowReader;
 use crate::error::Result;
 use crate::model::LogColumns;
 use std::path::Path;
@@ -18,24 +19,24 @@ pub struct FileFacts {
 
 /// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
 ///
-/// A row that cannot be read arrives as an error with file, line and column; the visitor decides whether
-/// that ends the reading. The separator (`,`, `;`, tab) comes from the header line; byte-order mark, CR LF,
-/// quotes, blank lines and `#` comments are taken as they come.
+/// A row that cannot be read arrives as an error with file, line and column; the visitor decides
+/// whether that ends the reading. The separator (`,`, `;`, tab) comes from the header line;
+/// byte-order mark, CR LF, quotes, blank lines and `#` comments are taken as they come.
 ///
 /// # Errors
 /// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.
 pub fn visit(
     path: &Path,
     columns: &LogColumns,
-    visitor: &mut dyn FnMut(usize, Result<&Row>) -> Result<()>,
+    visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,
 ) -> Result<FileFacts> {
     let mut lines = Lines::open(path)?;
-    let (header, first) = Header::read(path, &mut lines, &columns.time.name)?;
-    let reader = Reader::new(path, columns, &header)?;
-    let mut row = Row {
+    let (header, first) = LogHeader::read(path, &mut lines, &columns.time.name)?;
+    let reader = RowReader::new(path, columns, &header)?;
+    let mut row = LogRow {
         path: path.to_path_buf(),
         fields: reader.fields(),
-        ..Row::default()
+        ..LogRow::default()
     };
     let mut rows = 0;
     let mut give = |text: &str, at: usize| {

@@ -1,13 +1,14 @@
-//! What stands before the data: separator, column names, constants in comments.
+//! Reads the header of a CSV log: separator, column names, constants in comments.
 
 use super::lines::Lines;
+use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Columns and constants of one file.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct LogHeader {
     /// The file, for errors.
     path: PathBuf,
     /// Between two fields: `,`, `;` or tab.
@@ -22,40 +23,36 @@ pub(super) struct Header {
 
 /// Where a quantity's value comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cell {
+pub(super) enum LogCell {
     /// Field of each row, counted from 0.
     Field(usize),
     /// One number for the whole file, from the comment on this line.
     Constant(f64, usize),
 }
 
-impl Cell {
+impl LogCell {
     /// The field counted from 1, as places count; 1 for a constant.
     pub fn column(&self) -> usize {
         match self {
-            Cell::Field(index) => index + 1,
-            Cell::Constant(..) => 1,
+            LogCell::Field(index) => index + 1,
+            LogCell::Constant(..) => 1,
         }
     }
 }
 
-impl Header {
-    /// Reads up to and including the names. Also returns the first data line where the names stood in a
-    /// comment just above it, as numpy writes them.
+impl LogHeader {
+    /// Reads up to and including the names. Also returns the first data line where the names stood
+    /// in a comment just above it, as numpy writes them.
     ///
     /// # Errors
     /// An empty file, UTF-16, or data without names.
-    pub fn read(path: &Path, lines: &mut Lines, time: &str) -> Result<(Header, Option<String>)> {
+    pub fn read(path: &Path, lines: &mut Lines, time: &str) -> Result<(LogHeader, Option<String>)> {
         let mut constants = Vec::new();
         let mut comment = None;
         loop {
             let number = lines.number + 1;
             let Some(text) = lines.next()? else {
-                return Err(Error::data(
-                    Place::file(path),
-                    "the log holds no header line",
-                    "record again: a log is a line of column names, then a line per sample",
-                ));
+                return Err(Error::refused(Place::file(path), LogReason::NoHeader));
             };
             if text.trim().is_empty() {
                 continue;
@@ -73,7 +70,7 @@ impl Header {
                 }
                 _ => (text.to_string(), number, None),
             };
-            let header = Header {
+            let header = LogHeader {
                 path: path.to_path_buf(),
                 separator: separator(&names),
                 names: self::names(&names),
@@ -88,70 +85,47 @@ impl Header {
     ///
     /// # Errors
     /// No such column, with those found and the likeliest meant; a name that stands there twice.
-    pub fn cell(&self, name: &str) -> Result<Cell> {
+    pub fn cell(&self, name: &str) -> Result<LogCell> {
         let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
         match (found.next(), found.next()) {
-            (Some(_), Some(second)) => Err(Error::data(
-                Place::at(&self.path, self.line, second + 1),
-                format!("column '{name}' stands there twice"),
-                "rename one of them, so that it is clear which is meant",
-            )),
-            (Some(index), None) => Ok(Cell::Field(index)),
+            (Some(_), Some(second)) => {
+                let column = name.to_string();
+                let place = Place::at(&self.path, self.line, second + 1);
+                Err(Error::refused(place, LogReason::ColumnTwice { column }))
+            }
+            (Some(index), None) => Ok(LogCell::Field(index)),
             (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
-                Some((_, value, line)) => Ok(Cell::Constant(*value, *line)),
+                Some((_, value, line)) => Ok(LogCell::Constant(*value, *line)),
                 None => Err(self.missing(name)),
             },
         }
     }
 
     fn missing(&self, name: &str) -> Error {
-        if self
-            .names
-            .iter()
-            .all(|name| number(name, self.separator).is_some())
-        {
-            return Error::data(
-                Place::at(&self.path, self.line, 1),
-                format!("numbers where the column names should be, and no column '{name}'"),
-                "put a line of column names above the first sample",
-            );
+        let place = Place::at(&self.path, self.line, 1);
+        let column = name.to_string();
+        let is_number = |name: &String| number(name, self.separator).is_some();
+        if self.names.iter().all(is_number) {
+            return Error::refused(place, LogReason::NoNames { column });
         }
-        let constants = self.constants.iter().map(|(key, ..)| key);
         let plain = |name: &str| -> String {
             let letters = name.chars().filter(|letter| letter.is_alphanumeric());
             letters.flat_map(char::to_lowercase).collect()
         };
         let likeness = |known: &str| strsim::jaro_winkler(&plain(known), &plain(name));
+        let constants = self.constants.iter().map(|(key, ..)| key);
         let nearest = self
             .names
             .iter()
             .chain(constants)
             .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
             .filter(|known| likeness(known) > 0.8);
-        let meant = match nearest {
-            Some(known) => format!("; did you mean '{known}'?"),
-            None => ".".to_string(),
+        let reason = LogReason::NoColumn {
+            column,
+            nearest: nearest.cloned(),
+            found: self.names.clone(),
         };
-        let shown: Vec<&str> = self
-            .names
-            .iter()
-            .take(40)
-            .map(|name| match name.as_str() {
-                "" => "(unnamed)",
-                name => name,
-            })
-            .collect();
-        let more = if self.names.len() > 40 { ", ..." } else { "" };
-        Error::data(
-            Place::at(&self.path, self.line, 1),
-            format!(
-                "no column '{name}'{meant} The log has: {}{more}",
-                shown.join(", ")
-            ),
-            format!(
-                "name the column under [log] in the model, or, if it never changes, write '# {name} = VALUE' above the header"
-            ),
-        )
+        Error::refused(place, reason)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Which motions a model is fitted to, and which it is judged by.
+//! Splits motions into training and held-out ones.
 
 use super::Motion;
 
@@ -7,12 +7,13 @@ use super::Motion;
 pub struct Split {
     /// Fitted.
     pub training: Vec<Motion>,
-    /// Predicted only. Empty when there was a single motion: then no claim about new motions can be made.
+    /// Predicted only. Empty when there was a single motion: then no claim about new motions can be
+    /// made.
     pub held_out: Vec<Motion>,
 }
 
-/// Splits by whole motions. `explicit_holdout` is held out if there is any; otherwise the last third of
-/// `motions`, at least one and never more than a half; a single motion is all trained on.
+/// Splits by whole motions. `explicit_holdout` is held out if there is any; otherwise the last
+/// third of `motions`, at least one and never more than a half; a single motion is all trained on.
 pub fn split(mut motions: Vec<Motion>, explicit_holdout: Vec<Motion>) -> Split {
     if !explicit_holdout.is_empty() {
         return Split {
@@ -34,7 +35,7 @@ pub fn split(mut motions: Vec<Motion>, explicit_holdout: Vec<Motion>) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::fixture::motion;
+    use crate::log::tests::fixture::motion;
 
     #[test]
     fn holds_out_the_last_third() {

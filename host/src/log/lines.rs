@@ -1,13 +1,15 @@
-//! A file line by line, hashed on the way; holds one line at a time.
+//! Reads a file line by line and hashes it; holds one line at a time.
 
+use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
+use crate::number::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// Longest line accepted, bytes; a longer one is no log and would fill the memory.
-const LONGEST_LINE: usize = 1 << 20;
+pub(super) const LONGEST_LINE: usize = 1 << 20;
 
 /// Lines of a text file without their ends (LF or CR LF) and without a byte-order mark.
 pub(super) struct Lines {
@@ -48,11 +50,8 @@ impl Lines {
         self.number += 1;
         self.hash.update(&self.line);
         if read > LONGEST_LINE {
-            return Err(Error::data(
-                Place::at(&self.path, self.number, 1),
-                format!("a line longer than {LONGEST_LINE} bytes"),
-                "this is no CSV log; name a text file with one sample per line",
-            ));
+            let place = Place::at(&self.path, self.number, 1);
+            return Err(Error::refused(place, LogReason::LineTooLong));
         }
         let mut line = &self.line[..];
         line = line.strip_suffix(b"\n").unwrap_or(line);
@@ -67,21 +66,15 @@ impl Lines {
             Err(error) => {
                 let before = &line[..error.valid_up_to()];
                 let separators = before.iter().filter(|byte| b",;\t".contains(byte));
-                Err(Error::data(
-                    Place::at(&self.path, self.number, separators.count() + 1),
-                    format!("not UTF-8: byte 0x{:02x}", line[before.len()]),
-                    "save the log as UTF-8 text",
-                ))
+                let place = Place::at(&self.path, self.number, separators.count() + 1);
+                let byte = line[before.len()];
+                Err(Error::refused(place, LogReason::NotUtf8 { byte }))
             }
         }
     }
 
     /// SHA-256 of all bytes read, lower-case hexadecimal.
     pub fn sha256(self) -> String {
-        self.hash
-            .finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hex(self.hash.finalize())
     }
 }

@@ -1,4 +1,4 @@
-//! Measurements: reading logs as rigs write them, gating them, holding motions out.
+//! Measurement logs: CSV and JSON readers, quality check, training and held-out motions.
 
 mod bam;
 pub mod check;
@@ -8,22 +8,21 @@ mod holdout;
 mod lines;
 mod motion;
 mod read;
+mod reason;
 mod request;
 mod row;
+mod row_reader;
 mod write;
 
 #[cfg(test)]
-mod fixture;
-#[cfg(test)]
-mod real;
-#[cfg(test)]
 mod tests;
 
-pub use check::{Finding, Severity, check};
+pub use check::{LogFinding, Severity, check};
 pub use csv::{FileFacts, visit};
 pub use holdout::{Split, split};
-pub use motion::{Motion, Source};
+pub use motion::{Motion, MotionSource};
 pub use read::{LEAST_ROWS, read};
+pub use reason::LogReason;
 pub use request::LogRequest;
-pub use row::{Fields, Row};
+pub use row::{Fields, LogRow};
 pub use write::to_csv;

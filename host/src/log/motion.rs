@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Where a motion came from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Source {
+pub struct MotionSource {
     /// The file as the user named it.
     pub path: PathBuf,
     /// SHA-256 of the whole file, lower-case hexadecimal.
@@ -19,14 +19,15 @@ pub struct Motion {
     /// File name, and the segment where a file holds several: `single_id.csv#3`.
     pub name: String,
     /// File, hash and lines.
-    pub source: Source,
+    pub source: MotionSource,
     /// Strictly increasing, s.
     pub time_s: Vec<f64>,
-    /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the model says).
+    /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the
+    /// model says).
     pub position_rad: Vec<Vec<f64>>,
     /// Per joint: measured speed, rad/s, where logged.
     pub velocity_rad_s: Vec<Option<Vec<f64>>>,
-    /// Per joint: what the drive was told, in SI of its kind; none for a passive joint.
+    /// Per joint: the drive's input, in SI of its kind; none for a passive joint.
     pub input: Vec<Option<Vec<f64>>>,
     /// Supply, V, where logged.
     pub supply_v: Option<Vec<f64>>,

@@ -1,26 +1,26 @@
-//! From rows to motions: cutting at segments and gaps, refusing what no simulation could follow.
+//! Reads logs into motions: cut at segments and gaps, refused where no simulation can follow.
 
 use super::csv::visit;
+use super::reason::LogReason;
 use super::request::LogRequest;
-use super::row::Row;
-use super::{Motion, Source, bam};
+use super::row::{Before, LogRow};
+use super::{Motion, MotionSource, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
 use std::collections::HashMap;
 
 /// Fewest samples a motion may have.
 pub const LEAST_ROWS: usize = 10;
-/// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take ages.
-pub(super) const LONGEST_GAP_S: f64 = 100.0;
 
 /// Reads the requested logs into motions, in order; a file ending in `.json` is a BAM log.
 ///
-/// Motions are named after the file, its rows where only some were asked for, and the segment: `a.csv`,
-/// `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are not judged.
+/// Motions are named after the file, its rows where only some were asked for, and the segment:
+/// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
+/// not judged.
 ///
 /// # Errors
-/// Unreadable cells and rows, time that does not increase, a payload or orientation that changes within a
-/// motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
+/// Unreadable cells and rows, time that does not increase, a payload or orientation that changes
+/// within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut motions = Vec::new();
     for request in requests {
@@ -47,25 +47,31 @@ fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
             false => Ok(()),
         },
     )?;
-    if let Some((first, last)) = request.rows.filter(|(_, last)| *last >= facts.rows) {
-        return Err(Error::data(
-            Place::file(&request.path),
-            format!(
-                "rows {first}-{last} asked for, but it has {} rows",
-                facts.rows
-            ),
-            "data rows count from 0, after the header",
-        ));
+    if let Some(reason) = request.beyond(facts.rows) {
+        return Err(Error::refused(Place::file(&request.path), reason));
     }
     cutter.finish(&facts.sha256)
 }
 
-/// What to do about a gap too long.
-pub(super) const GAP_REMEDY: &str = "check the time column's unit, or set split_at_gap_s in the model's [log] to begin a new motion there";
-
 struct Piece {
     segment: Option<String>,
     motion: Motion,
+}
+
+impl Piece {
+    fn before(&self) -> Before<'_> {
+        Before {
+            segment: self.segment.as_deref(),
+            time_s: self
+                .motion
+                .time_s
+                .last()
+                .copied()
+                .unwrap_or(f64::NEG_INFINITY),
+            payload_kg: self.motion.payload_kg,
+            turned: self.motion.turned,
+        }
+    }
 }
 
 struct Cutter<'a> {
@@ -75,13 +81,21 @@ struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    fn take(&mut self, row: &Row) -> Result<()> {
-        if self.begins(row)? {
-            self.close()?;
-            self.pieces.push(Piece {
-                segment: row.segment.clone(),
-                motion: begin(row),
-            });
+    fn take(&mut self, row: &LogRow) -> Result<()> {
+        let previous = self.pieces.last().map(Piece::before);
+        match previous.and_then(|previous| row.follows(&previous, self.split_at_gap_s)) {
+            None => {
+                self.close()?;
+                self.pieces.push(Piece {
+                    segment: row.segment.clone(),
+                    motion: begin(row),
+                });
+            }
+            Some(wrong) => {
+                if let Some((field, reason)) = wrong.into_iter().next() {
+                    return Err(Error::refused(row.place(field), reason));
+                }
+            }
         }
         if let Some(piece) = self.pieces.last_mut() {
             append(&mut piece.motion, row);
@@ -89,90 +103,25 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// Whether a new motion begins with `row`; if not, it must fit the present one.
-    fn begins(&self, row: &Row) -> Result<bool> {
-        let Some(Piece { segment, motion }) = self.pieces.last() else {
-            return Ok(true);
-        };
-        if *segment != row.segment {
-            return Ok(true);
-        }
-        let previous = motion.time_s.last().copied().unwrap_or(f64::NEG_INFINITY);
-        if row.time_s <= previous {
-            return Err(Error::data(
-                row.place(row.fields.time),
-                format!(
-                    "time does not increase: {} s after {previous} s",
-                    row.time_s
-                ),
-                "cut the log there, mark the recordings in a segment column, or name a range of rows",
-            ));
-        }
-        if self
-            .split_at_gap_s
-            .is_some_and(|gap| row.time_s - previous > gap)
-        {
-            return Ok(true);
-        }
-        if row.time_s - previous > LONGEST_GAP_S {
-            return Err(Error::data(
-                row.place(row.fields.time),
-                format!(
-                    "time jumps from {previous} s to {} s within a motion",
-                    row.time_s
-                ),
-                GAP_REMEDY,
-            ));
-        }
-        if row.payload_kg != motion.payload_kg {
-            return Err(Error::data(
-                row.place(row.fields.payload),
-                format!(
-                    "payload changes from {} kg to {} kg within a motion",
-                    motion.payload_kg, row.payload_kg
-                ),
-                "stop the recording to change the payload, or mark motions in a segment column",
-            ));
-        }
-        if row.turned != motion.turned {
-            return Err(Error::data(
-                row.place(row.fields.turned),
-                "the rig is turned round within a motion",
-                "stop the recording to turn the rig, or mark motions in a segment column",
-            ));
-        }
-        Ok(false)
-    }
-
     /// Refuses the motion just ended if it is too short.
     fn close(&self) -> Result<()> {
-        let Some(Piece { motion, .. }) = self.pieces.last() else {
-            return Ok(());
-        };
-        if motion.len() >= LEAST_ROWS {
-            return Ok(());
+        match self.pieces.last() {
+            Some(Piece { motion, .. }) if motion.len() < LEAST_ROWS => {
+                let place = Place {
+                    line: Some(motion.source.lines.0),
+                    ..Place::file(&self.request.path)
+                };
+                let rows = motion.len();
+                Err(Error::refused(place, LogReason::TooShort { rows }))
+            }
+            _ => Ok(()),
         }
-        let place = Place {
-            line: Some(motion.source.lines.0),
-            ..Place::file(&self.request.path)
-        };
-        Err(Error::data(
-            place,
-            format!(
-                "a motion of {} rows; {LEAST_ROWS} are the least",
-                motion.len()
-            ),
-            "leave it out by a row range such as log.csv:26-139, or record longer",
-        ))
     }
 
     fn finish(self, sha256: &str) -> Result<Vec<Motion>> {
         if self.pieces.is_empty() {
-            return Err(Error::data(
-                Place::file(&self.request.path),
-                "the log holds no sample",
-                "record again: below the column names there is no row",
-            ));
+            let place = Place::file(&self.request.path);
+            return Err(Error::refused(place, LogReason::NoSample));
         }
         self.close()?;
         let file = self.request.name();
@@ -200,10 +149,10 @@ impl Cutter<'_> {
     }
 }
 
-fn begin(row: &Row) -> Motion {
+fn begin(row: &LogRow) -> Motion {
     Motion {
         name: String::new(),
-        source: Source {
+        source: MotionSource {
             path: row.path.clone(),
             sha256: String::new(),
             lines: (row.line, row.line),
@@ -223,7 +172,7 @@ fn begin(row: &Row) -> Motion {
     }
 }
 
-fn append(motion: &mut Motion, row: &Row) {
+fn append(motion: &mut Motion, row: &LogRow) {
     fn push<T: Copy>(values: &mut Option<Vec<T>>, value: Option<T>) {
         if let (Some(values), Some(value)) = (values, value) {
             values.push(value);

@@ -1,5 +1,6 @@
-//! Which rows of which file the user asked for.
+//! A log as named on the command line: a path, and the rows wanted.
 
+use super::reason::LogReason;
 use crate::error::{Error, Result};
 use std::fmt;
 use std::path::PathBuf;
@@ -27,6 +28,12 @@ impl LogRequest {
     pub fn wants(&self, number: usize) -> bool {
         self.rows
             .is_none_or(|(first, last)| (first..=last).contains(&number))
+    }
+
+    /// Why a log of so many rows cannot give the rows wanted, if it cannot.
+    pub(super) fn beyond(&self, rows: usize) -> Option<LogReason> {
+        let (first, last) = self.rows.filter(|(_, last)| *last >= rows)?;
+        Some(LogReason::RowsBeyond { first, last, rows })
     }
 
     /// File name without its folder, and the rows where a part is wanted: `drop.csv:26-139`.

@@ -1,13 +1,13 @@
-//! A motion as the text of a CSV log.
+//! Writes a motion as a CSV log.
 
 use super::Motion;
 use crate::model::{Column, LogColumns};
 
 /// The text of a log that [`super::read`] reads back to the same motion under the same columns.
 ///
-/// `comments` go first, each line behind `# `; payload, orientation and segment, where the columns name
-/// them, follow as `# key = value`. Values are in each column's unit, rounded to 12 significant digits.
-/// A column the motion has no values for is left out.
+/// `comments` go first, each line behind `# `; payload, orientation and segment, where the columns
+/// name them, follow as `# key = value`. Values are in each column's unit, rounded to 12
+/// significant digits. A column the motion has no values for is left out.
 pub fn to_csv(motion: &Motion, columns: &LogColumns, comments: &[String]) -> String {
     let mut text = String::new();
     if let Some(payload) = &columns.payload {

@@ -2,8 +2,8 @@
 
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
-use super::suggest::suggest;
-use crate::effects::{self, Card};
+use super::reason::PathReason;
+use crate::effects::{self, EffectInfo};
 use crate::error::Error;
 use std::str::FromStr;
 
@@ -13,85 +13,71 @@ impl FromStr for ParameterPath {
     /// Reads a path as [`Display`](std::fmt::Display) writes it.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the nearest known name.
+    /// [`Error::Usage`] with a [`PathReason`].
     fn from_str(text: &str) -> Result<Self, Error> {
-        let (owner, key) = text.split_once('.').ok_or_else(|| {
-            Error::usage(
-                format!("`{text}` names no parameter"),
-                "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`",
-            )
-        })?;
-        if let Some(index) = numbered(owner, "link") {
-            let field = choose(text, key, LinkField::ALL.map(|f| (f.key(), f)))?;
-            return Ok(ParameterPath::Link { index, field });
-        }
-        if let Some(index) = numbered(owner, "joint") {
-            let field = choose(text, key, JointField::ALL.map(|f| (f.key(), f)))?;
-            return Ok(ParameterPath::Joint { index, field });
-        }
-        effect_path(text, owner, key)
+        read(text).map_err(|reason| Error::Usage(Box::new(reason)))
     }
 }
 
-fn effect_path(text: &str, owner: &str, key: &str) -> Result<ParameterPath, Error> {
+pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
+    let (owner, key) = text
+        .split_once('.')
+        .ok_or_else(|| PathReason::NoParameter { text: text.into() })?;
+    if let Some(index) = owner.strip_prefix("link").and_then(counted) {
+        let field = choose(text, key, LinkField::ALL.map(|f| (f.key(), f)))?;
+        return Ok(ParameterPath::Link { index, field });
+    }
+    if let Some(index) = owner.strip_prefix("joint").and_then(counted) {
+        let field = choose(text, key, JointField::ALL.map(|f| (f.key(), f)))?;
+        return Ok(ParameterPath::Joint { index, field });
+    }
     let (id, joint) = match owner.split_once('@') {
         Some((id, joint)) => (id, Some(joint)),
         None => (owner, None),
     };
-    let cards = effects::EFFECTS.iter().map(|effect| effect.card());
-    let card: &'static Card = choose(text, id, cards.map(|card| (card.id, card)))?;
-    let whole_rig = card.scope == effects::Scope::WholeRig;
-    let joint = match joint {
-        Some(joint) if !whole_rig => {
-            let joint = counted(joint).ok_or_else(|| {
-                Error::usage(
-                    format!("`{text}`: `{joint}` is no joint"),
-                    "joints count from 1",
-                )
-            })?;
-            Some(joint)
-        }
-        None if whole_rig => None,
-        Some(_) => {
-            return Err(Error::usage(
-                format!("`{text}`: `{id}` acts on the whole rig, not on one joint"),
-                format!("write `{id}.{key}`"),
-            ));
-        }
-        None => {
-            return Err(Error::usage(
-                format!("`{text}` does not say at which joint"),
-                format!("write `{id}@1.{key}` for the first joint"),
-            ));
-        }
-    };
-    let keys = card.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
+    let infos = effects::EFFECTS.iter().map(|effect| effect.info());
+    let info: &'static EffectInfo = choose(text, id, infos.map(|info| (info.id, info)))?;
+    let keys = info.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
     Ok(ParameterPath::Effect {
-        id: card.id,
-        joint,
+        id: info.id,
+        joint: joint_of(text, info, joint)?,
         parameter: choose(text, key, keys)?,
     })
 }
 
-/// The index from 0 in `link3`, if the name is of that kind.
-fn numbered(owner: &str, kind: &str) -> Option<usize> {
-    counted(owner.strip_prefix(kind)?)
+/// The joint named behind the `@`, as the effect's scope allows.
+fn joint_of(
+    text: &str,
+    info: &EffectInfo,
+    joint: Option<&str>,
+) -> Result<Option<usize>, PathReason> {
+    let (text, id) = (text.to_string(), info.id);
+    match (joint, info.scope == effects::Scope::WholeRig) {
+        (None, true) => Ok(None),
+        (None, false) => Err(PathReason::MissingJoint { text, id }),
+        (Some(_), true) => Err(PathReason::WholeRig { text, id }),
+        (Some(joint), false) => match counted(joint) {
+            Some(index) => Ok(Some(index)),
+            None => Err(PathReason::NoJoint {
+                text,
+                joint: joint.into(),
+            }),
+        },
+    }
 }
 
 /// A count from 1, written without sign or leading zero, as an index from 0.
 fn counted(text: &str) -> Option<usize> {
     let plain = text.bytes().all(|b| b.is_ascii_digit()) && !text.starts_with('0');
-    text.parse::<usize>()
-        .ok()
-        .filter(|_| plain)
-        .and_then(|n| n.checked_sub(1))
+    let count = text.parse::<usize>().ok().filter(|_| plain)?;
+    count.checked_sub(1)
 }
 
 fn choose<T>(
     text: &str,
     name: &str,
     known: impl IntoIterator<Item = (&'static str, T)>,
-) -> Result<T, Error> {
+) -> Result<T, PathReason> {
     let mut names = Vec::new();
     for (known, value) in known {
         if known == name {
@@ -99,8 +85,9 @@ fn choose<T>(
         }
         names.push(known);
     }
-    Err(Error::usage(
-        format!("`{text}`: unknown name `{name}`"),
-        suggest(name, &names),
-    ))
+    Err(PathReason::UnknownName {
+        text: text.into(),
+        name: name.into(),
+        known: names,
+    })
 }

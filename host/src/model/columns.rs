@@ -1,4 +1,4 @@
-//! How a rig's logs name and scale their columns.
+//! The columns of a rig's logs: names, units, offsets.
 
 use super::unit::Unit;
 
@@ -32,7 +32,7 @@ pub struct JointColumns {
     pub position: Column,
     /// Measured speed, if logged.
     pub velocity: Option<Column>,
-    /// What the drive was told: torque, duty, goal angle or goal speed; passive joints have none.
+    /// The drive's input: torque, duty, goal angle or goal speed; none for a passive joint.
     pub input: Option<Column>,
 }
 
@@ -51,10 +51,12 @@ pub struct LogColumns {
     pub payload: Option<Column>,
     /// Where the payload sits, m from the last joint along the link.
     pub payload_at_m: f64,
-    /// 1 when the rig was turned by 180 degrees about the vertical, 0 otherwise; constant within a motion.
+    /// 1 when the rig was turned by 180 degrees about the vertical, 0 otherwise; constant within a
+    /// motion.
     pub turned: Option<String>,
     /// One entry per joint.
     pub joints: Vec<JointColumns>,
-    /// A new motion begins where time jumps by more than this, s; without it a motion goes on across every gap.
+    /// A new motion begins where time jumps by more than this, s; without it a motion goes on
+    /// across every gap.
     pub split_at_gap_s: Option<f64>,
 }

@@ -8,7 +8,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Tab
 
 /// How an effect's values came about, written as `[effect.fitted]`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
+pub struct FitRecord {
     /// Key of the parameter, and the interval's low and high end in its unit.
     pub intervals: Vec<(String, f64, f64)>,
     /// Name and SHA-256 of every log it was fitted to.
@@ -23,8 +23,8 @@ pub struct Fitted {
 
 /// The text with one more `[[effect]]` at the end of those it has; `path` only names it in errors.
 ///
-/// Where `[fit]` names what is free, the effect's values join that list, so that later fits and diagnoses refit
-/// them; without such a list the values of all effects are free anyway.
+/// Where `[fit]` names what is free, the effect's values join that list, so that later fits and
+/// diagnoses refit them; without such a list the values of all effects are free anyway.
 ///
 /// # Errors
 /// The text is no model, it holds the effect at that joint already, or the effect does not suit it.
@@ -32,18 +32,18 @@ pub fn add_effect(
     text: &str,
     path: &Path,
     effect: &EffectInstance,
-    fitted: Option<&Fitted>,
+    fitted: Option<&FitRecord>,
 ) -> Result<String> {
     Model::parse(text, path)?;
     let mut document = document(text, path)?;
     let mut table = Table::new();
     table.decor_mut().set_prefix("\n");
-    let card = effect.effect.card();
-    table.insert("kind", toml_edit::value(card.id));
+    let info = effect.effect.info();
+    table.insert("kind", toml_edit::value(info.id));
     if let Some(joint) = effect.joint {
         table.insert("joint", toml_edit::value(joint as i64 + 1));
     }
-    for (parameter, value) in card.parameters.iter().zip(&effect.values) {
+    for (parameter, value) in info.parameters.iter().zip(&effect.values) {
         table.insert(parameter.key, Item::Value(number(*value)));
     }
     if let Some(fitted) = fitted {
@@ -89,7 +89,10 @@ fn checked(document: DocumentMut, path: &Path) -> Result<String> {
     match Model::parse(&text, path) {
         Ok(_) => Ok(text),
         // Its line is one of a text that will not be written.
-        Err(Error::Data { what, remedy, .. }) => Err(Error::data(Place::file(path), what, remedy)),
+        Err(Error::Data { reason, .. }) => Err(Error::Data {
+            place: Place::file(path),
+            reason,
+        }),
         Err(error) => Err(error),
     }
 }
@@ -198,7 +201,7 @@ fn append(list: &mut Array, text: &str) {
     list.push_formatted(value);
 }
 
-fn provenance(fitted: &Fitted) -> Table {
+fn provenance(fitted: &FitRecord) -> Table {
     let mut table = Table::new();
     let mut intervals = InlineTable::new();
     for (key, low, high) in &fitted.intervals {

@@ -1,6 +1,6 @@
-//! The numbers of links and joints: key, unit, range, and where they are kept.
+//! The numbers of links and joints: key, range, and where they are kept.
 
-use super::{Drive, Link, Motor};
+use super::{Drive, Link};
 
 /// Range of a quantity that must be above zero; far wider than any rig on a bench.
 pub(super) const POSITIVE: (f64, f64) = (1e-9, 1e3);
@@ -27,21 +27,13 @@ impl LinkField {
         LinkField::Inertia,
     ];
 
-    /// Key in model files.
+    /// Key in model files; it ends in the unit.
     pub fn key(self) -> &'static str {
         match self {
             LinkField::Length => "length_m",
             LinkField::Com => "com_m",
             LinkField::Mass => "mass_kg",
             LinkField::Inertia => "inertia_kg_m2",
-        }
-    }
-
-    pub(super) fn unit(self) -> &'static str {
-        match self {
-            LinkField::Length | LinkField::Com => "m",
-            LinkField::Mass => "kg",
-            LinkField::Inertia => "kg m^2",
         }
     }
 
@@ -59,15 +51,6 @@ impl LinkField {
             LinkField::Com => &mut link.com_m,
             LinkField::Mass => &mut link.mass_kg,
             LinkField::Inertia => &mut link.inertia_kg_m2,
-        }
-    }
-
-    pub(super) fn read(self, link: &Link) -> f64 {
-        match self {
-            LinkField::Length => link.length_m,
-            LinkField::Com => link.com_m,
-            LinkField::Mass => link.mass_kg,
-            LinkField::Inertia => link.inertia_kg_m2,
         }
     }
 }
@@ -94,7 +77,7 @@ impl JointField {
         JointField::NoLoadSpeed,
     ];
 
-    /// Key in model files.
+    /// Key in model files; it ends in the unit.
     pub fn key(self) -> &'static str {
         match self {
             JointField::GainPerRad => "gain_per_rad",
@@ -104,42 +87,12 @@ impl JointField {
         }
     }
 
-    pub(super) fn unit(self) -> &'static str {
-        match self {
-            JointField::GainPerRad => "1/rad",
-            JointField::GainSPerRad => "s/rad",
-            JointField::StallTorque => "N m",
-            JointField::NoLoadSpeed => "rad/s",
-        }
-    }
-
     pub(super) fn of(self, drive: &mut Drive) -> Option<&mut f64> {
         match (self, drive) {
             (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(gain_per_rad),
             (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(gain_s_per_rad),
-            (field, Drive::Duty(motor))
-            | (field, Drive::Position { motor, .. })
-            | (field, Drive::Speed { motor, .. }) => field.of_motor(motor),
-            _ => None,
-        }
-    }
-
-    pub(super) fn of_motor(self, motor: &mut Motor) -> Option<&mut f64> {
-        match self {
-            JointField::StallTorque => Some(&mut motor.stall_torque_nm),
-            JointField::NoLoadSpeed => Some(&mut motor.no_load_speed_rad_s),
-            JointField::GainPerRad | JointField::GainSPerRad => None,
-        }
-    }
-
-    pub(super) fn read(self, drive: &Drive) -> Option<f64> {
-        match (self, drive) {
-            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(*gain_per_rad),
-            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(*gain_s_per_rad),
-            (JointField::StallTorque, drive) => drive.motor().map(|motor| motor.stall_torque_nm),
-            (JointField::NoLoadSpeed, drive) => {
-                drive.motor().map(|motor| motor.no_load_speed_rad_s)
-            }
+            (JointField::StallTorque, drive) => Some(&mut drive.motor_mut()?.stall_torque_nm),
+            (JointField::NoLoadSpeed, drive) => Some(&mut drive.motor_mut()?.no_load_speed_rad_s),
             _ => None,
         }
     }

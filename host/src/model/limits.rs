@@ -1,15 +1,20 @@
-//! What a number of a model file may be, and how that is asked for.
+//! The range of a number in a TOML file.
 
-/// What a number may be.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+use std::fmt;
+
+/// A range; `Display` reads on from "a number": "above 0, up to 1000".
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Lowest value.
     pub low: f64,
+    /// Highest value.
     pub high: f64,
-    /// Whether `low` itself is refused, shown as "above".
+    /// Whether `low` itself is refused.
     pub above: bool,
 }
 
 impl Limits {
+    /// From `low` to `high`.
     pub const fn within(low: f64, high: f64) -> Self {
         Limits {
             low,
@@ -18,6 +23,7 @@ impl Limits {
         }
     }
 
+    /// Above `low`, up to `high`.
     pub const fn above(low: f64, high: f64) -> Self {
         Limits {
             low,
@@ -26,21 +32,20 @@ impl Limits {
         }
     }
 
+    /// Whether the number is finite and in the range.
     pub fn allow(self, number: f64) -> bool {
-        number <= self.high
-            && if self.above {
-                number > self.low
-            } else {
-                number >= self.low
-            }
+        let low = number > self.low || !self.above && number == self.low;
+        number.is_finite() && low && number <= self.high
     }
+}
 
-    pub fn wish(self) -> String {
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Limits { low, high, above } = self;
         match (above, high.is_finite()) {
-            (true, true) => format!("give a number above {low}, up to {high}"),
-            (true, false) => format!("give a number above {low}"),
-            (false, _) => format!("give a number from {low} to {high}"),
+            (true, true) => write!(f, "above {low}, up to {high}"),
+            (true, false) => write!(f, "above {low}"),
+            (false, _) => write!(f, "from {low} to {high}"),
         }
     }
 }

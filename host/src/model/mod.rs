@@ -1,23 +1,29 @@
 //! A robot or a bench arm as plain numbers: one planar chain of n links for everything.
 //!
-//! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line; [`edit`]
-//! writes effects and fitted values back without losing a comment.
+//! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line;
+//! [`edit`] writes effects and fitted values back without losing a comment.
 
 mod address;
 mod columns;
 pub mod edit;
 mod field;
-pub(crate) mod limits;
+mod limits;
 mod parse;
 mod path;
 pub(crate) mod reader;
+mod reason;
+mod rig;
 pub(crate) mod source;
-pub(crate) mod suggest;
+pub mod suggest;
+mod toml_reason;
 mod unit;
 
 pub use columns::{Column, JointColumns, LogColumns};
 pub use field::{JointField, LinkField};
+pub use limits::Limits;
 pub use path::ParameterPath;
+pub use reason::{ModelReason, PathReason};
+pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
 use crate::error::Result;
@@ -115,7 +121,8 @@ pub enum Drive {
         /// The motor behind it.
         motor: Motor,
     },
-    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped at 1.
+    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped
+    /// at 1.
     Speed {
         /// Duty per rad/s of error.
         gain_s_per_rad: f64,
@@ -127,6 +134,15 @@ pub enum Drive {
 impl Drive {
     /// The motor, if there is one.
     pub fn motor(&self) -> Option<&Motor> {
+        match self {
+            Drive::Passive | Drive::Torque => None,
+            Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
+                Some(motor)
+            }
+        }
+    }
+
+    fn motor_mut(&mut self) -> Option<&mut Motor> {
         match self {
             Drive::Passive | Drive::Torque => None,
             Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
@@ -157,7 +173,8 @@ impl Drive {
 pub struct Motor {
     /// Torque at standstill and full duty at the nominal supply, N m.
     pub stall_torque_nm: f64,
-    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not fall with speed.
+    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not
+    /// fall with speed.
     pub no_load_speed_rad_s: f64,
     /// Supply for which the figures hold, V.
     pub nominal_supply_v: Option<f64>,
@@ -170,8 +187,15 @@ pub struct EffectInstance {
     pub effect: &'static dyn crate::effects::Effect,
     /// Joint index from 0; `None` acts on the whole rig.
     pub joint: Option<usize>,
-    /// Values in the order of the effect's card.
+    /// Values in the order of the effect's parameters.
     pub values: Vec<f64>,
+}
+
+impl EffectInstance {
+    /// Whether it is the effect of this id at this joint.
+    fn is(&self, id: &str, joint: Option<usize>) -> bool {
+        self.joint == joint && self.effect.info().id == id
+    }
 }
 
 impl Model {
@@ -206,8 +230,6 @@ impl Model {
 
     /// Whether the model already holds this effect at this joint.
     pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
-        self.effects
-            .iter()
-            .any(|e| e.effect.card().id == id && e.joint == joint)
+        self.effects.iter().any(|effect| effect.is(id, joint))
     }
 }

@@ -1,6 +1,8 @@
-//! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`, `coulomb@1.torque_nm`.
+//! The address of one number in a model: `link1.mass_kg`, `joint1.gain_per_rad`,
+//! `coulomb@1.torque_nm`.
 
 use super::field::{JointField, LinkField, POSITIVE};
+use super::suggest::split_unit;
 use super::{EffectInstance, Model};
 use crate::effects;
 use std::fmt;
@@ -24,20 +26,20 @@ pub enum ParameterPath {
     },
     /// A value of an effect: `coulomb@1.torque_nm`, or `base_tilt.angle_rad` for the whole rig.
     Effect {
-        /// The effect's id on its card.
+        /// The effect's id.
         id: &'static str,
         /// Joint from the base; `None` for the whole rig.
         joint: Option<usize>,
-        /// Position on the card.
+        /// Position among its parameters.
         parameter: usize,
     },
 }
 
 impl ParameterPath {
-    /// Addresses of an effect's values, in the card's order.
+    /// Addresses of an effect's values, in the order of its parameters.
     pub fn of_effect(effect: &EffectInstance) -> impl Iterator<Item = ParameterPath> + '_ {
         (0..effect.values.len()).map(|parameter| ParameterPath::Effect {
-            id: effect.effect.card().id,
+            id: effect.effect.info().id,
             joint: effect.joint,
             parameter,
         })
@@ -47,22 +49,24 @@ impl ParameterPath {
     pub fn get(&self, model: &Model) -> Option<f64> {
         match *self {
             ParameterPath::Link { index, field } => {
-                model.links.get(index).map(|link| field.read(link))
+                Some(*field.of(&mut model.links.get(index)?.clone()))
             }
-            ParameterPath::Joint { index, field } => field.read(&model.joints.get(index)?.drive),
+            ParameterPath::Joint { index, field } => {
+                Some(*field.of(&mut model.joints.get(index)?.drive.clone())?)
+            }
             ParameterPath::Effect {
                 id,
                 joint,
                 parameter,
-            } => model
-                .effects
-                .iter()
-                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
-                .and_then(|effect| effect.values.get(parameter).copied()),
+            } => {
+                let effect = model.effects.iter().find(|effect| effect.is(id, joint))?;
+                effect.values.get(parameter).copied()
+            }
         }
     }
 
-    /// Writes the number there, unchecked against [`bounds`](Self::bounds); `false` if there is no such place.
+    /// Writes the number there, unchecked against [`bounds`](Self::bounds); `false` if there is no
+    /// such place.
     #[must_use]
     pub fn set(&self, model: &mut Model, value: f64) -> bool {
         let place = match *self {
@@ -80,19 +84,19 @@ impl ParameterPath {
             } => model
                 .effects
                 .iter_mut()
-                .find(|effect| effect.joint == joint && effect.effect.card().id == id)
+                .find(|effect| effect.is(id, joint))
                 .and_then(|effect| effect.values.get_mut(parameter)),
         };
         place.map(|place| *place = value).is_some()
     }
 
-    /// Lowest and highest possible value: an effect's card's bounds, else what is physical.
+    /// Lowest and highest possible value: the bounds of an effect's parameter, else what is physical.
     pub fn bounds(&self, _model: &Model) -> (f64, f64) {
         match *self {
             ParameterPath::Link { field, .. } => field.bounds(),
             ParameterPath::Joint { .. } => POSITIVE,
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
+                parameter_of(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
             }
         }
     }
@@ -100,11 +104,10 @@ impl ParameterPath {
     /// Unit as shown to people: `N m`, `kg m^2`.
     pub fn unit(&self) -> &'static str {
         match *self {
-            ParameterPath::Link { field, .. } => field.unit(),
-            ParameterPath::Joint { field, .. } => field.unit(),
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or("", |p| p.unit)
+                parameter_of(id, parameter).map_or("", |p| p.unit)
             }
+            _ => split_unit(self.key()).map_or("", |(_, unit)| unit),
         }
     }
 
@@ -114,14 +117,14 @@ impl ParameterPath {
             ParameterPath::Link { field, .. } => field.key(),
             ParameterPath::Joint { field, .. } => field.key(),
             ParameterPath::Effect { id, parameter, .. } => {
-                on_card(id, parameter).map_or("", |p| p.key)
+                parameter_of(id, parameter).map_or("", |p| p.key)
             }
         }
     }
 }
 
-fn on_card(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
-    effects::named(id)?.card().parameters.get(parameter)
+fn parameter_of(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
+    effects::named(id)?.info().parameters.get(parameter)
 }
 
 impl fmt::Display for ParameterPath {
@@ -225,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_and_units_come_from_the_card_or_the_quantity() {
+    fn bounds_and_units_come_from_the_effect_or_the_quantity() {
         let model = model();
         let coulomb: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
         assert_eq!(coulomb.bounds(&model), (0.0, 10.0));

@@ -1,35 +1,31 @@
-//! The text of a model file, which knows the line and column of every complaint.
+//! The text of a TOML file: finds the line and column of every part.
 
+use super::toml_reason::TomlReason;
 use crate::error::{Error, Place, Result};
 use std::ops::Range;
 use std::path::Path;
 
-/// The text a table came from, and its name for errors.
+/// The text that a table came from, and its name for errors.
 #[derive(Debug)]
-pub(crate) struct Source<'a> {
+pub(crate) struct TomlSource<'a> {
     pub text: &'a str,
     pub file: &'a Path,
 }
 
-impl Source<'_> {
+impl TomlSource<'_> {
     /// Parses the text, keeping where everything stands.
     ///
     /// # Errors
-    /// TOML that does not parse, at the place where it stops making sense.
+    /// Text that is not TOML, at the place where the parser stops.
     pub fn document(&self) -> Result<toml_edit::Document<&str>> {
         toml_edit::Document::parse(self.text).map_err(|error| {
-            let what = error.message().trim().replace('\n', ", ");
-            self.error(error.span(), format!("not TOML: {what}"), SYNTAX)
+            let message = error.message().trim().replace('\n', ", ");
+            Error::refused(self.place(error.span()), TomlReason::Syntax { message })
         })
     }
 
-    /// A complaint about the text at `span`.
-    pub fn error(
-        &self,
-        span: Option<Range<usize>>,
-        what: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Error {
+    /// Line and column at which `span` starts; the file's start without a span.
+    pub fn place(&self, span: Option<Range<usize>>) -> Place {
         let mut start = span.map_or(0, |span| span.start).min(self.text.len());
         while !self.text.is_char_boundary(start) {
             start -= 1;
@@ -37,9 +33,6 @@ impl Source<'_> {
         let before = &self.text[..start];
         let line = before.matches('\n').count() + 1;
         let last = before.rsplit('\n').next().unwrap_or("");
-        let place = Place::at(self.file, line, last.chars().count() + 1);
-        Error::data(place, what, remedy)
+        Place::at(self.file, line, last.chars().count() + 1)
     }
 }
-
-const SYNTAX: &str = "write `key = value` lines under `[table]` headings; text needs quotes";

@@ -1,19 +1,24 @@
-//! "Did you mean": names and units for keys that are none.
+//! Suggests the nearest known name, or the unit that a key lacks.
 
 /// Which of the known names was meant, and which there are.
-pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
+pub fn suggest(name: &str, known: &[impl AsRef<str>]) -> String {
+    let known: Vec<&str> = known.iter().map(AsRef::as_ref).collect();
     let all = known.join(", ");
-    let slips = |known: &str| strsim::damerau_levenshtein(name, known);
-    let near = known
-        .iter()
-        .map(|known| (strsim::jaro_winkler(name, known), *known))
-        .filter(|(likeness, known)| *likeness > 0.8 || slips(known) <= known.len() / 3)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, known)| known);
-    match near {
+    match nearest(name, known) {
         Some(near) => format!("did you mean `{near}`? known here: {all}"),
         None => format!("known here: {all}"),
     }
+}
+
+/// The known name that is most like this one, if any is.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let slips = |known: &str| strsim::damerau_levenshtein(name, known);
+    known
+        .into_iter()
+        .map(|known| (strsim::jaro_winkler(name, known), known))
+        .filter(|(likeness, known)| *likeness > 0.8 || slips(known) <= known.len() / 3)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known)
 }
 
 /// Unit suffixes of keys, longest first where one ends in another.

@@ -1,6 +1,7 @@
 //! Units a log may be written in; declared, never guessed.
 
 use std::f64::consts::{PI, TAU};
+use std::fmt;
 
 /// What a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +22,34 @@ pub enum Dimension {
     Ratio,
 }
 
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Dimension::Time => "a time",
+            Dimension::Angle => "an angle",
+            Dimension::Speed => "an angular speed",
+            Dimension::Torque => "a torque",
+            Dimension::Voltage => "a voltage",
+            Dimension::Mass => "a mass",
+            Dimension::Ratio => "a share",
+        })
+    }
+}
+
 impl Dimension {
+    /// What a key for this quantity ends in: the suffix of the SI unit, as `_rad`.
+    pub(super) fn suffix(self) -> &'static str {
+        match self {
+            Dimension::Time => "_s",
+            Dimension::Angle => "_rad",
+            Dimension::Speed => "_rad_s",
+            Dimension::Torque => "_nm",
+            Dimension::Voltage => "_v",
+            Dimension::Mass => "_kg",
+            Dimension::Ratio => "",
+        }
+    }
+
     /// Names of the units that measure this, for error messages.
     pub fn unit_names(self) -> impl Iterator<Item = &'static str> {
         UNITS

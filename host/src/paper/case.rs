@@ -1,12 +1,12 @@
 //! The robot's closed loop under the paper's circumstances: what a run is made of, and what is seen of it.
 
 use super::computed::Computed;
-use crate::closed_loop::{
-    ClosedLoop, Conditions, Gyro, Outcome, Plant, Start, StateFeedback, stream,
-};
 use crate::effects;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
+use crate::sim::closed_loop::{
+    ClosedLoop, Commands, Drives, Gyro, InitialState, Outcome, Sensor, StateFeedback, stream,
+};
 use crate::synth::upright;
 use nalgebra::DMatrix;
 use std::path::Path;
@@ -50,8 +50,12 @@ pub(super) struct Case {
     pub eccentric_rad: f64,
     /// Whether the controller knows.
     pub compensated: bool,
-    /// Sensor, drives, clock.
-    pub conditions: Conditions,
+    /// How it is measured.
+    pub sensor: Sensor,
+    /// What limits its drives.
+    pub drives: Drives,
+    /// Sampling time, s.
+    pub period_s: f64,
     /// Constant torque on the arms, N m.
     pub disturbance_nm: f64,
     /// Gains, m x n.
@@ -79,25 +83,29 @@ impl Case {
         Case {
             eccentric_rad: 0.0,
             compensated: true,
-            conditions: Conditions::ideal(period_s),
+            sensor: Sensor::EXACT,
+            drives: Drives::IDEAL,
+            period_s,
             disturbance_nm: 0.0,
             gains: gains.clone(),
         }
     }
 
     fn loop_and_controller(&self) -> Result<(ClosedLoop, StateFeedback, Vec<f64>)> {
-        let model = eccentric(self.eccentric_rad)?;
-        let mut plant = Plant::new(&model, &upright(&model))?;
-        plant.disturbance_nm[0] = self.disturbance_nm;
-        let balance = plant.balanced_rad();
+        let model = self
+            .drives
+            .on(&eccentric(self.eccentric_rad)?, self.period_s);
+        let pose_rad = upright(&model);
+        let mut closed = ClosedLoop::new(&model, &pose_rad, Commands::Torque, self.period_s)?;
+        closed.plant.disturbance_nm[0] = self.disturbance_nm;
+        closed.sensor = self.sensor;
+        let balance = closed.plant.balanced_rad();
         let rows = self.gains.row_iter();
         let rows = rows.map(|r| r.iter().copied().collect()).collect();
-        let mut controller = StateFeedback::new(plant.joints(), rows);
+        let mut controller = StateFeedback::new(balance.len(), rows);
         if self.compensated {
             controller = controller.holding(&balance);
         }
-        let mut closed = ClosedLoop::ideal(plant, self.conditions.clock.period_s);
-        closed.conditions = self.conditions;
         Ok((closed, controller, balance))
     }
 
@@ -117,6 +125,7 @@ impl Case {
         let mut seen = Seen {
             outcome: Outcome {
                 fell_s: None,
+                stabilised: false,
                 rms_angle_rad: 0.0,
                 rms_torque_nm: 0.0,
                 largest_rad: 0.0,
@@ -129,7 +138,7 @@ impl Case {
         let (angles, torques) = (&mut seen.angles, &mut seen.torques);
         seen.outcome = closed.watch(
             &controller,
-            &Start::at(start),
+            &InitialState::at(start),
             SECONDS,
             stream(1, 0),
             |sample| {
@@ -147,9 +156,10 @@ impl Case {
     /// Outcomes from random starts around the balance, each joint within `spread_rad`.
     pub(super) fn share(&self, spread_rad: f64) -> Result<Vec<Outcome>> {
         let (closed, controller, balance) = self.loop_and_controller()?;
-        let starts: Vec<Start> = (0..STARTS)
+        let starts: Vec<InitialState> = (0..STARTS)
             .map(|index| {
-                let mut start = Start::random(balance.len(), spread_rad, &mut stream(2, index));
+                let mut start =
+                    InitialState::random(balance.len(), spread_rad, &mut stream(2, index));
                 for (angle, balance) in start.angle_rad.iter_mut().zip(&balance) {
                     *angle += balance;
                 }
@@ -171,14 +181,14 @@ pub(super) fn sampled(computed: &Computed) -> Case {
 /// As [`sampled`], angles in the servo's steps.
 pub(super) fn stepped(computed: &Computed) -> Case {
     let mut case = sampled(computed);
-    case.conditions.sensor.position_resolution_rad = handstand_shared::raw::Position::LSB_RAD;
+    case.sensor.position_resolution_rad = handstand_shared::raw::Position::LSB_RAD;
     case
 }
 
 /// As [`stepped`], the arms' speed in the gyro's steps.
 pub(super) fn with_gyro(computed: &Computed) -> Case {
     let mut case = stepped(computed);
-    case.conditions.sensor.gyro = Some(Gyro {
+    case.sensor.gyro = Some(Gyro {
         resolution_rad_s: 10f64.to_radians(),
         noise_rad_s: 0.0,
     });
@@ -188,7 +198,9 @@ pub(super) fn with_gyro(computed: &Computed) -> Case {
 /// As [`with_gyro`], with the drives' dead zone and limit.
 pub(super) fn with_dead_zone(computed: &Computed) -> Case {
     let mut case = with_gyro(computed);
-    case.conditions.actuator.dead_zone = 0.1;
-    case.conditions.actuator.saturates = true;
+    case.drives = Drives {
+        delay_periods: 0.0,
+        ..Drives::PAPER
+    };
     case
 }

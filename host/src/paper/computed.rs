@@ -9,7 +9,7 @@ use crate::synth::{
 };
 use crate::sysid::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
 use crate::sysid::polynomial::{at_one, roots};
-use crate::sysid::{Estimate, Known, Record, Structure, estimate, settling_samples};
+use crate::sysid::{Estimate, Interval, Record, Structure, estimate, settling_samples};
 use nalgebra::{Complex, DMatrix};
 
 /// Samples of the servo record.
@@ -37,7 +37,7 @@ pub struct Computed {
     /// Zeros from the two torques to two of the angles.
     pub zeros: Vec<Zeros>,
     /// Coefficients of the paper's BJ(2,1,2,1) found in data made with it, with their names.
-    pub servo: Vec<(String, Known)>,
+    pub servo: Vec<(String, Interval)>,
     /// What follows from the servo's model without being printed.
     pub servo_facts: ServoFacts,
 }
@@ -71,7 +71,7 @@ impl Computed {
     /// None is known: the model is the project's own.
     pub fn new() -> Result<Computed> {
         let model = handstand()?;
-        let plant = linearise(&model, &upright(&model))?;
+        let plant = linearise(&model, &upright(&model))?.plant;
         let sampled = zoh(&plant, TS_S, 0.0)?;
         let (q, r) = (DMatrix::identity(6, 6), DMatrix::identity(2, 2));
         Ok(Computed {
@@ -88,8 +88,8 @@ impl Computed {
     }
 
     /// The value of a printed quantity in the print's unit; with its interval where it was estimated.
-    pub fn value(&self, quantity: Quantity) -> Known {
-        let exact = |value: f64| Known::around(value, 0.0);
+    pub fn value(&self, quantity: Quantity) -> Interval {
+        let exact = |value: f64| Interval::around(value, 0.0);
         match quantity {
             Quantity::Link(link, field) => {
                 let link = &self.model.links[link];
@@ -145,7 +145,7 @@ pub(super) fn servo_estimate(seed: u64) -> Option<(Record, Estimate)> {
     Some((record, found.ok()?))
 }
 
-fn servo() -> Vec<(String, Known)> {
+fn servo() -> Vec<(String, Interval)> {
     let Some((_, estimate)) = servo_estimate(1) else {
         return Vec::new();
     };
@@ -155,7 +155,7 @@ fn servo() -> Vec<(String, Known)> {
         .names()
         .into_iter()
         .zip(values.iter().zip(estimate.half_widths()))
-        .map(|(name, (value, half))| (name, Known::around(*value, half)))
+        .map(|(name, (value, half))| (name, Interval::around(*value, half)))
         .collect()
 }
 

@@ -5,12 +5,12 @@ use super::computed::Computed;
 use super::figure::{Figure, Holds};
 use super::robot::edge;
 use super::servo;
-use super::timing::timing;
 use crate::error::Result;
 use crate::log::Motion;
 use crate::model::{Drive, Model, Motor};
 use crate::number::short;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, SensorState, Start, predict};
+use crate::study::{SIGNAL_PATHS, SignalPath};
 use crate::synth::{linearise, poles, upright, zoh};
 
 /// Centres of mass are right to this, m.
@@ -172,8 +172,8 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
 fn delays(computed: &Computed) -> Result<(String, Shown)> {
     let falls = |delay_s: f64, case: &Case| {
         let mut case = case.clone();
-        case.conditions.actuator.delay_periods = delay_s / TS_S;
-        Ok(!case.run(0.1f64.to_radians())?.outcome.survived())
+        case.drives.delay_periods = delay_s / TS_S;
+        Ok(case.run(0.1f64.to_radians())?.outcome.fell_s.is_some())
     };
     let plain = sampled(computed);
     let plain_s = edge(|delay| falls(delay, &plain), 0.0, 0.05)?;
@@ -186,7 +186,14 @@ fn delays(computed: &Computed) -> Result<(String, Shown)> {
         Ok(poles(&closed)?.iter().any(|pole| pole.norm() >= 1.0))
     };
     let linear_s = edge(unstable, 0.0, 0.05)?;
-    let way = timing();
+    let path_s = |servos: usize, baud: Option<f64>, factory: bool| {
+        let wanted =
+            |path: &&SignalPath| (path.servos, path.baud, path.factory) == (servos, baud, factory);
+        let path = SIGNAL_PATHS.iter().find(wanted);
+        path.map_or(f64::NAN, SignalPath::total_s)
+    };
+    let on_board_s = path_s(4, None, false);
+    let over_pc_s = path_s(18, Some(57_600.0), false);
     let ms = |seconds: f64| format!("{:.1} ms", 1e3 * seconds);
     let said = format!(
         "The sampled loop is stable up to {} from sample to torque; later it swings, and from {} on it falls. Reading four \
@@ -194,16 +201,16 @@ fn delays(computed: &Computed) -> Result<(String, Shown)> {
          compatible. By way of a PC at 57600 baud, with all 18 servos, it takes {}: {}.",
         ms(linear_s),
         ms(plain_s),
-        ms(way.on_board_s),
-        ms(way.factory_s),
-        ms(way.over_pc_s),
-        if way.over_pc_s < linear_s {
+        ms(on_board_s),
+        ms(path_s(4, None, true)),
+        ms(over_pc_s),
+        if over_pc_s < linear_s {
             "they are, too"
         } else {
             "there they are not"
         }
     );
-    let holds = match (way.on_board_s < linear_s, way.over_pc_s < linear_s) {
+    let holds = match (on_board_s < linear_s, over_pc_s < linear_s) {
         (true, true) => Holds::Yes,
         (true, false) => Holds::InPart,
         _ => Holds::No,
@@ -268,7 +275,7 @@ fn shift_rad(base: &Model, drive: Drive, input: &[f64]) -> f64 {
             motion,
             stretch,
             start,
-            &mut Memory::default(),
+            &mut SensorState::default(),
             &mut readings,
         );
         (readings, end)
@@ -299,7 +306,7 @@ fn centroids(computed: &Computed) -> Result<(String, Shown)> {
                 -CENTROID_M
             };
         }
-        let off = zoh(&linearise(&model, &upright(&model))?, TS_S, 0.0)?;
+        let off = zoh(&linearise(&model, &upright(&model))?.plant, TS_S, 0.0)?;
         let closed = &off.a - &off.b * &computed.dlqr.k;
         worst = poles(&closed)?
             .iter()

@@ -12,7 +12,6 @@ mod page;
 mod printed;
 mod robot;
 mod servo;
-mod timing;
 
 #[cfg(test)]
 mod tests;
@@ -20,11 +19,10 @@ mod tests;
 pub use case::handstand;
 pub use checked::{Row, Verdict, check};
 pub use computed::{Computed, ServoFacts, Zeros};
-pub use figure::{Curve, Figure, Holds, Ink, Panel};
+pub use figure::{Figure, Holds};
 pub use findings::{Finding, Shown, findings};
 pub use page::html;
 pub use printed::{PRINTED, Printed, Quantity};
-pub use timing::{Timing, timing};
 
 use crate::error::Result;
 

@@ -1,15 +1,14 @@
 //! The page: numbers, figures, findings.
 
-use super::figure::{Curve, Figure, Holds, Ink, Panel};
+use super::figure::{Figure, Holds};
 use super::findings::{Finding, Shown};
 use super::{Row, Study, Verdict};
 use crate::number::short;
-use crate::report::page::{Section, document};
-use crate::report::scale::{Scale, span};
-use crate::report::svg::{Plot, Tone, at};
+use crate::plot::Chart;
+use crate::report::page::{Section, document, table};
 use maud::{Markup, html as markup};
 
-/// Size of a panel, px.
+/// Size of a chart, px.
 const SIZE: (f64, f64) = (460.0, 250.0);
 
 /// A self-contained page. `command` is the line that makes it again.
@@ -48,25 +47,29 @@ fn header(study: &Study) -> Markup {
 
 fn numbers(study: &Study) -> Section {
     let facts = &study.computed.servo_facts;
+    let headings = markup! {
+        th { "Where" } th { "Quantity" } th { "Unit" } th.number { "Stated" }
+        th.number { "Computed" } th { "Verdict" }
+    };
     let body = markup! {
-        div.scroll { table {
-            thead { tr { th { "Where" } th { "Quantity" } th { "Unit" } th.number { "Stated" } th.number { "Computed" } th { "Verdict" } } }
-            tbody { @for row in &study.rows { (number(row)) } }
-        } }
+        (table(&headings, &markup! { @for row in &study.rows { (number(row)) } }))
         h3 { "What follows without being printed" }
         ul {
             @for zeros in &study.computed.zeros {
                 li {
-                    "Zeros from the torques to (q" (zeros.outputs[0]) ", q" (zeros.outputs[1]) "): ±"
+                    "Zeros from the torques to (q" (zeros.outputs[0]) ", q" (zeros.outputs[1])
+                    "): ±"
                     (short(zeros.squared.abs().sqrt())) @if zeros.squared < 0.0 { " j" } " 1/s"
                 }
             }
             li { "Static gain of eq. (2): " (short(facts.gain)) }
             @if let Some(pole) = facts.poles.first() {
                 li {
-                    "Poles of eq. (2): z = " (format!("{:.4} ± {:.4} j", pole.re, pole.im.abs())) ", |z| = "
-                    (format!("{:.4}", pole.norm())) ", that is " (short(facts.continuous.re)) " ± "
-                    (short(facts.continuous.im.abs())) " j 1/s; it settles to 2 % in " (short(facts.settling_s)) " s"
+                    "Poles of eq. (2): z = " (format!("{:.4} ± {:.4} j", pole.re, pole.im.abs()))
+                    ", |z| = " (format!("{:.4}", pole.norm()))
+                    ", that is " (short(facts.continuous.re)) " ± "
+                    (short(facts.continuous.im.abs())) " j 1/s; it settles to 2 % in "
+                    (short(facts.settling_s)) " s"
                 }
             }
         }
@@ -74,19 +77,15 @@ fn numbers(study: &Study) -> Section {
     Section {
         id: "numbers",
         title: "Printed and computed",
-        lead: "Computed from Table 1: linearised upright, sampled, solved. The last printed digit decides. Rows marked \
-               recomputed are not printed; SciPy found them from Table 1. The servo's coefficients are those of a \
-               Box-Jenkins model found in data made with eq. (2), with half their 95 % interval.",
+        lead: "Computed from Table 1: linearised upright, sampled, solved. The last printed digit \
+               decides. Rows marked recomputed are not printed; SciPy found them from Table 1. The \
+               servo's coefficients are those of a Box-Jenkins model found in data made with eq. \
+               (2), with half their 95 % interval.",
         body,
     }
 }
 
 fn number(row: &Row) -> Markup {
-    let class = if row.verdict == Verdict::Agrees {
-        "good"
-    } else {
-        "bad"
-    };
     markup! {
         tr {
             td { (row.printed.place) }
@@ -94,7 +93,7 @@ fn number(row: &Row) -> Markup {
             td { (row.printed.quantity.unit()) }
             td.number { (row.printed.text) }
             td.number { (row.computed_text()) }
-            td { span class=(class) { (row.verdict.to_string()) } }
+            td { span class=(good(row.verdict == Verdict::Agrees)) { (row.verdict.to_string()) } }
         }
     }
 }
@@ -113,18 +112,22 @@ fn drawn(figure: &Figure) -> Markup {
         p { (figure.sentence) }
         p.note {
             "The paper: " (figure.claim) ". "
-            b class=(if figure.holds == Holds::Yes { "good" } else { "bad" }) { (capital(figure.holds.words())) "." }
+            b class=(good(figure.holds == Holds::Yes)) { (capital(figure.holds.words())) "." }
         }
     };
-    let alone = figure.panels.len() == 1;
+    let alone = figure.charts.len() == 1;
     markup! {
         h3 { "Figure " (figure.number) ": " (figure.title) }
         @if !alone { (words) }
         div.panels {
-            @for panel in &figure.panels { (chart(panel)) }
+            @for chart in &figure.charts { (drawn_chart(chart)) }
             @if alone { div { (words) } }
         }
     }
+}
+
+fn good(is: bool) -> &'static str {
+    if is { "good" } else { "bad" }
 }
 
 fn capital(words: &str) -> String {
@@ -135,79 +138,38 @@ fn capital(words: &str) -> String {
     }
 }
 
-fn tone(ink: Ink) -> Tone {
-    match ink {
-        Ink::Dark => Tone::Measured,
-        Ink::Blue => Tone::After,
-        Ink::Orange => Tone::Before,
-        Ink::Green => Tone::Floor,
-        Ink::Quiet => Tone::Quiet,
-    }
-}
-
-fn chart(panel: &Panel) -> Markup {
+fn drawn_chart(chart: &Chart) -> Markup {
     let (width, height) = SIZE;
-    let points = || panel.curves.iter().flat_map(|curve| curve.points.iter());
-    let plot = Plot {
-        x: Scale::new(span(points().map(|p| p.0), 0.0), (46.0, width - 12.0)),
-        y: Scale::new(span(points().map(|p| p.1), 0.06), (height - 38.0, 26.0)),
-    };
     markup! {
         figure {
-            figcaption {
-                b { (panel.title) }
-                @for curve in &panel.curves {
-                    span class={ "key " (tone(curve.ink).class()) } { span.swatch {} (curve.name) }
-                }
-            }
-            svg viewBox=(format!("0 0 {width} {height}")) role="img" aria-label=(panel.title) {
-                (plot.columns(6)) (plot.rows(5, panel.y_label)) (plot.x_labels(6, panel.x_label))
-                @for curve in &panel.curves { (mark(&plot, curve)) }
-            }
-        }
-    }
-}
-
-fn mark(plot: &Plot, curve: &Curve) -> Markup {
-    let tone = tone(curve.ink);
-    if !curve.dots {
-        return plot.curve(curve.points.iter().copied(), tone);
-    }
-    markup! {
-        g class={ "dots " (tone.class()) } {
-            @for (x, y) in &curve.points {
-                circle cx=(at(plot.x.place(*x))) cy=(at(plot.y.place(*y))) r="1.8" {}
-            }
+            figcaption { b { (chart.title) } (chart.legend()) }
+            (chart.svg(width, height))
         }
     }
 }
 
 fn findings(study: &Study) -> Section {
+    let headings = markup! {
+        th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Verdict" }
+    };
+    let rows = markup! { @for row in &study.findings { (finding(row)) } };
     Section {
         id: "findings",
         title: "What the paper found",
         lead: "Everything it measured, simulated or left open, with the command that shows it here.",
-        body: markup! {
-            div.scroll { table {
-                thead { tr { th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Verdict" } } }
-                tbody { @for row in &study.findings { (finding(row)) } }
-            } }
-        },
+        body: table(&headings, &rows),
     }
 }
 
 fn finding(row: &Finding) -> Markup {
-    let class = match row.shown {
-        Shown::Here(Holds::Yes) | Shown::There => "good",
-        _ => "bad",
-    };
+    let shown = matches!(row.shown, Shown::Here(Holds::Yes) | Shown::There);
     markup! {
         tr {
             td.number { (row.number) }
             td { (row.found) }
             td { (row.said) }
             td { code { (row.command) } }
-            td { span class=(class) { (row.verdict()) } }
+            td { span class=(good(shown)) { (row.verdict()) } }
         }
     }
 }

@@ -4,10 +4,11 @@ use super::case::{
     Case, ECCENTRIC_RAD, SECONDS, STARTS, Seen, sampled, stepped, with_dead_zone, with_gyro,
 };
 use super::computed::Computed;
-use super::figure::{Curve, Figure, Holds, Ink, Panel};
-use crate::closed_loop::{Outcome, Velocity};
+use super::figure::{Figure, Holds};
 use crate::error::Result;
 use crate::number::short;
+use crate::plot::{Chart, Curve, Tone};
+use crate::sim::closed_loop::{Outcome, Velocity};
 
 /// Sampling time that stands for the continuous gains, s.
 const CONTINUOUS_S: f64 = 0.001;
@@ -37,28 +38,32 @@ fn end(outcome: &Outcome) -> String {
 }
 
 /// Angles above, torques below, of runs side by side; of one run, side by side.
-fn panels(runs: &[(&str, &Seen)]) -> Vec<Panel> {
-    let inks = [Ink::Blue, Ink::Orange, Ink::Green];
-    let joints = ["q1 arms", "q2 shoulder", "q3 hip"];
-    let angle = |(name, seen): &(&str, &Seen)| Panel {
-        title: format!("{name}: {}", end(&seen.outcome)),
-        x_label: "time, s",
-        y_label: "angle, deg",
-        curves: (0..3)
-            .map(|i| Curve::line(joints[i], inks[i], seen.angles[i].clone()))
-            .collect(),
+fn charts(runs: &[(&str, &Seen)]) -> Vec<Chart> {
+    let angles = |(name, seen): &(&str, &Seen)| {
+        let title = format!("{name}: {}", end(&seen.outcome));
+        Chart::new(title, "time, s", "angle, deg", joints(0, &seen.angles))
     };
-    let torque = |(name, seen): &(&str, &Seen)| Panel {
-        title: format!("{name}: {} N m RMS", short(seen.outcome.rms_torque_nm)),
-        x_label: "time, s",
-        y_label: "torque, N m",
-        curves: (0..2)
-            .map(|i| Curve::line(joints[i + 1], inks[i + 1], seen.torques[i].clone()))
-            .collect(),
+    let torques = |(name, seen): &(&str, &Seen)| {
+        let title = format!("{name}: {} N m RMS", short(seen.outcome.rms_torque_nm));
+        Chart::new(title, "time, s", "torque, N m", joints(1, &seen.torques))
     };
-    runs.iter()
-        .map(angle)
-        .chain(runs.iter().map(torque))
+    let angles = runs.iter().map(angles);
+    angles.chain(runs.iter().map(torques)).collect()
+}
+
+/// A curve for each joint from the `first` on.
+fn joints(first: usize, points: &[Vec<(f64, f64)>]) -> Vec<Curve> {
+    let looks = [
+        ("q1 arms", Tone::Blue),
+        ("q2 shoulder", Tone::Orange),
+        ("q3 hip", Tone::Green),
+    ];
+    let curve = |((name, tone), points): (_, &Vec<_>)| Curve::line(name, tone, points.clone());
+    looks
+        .into_iter()
+        .skip(first)
+        .zip(points)
+        .map(curve)
         .collect()
 }
 
@@ -73,7 +78,7 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
     let falls = |angle: f64| Ok(case(angle, false).run_upright()?.outcome.fell_s.is_some());
     let limit = edge(falls, 0.0, ECCENTRIC_RAD)?;
     let below = case(0.5 * limit, false).run_upright()?.outcome;
-    let holds = without.outcome.fell_s.is_some() && with.outcome.survived();
+    let holds = without.outcome.fell_s.is_some() && with.outcome.fell_s.is_none();
     Ok(Figure {
         number: "12",
         title: "LQR without and with angle compensation",
@@ -88,7 +93,7 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
             limit.to_degrees(),
             short(below.largest_rad.to_degrees())
         ),
-        panels: panels(&[("without", &without), ("with", &with)]),
+        charts: charts(&[("without", &without), ("with", &with)]),
     })
 }
 
@@ -122,14 +127,15 @@ fn resolution(computed: &Computed) -> Result<Figure> {
     };
     let continuous = continuous.run(LEAN_RAD)?;
     let mut differenced = stepped(computed);
-    differenced.conditions.sensor.velocity = Velocity::Difference;
+    differenced.sensor.velocity = Velocity::Difference;
     let differenced = differenced.run(LEAN_RAD)?.outcome;
     let chatters = coarse
         .outcome
         .limit_cycle_rad
         .is_some_and(|cycle| cycle > 1e-3);
     let smaller = exact.peak_nm() < continuous.peak_nm();
-    let holds = exact.outcome.survived() && coarse.outcome.survived() && chatters && smaller;
+    let holds =
+        exact.outcome.fell_s.is_none() && coarse.outcome.fell_s.is_none() && chatters && smaller;
     Ok(Figure {
         number: "13",
         title: "DLQR at 0.01 s, and with the servos' position resolution",
@@ -148,7 +154,7 @@ fn resolution(computed: &Computed) -> Result<Figure> {
             end(&differenced),
             short(differenced.rms_torque_nm)
         ),
-        panels: panels(&[("exact", &exact), ("300 deg / 2^10", &coarse)]),
+        charts: charts(&[("exact", &exact), ("300 deg / 2^10", &coarse)]),
     })
 }
 
@@ -157,7 +163,7 @@ fn tally(outcomes: &[Outcome]) -> (usize, f64) {
     let mut swings: Vec<f64> = outcomes.iter().filter_map(|o| o.limit_cycle_rad).collect();
     swings.sort_by(f64::total_cmp);
     let median = swings.get(swings.len() / 2).copied().unwrap_or(f64::NAN);
-    let stood = outcomes.iter().filter(|o| o.survived()).count();
+    let stood = outcomes.iter().filter(|o| o.fell_s.is_none()).count();
     (stood, median.to_degrees())
 }
 
@@ -171,7 +177,7 @@ fn gyro(computed: &Computed) -> Result<Figure> {
         number: "14 a,c,e",
         title: "Gyro resolution and a constant perturbation",
         claim: "with the gyro's 10 deg/s and a constant perturbation the control is larger and the robot stays up",
-        holds: match larger && seen.outcome.survived() {
+        holds: match larger && seen.outcome.fell_s.is_none() {
             true => Holds::Yes,
             false => Holds::No,
         },
@@ -181,14 +187,14 @@ fn gyro(computed: &Computed) -> Result<Figure> {
             short(seen.outcome.rms_torque_nm),
             short(before.rms_torque_nm)
         ),
-        panels: panels(&[("gyro, perturbed", &seen)]),
+        charts: charts(&[("gyro, perturbed", &seen)]),
     })
 }
 
 fn dead_zone(computed: &Computed) -> Result<Figure> {
     let direct = with_dead_zone(computed);
     let mut differenced = direct.clone();
-    differenced.conditions.sensor.velocity = Velocity::Difference;
+    differenced.sensor.velocity = Velocity::Difference;
     let (seen, fallen) = (direct.run(LEAN_RAD)?, differenced.run(LEAN_RAD)?);
     let (stood, swing) = tally(&direct.share(LEAN_RAD)?);
     let (differenced_stood, _) = tally(&differenced.share(LEAN_RAD)?);
@@ -211,6 +217,6 @@ fn dead_zone(computed: &Computed) -> Result<Figure> {
              {SECONDS:.0} s, swinging by {swing:.1} deg (median), as long as the speeds of shoulder and hip are exact; with \
              speeds from differences of the position steps, as the servos give them, {differenced_stood} of {STARTS} stand."
         ),
-        panels: panels(&[("exact speeds", &seen), ("differenced", &fallen)]),
+        charts: charts(&[("exact speeds", &seen), ("differenced", &fallen)]),
     })
 }

@@ -1,14 +1,18 @@
 //! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq. (2).
 
 use super::computed::servo_estimate;
-use super::figure::{Curve, Figure, Holds, Ink, Panel};
+use super::figure::{Figure, Holds};
 use crate::error::Result;
-use crate::log::{Motion, Source};
+use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::number::interval;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::plot::{Chart, Curve, Tone};
+use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
-use crate::sysid::{Block, DeadZone, Known, Output, Side, Supply, blocks, score, supply_errors};
+use crate::sysid::{
+    BlockMean, DeadZoneMap, Interval, OutputQuantity, Side, SupplyLine, blocks, score,
+    supply_errors,
+};
 use handstand_shared::raw::Position;
 use std::path::Path;
 
@@ -38,7 +42,7 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
     let samples = command.len();
     Motion {
         name: "simulated".to_string(),
-        source: Source {
+        source: MotionSource {
             path: "simulated".into(),
             sha256: String::new(),
             lines: (1, samples),
@@ -80,7 +84,7 @@ pub(super) fn simulated(
         &motion,
         0..samples,
         &rest,
-        &mut Memory::default(),
+        &mut SensorState::default(),
         &mut readings,
     );
     let jitter = noise(samples, 0.1 * Position::LSB_RAD, seed);
@@ -103,19 +107,19 @@ fn ramp(samples: usize, most: f64) -> Vec<f64> {
         .collect()
 }
 
-fn points(blocks: &[Block]) -> Vec<(f64, f64)> {
+fn points(blocks: &[BlockMean]) -> Vec<(f64, f64)> {
     blocks.iter().map(|b| (100.0 * b.input, b.output)).collect()
 }
 
 /// The fitted map over the blocks' range, in percent of the range.
-fn line(map: &DeadZone, most: f64) -> Vec<(f64, f64)> {
+fn line(map: &DeadZoneMap, most: f64) -> Vec<(f64, f64)> {
     let place = |k: i32| most * f64::from(k) / 200.0;
     (-200..=200)
         .map(|k| (100.0 * place(k), map.output(place(k))))
         .collect()
 }
 
-fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> String {
+fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) -> String {
     let text = |side: &Side| match of(side) {
         Some(known) => within(&known, scale),
         None => "none".to_string(),
@@ -124,7 +128,7 @@ fn sides(map: &DeadZone, of: impl Fn(&Side) -> Option<Known>, scale: f64) -> Str
 }
 
 /// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
-fn within(known: &Known, scale: f64) -> String {
+fn within(known: &Interval, scale: f64) -> String {
     let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
     format!("{value} ({low} to {high})")
 }
@@ -134,7 +138,7 @@ fn unfitted(number: &'static str, title: &'static str, claim: &'static str, why:
         number,
         title,
         claim,
-        panels: Vec::new(),
+        charts: Vec::new(),
         holds: Holds::No,
         sentence: format!("The simulated log gives no fit: {why}."),
     }
@@ -144,8 +148,8 @@ fn dead_zone(model: &Model) -> Figure {
     let (number, title) = ("4", "Dead zone");
     let claim = "stiction is a dead zone of 7-10 % of the full range, without load";
     let motion = simulated(model, ramp(8000, 0.4), None, 0.0, 4);
-    let blocks = blocks(&[motion], 0, Output::Velocity, BLOCK_S);
-    let map = match DeadZone::fit(&blocks) {
+    let blocks = blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S);
+    let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };
@@ -154,15 +158,15 @@ fn dead_zone(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: "speed against command, unloaded".to_string(),
-            x_label: "command, % of full range",
-            y_label: "speed, rad/s",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
-                Curve::line("fitted dead zone", Ink::Orange, line(&map, 0.4)),
+        charts: vec![Chart::new(
+            "speed against command, unloaded",
+            "command, % of full range",
+            "speed, rad/s",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+                Curve::line("fitted dead zone", Tone::Orange, line(&map, 0.4)),
             ],
-        }],
+        )],
         holds: match edges.iter().all(|edge| edge.holds(0.085)) {
             true => Holds::Yes,
             false => Holds::InPart,
@@ -190,14 +194,19 @@ fn supply(model: &Model) -> Figure {
             0.0,
             50 + run as u64,
         );
-        blocks.extend(self::blocks(&[motion], 0, Output::Velocity, BLOCK_S));
+        blocks.extend(self::blocks(
+            &[motion],
+            0,
+            OutputQuantity::Velocity,
+            BLOCK_S,
+        ));
     }
     // Command as the speed it stands for: that of the same command at the nominal supply.
     for block in &mut blocks {
         let beyond = block.input.abs() - 0.085;
         block.input = (beyond * FULL_RAD_S).copysign(block.input);
     }
-    let fitted = match Supply::fit(&blocks) {
+    let fitted = match SupplyLine::fit(&blocks) {
         Ok(fitted) => fitted,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };
@@ -209,15 +218,15 @@ fn supply(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: "speed error against supply".to_string(),
-            x_label: "supply, V",
-            y_label: "speed error, % of the command",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, percent(&errors)),
-                Curve::line("fitted line", Ink::Orange, percent(&ends)),
+        charts: vec![Chart::new(
+            "speed error against supply",
+            "supply, V",
+            "speed error, % of the command",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, percent(&errors)),
+                Curve::line("fitted line", Tone::Orange, percent(&ends)),
             ],
-        }],
+        )],
         holds: match right.holds(9.8) && slope.low > 0.0 {
             true => Holds::Yes,
             false => Holds::InPart,
@@ -246,8 +255,8 @@ fn torque(model: &Model) -> Figure {
         ],
         ..motion
     };
-    let blocks = blocks(&[lifted], 0, Output::AsMeasured, BLOCK_S);
-    let map = match DeadZone::fit(&blocks) {
+    let blocks = blocks(&[lifted], 0, OutputQuantity::AsMeasured, BLOCK_S);
+    let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return unfitted(number, title, claim, &why.to_string()),
     };
@@ -260,15 +269,15 @@ fn torque(model: &Model) -> Figure {
         number,
         title,
         claim,
-        panels: vec![Panel {
-            title: format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
-            x_label: "command, % of full range",
-            y_label: "torque, N m",
-            curves: vec![
-                Curve::dots("means over 0.2 s", Ink::Dark, points(&blocks)),
-                Curve::line("fitted map", Ink::Orange, line(&map, 1.0)),
+        charts: vec![Chart::new(
+            format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
+            "command, % of full range",
+            "torque, N m",
+            vec![
+                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+                Curve::line("fitted map", Tone::Orange, line(&map, 1.0)),
             ],
-        }],
+        )],
         holds: if seen { Holds::Yes } else { Holds::InPart },
         sentence: format!(
             "In simulation the torque stops at {} N m and rises by {} N m per full command; turned round, 1 N m needs a \
@@ -300,22 +309,17 @@ fn identification() -> Vec<Figure> {
     let own = score(&found.model, std::slice::from_ref(&training));
     let simulated = found.model.simulated(&fresh.input);
     let passed = scored.tests.iter().all(|test| test.passed);
-    let chart = |title: &str, curves: Vec<Curve>| Panel {
-        title: title.to_string(),
-        x_label: "time, s",
-        y_label: "speed, rad/s",
-        curves,
-    };
+    let chart = |title: &str, curves| Chart::new(title, "time, s", "speed, rad/s", curves);
     vec![
         Figure {
             number: "9",
             title: "Servo identification data",
             claim: claim_data,
-            panels: vec![chart(
+            charts: vec![chart(
                 "first 6 s",
                 vec![
-                    Curve::line("commanded", Ink::Quiet, seconds(&training.input)),
-                    Curve::line("estimated speed", Ink::Dark, seconds(&training.output)),
+                    Curve::line("commanded", Tone::Grey, seconds(&training.input)),
+                    Curve::line("estimated speed", Tone::Ink, seconds(&training.output)),
                 ],
             )],
             holds: Holds::Yes,
@@ -329,11 +333,11 @@ fn identification() -> Vec<Figure> {
             number: "10",
             title: "Servo validation data",
             claim,
-            panels: vec![chart(
+            charts: vec![chart(
                 "first 6 s",
                 vec![
-                    Curve::line("estimated speed", Ink::Dark, seconds(&fresh.output)),
-                    Curve::line("simulated by the model", Ink::Orange, seconds(&simulated)),
+                    Curve::line("estimated speed", Tone::Ink, seconds(&fresh.output)),
+                    Curve::line("simulated by the model", Tone::Orange, seconds(&simulated)),
                 ],
             )],
             holds: if passed { Holds::Yes } else { Holds::InPart },

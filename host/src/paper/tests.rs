@@ -31,7 +31,9 @@ fn another_robot_differs() {
     let mut computed = Computed::new().unwrap();
     computed.model.links[1].length_m += 1e-3;
     computed.plant =
-        crate::synth::linearise(&computed.model, &crate::synth::upright(&computed.model)).unwrap();
+        crate::synth::linearise(&computed.model, &crate::synth::upright(&computed.model))
+            .unwrap()
+            .plant;
     let wrong = check(&computed);
     let differing = wrong.iter().filter(|row| row.verdict == Verdict::Differs);
     assert!(differing.count() >= 10);

@@ -1,13 +1,12 @@
 //! The explanations that were tried, with the evidence for and against each.
 
-use super::Report;
-use super::bars::{Bar, largest};
-use super::page::Section;
-use super::svg::Tone;
+use super::page::{Section, table};
 use super::words::{in_mrad, set_name, sorted, with_interval};
+use super::{AFTER, BEFORE, Report};
 use crate::diagnose::words::{SHOWN, joined};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
 use crate::number::{NONE, mrad, short};
+use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -22,9 +21,10 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "candidates",
         title: "What else was tried",
-        lead: "Every candidate was fitted on the same motions; the promising ones then had to predict motions they had \
-               not seen. A wrong candidate may fit well and yet predict badly. BIC weighs the gain against the number \
-               of added parameters: the more negative, the better.",
+        lead: "Every candidate was fitted on the same motions; the promising ones then had to \
+               predict motions they had not seen. A wrong candidate may fit well and yet predict \
+               badly. BIC weighs the gain against the number of added parameters: the more \
+               negative, the better.",
         body,
     })
 }
@@ -34,7 +34,7 @@ fn alternatives(alternatives: &[Alternative]) -> Markup {
         h3 { "These do as well: the data do not rule them out" }
         ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
-                b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error))
+                b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error_rad))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }
@@ -45,35 +45,34 @@ fn alternatives(alternatives: &[Alternative]) -> Markup {
 }
 
 fn error(tried: &RuledOut) -> f64 {
-    tried.held_out_error.unwrap_or(tried.training_error)
+    tried.held_out_error_rad.unwrap_or(tried.training_error_rad)
 }
 
 fn tried(diagnosis: &Diagnosis) -> Markup {
     let tried = sorted(&diagnosis.ruled_out);
-    let chosen = diagnosis.error.after;
+    let chosen = diagnosis.error.after_rad;
     let full = largest(tried.iter().map(|tried| error(tried)).chain([chosen]));
+    let headings = html! {
+        th { "Added to the model" } th.number { "Fitted, mrad" } th.number { "Held out, mrad" }
+        th.wide {} th.number { "BIC change" } th { "Why not" }
+    };
+    let rows = html! {
+        @if !diagnosis.effects.is_empty() { (best(diagnosis, full)) }
+        @for tried in tried { (row(tried, full, chosen)) }
+    };
     html! {
         h3 { "Ruled out" }
-        div.scroll { table {
-            thead { tr {
-                th { "Added to the model" } th.number { "Fitted, mrad" } th.number { "Held out, mrad" } th.wide {}
-                th.number { "BIC change" } th { "Why not" }
-            } }
-            tbody {
-                @if !diagnosis.effects.is_empty() { (best(diagnosis, full)) }
-                @for tried in tried { (row(tried, full, chosen)) }
-            }
-        } }
+        (table(&headings, &rows))
         p.note {
-            "Bars show the held-out error; pale ones the fitted error of candidates that came no further. The thin \
-             line is the error of the explanation on top."
+            "Bars show the held-out error; pale ones the fitted error of candidates that came no \
+             further. The thin line is the error of the explanation on top."
         }
     }
 }
 
 /// The chosen set, to compare with.
 fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
-    let after = diagnosis.error.after;
+    let after = diagnosis.error.after_rad;
     let (fitted, held_out) = match diagnosis.error.held_out {
         true => (NONE.to_string(), mrad(after)),
         false => (mrad(after), NONE.to_string()),
@@ -83,7 +82,7 @@ fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
             td { (joined(&diagnosis.effects)) }
             td.number { (fitted) }
             td.number { (held_out) }
-            td.wide { (Bar::new(after, full, Tone::After).draw()) }
+            td.wide { (Bar::new(after, full, AFTER).draw()) }
             td.number { (NONE) }
             td { "best found" }
         }
@@ -92,20 +91,20 @@ fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
 
 fn row(tried: &RuledOut, full: f64, chosen: f64) -> Markup {
     let error = error(tried);
-    let (solid, ghost) = match tried.held_out_error {
+    let (solid, ghost) = match tried.held_out_error_rad {
         Some(_) => (error, None),
         None => (0.0, Some(error)),
     };
     let bar = Bar {
         ghost,
         mark: Some(chosen),
-        ..Bar::new(solid, full, Tone::Before)
+        ..Bar::new(solid, full, BEFORE)
     };
     html! {
         tr {
             td { (set_name(&tried.set)) br; code { (tried.set.join(" + ")) } }
-            td.number { (mrad(tried.training_error)) }
-            td.number { (tried.held_out_error.map_or(NONE.into(), mrad)) }
+            td.number { (mrad(tried.training_error_rad)) }
+            td.number { (tried.held_out_error_rad.map_or(NONE.into(), mrad)) }
             td.wide { (bar.draw()) }
             td.number { (short(tried.bic_change)) }
             td { (tried.why) }

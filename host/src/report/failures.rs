@@ -1,22 +1,16 @@
 //! Where the model fails: conditions that hold more than their share of the error.
 
-use super::Report;
-use super::bars::Bar;
 use super::page::Section;
-use super::svg::Tone;
+use super::{AFTER, BEFORE, Report};
 use crate::compare::{Comparison, Failure};
 use crate::number::percent;
+use crate::plot::{Bar, Tone};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
-    let ends = [
-        (report.before(), Tone::Before),
-        (report.after(), Tone::After),
-    ];
-    if ends
-        .iter()
-        .all(|(end, _)| end.is_none_or(|end| end.failures.is_empty()))
-    {
+    let ends = [(report.before(), BEFORE), (report.after(), AFTER)];
+    let none = |(end, _): &(Option<&Comparison>, Tone)| end.is_none_or(|c| c.failures.is_empty());
+    if ends.iter().all(none) {
         return None;
     }
     let body = html! {
@@ -27,9 +21,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "failures",
         title: "Where it fails",
-        lead: "If errors were spread evenly, a condition that covers a tenth of the samples would hold a tenth of the \
-               error. Where the error's bar is much longer than the samples' bar, the physics of that condition is \
-               what the model gets wrong.",
+        lead: "If errors were spread evenly, a condition that covers a tenth of the samples would \
+               hold a tenth of the error. Where the error's bar is much longer than the samples' \
+               bar, the physics of that condition is what the model gets wrong.",
         body,
     })
 }
@@ -55,7 +49,7 @@ fn bars(failure: &Failure, tone: Tone) -> Markup {
                 (Bar::new(failure.error_share, 1.0, tone).draw())
                 span.number { (percent(failure.error_share)) }
                 span { "samples" }
-                (Bar::new(failure.sample_share, 1.0, Tone::Quiet).draw())
+                (Bar::new(failure.sample_share, 1.0, Tone::Grey).draw())
                 span.number { (percent(failure.sample_share)) }
             }
             p.note { (failure.sentence) }

@@ -1,11 +1,12 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{fall, in_mrad, measured_on, sentences, verdict_word, window};
-use super::{Report, pooled};
+use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word, window};
+use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
 use crate::number::{mrad, short};
+use crate::plot::Tone;
 use maud::{Markup, html};
 
 /// Top of the page.
@@ -36,25 +37,20 @@ fn diagnosed(diagnosis: &Diagnosis) -> Markup {
 fn error_line(diagnosis: &Diagnosis) -> Markup {
     let (error, horizon_s) = (&diagnosis.error, diagnosis.horizon_s);
     let found = !diagnosis.effects.is_empty();
-    if !error.before.is_finite() {
+    if !error.before_rad.is_finite() {
         return html! {};
     }
+    let mut shown = vec![("refitted as it is", BEFORE, error.before_rad)];
+    if found {
+        shown.push(("with what was found", AFTER, error.after_rad));
+    }
+    shown.push(("floor", FLOOR, error.floor_rad));
     html! {
-        @if found {
-            (figures(&[
-                ("refitted as it is", "tone-before", error.before),
-                ("with what was found", "tone-after", error.after),
-                ("floor", "tone-floor", error.floor),
-            ]))
-        } @else {
-            (figures(&[
-                ("refitted as it is", "tone-before", error.before),
-                ("floor", "tone-floor", error.floor),
-            ]))
-        }
+        (figures(&shown))
         p.note {
-            "Typical (RMS) angle error in milliradians, " (window(horizon_s)) ", on " (measured_on(error))
-            @if let Some(fall) = fall(error).filter(|_| found) { "; " (fall) }
+            "Typical (RMS) angle error in milliradians, " (window(horizon_s))
+            ", on " (measured_on(error))
+            @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."
         }
     }
@@ -62,38 +58,41 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
 
 /// Without a diagnosis the figures are the models' own.
 fn compared(report: &Report) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
     let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
         return html! { h1 { "Nothing was compared." } };
     };
-    let floor = pooled(&before.signals, |signal| signal.floor);
-    let first = ("tone-before", error(before));
+    let floor = (
+        "floor",
+        FLOOR,
+        pooled(&before.signals, |signal| signal.floor_rad),
+    );
+    let first = (before.model.as_str(), BEFORE, error(before));
     match report.after() {
-        Some(after) => html! {
-            h1 {
-                "From " (before.model) " to " (after.model) " the typical error goes from "
-                (in_mrad(first.1)) " to " (in_mrad(error(after))) "."
+        Some(after) => {
+            let last = (after.model.as_str(), AFTER, error(after));
+            html! {
+                h1 {
+                    "From " (before.model) " to " (after.model) " the typical error goes from "
+                    (in_mrad(first.2)) " to " (in_mrad(last.2)) "."
+                }
+                (figures(&[first, last, floor]))
             }
-            (figures(&[
-                (&before.model, first.0, first.1),
-                (&after.model, "tone-after", error(after)),
-                ("floor", "tone-floor", floor),
-            ]))
-        },
+        }
         None => html! {
-            h1 { (before.model) " misses the measurement by typically " (in_mrad(first.1)) "." }
-            (figures(&[(&before.model, first.0, first.1), ("floor", "tone-floor", floor)]))
+            h1 { (before.model) " misses the measurement by typically " (in_mrad(first.2)) "." }
+            (figures(&[first, floor]))
         },
     }
 }
 
 /// Figures in a row with arrows between.
-fn figures(figures: &[(&str, &str, f64)]) -> Markup {
+fn figures(figures: &[(&str, Tone, f64)]) -> Markup {
     html! {
         div.figures {
             @for (index, (name, tone, error_rad)) in figures.iter().enumerate() {
                 @if index > 0 { span.arrow aria-hidden="true" { "→" } }
-                div class={ "figure " (tone) } {
+                div class={ "figure " (tone.class()) } {
                     span.name { (name) }
                     span.value { (mrad(*error_rad)) span.unit { " mrad" } }
                     span.aside { (short(error_rad.to_degrees())) "°" }

@@ -4,7 +4,8 @@ use super::Report;
 use crate::diagnose::Diagnosis;
 use serde_json::{Map, Value};
 
-/// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number become `null`.
+/// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number
+/// become `null`.
 pub fn json(report: &Report) -> Value {
     let mut value = plain(report);
     if let Some(diagnosis) = &report.diagnosis {
@@ -14,7 +15,8 @@ pub fn json(report: &Report) -> Value {
 }
 
 /// A diagnosis: its fields as they are, but the `parameters` of effects keyed by name:
-/// `{"torque_nm": {"value", "low", "high", "unit", "on_bound"}}`. Values that are no number become `null`.
+/// `{"torque_nm": {"value", "low", "high", "unit", "on_bound"}}`. Values that are no number become
+/// `null`.
 pub fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
     let mut value = plain(diagnosis);
     key_effects(&mut value);
@@ -47,7 +49,7 @@ fn keyed(parameters: Value) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
+    use super::super::tests::sample;
     use super::*;
 
     #[test]
@@ -65,7 +67,7 @@ mod tests {
             })
         );
         assert!(diagnosis["alternatives"][0]["effects"][0]["parameters"].is_object());
-        for key in ["unit", "before", "after", "floor"] {
+        for key in ["before_rad", "after_rad", "floor_rad"] {
             assert!(!diagnosis["error"][key].is_null(), "{key}");
         }
         assert!(value["provenance"]["logs"][0]["sha256"].is_string());
@@ -74,10 +76,10 @@ mod tests {
     #[test]
     fn what_is_no_number_becomes_null() {
         let mut diagnosis = sample::diagnosis();
-        diagnosis.error.after = f64::NAN;
+        diagnosis.error.after_rad = f64::NAN;
         diagnosis.effects[0].parameters[0].high = f64::INFINITY;
         let value = diagnosis_json(&diagnosis);
-        assert!(value["error"]["after"].is_null());
+        assert!(value["error"]["after_rad"].is_null());
         assert!(value["effects"][0]["parameters"]["torque_nm"]["high"].is_null());
     }
 }

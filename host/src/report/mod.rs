@@ -1,37 +1,40 @@
 //! What was found, for people and programs: a page, a text and a JSON of the same values.
 
-mod bars;
 mod candidates;
+pub mod effect_page;
 mod failures;
 mod headline;
 mod json;
 pub(crate) mod page;
-mod panels;
 mod parameters;
 pub mod playback;
 mod provenance;
 mod remains;
-#[cfg(test)]
-mod sample;
-pub(crate) mod scale;
 mod signatures;
-pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
 mod text;
-mod thin;
 mod traces;
 mod waterfall;
 mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
-pub use panels::{Curve, Panel, panels};
-pub use text::diagnosis_text;
+pub use text::{diagnosis_text, plain_table};
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
+use crate::plot::Tone;
 use serde::Serialize;
+
+/// Tone of what was measured.
+const MEASURED: Tone = Tone::Ink;
+/// Tone of the first model.
+const BEFORE: Tone = Tone::Orange;
+/// Tone of the last model.
+const AFTER: Tone = Tone::Blue;
+/// Tone of what noise and resolution leave.
+const FLOOR: Tone = Tone::Green;
 
 /// Everything a page shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,9 +4,10 @@ use super::{
     Report, candidates, failures, headline, parameters, provenance, remains, signatures, traces,
     waterfall,
 };
+use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Colours and layout; light and dark, screen, phone and paper.
+/// Dark colours and layout; screen, phone and paper.
 const STYLE: &str = include_str!("page.css");
 
 /// A part of the page that is there only if its data are.
@@ -32,14 +33,35 @@ pub fn html(report: &Report) -> String {
         parameters::section,
         remains::section,
         provenance::section,
-        provenance::glossary,
+        provenance::terms,
     ];
     let sections: Vec<Section> = parts.iter().filter_map(|part| part(report)).collect();
     document(&report.title, &headline::header(report), &sections)
 }
 
-/// A document in the house's style.
+/// A document of sections, with links to them.
 pub(crate) fn document(title: &str, header: &Markup, sections: &[Section]) -> String {
+    let style = html! { (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) };
+    let body = html! {
+        main {
+            (header)
+            nav aria-label="Sections" {
+                @for section in sections { a href={ "#" (section.id) } { (section.title) } }
+            }
+            @for section in sections {
+                section id=(section.id) {
+                    h2 { (section.title) }
+                    p.lead { (section.lead) }
+                    (section.body)
+                }
+            }
+        }
+    };
+    self_contained(title, &style, &body)
+}
+
+/// An HTML document around a style sheet and a body.
+pub(crate) fn self_contained(title: &str, style: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -48,30 +70,15 @@ pub(crate) fn document(title: &str, header: &Markup, sections: &[Section]) -> St
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (style) }
             }
-            body {
-                main {
-                    (header)
-                    nav aria-label="Sections" {
-                        @for section in sections {
-                            a href={ "#" (section.id) } { (section.title) }
-                        }
-                    }
-                    @for section in sections { (drawn(section)) }
-                }
-            }
+            body { (body) }
         }
     };
     page.into_string()
 }
 
-fn drawn(section: &Section) -> Markup {
-    html! {
-        section id=(section.id) {
-            h2 { (section.title) }
-            p.lead { (section.lead) }
-            (section.body)
-        }
-    }
+/// A table under these headings (`th` elements); it scrolls sideways where it is too wide.
+pub(crate) fn table(headings: &Markup, rows: &Markup) -> Markup {
+    html! { div.scroll { table { thead { tr { (headings) } } tbody { (rows) } } } }
 }

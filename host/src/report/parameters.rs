@@ -1,12 +1,13 @@
 //! Fitted values with their intervals.
 
 use super::Report;
-use super::bars::whisker;
-use super::page::Section;
+use super::page::{Section, table};
+use crate::diagnose::Diagnosis;
 use crate::diagnose::words::effect_name;
-use crate::diagnose::{Diagnosis, FittedValue};
 use crate::effects::named;
+use crate::fitting::FittedValue;
 use crate::number::{interval, short, unit};
+use crate::plot;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -19,45 +20,40 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         return None;
     }
     let body = html! {
-        @if has_effects || !diagnosis.base.is_empty() { (table(diagnosis)) }
+        @if has_effects || !diagnosis.base.is_empty() { (values(diagnosis)) }
         @if !diagnosis.collinear.is_empty() { (collinear(diagnosis)) }
     };
     Some(Section {
         id: "parameters",
         title: "Values and how sure they are",
-        lead: "The interval is where the true value lies with 95 % confidence, given this model and these motions. In \
-               the picture the dot is the value and the bar its interval; the dashed line is the value at which the \
-               effect would vanish. An interval that reaches it proves nothing.",
+        lead: "The interval is where the true value lies with 95 % confidence, given this model \
+               and these motions. In the picture the dot is the value and the bar its interval; \
+               the dashed line is the value at which the effect would vanish. An interval that \
+               reaches it proves nothing.",
         body,
     })
 }
 
-fn table(diagnosis: &Diagnosis) -> Markup {
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th { "Of" } th { "Parameter" } th.number { "Value" } th.number { "95 % interval" } th { "Unit" }
-                th { "" }
-            } }
-            tbody {
-                @for effect in &diagnosis.effects {
-                    @for fitted in &effect.parameters {
-                        (row(&effect_name(effect), fitted, off(&effect.kind, &fitted.key)))
-                    }
-                }
-                @for fitted in &diagnosis.base { (row("model, refitted", fitted, None)) }
+fn values(diagnosis: &Diagnosis) -> Markup {
+    let headings = html! {
+        th { "Of" } th { "Parameter" } th.number { "Value" } th.number { "95 % interval" }
+        th { "Unit" } th { "" }
+    };
+    let rows = html! {
+        @for effect in &diagnosis.effects {
+            @for fitted in &effect.parameters {
+                (row(&effect_name(effect), fitted, off(&effect.kind, &fitted.key)))
             }
-        } }
-    }
+        }
+        @for fitted in &diagnosis.base { (row("model, refitted", fitted, None)) }
+    };
+    table(&headings, &rows)
 }
 
 /// Value at which an effect vanishes.
 fn off(kind: &str, key: &str) -> Option<f64> {
-    let parameters = named(kind)?.card().parameters;
-    parameters
-        .iter()
-        .find(|parameter| parameter.key == key)?
-        .off
+    let mut parameters = named(kind)?.info().parameters.iter();
+    parameters.find(|parameter| parameter.key == key)?.off
 }
 
 fn row(owner: &str, fitted: &FittedValue, off: Option<f64>) -> Markup {
@@ -70,7 +66,7 @@ fn row(owner: &str, fitted: &FittedValue, off: Option<f64>) -> Markup {
             td.number { (low) " to " (high) }
             td { (unit(&fitted.unit)) }
             td {
-                (whisker(fitted.value, fitted.low, fitted.high, off))
+                (plot::interval(fitted.value, fitted.low, fitted.high, off))
                 @if fitted.on_bound { p.bad { "⚠ on its bound: a warning, not a result" } }
             }
         }
@@ -82,8 +78,8 @@ fn collinear(diagnosis: &Diagnosis) -> Markup {
         div.box.warnings {
             h3 { "Hard to tell apart" }
             p {
-                "These data hardly separate the following pairs: only a combination of the two is known well. Another \
-                 kind of motion would part them."
+                "These data hardly separate the following pairs: only a combination of the two is \
+                 known well. Another kind of motion would part them."
             }
             ul { @for (one, other, correlation) in &diagnosis.collinear {
                 li { code { (one) } " and " code { (other) } ": correlation " (short(*correlation)) }

@@ -1,13 +1,12 @@
 //! What a named effect is: its law, and the curve it leaves, drawn from that law.
 
-use super::Report;
 use super::page::Section;
-use super::scale::{Scale, span};
-use super::svg::{Plot, Tone};
+use super::{AFTER, Report};
 use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
 use crate::effects::{Effect, named};
 use crate::number::given;
+use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -18,8 +17,8 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "effects",
         title: "The effects explained",
-        lead: "Each picture is drawn from the effect's law with typical or larger values, not with those of this log: \
-               it shows the shape to look for.",
+        lead: "Each picture is drawn from the effect's law with typical or larger values, not \
+               with those of this log: it shows the shape to look for.",
         body: html! { @for effect in effects { (explained(effect)) } },
     })
 }
@@ -36,62 +35,48 @@ fn kinds(effects: &[FittedEffect]) -> Vec<&'static dyn Effect> {
 }
 
 fn explained(effect: &dyn Effect) -> Markup {
-    let card = effect.card();
-    let signature = signature(effect);
+    let info = effect.info();
+    let chart = chart(effect, &signature(effect));
     html! {
         div.effect {
             div {
-                h3 { (card.title) " " code { (card.id) } }
+                h3 { (info.title) " " code { (info.id) } }
                 dl {
-                    dt { "Law" } dd { code { (card.law) } }
-                    dt { "What it looks like" } dd { (card.looks_like) }
-                    dt { "The experiment that reveals it" } dd { (card.experiment) }
-                    @if !card.confused_with.is_empty() {
+                    dt { "Law" } dd { code { (info.law) } }
+                    dt { "What it looks like" } dd { (info.looks_like) }
+                    dt { "The experiment that reveals it" } dd { (info.experiment) }
+                    @if !info.confused_with.is_empty() {
                         dt { "Easily confused with" }
-                        @for confusion in card.confused_with {
-                            dd {
-                                (named(confusion.with).map_or(confusion.with, |other| other.card().title))
-                                ": " (confusion.why)
-                            }
+                        @for confusion in info.confused_with {
+                            dd { (title(confusion.with)) ": " (confusion.why) }
                         }
                     }
-                    dt { "Reference" } dd { (card.reference) }
+                    dt { "Reference" } dd { (info.reference) }
                 }
             }
-            figure {
-                (curves(card.title, &signature))
-                figcaption {
-                    span.key.tone-after { span.swatch {} "with" (values(effect, &signature)) }
-                    span.key.tone-quiet { span.swatch {} "without" }
-                }
-            }
+            figure { (chart.svg(360.0, 234.0)) figcaption { (chart.legend()) } }
         }
     }
 }
 
-fn values(effect: &dyn Effect, signature: &Signature) -> String {
-    let pairs = effect.card().parameters.iter().zip(&signature.values);
-    let values: Vec<String> = pairs
-        .map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)))
-        .collect();
-    if values.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", values.join(", "))
-    }
+/// An effect's title; its id if there is none of that id.
+pub(super) fn title(id: &'static str) -> &'static str {
+    named(id).map_or(id, |effect| effect.info().title)
 }
 
-fn curves(title: &str, signature: &Signature) -> Markup {
-    let points = || signature.without.iter().chain(&signature.with);
-    let plot = Plot {
-        x: Scale::new(span(points().map(|point| point.0), 0.0), (50.0, 350.0)),
-        y: Scale::new(span(points().map(|point| point.1), 0.06), (190.0, 20.0)),
-    };
-    html! {
-        svg viewBox="0 0 360 226" role="img" aria-label={ "signature of " (title) } {
-            (plot.columns(5)) (plot.rows(5, signature.y_label)) (plot.x_labels(5, signature.x_label))
-            (plot.curve(signature.without.iter().copied(), Tone::Quiet))
-            (plot.curve(signature.with.iter().copied(), Tone::After))
-        }
-    }
+/// The curve without the effect, and with the values it is drawn for.
+pub(super) fn chart(effect: &dyn Effect, signature: &Signature) -> Chart {
+    let parameters = effect.info().parameters.iter().zip(&signature.values);
+    let values =
+        parameters.map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)));
+    let with = format!("with {}", values.collect::<Vec<_>>().join(", "));
+    Chart::new(
+        format!("signature of {}", effect.info().title),
+        signature.x_label,
+        signature.y_label,
+        vec![
+            Curve::line("without", Tone::Grey, signature.without.clone()),
+            Curve::line(with.trim_end(), AFTER, signature.with.clone()),
+        ],
+    )
 }

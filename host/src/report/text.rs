@@ -1,10 +1,11 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    fall, in_mrad, measured_on, sentences, sorted, verdict_word, window, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, window, with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect, FittedValue};
+use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
+use crate::fitting::FittedValue;
 use crate::number::unit;
 use crate::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
@@ -22,7 +23,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
         error(diagnosis),
         alternatives(&diagnosis.alternatives),
         ruled_out(diagnosis),
-        remainder(diagnosis),
+        residual_structure(diagnosis),
         list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
     ];
@@ -38,7 +39,7 @@ fn headline(diagnosis: &Diagnosis) -> String {
 }
 
 fn effects(effects: &[FittedEffect]) -> Option<String> {
-    let mut table = table([
+    let header = [
         "Effect",
         "Joint",
         "Parameter",
@@ -46,14 +47,12 @@ fn effects(effects: &[FittedEffect]) -> Option<String> {
         "95 % interval",
         "Unit",
         "",
-    ]);
+    ];
+    let mut table = plain_table(header);
     for effect in effects {
-        for fitted in &effect.parameters {
-            table.add_row(row(effect, fitted));
-        }
+        table.add_rows(effect.parameters.iter().map(|fitted| row(effect, fitted)));
     }
-    right(&mut table, &[1, 3, 4]);
-    (!table.is_empty()).then(|| format!("Missing effects\n{}", trimmed(&table)))
+    Some(format!("Missing effects\n{}", lines(table, &[1, 3, 4])?))
 }
 
 fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
@@ -72,79 +71,74 @@ fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
-    let nothing_added = diagnosis.effects.is_empty();
-    let floor = format!("floor {} mrad", mrad(error.floor));
-    let figures = match nothing_added {
-        true => format!("Error: {} mrad, {floor}.", mrad(error.before)),
-        false => format!(
-            "Error: {} mrad, refitted as it is -> {} mrad; {floor}.",
-            mrad(error.before),
-            mrad(error.after)
-        ),
+    let (before, after) = (mrad(error.before_rad), mrad(error.after_rad));
+    let added = !diagnosis.effects.is_empty();
+    let change = if added {
+        format!(", refitted as it is -> {after} mrad;")
+    } else {
+        ",".to_string()
     };
-    let on = format!(
-        "RMS {}, on {}.",
-        window(diagnosis.horizon_s),
-        measured_on(error)
+    let mut lines = vec![
+        format!(
+            "Error: {before} mrad{change} floor {} mrad.",
+            mrad(error.floor_rad)
+        ),
+        format!(
+            "RMS {}, on {}.",
+            window(diagnosis.horizon_s),
+            measured_on(error)
+        ),
+    ];
+    lines.extend(
+        reduction(error)
+            .filter(|_| added)
+            .map(|reduction| format!("So {reduction}.")),
     );
-    let fall = fall(error)
-        .filter(|_| !nothing_added)
-        .map(|fall| format!("So {fall}."));
-    let lines: Vec<String> = [figures, on].into_iter().chain(fall).collect();
-    error.before.is_finite().then(|| lines.join("\n"))
+    error.before_rad.is_finite().then(|| lines.join("\n"))
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Option<String> {
     let line = |alternative: &Alternative| {
-        let values: Vec<String> = alternative
+        let values = alternative
             .effects
             .iter()
-            .flat_map(|effect| &effect.parameters)
-            .map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)))
-            .collect();
-        let effects = joined(&alternative.effects);
+            .flat_map(|effect| &effect.parameters);
+        let values = values.map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)));
+        let (effects, error) = (joined(&alternative.effects), in_mrad(alternative.error_rad));
         format!(
-            "{effects}: {}; {}",
-            in_mrad(alternative.error),
-            values.join(", ")
+            "{effects}: {error}; {}",
+            values.collect::<Vec<_>>().join(", ")
         )
     };
     let mut lines: Vec<String> = alternatives.iter().take(RIVALS).map(line).collect();
-    let more = alternatives.len().saturating_sub(RIVALS);
-    if more > 0 {
-        lines.push(format!("and {more} more"));
-    }
+    lines.extend(and_more(alternatives.len(), RIVALS));
     list("As good", &lines)
 }
 
 fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
-    let mut table = table(["Ruled out", "Fitted, mrad", "Held out, mrad", "BIC", "Why"]);
+    let mut table = plain_table(["Ruled out", "Fitted, mrad", "Held out, mrad", "BIC", "Why"]);
     for tried in sorted(&diagnosis.ruled_out).into_iter().take(SHOWN) {
         table.add_row([
             tried.set.join(" + "),
-            mrad(tried.training_error),
-            tried.held_out_error.map_or(NONE.into(), mrad),
+            mrad(tried.training_error_rad),
+            tried.held_out_error_rad.map_or(NONE.into(), mrad),
             short(tried.bic_change),
             tried.why.clone(),
         ]);
     }
-    right(&mut table, &[1, 2, 3]);
-    let more = diagnosis.ruled_out.len().saturating_sub(SHOWN);
-    let more = if more > 0 {
-        format!("\nand {more} more")
-    } else {
-        String::new()
-    };
-    (!table.is_empty()).then(|| format!("{}{more}", trimmed(&table)))
+    let mut lines = vec![lines(table, &[1, 2, 3])?];
+    lines.extend(and_more(diagnosis.ruled_out.len(), SHOWN));
+    Some(lines.join("\n"))
 }
 
-fn remainder(diagnosis: &Diagnosis) -> Option<String> {
-    let remainder = diagnosis.remainder.as_ref()?;
+fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
+    let structure = diagnosis.residual_structure.as_ref()?;
     Some(format!(
-        "Remainder: a free form could still gain {} (at least {}) of the squared error above the floor; it leans on {}.",
-        percent(remainder.explainable_share.clamp(0.0, 1.0)),
-        percent(remainder.explainable_low.clamp(0.0, 1.0)),
-        remainder.shape
+        "Residual structure: a free form could still gain {} (at least {}) of the squared error above the \
+         floor; it leans on {}.",
+        percent(structure.explainable_share.clamp(0.0, 1.0)),
+        percent(structure.explainable_low.clamp(0.0, 1.0)),
+        structure.shape
     ))
 }
 
@@ -153,31 +147,33 @@ fn list(title: &str, items: &[String]) -> Option<String> {
     (!items.is_empty()).then(|| format!("{title}\n{}", lines.join("\n")))
 }
 
-fn table<const N: usize>(header: [&str; N]) -> Table {
+/// A table without frame, as wide as its text asks and at most as wide as the terminal.
+pub fn plain_table<const N: usize>(header: [&str; N]) -> Table {
     let mut table = Table::new();
     table
         .load_preset(presets::UTF8_HORIZONTAL_ONLY)
         .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH)
         .set_header(header)
         .remove_style(TableComponent::HorizontalLines)
         .remove_style(TableComponent::MiddleIntersections);
     table
 }
 
-/// Numbers stand under each other.
-fn right(table: &mut Table, columns: &[usize]) {
-    for index in columns {
+/// The table's lines, numbers in these columns under each other; nothing without rows.
+fn lines(mut table: Table, numbers: &[usize]) -> Option<String> {
+    table.set_width(WIDTH);
+    for index in numbers {
         if let Some(column) = table.column_mut(*index) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-}
-
-fn trimmed(table: &Table) -> String {
     let lines: Vec<String> = table
         .lines()
         .map(|line| line.trim_end().to_string())
         .collect();
-    lines.join("\n")
+    (!table.is_empty()).then(|| lines.join("\n"))
+}
+
+fn and_more(all: usize, shown: usize) -> Option<String> {
+    (all > shown).then(|| format!("and {} more", all - shown))
 }

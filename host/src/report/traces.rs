@@ -1,11 +1,10 @@
 //! Measured against model: per motion and joint the angles, and below them what is left.
 
-use super::Report;
-use super::page::Section;
-use super::scale::{Scale, span};
-use super::svg::{Plot, Tone};
-use crate::compare::{Comparison, SignalError, Trace};
+use super::page::{Section, table};
+use super::{AFTER, BEFORE, FLOOR, MEASURED, Report};
+use crate::compare::{Comparison, Trace};
 use crate::number::{mrad, short};
+use crate::plot::{Axes, Scale, Tone, span};
 use maud::{Markup, html};
 
 /// Charts that are open from the start; the others wait behind their titles.
@@ -27,10 +26,10 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     let body = html! {
         @if !pairs.is_empty() {
             div.legend {
-                (toggle("measured", "measured", Tone::Measured))
-                (toggle("before", &before.model, Tone::Before))
-                @if let Some(after) = report.after() { (toggle("after", &after.model, Tone::After)) }
-                span.key.tone-floor { span.swatch {} "± floor" }
+                (toggle("measured", "measured", MEASURED))
+                (toggle("before", &before.model, BEFORE))
+                @if let Some(after) = report.after() { (toggle("after", &after.model, AFTER)) }
+                span class={ "key " (FLOOR.class()) } { span.swatch {} "± floor" }
             }
         }
         @for (index, pair) in pairs.iter().enumerate() { (drawn(pair, index < OPEN)) }
@@ -39,9 +38,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "traces",
         title: "Measured against model",
-        lead: "Above, the angle that was measured and what each model predicts for the same input. Below, the \
-               residual: measured minus predicted. A good model's residual stays inside the shaded floor and shows \
-               no pattern. Untick a name to hide its line.",
+        lead: "Above, the angle that was measured and what each model predicts for the same input. \
+               Below, the residual: measured minus predicted. A good model's residual stays inside \
+               the shaded floor and shows no pattern. Untick a name to hide its line.",
         body,
     })
 }
@@ -50,7 +49,7 @@ fn pairs<'a>(before: &'a Comparison, after: Option<&'a Comparison>) -> Vec<Pair<
     let same = |a: &Trace, b: &Trace| a.motion == b.motion && a.joint == b.joint;
     let floor = |joint| {
         let signal = before.signals.iter().find(|signal| signal.joint == joint);
-        signal.map(|signal| signal.floor)
+        signal.map(|signal| signal.floor_rad)
     };
     let pair = |trace: &'a Trace| Pair {
         before: trace,
@@ -83,7 +82,7 @@ fn drawn(pair: &Pair, open: bool) -> Markup {
     }
 }
 
-fn angles<'a>(trace: &'a Trace, of: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+fn timed<'a>(trace: &'a Trace, of: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     trace.time_s.iter().copied().zip(of.iter().copied())
 }
 
@@ -95,38 +94,34 @@ fn residual(trace: &Trace) -> impl Iterator<Item = (f64, f64)> + '_ {
 
 fn chart(pair: &Pair) -> Markup {
     let both = || std::iter::once(pair.before).chain(pair.after);
-    let time = Scale::new(
-        span(both().flat_map(|trace| trace.time_s.clone()), 0.0),
-        (56.0, 750.0),
-    );
-    let angle = span(
-        both().flat_map(|t| t.measured_rad.iter().chain(&t.predicted_rad).copied()),
-        0.05,
-    );
+    let times = both().flat_map(|trace| trace.time_s.iter().copied());
+    let x = Scale::new(span(times, 0.0), (56.0, 750.0));
+    let angles = both().flat_map(|t| t.measured_rad.iter().chain(&t.predicted_rad).copied());
     let floor_mrad = 1e3 * pair.floor_rad.unwrap_or(0.0).abs();
     let left = both().flat_map(|t| residual(t).map(|point| point.1));
     let left = span(left.chain([floor_mrad, -floor_mrad]), 0.08);
-    let above = Plot {
-        x: time,
-        y: Scale::new(angle, (200.0, 20.0)),
+    let above = Axes {
+        x,
+        y: Scale::new(span(angles, 0.05), (200.0, 20.0)),
     };
-    let below = Plot {
-        x: time,
+    let below = Axes {
+        x,
         y: Scale::new(left, (345.0, 232.0)),
     };
     let trace = pair.before;
+    let label = format!("motion {}, joint {}", trace.motion, trace.joint);
     html! {
-        svg viewBox="0 0 760 380" role="img" aria-label={ "motion " (trace.motion) ", joint " (trace.joint) } {
+        svg viewBox="0 0 760 380" role="img" aria-label=(label) {
             (above.columns(8)) (above.rows(5, "angle, rad"))
-            (above.curve(angles(trace, &trace.measured_rad), Tone::Measured))
-            (above.curve(angles(trace, &trace.predicted_rad), Tone::Before))
+            (above.curve(timed(trace, &trace.measured_rad), MEASURED))
+            (above.curve(timed(trace, &trace.predicted_rad), BEFORE))
             @if let Some(after) = pair.after {
-                (above.curve(angles(after, &after.predicted_rad), Tone::After))
+                (above.curve(timed(after, &after.predicted_rad), AFTER))
             }
             (below.columns(8)) (below.rows(4, "residual, mrad"))
-            @if floor_mrad > 0.0 { (below.band(-floor_mrad, floor_mrad, Tone::Floor)) }
-            (below.curve(residual(trace), Tone::Before))
-            @if let Some(after) = pair.after { (below.curve(residual(after), Tone::After)) }
+            @if floor_mrad > 0.0 { (below.band(-floor_mrad, floor_mrad, FLOOR)) }
+            (below.curve(residual(trace), BEFORE))
+            @if let Some(after) = pair.after { (below.curve(residual(after), AFTER)) }
             (below.x_labels(8, "time, s"))
         }
     }
@@ -134,30 +129,23 @@ fn chart(pair: &Pair) -> Markup {
 
 /// Per joint, each model of the chain.
 fn fits(report: &Report) -> Markup {
-    let row = |comparison: &Comparison, signal: &SignalError| {
-        html! {
-            tr {
-                td { (comparison.model) }
-                td.number { (signal.joint) }
-                td.number { (mrad(signal.rms)) }
-                td.number { (mrad(signal.largest)) }
-                td.number { (short(signal.fit_percent)) " %" }
-                td.number { (mrad(signal.floor)) }
+    let headings = html! {
+        th { "Model" } th.number { "Joint" } th.number { "RMS, mrad" } th.number { "Largest, mrad" }
+        th.number { "Fit" } th.number { "Floor, mrad" }
+    };
+    let rows = html! {
+        @for comparison in &report.comparisons {
+            @for signal in &comparison.signals {
+                tr {
+                    td { (comparison.model) }
+                    td.number { (signal.joint) }
+                    td.number { (mrad(signal.rms_rad)) }
+                    td.number { (mrad(signal.largest_rad)) }
+                    td.number { (short(signal.fit_percent)) " %" }
+                    td.number { (mrad(signal.floor_rad)) }
+                }
             }
         }
     };
-    html! {
-        h3 { "All motions together" }
-        div.scroll { table {
-            thead { tr {
-                th { "Model" } th.number { "Joint" } th.number { "RMS, mrad" } th.number { "Largest, mrad" }
-                th.number { "Fit" } th.number { "Floor, mrad" }
-            } }
-            tbody {
-                @for comparison in &report.comparisons {
-                    @for signal in &comparison.signals { (row(comparison, signal)) }
-                }
-            }
-        } }
-    }
+    html! { h3 { "All motions together" } (table(&headings, &rows)) }
 }

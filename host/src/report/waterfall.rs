@@ -1,13 +1,12 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
-use super::bars::{Bar, largest};
-use super::page::Section;
-use super::svg::Tone;
+use super::page::{Section, table};
 use super::words::in_mrad;
-use super::{Report, pooled};
+use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::MotionError;
 use crate::number::{mrad, percent};
+use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -27,30 +26,23 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     Some(Section {
         id: "fall",
         title: "How the error falls",
-        lead: "Each bar is the typical (RMS) error of one model, all joints and motions together. The pale part is what \
-               this model gained over the one above it; the thin line is the floor.",
+        lead: "Each bar is the typical (RMS) error of one model, all joints and motions together. \
+               The pale part is what this model gained over the one above it; the thin line is \
+               the floor.",
         body,
     })
 }
 
 fn steps(chain: &[&Comparison]) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms);
+    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
-    let floor = pooled(&chain[0].signals, |signal| signal.floor);
+    let floor = pooled(&chain[0].signals, |signal| signal.floor_rad);
     let full = largest(errors.iter().copied().chain([floor]));
     let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
     let bar = |index: usize| Bar {
         ghost: previous(index),
         mark: Some(floor),
-        ..Bar::new(
-            errors[index],
-            full,
-            if index == 0 {
-                Tone::Before
-            } else {
-                Tone::After
-            },
-        )
+        ..Bar::new(errors[index], full, if index == 0 { BEFORE } else { AFTER })
     };
     html! {
         div.steps {
@@ -65,7 +57,7 @@ fn steps(chain: &[&Comparison]) -> Markup {
                 }
             }
             span { "floor" }
-            (Bar::new(floor, full, Tone::Floor).draw())
+            (Bar::new(floor, full, FLOOR).draw())
             span.number { (in_mrad(floor)) }
         }
     }
@@ -79,30 +71,28 @@ fn change(from: f64, to: f64) -> String {
 }
 
 fn by_motion(motions: &[MotionError]) -> Markup {
-    let full = largest(
-        motions
-            .iter()
-            .flat_map(|motion| [motion.before, motion.after]),
-    );
+    let errors = motions
+        .iter()
+        .flat_map(|motion| [motion.before_rad, motion.after_rad]);
+    let full = largest(errors);
     let after = |motion: &MotionError| Bar {
-        ghost: Some(motion.before),
-        ..Bar::new(motion.after, full, Tone::After)
+        ghost: Some(motion.before_rad),
+        ..Bar::new(motion.after_rad, full, AFTER)
     };
-    html! {
-        h3 { "Motion by motion" }
-        div.scroll { table {
-            thead { tr {
-                th { "Motion" } th { "Role" } th.number { "Before, mrad" } th.number { "After, mrad" } th.wide {}
-            } }
-            tbody { @for motion in motions {
-                tr {
-                    td { (motion.motion) }
-                    td { @if motion.held_out { "held out" } @else { "fitted" } }
-                    td.number { (mrad(motion.before)) }
-                    td.number { (mrad(motion.after)) }
-                    td.wide { (after(motion).draw()) }
-                }
-            } }
-        } }
-    }
+    let headings = html! {
+        th { "Motion" } th { "Role" } th.number { "Before, mrad" } th.number { "After, mrad" }
+        th.wide {}
+    };
+    let rows = html! {
+        @for motion in motions {
+            tr {
+                td { (motion.motion) }
+                td { @if motion.held_out { "held out" } @else { "fitted" } }
+                td.number { (mrad(motion.before_rad)) }
+                td.number { (mrad(motion.after_rad)) }
+                td.wide { (after(motion).draw()) }
+            }
+        }
+    };
+    html! { h3 { "Motion by motion" } (table(&headings, &rows)) }
 }

@@ -1,8 +1,9 @@
 //! Words that the page and the text share.
 
 use crate::diagnose::words::{at_joint, headline, listed};
-use crate::diagnose::{Diagnosis, ErrorFall, FittedValue, RuledOut, Verdict};
+use crate::diagnose::{Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
+use crate::fitting::{ErrorReduction, FittedValue};
 use crate::number::{given, measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
@@ -24,7 +25,7 @@ pub(super) fn set_name(set: &[String]) -> String {
             None => (id.as_str(), None),
         };
         match named(kind) {
-            Some(effect) => at_joint(effect.card().title, joint),
+            Some(effect) => at_joint(effect.info().title, joint),
             None => id.clone(),
         }
     };
@@ -34,16 +35,16 @@ pub(super) fn set_name(set: &[String]) -> String {
 /// Tried sets, the smallest held-out error first; then those that never came that far.
 pub(super) fn sorted(ruled_out: &[RuledOut]) -> Vec<&RuledOut> {
     let mut sorted: Vec<&RuledOut> = ruled_out.iter().collect();
-    let key = |tried: &RuledOut| tried.held_out_error.unwrap_or(f64::INFINITY);
+    let key = |tried: &RuledOut| tried.held_out_error_rad.unwrap_or(f64::INFINITY);
     sorted.sort_by(|a, b| {
         let held_out = key(a).total_cmp(&key(b));
-        held_out.then(a.training_error.total_cmp(&b.training_error))
+        held_out.then(a.training_error_rad.total_cmp(&b.training_error_rad))
     });
     sorted
 }
 
 /// On which motions the error was taken.
-pub(super) fn measured_on(error: &ErrorFall) -> &'static str {
+pub(super) fn measured_on(error: &ErrorReduction) -> &'static str {
     if error.held_out {
         "motions that took no part in the fit"
     } else {
@@ -51,20 +52,21 @@ pub(super) fn measured_on(error: &ErrorFall) -> &'static str {
     }
 }
 
-/// "the error falls by 85 % (95 % interval 80 to 89 %)"; nothing if there is no error to fall.
-pub(super) fn fall(error: &ErrorFall) -> Option<String> {
-    let fall = 1.0 - error.after / error.before;
-    let verb = if fall < 0.0 { "rises" } else { "falls" };
-    let range = match (error.fall_low.is_finite(), error.fall_high.is_finite()) {
-        (true, true) => format!(
-            " (95 % interval of the fall: {} to {})",
-            percent(error.fall_low),
-            percent(error.fall_high)
-        ),
-        _ => String::new(),
-    };
-    fall.is_finite()
-        .then(|| format!("the error {verb} by {}{range}", percent(fall.abs())))
+/// "the error falls by 85 % (95 % interval 80 to 89 %)"; nothing if there is no error to reduce.
+pub(super) fn reduction(error: &ErrorReduction) -> Option<String> {
+    let reduction = 1.0 - error.after_rad / error.before_rad;
+    let verb = if reduction < 0.0 { "rises" } else { "falls" };
+    let range = error
+        .reduction
+        .filter(|ends| ends.iter().all(|end| end.is_finite()));
+    let range = range.map_or(String::new(), |ends| {
+        let [low, high] = ends.map(percent);
+        format!(" (95 % interval of the reduction: {low} to {high})")
+    });
+    let size = percent(reduction.abs());
+    reduction
+        .is_finite()
+        .then(|| format!("the error {verb} by {size}{range}"))
 }
 
 /// "41.2 mrad".

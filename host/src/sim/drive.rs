@@ -1,38 +1,76 @@
-//! From what the drive is told to the torque at the joint.
+//! Drive torque at a joint, from the drive's input, its regulator, its motor and the effects on them.
 
-use super::plant::JointPlan;
-use crate::effects::DriveState;
+use super::plant::{Active, JointPlan};
+use crate::effects::{AtRest, DriveState};
 use crate::model::Drive;
 
-/// What the motion's log says of the drive at an instant.
+/// Input of a drive at an instant.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Told {
+pub(super) struct DriveInput {
     /// The input in SI of the drive's kind.
     pub input: f64,
     /// Supply over nominal supply; 1 where unknown.
     pub supply_ratio: f64,
     /// Whether the drive is energised.
     pub energised: bool,
-    /// Measured speed of another moment, rad/s, for a sham.
+    /// Measured speed of another moment, rad/s, for a placebo regressor.
     pub shuffled_rad_s: f64,
+    /// Constant torque on the joint from outside, N m.
+    pub disturbance_nm: f64,
+}
+
+impl DriveInput {
+    /// Energised at the nominal supply, input 0.
+    pub const ZERO: DriveInput = DriveInput {
+        input: 0.0,
+        supply_ratio: 1.0,
+        energised: true,
+        shuffled_rad_s: 0.0,
+        disturbance_nm: 0.0,
+    };
 }
 
 impl JointPlan {
+    /// Whether the torque follows from the input alone, whatever the joint's angle and speed.
+    pub(super) fn torque_is_held(&self) -> bool {
+        let regulated = match &self.drive {
+            Drive::Passive | Drive::Torque => false,
+            Drive::Duty(motor) => motor.no_load_speed_rad_s.is_finite(),
+            Drive::Position { .. } | Drive::Speed { .. } => true,
+        };
+        let standstill = AtRest {
+            angle_rad: 0.0,
+            duty: 0.0,
+            torque_nm: 0.0,
+            full_torque_nm: self.full_torque_nm,
+        };
+        let follows_speed = |e: &Active| {
+            let slope = e.effect.slope(e.values(), &standstill);
+            slope.is_none_or(|slope| slope.per_rad_s != 0.0)
+        };
+        !regulated && !self.output.iter().any(follows_speed)
+    }
+
     /// Torque of the drive, N m, at a reading of the joint's own encoder and a speed.
     #[inline]
-    pub(super) fn drive_torque_nm(&self, told: Told, reading_rad: f64, speed_rad_s: f64) -> f64 {
-        if !told.energised {
+    pub(super) fn drive_torque_nm(
+        &self,
+        at: DriveInput,
+        reading_rad: f64,
+        speed_rad_s: f64,
+    ) -> f64 {
+        if !at.energised {
             return 0.0;
         }
         let (duty, slope) = match &self.drive {
             Drive::Passive => return 0.0,
-            Drive::Torque => (told.input / self.full_torque_nm, 0.0),
-            Drive::Duty(motor) => (told.input, 1.0 / motor.no_load_speed_rad_s),
+            Drive::Torque => (at.input / self.full_torque_nm, 0.0),
+            Drive::Duty(motor) => (at.input, 1.0 / motor.no_load_speed_rad_s),
             Drive::Position {
                 gain_per_rad,
                 motor,
             } => (
-                (gain_per_rad * (told.input - reading_rad)).clamp(-1.0, 1.0),
+                (gain_per_rad * (at.input - reading_rad)).clamp(-1.0, 1.0),
                 1.0 / motor.no_load_speed_rad_s,
             ),
             Drive::Speed {
@@ -40,12 +78,12 @@ impl JointPlan {
                 motor,
             } => {
                 let forward = if motor.no_load_speed_rad_s.is_finite() {
-                    told.input / motor.no_load_speed_rad_s
+                    at.input / motor.no_load_speed_rad_s
                 } else {
                     0.0
                 };
                 (
-                    (forward + gain_s_per_rad * (told.input - speed_rad_s)).clamp(-1.0, 1.0),
+                    (forward + gain_s_per_rad * (at.input - speed_rad_s)).clamp(-1.0, 1.0),
                     1.0 / motor.no_load_speed_rad_s,
                 )
             }
@@ -58,7 +96,7 @@ impl JointPlan {
             speed_rad_s,
             duty,
             full_torque_nm: self.full_torque_nm,
-            supply_ratio: told.supply_ratio,
+            supply_ratio: at.supply_ratio,
         };
         let torque = self.full_torque_nm * (duty - slope * speed_rad_s);
         self.output.iter().fold(torque, |torque, e| {

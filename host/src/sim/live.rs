@@ -1,20 +1,18 @@
-//! A model that runs on by itself, its drives told at every step what to do: a robot behind simulated servos.
+//! A model simulated step by step, its drives commanded from outside: a robot behind simulated servos.
 
-use super::drive::Told;
+use super::drive::DriveInput;
 use super::plant::Plant;
 use super::rows::Many;
 use super::stepper::Stepper;
 use crate::error::{Error, Result};
-use crate::log::{Motion, Source};
 use crate::model::{Angles, Drive, Model};
-use std::path::PathBuf;
 
-/// A model in motion. Its drives are told a duty, whatever they are in the model.
+/// A model in motion. Its drives are commanded a duty, whatever they are in the model.
 #[derive(Debug, Clone)]
 pub struct Live {
     plant: Plant,
     stepper: Stepper<Many>,
-    told: Vec<Told>,
+    inputs: Vec<DriveInput>,
     nominal_supply_v: Vec<Option<f64>>,
 }
 
@@ -37,35 +35,29 @@ impl Live {
                 "give one angle per joint",
             ));
         }
-        let mut model = model.clone();
-        for joint in &mut model.joints {
-            match &joint.drive {
-                Drive::Passive | Drive::Duty(_) => {}
-                Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
-                    joint.drive = Drive::Duty(motor.clone());
-                }
-                Drive::Torque => {
-                    return Err(Error::design(
-                        format!(
-                            "`{}` has a joint driven by a torque, not by a servo",
-                            model.name
-                        ),
-                        "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, no_load_speed_rad_s",
-                    ));
-                }
-            }
+        if model
+            .joints
+            .iter()
+            .any(|joint| joint.drive == Drive::Torque)
+        {
+            return Err(Error::design(
+                format!(
+                    "`{}` has a joint driven by a torque, not by a servo",
+                    model.name
+                ),
+                "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, no_load_speed_rad_s",
+            ));
         }
-        let plant = Plant::new(&model, &nothing());
+        let model = bare_motors(model);
+        let plant = Plant::without_log(&model);
         let angles = plant.decode_rad(angle_rad);
         let supply = |joint: &crate::model::Joint| joint.drive.motor()?.nominal_supply_v;
         Ok(Live {
             stepper: Stepper::new(&plant, &angles, &vec![0.0; angles.len()]),
-            told: vec![
-                Told {
-                    input: 0.0,
-                    supply_ratio: 1.0,
+            inputs: vec![
+                DriveInput {
                     energised: false,
-                    shuffled_rad_s: 0.0,
+                    ..DriveInput::ZERO
                 };
                 angles.len()
             ],
@@ -74,13 +66,13 @@ impl Live {
         })
     }
 
-    /// Tells a drive its duty, -1 to 1, at this supply, V; none: it is not energised.
-    pub fn tell(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
-        let told = &mut self.told[joint];
-        told.energised = duty.is_some();
-        told.input = duty.unwrap_or(0.0);
+    /// Commands a drive's duty, -1 to 1, at this supply, V; none: it is not energised.
+    pub fn command(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
+        let input = &mut self.inputs[joint];
+        input.energised = duty.is_some();
+        input.input = duty.unwrap_or(0.0);
         if let Some(nominal) = self.nominal_supply_v[joint] {
-            told.supply_ratio = supply_v / nominal;
+            input.supply_ratio = supply_v / nominal;
         }
     }
 
@@ -89,13 +81,13 @@ impl Live {
         let steps = (span_s / self.plant.step_s - 1e-6).ceil().max(1.0);
         for _ in 0..steps as usize {
             self.stepper
-                .advance(&self.plant, &self.told, span_s / steps);
+                .advance(&self.plant, &self.inputs, span_s / steps);
         }
     }
 
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
-        self.told.len()
+        self.inputs.len()
     }
 
     /// How late the drive of a joint obeys, s.
@@ -122,6 +114,17 @@ impl Live {
     }
 }
 
+/// The model with every position or speed servo replaced by its bare motor, commanded in duty.
+pub fn bare_motors(model: &Model) -> Model {
+    let mut model = model.clone();
+    for joint in &mut model.joints {
+        if let Drive::Position { motor, .. } | Drive::Speed { motor, .. } = &joint.drive {
+            joint.drive = Drive::Duty(motor.clone());
+        }
+    }
+    model
+}
+
 /// All links straight down at rest, rad in the model's convention.
 pub fn hanging(model: &Model) -> Vec<f64> {
     let down = -model.angle_zero.from_hanging_rad();
@@ -132,24 +135,4 @@ pub fn hanging(model: &Model) -> Vec<f64> {
     (0..model.link_count())
         .map(|joint| if joint == 0 { down } else { later })
         .collect()
-}
-
-/// No log stands behind it: no payload, not turned.
-fn nothing() -> Motion {
-    Motion {
-        name: String::new(),
-        source: Source {
-            path: PathBuf::new(),
-            sha256: String::new(),
-            lines: (0, 0),
-        },
-        time_s: Vec::new(),
-        position_rad: Vec::new(),
-        velocity_rad_s: Vec::new(),
-        input: Vec::new(),
-        supply_v: None,
-        torque_on: None,
-        payload_kg: 0.0,
-        turned: false,
-    }
 }

@@ -1,13 +1,19 @@
-//! Simulation of a model along a motion's recorded inputs.
+//! The one plant: a model with all its effects, simulated along a log, live behind servos, or in a closed loop.
+//!
+//! `plant` (a model compiled) -> `drive` (input to torque) -> `stepper` (one step, friction that sticks) -> `run` (along a
+//! log), `live` (step by step), [`closed_loop`] (held by a controller).
 
+pub mod closed_loop;
 mod drive;
 mod input;
 mod live;
 mod plant;
 mod rows;
 mod run;
+mod sensor_state;
 mod stepper;
 
-pub use live::{Live, hanging};
+pub use live::{Live, bare_motors, hanging};
 pub use plant::Plant;
-pub use run::{Memory, Start, predict};
+pub use run::{Start, predict};
+pub use sensor_state::SensorState;

@@ -1,8 +1,9 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
-use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, Rig, SHAM, Site};
-use crate::log::Motion;
+use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
+use crate::log::{Motion, MotionSource};
 use crate::model::{Angles, Drive, Model};
+use std::path::PathBuf;
 
 /// Most values an effect has.
 const MOST_VALUES: usize = 4;
@@ -50,7 +51,7 @@ pub struct Plant {
     pub(super) step_s: f64,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
-    /// Per joint, per sample: the measured speed of another moment; empty without a sham.
+    /// Per joint, per sample: the measured speed of another moment; empty without a placebo.
     pub(super) shuffled_rad_s: Vec<Vec<f64>>,
 }
 
@@ -62,7 +63,7 @@ impl Plant {
             .iter()
             .map(|j| JointPlan::ideal(&j.drive))
             .collect();
-        let mut rig = Rig::of(model, motion.turned);
+        let mut rig = model.rig(motion.turned);
         if motion.payload_kg > 0.0 {
             rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
         }
@@ -74,7 +75,7 @@ impl Plant {
                     continue;
                 };
                 joint.add(*effect, &instance.values);
-                needs.push(effect.card().needs);
+                needs.push(effect.info().needs);
             }
         }
         let senses = joints.iter().any(|j| !j.sense.is_empty());
@@ -90,6 +91,27 @@ impl Plant {
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
             shuffled_rad_s: shuffled(model, motion),
         }
+    }
+
+    /// Compiles `model` for a simulation without a log: no payload, not turned.
+    pub fn without_log(model: &Model) -> Plant {
+        let motion = Motion {
+            name: String::new(),
+            source: MotionSource {
+                path: PathBuf::new(),
+                sha256: String::new(),
+                lines: (0, 0),
+            },
+            time_s: Vec::new(),
+            position_rad: Vec::new(),
+            velocity_rad_s: Vec::new(),
+            input: Vec::new(),
+            supply_v: None,
+            torque_on: None,
+            payload_kg: 0.0,
+            turned: false,
+        };
+        Plant::new(model, &motion)
     }
 
     /// Whether the log's angles are measured from the world.
@@ -129,8 +151,7 @@ impl Plant {
             true => speed_rad_s[..=joint].iter().sum::<f64>(),
             false => speed_rad_s[joint],
         };
-        let joint = &self.joints[joint];
-        (joint.line(1.0) - joint.line(0.0)) * true_speed
+        self.joints[joint].reading_slope() * true_speed
     }
 
     /// What the encoders would read without the sensors that trail, where these read `reading_rad` and the readings
@@ -147,15 +168,29 @@ impl Plant {
 
     /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
     pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
-        let slope = |joint: &JointPlan| joint.line(1.0) - joint.line(0.0);
         let joints = self.joints.iter().zip(rate_rad_s);
-        let mut speeds: Vec<f64> = joints.map(|(joint, rate)| rate / slope(joint)).collect();
+        let speed = |(joint, rate): (&JointPlan, &f64)| rate / joint.reading_slope();
+        let mut speeds: Vec<f64> = joints.map(speed).collect();
         if self.absolute {
             for joint in (1..speeds.len()).rev() {
                 speeds[joint] -= speeds[joint - 1];
             }
         }
         speeds
+    }
+
+    /// A pose in the model's own convention as relative angles (joint 1 from hanging), rad.
+    pub(super) fn pose_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
+        let mut pose = pose_rad.to_vec();
+        if self.absolute {
+            for joint in (1..pose.len()).rev() {
+                pose[joint] -= pose[joint - 1];
+            }
+        }
+        if let Some(first) = pose.first_mut() {
+            *first += self.zero_rad;
+        }
+        pose
     }
 
     /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes `encoded_rad`.
@@ -193,6 +228,19 @@ impl JointPlan {
         }
     }
 
+    /// Whether friction or a torque that follows angle and speed acts on the joint.
+    pub(super) fn has_joint_effects(&self) -> bool {
+        !self.torque.is_empty() || !self.friction.is_empty()
+    }
+
+    /// Change of the encoder's reading per change of the joint's angle.
+    pub(super) fn reading_slope(&self) -> f64 {
+        if self.encode.is_empty() {
+            return 1.0;
+        }
+        self.line(1.0) - self.line(0.0)
+    }
+
     /// What the encoder reads at an angle: a straight line, so that two points tell all of it.
     fn line(&self, angle_rad: f64) -> f64 {
         let effects = self.encode.iter();
@@ -206,7 +254,7 @@ impl JointPlan {
             count: values.len(),
         };
         active.values[..values.len()].copy_from_slice(values);
-        match effect.card().site {
+        match effect.info().site {
             Site::Timing => self.delay_s += effect.delay_s(values),
             Site::Command => self.command.push(active),
             Site::Drive => self.output.push(active),
@@ -221,7 +269,7 @@ impl JointPlan {
 
 /// Measured speeds of a motion, turned in time by a bit more than a third of it.
 fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
-    if !model.effects.iter().any(|e| e.effect.card().id == SHAM) {
+    if !model.effects.iter().any(|e| e.effect.info().id == PLACEBO) {
         return Vec::new();
     }
     motion

@@ -1,6 +1,7 @@
-//! One number per joint: in place where there is one joint, as on a servo's bench, else on the heap.
+//! One number per joint: in place for a few joints, else on the heap.
 //!
-//! The equations are written once; with a single joint known when they are compiled, no loop is left of them.
+//! The equations are written once; where the number of joints is known when they are compiled, their loops are
+//! unrolled.
 
 use std::fmt::Debug;
 use std::ops::IndexMut;
@@ -14,15 +15,15 @@ pub(super) trait Rows {
     fn filled<T: Copy + Debug>(value: T, joints: usize) -> Self::Of<T>;
 }
 
-/// A single joint.
+/// `N` joints.
 #[derive(Debug, Clone)]
-pub(super) struct One;
+pub(super) struct Few<const N: usize>;
 
-impl Rows for One {
-    type Of<T: Copy + Debug> = [T; 1];
+impl<const N: usize> Rows for Few<N> {
+    type Of<T: Copy + Debug> = [T; N];
 
-    fn filled<T: Copy + Debug>(value: T, _: usize) -> [T; 1] {
-        [value]
+    fn filled<T: Copy + Debug>(value: T, _: usize) -> [T; N] {
+        [value; N]
     }
 }
 

@@ -1,9 +1,10 @@
 //! Simulation along a stretch of a motion: predicted encoder readings at every sample.
 
-use super::drive::Told;
+use super::drive::DriveInput;
 use super::input::held_mean;
 use super::plant::Plant;
-use super::rows::{Many, One, Rows};
+use super::rows::{Few, Many, Rows};
+use super::sensor_state::SensorState;
 use super::stepper::Stepper;
 use crate::log::Motion;
 use crate::model::Drive;
@@ -20,12 +21,6 @@ pub struct Start {
     pub reading_rad_s: Option<Vec<f64>>,
 }
 
-/// What sensor effects remember from one stretch to the next.
-#[derive(Debug, Clone, Default)]
-pub struct Memory {
-    cells: Vec<Option<[f64; 2]>>,
-}
-
 /// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out over the period.
 const SPARED: f64 = 0.1;
 
@@ -39,12 +34,14 @@ pub fn predict(
     motion: &Motion,
     stretch: Range<usize>,
     start: &Start,
-    memory: &mut Memory,
+    sensors: &mut SensorState,
     readings: &mut [f64],
 ) -> Start {
     match plant.len() {
-        1 => predicted::<One>(plant, motion, stretch, start, memory, readings),
-        _ => predicted::<Many>(plant, motion, stretch, start, memory, readings),
+        1 => predicted::<Few<1>>(plant, motion, stretch, start, sensors, readings),
+        2 => predicted::<Few<2>>(plant, motion, stretch, start, sensors, readings),
+        3 => predicted::<Few<3>>(plant, motion, stretch, start, sensors, readings),
+        _ => predicted::<Many>(plant, motion, stretch, start, sensors, readings),
     }
 }
 
@@ -53,40 +50,32 @@ fn predicted<R: Rows>(
     motion: &Motion,
     stretch: Range<usize>,
     start: &Start,
-    memory: &mut Memory,
+    sensors: &mut SensorState,
     readings: &mut [f64],
 ) -> Start {
     let n = plant.len();
     let samples = stretch.len();
     let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
-    let mut recorder = Recorder::new(plant, memory);
-    let mut told = vec![
-        Told {
-            input: 0.0,
-            supply_ratio: 1.0,
-            energised: true,
-            shuffled_rad_s: 0.0,
-        };
-        n
-    ];
+    let mut inputs = vec![DriveInput::ZERO; n];
     let mut cursors = vec![0; n];
-    recorder.begin(plant, start);
-    recorder.step(plant, stepper.angle.as_ref(), 0.0);
-    recorder.record(readings, 0, samples);
+    sensors.begin(plant, start);
+    sensors.step(plant, stepper.angle.as_ref(), 0.0);
+    sensors.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
         let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
         let h = (to - from) / steps as f64;
         for step in 0..steps {
             let begin = from + step as f64 * h;
-            tell(plant, motion, k, begin, begin + h, &mut cursors, &mut told);
-            stepper.advance(plant, &told, h);
+            let span = begin..begin + h;
+            set_inputs(plant, motion, k, span, &mut cursors, &mut inputs);
+            stepper.advance(plant, &inputs, h);
             if plant.senses {
-                recorder.step(plant, stepper.angle.as_ref(), h);
+                sensors.step(plant, stepper.angle.as_ref(), h);
             }
         }
         if !plant.senses {
-            recorder.step(plant, stepper.angle.as_ref(), to - from);
+            sensors.step(plant, stepper.angle.as_ref(), to - from);
         }
         if !stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6) {
             for joint in 0..n {
@@ -95,7 +84,7 @@ fn predicted<R: Rows>(
             }
             break;
         }
-        recorder.record(readings, k + 1 - stretch.start, samples);
+        sensors.record(readings, k + 1 - stretch.start, samples);
     }
     Start {
         angle_rad: stepper.angle.as_ref().to_vec(),
@@ -104,96 +93,40 @@ fn predicted<R: Rows>(
     }
 }
 
-/// What each drive is told over one integration step.
-fn tell(
+/// Sets every drive's input over one integration step, s.
+fn set_inputs(
     plant: &Plant,
     motion: &Motion,
     sample: usize,
-    from_s: f64,
-    to_s: f64,
+    span_s: Range<f64>,
     cursors: &mut [usize],
-    told: &mut [Told],
+    inputs: &mut [DriveInput],
 ) {
     for (joint, plan) in plant.joints.iter().enumerate() {
         if let Some(shuffled) = plant.shuffled_rad_s.get(joint) {
-            told[joint].shuffled_rad_s = shuffled[sample];
+            inputs[joint].shuffled_rad_s = shuffled[sample];
         }
         if plan.drive == Drive::Passive {
             continue;
         }
-        let told = &mut told[joint];
+        let at = &mut inputs[joint];
         if let Some(input) = &motion.input[joint] {
-            told.input = if plan.delay_s == 0.0 {
+            at.input = if plan.delay_s == 0.0 {
                 input[sample]
             } else {
                 held_mean(
                     &motion.time_s,
                     input,
-                    from_s - plan.delay_s,
-                    to_s - plan.delay_s,
+                    span_s.start - plan.delay_s,
+                    span_s.end - plan.delay_s,
                     &mut cursors[joint],
                 )
             };
         }
         let nominal = plan.drive.motor().and_then(|m| m.nominal_supply_v);
         if let (Some(supply), Some(nominal)) = (&motion.supply_v, nominal) {
-            told.supply_ratio = supply[sample] / nominal;
+            at.supply_ratio = supply[sample] / nominal;
         }
-        told.energised = motion.torque_on.as_ref().is_none_or(|on| on[sample]);
-    }
-}
-
-/// Follows the encoders and remembers what their effects with memory need.
-struct Recorder<'a> {
-    memory: &'a mut Memory,
-    reading: Vec<f64>,
-}
-
-impl<'a> Recorder<'a> {
-    fn new(plant: &Plant, memory: &'a mut Memory) -> Self {
-        let cells = plant.joints.iter().map(|j| j.sense.len()).sum();
-        if memory.cells.len() != cells {
-            memory.cells = vec![None; cells];
-        }
-        Recorder {
-            memory,
-            reading: vec![0.0; plant.len()],
-        }
-    }
-
-    /// Sensors that trail begin as far behind as their readings' speed says: a stretch may begin at speed.
-    fn begin(&mut self, plant: &Plant, start: &Start) {
-        let mut cells = self.memory.cells.iter_mut();
-        for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded_rad(joint, &start.angle_rad);
-            let speed = match &start.reading_rad_s {
-                Some(speed) => speed[joint],
-                None => plant.encoded_rad_s(joint, &start.speed_rad_s),
-            };
-            for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                if let Some(trail) = active.effect.trail_rad(active.values(), speed) {
-                    *cell = Some([reading, reading - trail]);
-                    reading -= trail;
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn step(&mut self, plant: &Plant, angle_rad: &[f64], step_s: f64) {
-        let mut cells = self.memory.cells.iter_mut();
-        for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded_rad(joint, angle_rad);
-            for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                reading = active.effect.sense(active.values(), cell, reading, step_s);
-            }
-            self.reading[joint] = reading;
-        }
-    }
-
-    fn record(&self, readings: &mut [f64], k: usize, samples: usize) {
-        for (joint, reading) in self.reading.iter().enumerate() {
-            readings[joint * samples + k] = *reading;
-        }
+        at.energised = motion.torque_on.as_ref().is_none_or(|on| on[sample]);
     }
 }

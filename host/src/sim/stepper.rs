@@ -4,7 +4,7 @@
 //! and classical Runge-Kutta of fourth order integrates them. A sliding joint whose speed crosses zero ends
 //! the step there; a held joint is released when the torque that holds it exceeds the breakaway torque.
 
-use super::drive::Told;
+use super::drive::DriveInput;
 use super::plant::Plant;
 use super::rows::Rows;
 use crate::dynamics::Workspace;
@@ -85,20 +85,20 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// Advances by `step_s` under constant inputs.
-    pub fn advance(&mut self, plant: &Plant, told: &[Told], step_s: f64) {
+    pub fn advance(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
         // Chatter between contacts can't go on for ever: after this many events the step is taken as it comes.
         for _ in 0..8 {
-            self.release(plant, told);
+            self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
-            self.runge_kutta(plant, told, left);
+            self.runge_kutta(plant, inputs, left);
             let Some((joint, share)) = self.first_stop() else {
                 return;
             };
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
-            self.runge_kutta(plant, told, share * left);
+            self.runge_kutta(plant, inputs, share * left);
             self.speed[joint] = 0.0;
             self.contact[joint] = Contact::Held;
             left *= 1.0 - share;
@@ -106,8 +106,8 @@ impl<R: Rows> Stepper<R> {
                 return;
             }
         }
-        self.release(plant, told);
-        self.runge_kutta(plant, told, left);
+        self.release(plant, inputs);
+        self.runge_kutta(plant, inputs, left);
         for joint in 0..self.len() {
             if self.stopped(joint) {
                 self.speed[joint] = 0.0;
@@ -132,11 +132,11 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// Lets go of held joints that are pushed beyond their breakaway torque, the most pushed first.
-    fn release(&mut self, plant: &Plant, told: &[Told]) {
+    fn release(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         while self.contact.as_ref().contains(&Contact::Held) {
             self.stage_angle.clone_from(&self.angle);
             self.stage_speed.clone_from(&self.speed);
-            self.accelerate(plant, told, 0);
+            self.accelerate(plant, inputs, 0);
             let pushed = (0..self.len())
                 .filter(|&joint| self.contact[joint] == Contact::Held)
                 .map(|joint| {
@@ -154,12 +154,12 @@ impl<R: Rows> Stepper<R> {
         }
     }
 
-    fn runge_kutta(&mut self, plant: &Plant, told: &[Told], h: f64) {
+    fn runge_kutta(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let n = self.len();
         self.stage_angle.clone_from(&self.angle);
         self.stage_speed.clone_from(&self.speed);
         for stage in 0..4 {
-            self.accelerate(plant, told, stage);
+            self.accelerate(plant, inputs, stage);
             for joint in 0..n {
                 if self.held[joint] {
                     self.slope[stage][joint] = 0.0;
@@ -183,8 +183,8 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// Accelerations at the stage state into `slope[stage]`; for held joints the holding torque.
-    fn accelerate(&mut self, plant: &Plant, told: &[Told], stage: usize) {
-        for (joint, &told) in told[..self.len()].iter().enumerate() {
+    fn accelerate(&mut self, plant: &Plant, inputs: &[DriveInput], stage: usize) {
+        for (joint, &input) in inputs[..self.len()].iter().enumerate() {
             let plan = &plant.joints[joint];
             let speed = self.stage_speed[joint];
             self.held[joint] = self.contact[joint] == Contact::Held;
@@ -192,21 +192,23 @@ impl<R: Rows> Stepper<R> {
                 Drive::Passive => 0.0,
                 Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, self.stage_angle.as_ref());
-                    plan.drive_torque_nm(told, reading, speed)
+                    plan.drive_torque_nm(input, reading, speed)
                 }
-                _ => plan.drive_torque_nm(told, 0.0, speed),
+                _ => plan.drive_torque_nm(input, 0.0, speed),
             };
             let state = JointState {
                 angle_rad: self.stage_angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
                 speed_rad_s: speed,
                 drive_nm: drive,
-                shuffled_rad_s: told.shuffled_rad_s,
+                shuffled_rad_s: input.shuffled_rad_s,
             };
             self.drive_torque[joint] = drive;
             self.torque[joint] = plan
                 .torque
                 .iter()
-                .fold(drive, |sum, e| sum + e.effect.torque(e.values(), &state));
+                .fold(drive + input.disturbance_nm, |sum, e| {
+                    sum + e.effect.torque(e.values(), &state)
+                });
         }
         if plant.needs_gear_load {
             self.find_gear_loads(plant);

@@ -1,158 +1,181 @@
 //! One robot under one set of circumstances, and the controller designed for it.
 
-use super::fixed_controller::FixedController;
-use crate::closed_loop::{ClosedLoop, Conditions, Controller, Limits, Plant, StateFeedback};
+use crate::controllers::{Design, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through};
 use crate::error::Result;
-use crate::model::Model;
-use crate::synth::{self, Format, Ranges};
-use nalgebra::DMatrix;
-
-/// How the controller comes about: a sampled regulator for the robot as it is believed to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Design {
-    /// Weight of every state.
-    pub q: f64,
-    /// Weight of every torque.
-    pub r: f64,
-    /// Delay the design counts on, periods.
-    pub delay_periods: f64,
-    /// Word length of the law, 8 to 32 bits; 0 computes in floating point.
-    pub word_bits: u32,
-}
+use crate::model::{Angles, Model};
+use crate::sim::closed_loop::{Clock, ClosedLoop, Commands, Controller, Drives, Limits, Sensor};
+use crate::synth;
 
 /// What is run.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The robot as the design believes it to be.
     pub nominal: Model,
-    /// The robot as it is.
+    /// The robot as it is, with all its effects.
     pub robot: Model,
-    /// Sensor, drives, clock.
-    pub conditions: Conditions,
+    /// What limits its drives, on top of the model's effects.
+    pub drives: Drives,
+    /// How it is measured.
+    pub sensor: Sensor,
+    /// When the controller is called.
+    pub clock: Clock,
     /// Constant torque from outside on each joint, N m.
     pub disturbance_nm: Vec<f64>,
+    /// Lag of the servos, if they have one.
+    pub servo: Option<ServoLag>,
     /// The controller.
-    pub design: Design,
-    /// Whether the controller holds the robot's own balance instead of the pose: the angle compensation.
-    pub compensated: bool,
+    pub control: Control,
+    /// What counts as fallen and as stabilised.
+    pub limits: Limits,
 }
 
-/// Speeds that words of the fixed-point law hold, rad/s.
-const SPEED_RANGE_RAD_S: f64 = 20.0;
+/// A controller, its settings, and what its designer assumes.
+#[derive(Debug, Clone)]
+pub struct Control {
+    /// Which one.
+    pub design: &'static dyn Design,
+    /// Weight of every state, for the designs that let it be chosen.
+    pub q: f64,
+    /// Weight of every torque.
+    pub r: f64,
+    /// Word length of the law, 8 to 32 bits; 0 computes in floating point.
+    pub word_bits: u32,
+    /// Whether it is given the angles at which the robot balances: the angle compensation.
+    pub known_equilibrium: bool,
+    /// Drives that the design counts on.
+    pub drives: Drives,
+    /// Sensors that the design counts on.
+    pub sensor: Sensor,
+}
+
+/// A controller designed for a case, and its linear form.
+#[derive(Debug)]
+pub struct Designed {
+    /// For the nominal robot.
+    pub controller: Box<dyn Controller>,
+    linear: LinearLaw,
+}
 
 impl Case {
-    /// The loop without its controller; a link that leans further off than `fall_rad` has fallen.
+    /// A robot without further non-idealities under this controller, sampled every `period_s`.
+    pub fn ideal(model: Model, design: &'static dyn Design, period_s: f64) -> Case {
+        Case {
+            disturbance_nm: vec![0.0; model.link_count()],
+            nominal: model.clone(),
+            robot: model,
+            drives: Drives::IDEAL,
+            sensor: Sensor::EXACT,
+            clock: Clock::every(period_s),
+            servo: None,
+            control: Control {
+                design,
+                q: 100.0,
+                r: 1.0,
+                word_bits: 0,
+                known_equilibrium: false,
+                drives: Drives::IDEAL,
+                sensor: Sensor::EXACT,
+            },
+            limits: Limits::default(),
+        }
+    }
+
+    /// What the designer knows.
     ///
     /// # Errors
-    /// As [`Plant::new`].
-    pub fn closed_loop(&self, fall_rad: f64) -> Result<ClosedLoop> {
-        let mut plant = Plant::new(&self.robot, &synth::upright(&self.robot))?;
-        plant.disturbance_nm.copy_from_slice(&self.disturbance_nm);
-        Ok(ClosedLoop {
-            plant,
-            conditions: self.conditions,
-            limits: Limits {
-                fall_rad,
-                ..Limits::default()
-            },
+    /// Robots that cannot be linearised.
+    pub fn design_model(&self) -> Result<DesignModel> {
+        let pose_rad = synth::upright(&self.nominal);
+        let period_s = self.clock.period_s;
+        let control = &self.control;
+        let own = DesignModel::new(&self.nominal, &pose_rad, period_s)?;
+        let sensor = control.sensor;
+        Ok(DesignModel {
+            q: control.q,
+            r: control.r,
+            word_bits: control.word_bits,
+            position_step_rad: sensor.position_resolution_rad,
+            gyro_step_rad_s: sensor.gyro.map_or(0.0, |gyro| gyro.resolution_rad_s),
+            servo: self.servo,
+            ..own.with_drives(&control.drives)
         })
     }
 
-    /// Gains for the believed robot, at the clock's period.
+    /// Designs the controller.
     ///
     /// # Errors
     /// Robots that cannot be linearised or stabilised.
-    pub fn gains(&self) -> Result<DMatrix<f64>> {
-        let plant = synth::linearise(&self.nominal, &synth::upright(&self.nominal))?;
-        let period_s = self.conditions.clock.period_s;
-        let sampled = synth::zoh(&plant, period_s, self.design.delay_periods * period_s)?;
-        let (n, m) = (plant.a.nrows(), plant.b.ncols());
-        let q = self.design.q * DMatrix::identity(n, n);
-        let r = self.design.r * DMatrix::identity(m, m);
-        Ok(synth::dlqr(&sampled, &q, &r)?.k)
+    pub fn designed(&self) -> Result<Designed> {
+        let model = self.design_model()?;
+        let controller = self.control.design.build(&model)?;
+        Ok(Designed {
+            linear: LinearLaw::of(controller.as_ref(), &model),
+            controller,
+        })
     }
 
-    /// The controller with these gains for this loop.
+    /// The loop without its controller.
     ///
     /// # Errors
-    /// Gains that fit no word of the law's.
-    pub fn controller(
-        &self,
-        gains: &DMatrix<f64>,
-        closed: &ClosedLoop,
-    ) -> Result<Box<dyn Controller>> {
-        let joints = closed.plant.joints();
-        let mut hold = vec![0.0; joints];
-        if self.compensated {
-            hold = closed.plant.balanced_rad();
-        }
-        if self.design.word_bits == 0 {
-            let rows = gains.row_iter().map(|row| row.iter().copied().collect());
-            let law = StateFeedback::new(joints, rows.collect());
-            return Ok(Box::new(law.holding(&hold)));
-        }
-        let actuator = self.conditions.actuator;
-        // Without a limit, four times the full range still has a word.
-        let most = if actuator.saturates { 1.0 } else { 4.0 };
-        let torque_nm = most * actuator.full_torque_nm;
-        let range = |state: usize| match state {
-            _ if state < joints => closed.limits.fall_rad,
-            _ if state < 2 * joints => SPEED_RANGE_RAD_S,
-            _ => torque_nm,
-        };
-        let ranges = Ranges {
-            state: (0..gains.ncols()).map(range).collect(),
-            input: vec![torque_nm; gains.nrows()],
-        };
-        hold.resize(gains.ncols(), 0.0);
-        let format = Format {
-            bits: self.design.word_bits,
-            ..Format::default()
-        };
-        let rest = vec![0.0; gains.nrows()];
-        let law = synth::quantise(gains, &hold, &rest, &ranges, &format)?;
-        Ok(Box::new(FixedController::new(law, 2 * joints)))
+    /// As [`ClosedLoop::new`].
+    pub fn closed_loop(&self) -> Result<ClosedLoop> {
+        let period_s = self.clock.period_s;
+        let robot = self.drives.on(&self.robot, period_s);
+        let pose_rad = synth::upright(&self.robot);
+        let mut closed = ClosedLoop::new(&robot, &pose_rad, Commands::Torque, period_s)?;
+        closed
+            .plant
+            .disturbance_nm
+            .copy_from_slice(&self.disturbance_nm);
+        closed.sensor = self.sensor;
+        closed.clock = self.clock;
+        closed.limits = self.limits;
+        closed.command_step = self.drives.resolution * self.drives.full_torque_nm;
+        Ok(closed)
     }
 
-    /// Largest magnitude of a pole of the true robot, linearised at its balance, under these gains in floating point:
-    /// below 1 it is stable in the small. None where it has no such balance.
-    pub fn spectral_radius(&self, gains: &DMatrix<f64>, closed: &ClosedLoop) -> Option<f64> {
-        let mut pose = synth::upright(&self.robot);
+    /// The controller as it acts on this loop: with the equilibrium that it may know, behind the servos' lag.
+    pub fn controller<'a>(
+        &self,
+        designed: &'a Designed,
+        closed: &ClosedLoop,
+    ) -> Box<dyn Controller + 'a> {
+        let mut controller: Box<dyn Controller + 'a> = Box::new(&*designed.controller);
+        if self.control.known_equilibrium || self.control.design.info().known_equilibrium {
+            let equilibrium_rad = closed.plant.in_convention(&closed.plant.balanced_rad());
+            controller = Box::new(KnownEquilibrium::new(controller, equilibrium_rad));
+        }
+        if let Some(servo) = self.servo {
+            controller = Box::new(Through {
+                inner: controller,
+                servo,
+                drives: closed.plant.drives(),
+                limit_nm: if self.drives.saturates {
+                    self.drives.full_torque_nm
+                } else {
+                    f64::INFINITY
+                },
+            });
+        }
+        controller
+    }
+
+    /// Largest magnitude of a pole of the true robot, linearised at its balance, under this controller: below 1 it is
+    /// stable in the small. None where it has no such balance.
+    pub fn spectral_radius(&self, designed: &Designed, closed: &ClosedLoop) -> Option<f64> {
+        let mut pose_rad = synth::upright(&self.robot);
         let mut turned = 0.0;
-        for (angle, off) in pose.iter_mut().zip(closed.plant.balanced_rad()) {
+        for (angle, off) in pose_rad.iter_mut().zip(closed.plant.balanced_rad()) {
             turned += off;
             *angle += match self.robot.angles {
-                crate::model::Angles::Relative => off,
-                crate::model::Angles::Absolute => turned,
+                Angles::Relative => off,
+                Angles::Absolute => turned,
             };
         }
-        let plant = synth::linearise(&self.robot, &pose).ok()?;
-        let (n, m) = (plant.a.nrows(), plant.b.ncols());
-        let Conditions {
-            clock, actuator, ..
-        } = self.conditions;
-        let sampled = synth::zoh(
-            &plant,
-            clock.period_s,
-            actuator.delay_periods * clock.period_s,
-        )
-        .ok()?;
-        // As many past torques as the plant or the controller remembers.
-        let size = sampled.a.nrows().max(gains.ncols());
-        let mut a = sampled.a.resize(size, size, 0.0);
-        let mut b = sampled.b.resize(size, m, 0.0);
-        if size > n {
-            b.view_mut((n, 0), (m, m)).fill_with_identity();
-            let older = size - n - m;
-            a.view_mut((n + m, n), (older, older)).fill_with_identity();
-        }
-        let supply = actuator.supply;
-        // The torque that acts is the one asked for, times the supply; the one remembered is the one asked for.
-        a.view_mut((0, n), (n, size - n)).scale_mut(supply);
-        b.view_mut((0, 0), (n, m)).scale_mut(supply);
-        let k = gains.clone().resize(m, size, 0.0);
-        let closed = a - b * k;
-        let poles = synth::poles(&closed).ok()?;
-        poles.iter().map(|pole| pole.norm()).reduce(f64::max)
+        let period_s = self.clock.period_s;
+        let mut truth = DesignModel::new(&self.robot, &pose_rad, period_s).ok()?;
+        truth.plant.b *= self.drives.supply;
+        let delay_s = truth.delay_s + self.drives.delay_periods * period_s;
+        designed.linear.spectral_radius(&truth, delay_s).ok()
     }
 }

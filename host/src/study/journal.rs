@@ -31,6 +31,8 @@ pub struct Header {
 
 /// Version of the format.
 pub const FORMAT: u32 = 1;
+/// Most chunks of a study: some thousand million runs. A damaged header may say any number, and the missing ones are listed.
+const MOST_CHUNKS: usize = 10_000_000;
 
 impl Header {
     /// Number of chunks of the whole study.
@@ -149,6 +151,7 @@ fn content(bytes: &[u8], path: &Path) -> Result<Content> {
     let header: Header = serde_json::from_slice(line)
         .ok()
         .filter(|header: &Header| header.handstand_study == FORMAT && header.chunk > 0)
+        .filter(|header| header.chunks() <= MOST_CHUNKS)
         .filter(|_| line.len() < bytes.len())
         .ok_or_else(|| {
             Error::data(

@@ -1,137 +1,181 @@
-//! A case in figures.
+//! A case in figures: runs of robots drawn around it.
 
-use super::case::Case;
+use super::case::{Case, Designed};
+use super::quantity::Uncertain;
 use super::summary::share_interval;
-use crate::closed_loop::{ClosedLoop, Controller, Outcome, Start, stream};
 use crate::error::Result;
+use crate::sim::closed_loop::{ClosedLoop, Controller, InitialState, Job, Outcome};
+use crate::sim::closed_loop::{run_jobs, stream};
+use rayon::prelude::*;
 use serde::Serialize;
 
-/// How cases are judged.
+/// How many runs, how long, from where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judging {
-    /// Runs from random starts.
+    /// Runs, each from a random start.
     pub runs: usize,
-    /// Every joint starts evenly anywhere within this of its pose, rad.
+    /// Every joint starts at rest evenly anywhere within this of its pose, rad.
     pub start_rad: f64,
     /// Length of a run, s.
     pub seconds: f64,
-    /// A link that leans further off than this has fallen, rad.
-    pub fall_rad: f64,
-    /// Seed of starts and chances.
+    /// Seed of robots, starts and noise.
     pub seed: u64,
 }
 
-/// Figures of a case. Medians are over the runs that stood.
+/// Share of the robots that have to be stabilised for a region, a delay or an error to count as stabilised.
+pub const STABILISED_SHARE: f64 = 0.95;
+
+/// Runs handed to a thread at a time.
+const BLOCK: usize = 32;
+
+/// Robot `run` of a study: the same in every case of a seed.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub case: Case,
+    pub closed: ClosedLoop,
+    pub start: InitialState,
+    pub values: Vec<f64>,
+}
+
+impl Drawn {
+    /// Draws the robot and where it starts.
+    ///
+    /// # Errors
+    /// Robots that cannot be simulated.
+    pub fn new(case: &Case, uncertain: &[Uncertain], judging: &Judging, run: u64) -> Result<Drawn> {
+        let mut case = case.clone();
+        let mut rng = stream(judging.seed, run);
+        let start = InitialState::random(case.robot.link_count(), judging.start_rad, &mut rng);
+        let values: Vec<f64> = uncertain
+            .iter()
+            .map(|u| u.draw(judging.seed, run))
+            .collect();
+        for (uncertain, value) in uncertain.iter().zip(&values) {
+            uncertain.apply(&mut case, *value);
+        }
+        Ok(Drawn {
+            closed: case.closed_loop()?,
+            case,
+            start,
+            values,
+        })
+    }
+}
+
+/// Runs robots drawn around a case, on this thread, several at once; outcomes in their order.
+pub(super) fn run_drawn(
+    drawn: &[Drawn],
+    designed: &Designed,
+    judging: &Judging,
+    first: usize,
+) -> Vec<Outcome> {
+    let controllers: Vec<Box<dyn Controller + '_>> = drawn
+        .iter()
+        .map(|drawn| drawn.case.controller(designed, &drawn.closed))
+        .collect();
+    let jobs = drawn.iter().zip(&controllers).enumerate();
+    run_jobs(jobs.map(|(index, (drawn, controller))| Job {
+        closed: &drawn.closed,
+        controller: &**controller,
+        start: drawn.start.clone(),
+        seconds: judging.seconds,
+        // Noise during the run is apart from what made the robot.
+        rng: stream(!judging.seed, (first + index) as u64),
+    }))
+}
+
+/// Outcomes of all runs, on all cores; `done` is called after each.
+///
+/// # Errors
+/// Robots that cannot be simulated.
+pub fn outcomes(
+    case: &Case,
+    uncertain: &[Uncertain],
+    designed: &Designed,
+    judging: &Judging,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Outcome>> {
+    let blocks: Vec<usize> = (0..judging.runs).step_by(BLOCK).collect();
+    let block = |&first: &usize| -> Result<Vec<Outcome>> {
+        let runs = first..(first + BLOCK).min(judging.runs);
+        let drawn = runs.map(|run| Drawn::new(case, uncertain, judging, run as u64));
+        let drawn = drawn.collect::<Result<Vec<_>>>()?;
+        let outcomes = run_drawn(&drawn, designed, judging, first);
+        outcomes.iter().for_each(|_| done());
+        Ok(outcomes)
+    };
+    let outcomes: Result<Vec<Vec<Outcome>>> = blocks.par_iter().map(block).collect();
+    Ok(outcomes?.into_iter().flatten().collect())
+}
+
+/// Figures of a case. Medians are over the stabilised runs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Figures {
     /// Runs.
     pub runs: usize,
-    /// Runs that stood to the end.
-    pub stood: usize,
+    /// Runs that were stabilised.
+    pub stabilised: usize,
     /// Their share, and the ends of its 95 % interval.
-    pub survival: f64,
+    pub stabilised_share: f64,
     /// Lower end.
-    pub survival_low: f64,
+    pub stabilised_low: f64,
     /// Upper end.
-    pub survival_high: f64,
+    pub stabilised_high: f64,
+    /// Share of the runs that fell; the rest stood, but swung or leant too far.
+    pub fallen_share: f64,
     /// Median of the root mean square angle, rad.
     pub rms_angle_rad: Option<f64>,
     /// Median of the root mean square torque, N m.
     pub rms_torque_nm: Option<f64>,
     /// Median of the limit cycle, peak to peak, rad.
     pub limit_cycle_rad: Option<f64>,
-    /// Median settling time, s; none if fewer than half of those that stood settled.
+    /// Median settling time, s; none if fewer than half of the stabilised settled.
     pub settle_s: Option<f64>,
-    /// Border of the region of attraction along a tilt of the whole robot, rad: see [`tilt_border_rad`].
-    pub tilt_border_rad: f64,
 }
 
-/// Step and end of the tilts that are tried, deg.
-const TILT_STEP_DEG: f64 = 0.1;
-const TILT_MOST_DEG: f64 = 20.0;
-
-/// Judges a case.
+/// Judges a case with what is uncertain about it.
 ///
 /// # Errors
-/// As [`Case::closed_loop`], [`Case::gains`], [`Case::controller`].
-pub fn judge(case: &Case, judging: &Judging) -> Result<Figures> {
-    let closed = case.closed_loop(judging.fall_rad)?;
-    let controller = case.controller(&case.gains()?, &closed)?;
-    let joints = closed.plant.joints();
-    // Starts have their own seed, so that every case begins alike.
-    let starts: Vec<Start> = (0..judging.runs)
-        .map(|run| {
-            let mut rng = stream(judging.seed ^ u64::MAX, run as u64);
-            Start::random(joints, judging.start_rad, &mut rng)
-        })
-        .collect();
-    let outcomes = closed.run_all(&*controller, &starts, judging.seconds, judging.seed);
-    let border = tilt_border_rad(&closed, &*controller, judging.seconds, judging.seed);
-    Ok(figures(&outcomes, border))
+/// As [`Case::closed_loop`] and [`Case::designed`].
+pub fn judge(
+    case: &Case,
+    uncertain: &[Uncertain],
+    judging: &Judging,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let designed = case.designed()?;
+    let outcomes = outcomes(case, uncertain, &designed, judging, done)?;
+    Ok(Figures::of(&outcomes))
 }
 
-/// The largest tilt such that from every smaller one, to either side in steps of 0.1 deg up to 20 deg, all joints else
-/// straight and everything at rest, the robot stands: where the region of attraction ends along joint 1. 0 if even
-/// 0.1 deg is too much.
-pub fn tilt_border_rad(
-    closed: &ClosedLoop,
-    controller: &dyn Controller,
-    seconds: f64,
-    seed: u64,
-) -> f64 {
-    let steps = (TILT_MOST_DEG / TILT_STEP_DEG).round() as usize;
-    let tilt = |step: usize| (step as f64 * TILT_STEP_DEG).to_radians();
-    let start = |rad: f64| {
-        let mut angle = vec![0.0; closed.plant.joints()];
-        angle[0] = rad;
-        Start::at(angle)
-    };
-    // In blocks, so that the tilts far beyond the border need not be tried.
-    let block = 20;
-    for first in (1..=steps).step_by(block) {
-        let tried = first..(first + block).min(steps + 1);
-        let starts: Vec<Start> = tried
-            .clone()
-            .flat_map(|step| [start(tilt(step)), start(-tilt(step))])
-            .collect();
-        let outcomes = closed.run_all(controller, &starts, seconds, seed);
-        let fell = outcomes
-            .chunks(2)
-            .position(|pair| !pair.iter().all(Outcome::survived));
-        if let Some(place) = fell {
-            return tilt(first + place - 1);
+impl Figures {
+    /// Of these outcomes.
+    pub fn of(outcomes: &[Outcome]) -> Figures {
+        let stabilised: Vec<&Outcome> = outcomes.iter().filter(|o| o.stabilised).collect();
+        let median = |of: fn(&Outcome) -> Option<f64>| {
+            let mut values: Vec<f64> = stabilised
+                .iter()
+                .map(|outcome| of(outcome).unwrap_or(f64::INFINITY))
+                .collect();
+            values.sort_by(f64::total_cmp);
+            values
+                .get(values.len() / 2)
+                .copied()
+                .filter(|m| m.is_finite())
+        };
+        let share = |count: usize| count as f64 / outcomes.len().max(1) as f64;
+        let [stabilised_low, stabilised_high] = share_interval(stabilised.len(), outcomes.len());
+        Figures {
+            runs: outcomes.len(),
+            stabilised: stabilised.len(),
+            stabilised_share: share(stabilised.len()),
+            stabilised_low,
+            stabilised_high,
+            fallen_share: share(outcomes.iter().filter(|o| o.fell_s.is_some()).count()),
+            rms_angle_rad: median(|o| Some(o.rms_angle_rad)),
+            rms_torque_nm: median(|o| Some(o.rms_torque_nm)),
+            limit_cycle_rad: median(|o| o.limit_cycle_rad),
+            settle_s: median(|o| o.settle_s),
         }
-    }
-    tilt(steps)
-}
-
-fn figures(outcomes: &[Outcome], tilt_border_rad: f64) -> Figures {
-    let stood: Vec<&Outcome> = outcomes
-        .iter()
-        .filter(|outcome| outcome.survived())
-        .collect();
-    let median = |of: fn(&Outcome) -> Option<f64>| {
-        let mut values: Vec<f64> = stood
-            .iter()
-            .map(|outcome| of(outcome).unwrap_or(f64::INFINITY))
-            .collect();
-        values.sort_by(f64::total_cmp);
-        values
-            .get(values.len() / 2)
-            .copied()
-            .filter(|m| m.is_finite())
-    };
-    let [survival_low, survival_high] = share_interval(stood.len(), outcomes.len());
-    Figures {
-        runs: outcomes.len(),
-        stood: stood.len(),
-        survival: stood.len() as f64 / outcomes.len().max(1) as f64,
-        survival_low,
-        survival_high,
-        rms_angle_rad: median(|o| Some(o.rms_angle_rad)),
-        rms_torque_nm: median(|o| Some(o.rms_torque_nm)),
-        limit_cycle_rad: median(|o| o.limit_cycle_rad),
-        settle_s: median(|o| o.settle_s),
-        tilt_border_rad,
     }
 }

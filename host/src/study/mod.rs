@@ -1,34 +1,46 @@
-//! What the closed loop bears: one thing varied at a time, or all that is uncertain at once.
+//! The one study engine: any controller, any non-ideality, one thing varied or all that is uncertain at once.
 //!
-//! `study` (what is studied) -> `case` (one robot under one set of circumstances) -> `judge` (a case in figures) ->
-//! `sweep` (a case at every level); `study` -> `monte_carlo` (chunks of runs) -> `journal` (on disk) -> `merge` ->
-//! `summary`.
+//! `parse` (a file) or `conditions` (a named set) -> `case` (one robot, one controller) -> `judge` (robots drawn around it, in
+//! figures). On top of that: `sweep` (a [`quantity`] at every level), `region` (of starts), `longest_delay`, `mass_errors`
+//! (in the linear loop), `verify` (a design, with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk) -> `merge` -> `summary`.
 
 mod case;
-mod fixed_controller;
+mod conditions;
 mod journal;
 mod judge;
+mod latency;
+mod longest_delay;
+mod mass_errors;
 mod merge;
 mod monte_carlo;
 mod parse;
 mod plot;
+mod quantity;
+mod region;
 mod shard;
 mod summary;
 mod sweep;
-mod sweeps;
-mod uncertain;
+mod verify;
 
 #[cfg(test)]
 mod tests;
 
-pub use case::{Case, Design};
+pub use case::{Case, Control, Designed};
+pub use conditions::{CONDITIONS, Condition, condition};
 pub use journal::{FORMAT, Header, Journal};
-pub use judge::{Figures, Judging, judge, tilt_border_rad};
+pub use judge::{Figures, Judging, STABILISED_SHARE, judge, outcomes};
+pub use latency::{SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath};
+pub use longest_delay::{Longest, longest_linear, longest_stabilised};
+pub use mass_errors::{MassErrors, radii, unstable_share};
 pub use merge::{Merged, Missing, merge};
 pub use monte_carlo::{CHUNK, chunk_rows, chunks, columns};
 pub use parse::Study;
 pub use plot::{monte_carlo_svg, sweep_svg};
+pub use quantity::{
+    Distribution, Levels, Place, QUANTITIES, Quantity, Spread, Uncertain, quantity, sweeps,
+};
+pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;
 pub use summary::{Summary, share_interval};
-pub use sweep::{Level, Ran, SWEEPS, Sweep, SweepCard, named, sweep};
-pub use uncertain::{Distribution, Place, QUANTITIES, Quantity, Uncertain};
+pub use sweep::{Level, Sweep, sweep};
+pub use verify::{LeftOut, Verification, Without, left_out, verify};

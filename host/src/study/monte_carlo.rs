@@ -2,11 +2,11 @@
 //!
 //! Run `i` depends on the study and on `i` alone: not on the thread, the chunk's neighbours or the shard.
 
-use super::case::Case;
+use super::case::Designed;
+use super::judge::{Drawn, run_drawn};
 use super::parse::Study;
-use crate::closed_loop::{ClosedLoop, Controller, Job, Outcome, Start, run_jobs, stream};
 use crate::error::Result;
-use nalgebra::DMatrix;
+use crate::sim::closed_loop::Outcome;
 use std::fmt::Write as _;
 
 /// Runs in a chunk: what is lost at most when a run is killed, for each thread.
@@ -22,7 +22,9 @@ pub fn columns(study: &Study) -> Vec<String> {
     let joints = study.case.robot.link_count();
     let starts = (1..=joints).map(|joint| format!("start{joint}_rad"));
     let drawn = study.uncertain.iter().map(|uncertain| uncertain.column());
-    let figures = ["fell_s"].into_iter().chain(super::summary::FIGURES);
+    let figures = ["fell_s", "stabilised"]
+        .into_iter()
+        .chain(super::summary::FIGURES);
     std::iter::once("run".to_string())
         .chain(starts)
         .chain(drawn)
@@ -31,60 +33,28 @@ pub fn columns(study: &Study) -> Vec<String> {
         .collect()
 }
 
-/// One run, ready to go.
-struct Drawn {
-    closed: ClosedLoop,
-    controller: Box<dyn Controller>,
-    start: Start,
-    values: Vec<f64>,
-    spectral_radius: Option<f64>,
-}
-
-/// Rows of a chunk, lines of comma-separated values; `gains` are [`Case::gains`] of the study's case.
+/// Rows of a chunk, lines of comma-separated values; `designed` is [`Case::designed`](super::Case::designed) of the
+/// study's case.
 ///
 /// # Errors
 /// Robots that cannot be simulated.
-pub fn chunk_rows(study: &Study, gains: &DMatrix<f64>, chunk: usize) -> Result<String> {
-    let runs = chunk * CHUNK..((chunk + 1) * CHUNK).min(study.judging.runs);
+pub fn chunk_rows(study: &Study, designed: &Designed, chunk: usize) -> Result<String> {
+    let first = chunk * CHUNK;
+    let runs = first..(first + CHUNK).min(study.judging.runs);
     let drawn = runs
         .clone()
-        .map(|run| draw(study, gains, run as u64))
+        .map(|run| Drawn::new(&study.case, &study.uncertain, &study.judging, run as u64))
         .collect::<Result<Vec<_>>>()?;
-    // Chances during the run are apart from those that made the robot.
-    let jobs = runs.clone().zip(&drawn).map(|(run, drawn)| Job {
-        closed: &drawn.closed,
-        controller: &*drawn.controller,
-        start: drawn.start.clone(),
-        seconds: study.judging.seconds,
-        rng: stream(!study.judging.seed, run as u64),
-    });
-    let outcomes = run_jobs(jobs);
+    let outcomes = run_drawn(&drawn, designed, &study.judging, first);
     let mut rows = String::new();
     for ((run, drawn), outcome) in runs.zip(&drawn).zip(&outcomes) {
-        row(&mut rows, run, drawn, outcome);
+        let radius = drawn.case.spectral_radius(designed, &drawn.closed);
+        row(&mut rows, run, drawn, radius, outcome);
     }
     Ok(rows)
 }
 
-fn draw(study: &Study, gains: &DMatrix<f64>, run: u64) -> Result<Drawn> {
-    let mut rng = stream(study.judging.seed, run);
-    let mut case: Case = study.case.clone();
-    let start = Start::random(case.robot.link_count(), study.judging.start_rad, &mut rng);
-    let values: Vec<f64> = study.uncertain.iter().map(|u| u.draw(&mut rng)).collect();
-    for (uncertain, value) in study.uncertain.iter().zip(&values) {
-        uncertain.apply(&mut case, *value);
-    }
-    let closed = case.closed_loop(study.judging.fall_rad)?;
-    Ok(Drawn {
-        controller: case.controller(gains, &closed)?,
-        spectral_radius: case.spectral_radius(gains, &closed),
-        closed,
-        start,
-        values,
-    })
-}
-
-fn row(rows: &mut String, run: usize, drawn: &Drawn, outcome: &Outcome) {
+fn row(rows: &mut String, run: usize, drawn: &Drawn, radius: Option<f64>, outcome: &Outcome) {
     let given = drawn
         .start
         .angle_rad
@@ -93,8 +63,9 @@ fn row(rows: &mut String, run: usize, drawn: &Drawn, outcome: &Outcome) {
         .copied()
         .map(Some);
     let found = [
-        drawn.spectral_radius,
+        radius,
         outcome.fell_s,
+        Some(f64::from(u8::from(outcome.stabilised))),
         Some(outcome.rms_angle_rad),
         Some(outcome.rms_torque_nm),
         Some(outcome.largest_rad),

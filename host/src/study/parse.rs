@@ -1,15 +1,17 @@
 //! A study as a file says it, or the paper's robot.
 
-use super::case::{Case, Design};
+use super::case::Case;
+use super::conditions::CONDITIONS;
 use super::judge::Judging;
-use super::uncertain::{Distribution, Place, QUANTITIES, Uncertain};
-use crate::closed_loop::{Conditions, Gyro, Velocity};
-use crate::error::{Error, Result};
+use super::quantity::{Distribution, Place, QUANTITIES, Uncertain, quantity};
+use crate::controllers::{self, DESIGNS};
+use crate::error::{Error, Result, words};
+use crate::model::Limits;
 use crate::model::Model;
-use crate::model::limits::Limits;
 use crate::model::reader::Table;
-use crate::model::source::Source;
+use crate::model::source::TomlSource;
 use crate::model::suggest::suggest;
+use crate::sim::closed_loop::{Drives, Gyro, Sensor, Velocity};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -40,24 +42,11 @@ impl Study {
     /// The same for another robot.
     pub fn of(model: Model) -> Study {
         Study {
-            case: Case {
-                disturbance_nm: vec![0.0; model.link_count()],
-                nominal: model.clone(),
-                robot: model,
-                conditions: Conditions::ideal(0.01),
-                design: Design {
-                    q: 100.0,
-                    r: 1.0,
-                    delay_periods: 0.0,
-                    word_bits: 0,
-                },
-                compensated: false,
-            },
+            case: Case::ideal(model, controllers::DEFAULT, 0.01),
             judging: Judging {
                 runs: 200,
                 start_rad: 1f64.to_radians(),
                 seconds: 5.0,
-                fall_rad: 45f64.to_radians(),
                 seed: 1,
             },
             uncertain: Vec::new(),
@@ -71,7 +60,7 @@ impl Study {
     pub fn load(path: &Path) -> Result<Study> {
         let text =
             std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))?;
-        let source = Source {
+        let source = TomlSource {
             text: &text,
             file: path,
         };
@@ -92,16 +81,16 @@ impl Study {
         };
         if let Some(robot) = robot {
             robot.only(&["model", "compensated"])?;
-            study.case.compensated = robot.flag("compensated")?;
+            study.case.control.known_equilibrium = robot.flag("compensated")?;
         }
         if let Some(table) = root.table("design")? {
             design(&table, &mut study.case)?;
         }
         if let Some(table) = root.table("conditions")? {
-            conditions(&table, &mut study.case.conditions)?;
+            study.uncertain = conditions(&table, &mut study.case)?;
         }
         if let Some(table) = root.table("runs")? {
-            runs(&table, &mut study.judging)?;
+            runs(&table, &mut study)?;
         }
         for table in root.tables("uncertain")? {
             uncertain(&table, study.case.robot.link_count(), &mut study.uncertain)?;
@@ -138,37 +127,35 @@ fn set(table: &Table<'_>, key: &str, limits: Limits, place: &mut f64) -> Result<
     Ok(())
 }
 
-/// The whole number under `key`, if there is one.
-fn whole(table: &Table<'_>, key: &str, limits: Limits) -> Result<Option<f64>> {
-    match table.number(key, limits)? {
-        Some(number) if number.fract() != 0.0 => Err(table.bad(
-            key,
-            format!("`{key}` = {number} is not whole"),
-            "give a whole number",
-        )),
-        number => Ok(number),
-    }
-}
-
 fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
-    table.only(&["q", "r", "delay_periods", "word_bits", "period_s"])?;
-    let design = &mut case.design;
-    set(table, "q", NOT_NEGATIVE, &mut design.q)?;
-    set(table, "r", POSITIVE, &mut design.r)?;
-    set(
-        table,
+    table.only(&[
+        "controller",
+        "q",
+        "r",
         "delay_periods",
-        Limits::within(0.0, 20.0),
-        &mut design.delay_periods,
-    )?;
-    if let Some(bits) = whole(table, "word_bits", Limits::within(8.0, 32.0))? {
-        design.word_bits = bits as u32;
+        "word_bits",
+        "period_s",
+    ])?;
+    let ids: Vec<_> = DESIGNS.iter().map(|design| design.info().id).collect();
+    let choices: Vec<_> = ids.iter().copied().zip(DESIGNS.iter().copied()).collect();
+    let control = &mut case.control;
+    if let Some(design) = table.choice("controller", &choices)? {
+        control.design = design;
     }
-    let period_s = &mut case.conditions.clock.period_s;
+    set(table, "q", NOT_NEGATIVE, &mut control.q)?;
+    set(table, "r", POSITIVE, &mut control.r)?;
+    let delay = &mut control.drives.delay_periods;
+    set(table, "delay_periods", Limits::within(0.0, 20.0), delay)?;
+    if let Some(bits) = table.whole("word_bits", Limits::within(8.0, 32.0))? {
+        control.word_bits = bits as u32;
+    }
+    let period_s = &mut case.clock.period_s;
     set(table, "period_s", Limits::within(1e-4, 1.0), period_s)
 }
 
-fn conditions(table: &Table<'_>, conditions: &mut Conditions) -> Result<()> {
+/// Sets the conditions; what they draw for every robot comes back. The design counts on them, but for their delay,
+/// which it counts on only where they are those of a named set.
+fn conditions(table: &Table<'_>, case: &mut Case) -> Result<Vec<Uncertain>> {
     table.only(&[
         "base",
         "position_resolution_rad",
@@ -184,22 +171,46 @@ fn conditions(table: &Table<'_>, conditions: &mut Conditions) -> Result<()> {
         "jitter",
         "loss",
     ])?;
-    if table.choice("base", &[("ideal", false), ("measured", true)])? == Some(true) {
-        *conditions = Conditions::measured(conditions.clock.period_s);
+    let designed_periods = case.control.drives.delay_periods;
+    let mut drawn = Vec::new();
+    let mut bases = vec![("measured", None)];
+    bases.extend(
+        CONDITIONS
+            .iter()
+            .map(|condition| (condition.id, Some(condition))),
+    );
+    match table.choice("base", &bases)? {
+        Some(Some(condition)) => drawn = condition.apply(case),
+        Some(None) => (case.sensor, case.drives) = (Sensor::PAPER, Drives::PAPER),
+        None => {}
     }
-    let Conditions {
-        sensor,
-        actuator,
-        clock,
-    } = conditions;
-    let resolution = &mut sensor.position_resolution_rad;
-    set(table, "position_resolution_rad", NOT_NEGATIVE, resolution)?;
+    sensors(table, &mut case.sensor)?;
+    drives(table, &mut case.drives)?;
+    let clock = &mut case.clock;
     set(
         table,
-        "position_noise_rad",
-        NOT_NEGATIVE,
-        &mut sensor.position_noise_rad,
+        "jitter",
+        Limits::within(0.0, 0.45),
+        &mut clock.jitter,
     )?;
+    set(table, "loss", Limits::within(0.0, 1.0), &mut clock.loss)?;
+    let known_periods = match designed_periods > 0.0 {
+        true => designed_periods,
+        false => case.control.drives.delay_periods,
+    };
+    case.control.sensor = case.sensor;
+    case.control.drives = Drives {
+        delay_periods: known_periods,
+        ..case.drives
+    };
+    Ok(drawn)
+}
+
+fn sensors(table: &Table<'_>, sensor: &mut Sensor) -> Result<()> {
+    let resolution = &mut sensor.position_resolution_rad;
+    set(table, "position_resolution_rad", NOT_NEGATIVE, resolution)?;
+    let noise = &mut sensor.position_noise_rad;
+    set(table, "position_noise_rad", NOT_NEGATIVE, noise)?;
     let kinds = [
         ("direct", Velocity::Direct),
         ("difference", Velocity::Difference),
@@ -214,62 +225,40 @@ fn conditions(table: &Table<'_>, conditions: &mut Conditions) -> Result<()> {
         });
         let resolution = &mut gyro.resolution_rad_s;
         set(table, "gyro_resolution_rad_s", NOT_NEGATIVE, resolution)?;
-        set(
-            table,
-            "gyro_noise_rad_s",
-            NOT_NEGATIVE,
-            &mut gyro.noise_rad_s,
-        )?;
+        let noise = &mut gyro.noise_rad_s;
+        set(table, "gyro_noise_rad_s", NOT_NEGATIVE, noise)?;
         sensor.gyro = Some(gyro);
     }
-    if let Some(limit) = table.number("saturation_nm", POSITIVE)? {
-        actuator.full_torque_nm = limit;
-        actuator.saturates = true;
-    }
-    let share = Limits::within(0.0, 0.99);
-    set(table, "torque_resolution", share, &mut actuator.resolution)?;
-    set(table, "dead_zone", share, &mut actuator.dead_zone)?;
-    set(
-        table,
-        "supply",
-        Limits::above(0.0, 100.0),
-        &mut actuator.supply,
-    )?;
-    let delay = &mut actuator.delay_periods;
-    set(table, "delay_periods", Limits::within(0.0, 100.0), delay)?;
-    set(
-        table,
-        "jitter",
-        Limits::within(0.0, 0.45),
-        &mut clock.jitter,
-    )?;
-    set(table, "loss", Limits::within(0.0, 1.0), &mut clock.loss)
+    Ok(())
 }
 
-fn runs(table: &Table<'_>, judging: &mut Judging) -> Result<()> {
+fn drives(table: &Table<'_>, drives: &mut Drives) -> Result<()> {
+    if let Some(limit) = table.number("saturation_nm", POSITIVE)? {
+        drives.full_torque_nm = limit;
+        drives.saturates = true;
+    }
+    let share = Limits::within(0.0, 0.99);
+    set(table, "torque_resolution", share, &mut drives.resolution)?;
+    set(table, "dead_zone", share, &mut drives.dead_zone)?;
+    let supply = Limits::above(0.0, 100.0);
+    set(table, "supply", supply, &mut drives.supply)?;
+    let delay = &mut drives.delay_periods;
+    set(table, "delay_periods", Limits::within(0.0, 100.0), delay)
+}
+
+fn runs(table: &Table<'_>, study: &mut Study) -> Result<()> {
     table.only(&["count", "length_s", "start_rad", "fall_rad", "seed"])?;
-    if let Some(count) = whole(table, "count", Limits::within(1.0, 1e12))? {
+    let judging = &mut study.judging;
+    if let Some(count) = table.whole("count", Limits::within(1.0, 1e9))? {
         judging.runs = count as usize;
     }
-    set(
-        table,
-        "length_s",
-        Limits::above(0.0, 1e4),
-        &mut judging.seconds,
-    )?;
-    set(
-        table,
-        "start_rad",
-        Limits::within(0.0, 3.0),
-        &mut judging.start_rad,
-    )?;
-    set(
-        table,
-        "fall_rad",
-        Limits::above(0.0, 1e3),
-        &mut judging.fall_rad,
-    )?;
-    if let Some(seed) = whole(table, "seed", Limits::within(0.0, 9e15))? {
+    let seconds = &mut judging.seconds;
+    set(table, "length_s", Limits::above(0.0, 1e4), seconds)?;
+    let start = &mut judging.start_rad;
+    set(table, "start_rad", Limits::within(0.0, 3.0), start)?;
+    let fall = &mut study.case.limits.fall_rad;
+    set(table, "fall_rad", Limits::above(0.0, 1e3), fall)?;
+    if let Some(seed) = table.whole("seed", Limits::within(0.0, 9e15))? {
         judging.seed = seed as u64;
     }
     Ok(())
@@ -278,10 +267,14 @@ fn runs(table: &Table<'_>, judging: &mut Judging) -> Result<()> {
 fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Result<()> {
     table.only(&["what", "link", "distribution", "size"])?;
     let what = table.required_text("what")?;
-    let Some(quantity) = QUANTITIES.iter().find(|quantity| quantity.id == what) else {
-        let known: Vec<&str> = QUANTITIES.iter().map(|quantity| quantity.id).collect();
+    let named = quantity(what).and_then(|quantity| Some((quantity, quantity.spread.as_ref()?)));
+    let Some((quantity, spread)) = named else {
+        let uncertain = QUANTITIES
+            .iter()
+            .filter(|quantity| quantity.spread.is_some());
+        let known: Vec<&str> = uncertain.map(|quantity| quantity.id).collect();
         let said = format!("nothing called `{what}` can be uncertain");
-        return Err(table.bad("what", said, suggest(what, &known)));
+        return Err(table.bad("what", words(said, suggest(what, &known))));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -292,11 +285,11 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         .unwrap_or(Distribution::Uniform);
     let size = table.required_number("size", NOT_NEGATIVE)?;
     let chosen = table.index("link", links)?;
-    let places = match (quantity.place, chosen) {
+    let places = match (spread.place, chosen) {
         (Place::Whole, None) => vec![None],
         (Place::Whole, Some(_)) => {
             let said = format!("`{what}` belongs to the whole robot");
-            return Err(table.bad("link", said, "leave `link` out"));
+            return Err(table.bad("link", words(said, "leave `link` out")));
         }
         (Place::Link, Some(link)) => vec![Some(link)],
         (Place::Link, None) => (0..links).map(Some).collect(),
@@ -304,13 +297,14 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     for link in places {
         let new = Uncertain {
             quantity,
+            spread,
             link,
             distribution,
             size,
         };
         if all.iter().any(|other| other.column() == new.column()) {
             let said = format!("{} is drawn twice", new.column());
-            return Err(table.bad("what", said, "say it once"));
+            return Err(table.bad("what", words(said, "say it once")));
         }
         all.push(new);
     }

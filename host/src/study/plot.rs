@@ -1,70 +1,66 @@
-//! Studies as pictures.
+//! Studies as SVG files.
 
 use super::merge::Merged;
-use super::sweep::{Level, Ran, Sweep};
+use super::quantity::{Levels, Quantity};
+use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::number::given;
-use crate::report::{Curve, Panel, panels};
+use crate::plot::{Chart, Curve, Tone, svg_file};
 use std::path::Path;
 
-/// A sweep: survival, region of attraction, angles and effort over the levels.
-pub fn sweep_svg(sweep: &dyn Sweep, ran: &Ran, robot: &str) -> String {
-    let card = sweep.card();
-    let across = match card.unit {
-        "" => card.title.to_string(),
-        unit => format!("{}, {unit}", card.title),
+/// Colours of a chart's curves.
+const TONES: [Tone; 2] = [Tone::Blue, Tone::Orange];
+
+/// A sweep: share stabilised, region of attraction, angles and effort over the levels.
+pub fn sweep_svg((quantity, levels): (&Quantity, &Levels), ran: &Sweep, robot: &str) -> String {
+    let across = match levels.unit {
+        "" => quantity.title.to_string(),
+        unit => format!("{}, {unit}", quantity.title),
     };
-    let steps: Vec<String> = ran.levels.iter().map(|level| level.label.clone()).collect();
-    let panel = |title: &str, curves: Vec<Curve>| Panel {
-        title: title.to_string(),
-        steps: steps.clone(),
-        across: across.clone(),
-        curves,
+    let chart = |y_label: &str, curves| Chart {
+        categories: ran.levels.iter().map(|level| level.label.clone()).collect(),
+        ..Chart::new("", &across, y_label, curves)
     };
-    let percent = |level: &Level| {
-        let figures = level.figures.as_ref();
-        figures.map_or([0.0; 2], |f| {
-            [100.0 * f.survival_low, 100.0 * f.survival_high]
-        })
-    };
-    let mut survival = curve(ran, "", |f| Some(100.0 * f.survival));
-    survival.intervals = ran.levels.iter().map(percent).collect();
-    panels(
-        &format!("{robot}: sweep of the {}", card.title),
+    let degrees = |angle_rad: Option<f64>| angle_rad.map(f64::to_degrees);
+    let mut stabilised = curve(ran, "", TONES[0], |f| Some(100.0 * f.stabilised_share));
+    stabilised.intervals = ran.levels.iter().map(stabilised_percent).collect();
+    let borders = ran
+        .levels
+        .iter()
+        .map(|level| degrees(level.tilt_border_rad));
+    let border = Curve::by_category("", TONES[0], borders);
+    let angles = vec![
+        curve(ran, "rms", TONES[0], |f| degrees(f.rms_angle_rad)),
+        curve(ran, "limit cycle", TONES[1], |f| degrees(f.limit_cycle_rad)),
+    ];
+    let torque = curve(ran, "", TONES[0], |f| f.rms_torque_nm);
+    svg_file(
+        &format!("{robot}: sweep of the {}", quantity.title),
         &[
-            panel("runs that stand, %, with 95 % interval", vec![survival]),
-            panel(
-                "largest tilt it recovers from, deg",
-                vec![curve(ran, "", |f| Some(f.tilt_border_rad.to_degrees()))],
-            ),
-            panel(
-                "angles, deg",
-                vec![
-                    curve(ran, "rms", |f| f.rms_angle_rad.map(f64::to_degrees)),
-                    curve(ran, "limit cycle", |f| {
-                        f.limit_cycle_rad.map(f64::to_degrees)
-                    }),
-                ],
-            ),
-            panel("rms torque, N m", vec![curve(ran, "", |f| f.rms_torque_nm)]),
+            chart("stabilised runs, %, with 95 % interval", vec![stabilised]),
+            chart("largest tilt it recovers from, deg", vec![border]),
+            chart("angles, deg", angles),
+            chart("rms torque, N m", vec![torque]),
         ],
     )
 }
 
-fn curve(ran: &Ran, name: &str, of: fn(&Figures) -> Option<f64>) -> Curve {
-    let value = |level: &Level| level.figures.as_ref().and_then(of);
-    Curve {
-        name: name.to_string(),
-        values: ran.levels.iter().map(value).collect(),
-        intervals: Vec::new(),
-    }
+fn stabilised_percent(level: &Level) -> [f64; 2] {
+    let figures = level.figures.as_ref();
+    let ends = figures.map(|f| [f.stabilised_low, f.stabilised_high]);
+    ends.map_or([0.0; 2], |ends| ends.map(|end| 100.0 * end))
+}
+
+fn curve(ran: &Sweep, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f64>) -> Curve {
+    let figures = ran.levels.iter().map(|level| level.figures.as_ref());
+    Curve::by_category(name, tone, figures.map(|figures| figures.and_then(&of)))
 }
 
 /// Parts into which an uncertain value's range is cut.
 const PARTS: usize = 6;
 
-/// A Monte Carlo study: who stands, and who is unstable in the small, over every uncertain value.
+/// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain value.
 ///
 /// # Errors
 /// As [`Merged::values`].
@@ -72,28 +68,26 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let columns = &merged.header.columns;
     let rows = merged.values(file)?;
     let place = |name: &str| columns.iter().position(|column| column == name);
-    let (Some(fell), Some(radius)) = (place("fell_s"), place("spectral_radius")) else {
-        return Ok(panels("no runs", &[]));
+    let (Some(stabilised), Some(radius)) = (place("stabilised"), place("spectral_radius")) else {
+        return Ok(svg_file("no runs", &[]));
     };
-    let stands = move |row: &[f64]| row[fell].is_nan();
-    let unstable = move |row: &[f64]| row[radius] >= 1.0;
+    let is_stabilised = |row: &[f64]| row[stabilised] == 1.0;
+    let unstable = |row: &[f64]| row[radius] >= 1.0;
+    let chart = |(value, name): (usize, &String)| {
+        let parts = Parts::of(&rows, value);
+        let curves = vec![
+            parts.share("stabilised", TONES[0], &rows, is_stabilised),
+            parts.share("unstable in the small", TONES[1], &rows, unstable),
+        ];
+        Chart {
+            categories: parts.centres.iter().map(|centre| given(*centre)).collect(),
+            ..Chart::new("", name, "share of runs, %, with 95 % interval", curves)
+        }
+    };
     let uncertain = columns.iter().enumerate();
-    let charts = uncertain
-        .filter(|(_, name)| name.contains(':'))
-        .map(|(value, name)| {
-            let parts = Parts::of(&rows, value);
-            Panel {
-                title: "share of runs, %, with 95 % interval".to_string(),
-                steps: parts.centres.iter().map(|centre| given(*centre)).collect(),
-                across: name.clone(),
-                curves: vec![
-                    parts.share("stand", &rows, stands),
-                    parts.share("unstable in the small", &rows, unstable),
-                ],
-            }
-        });
-    let charts: Vec<Panel> = charts.collect();
-    Ok(panels("Stability over every uncertain value", &charts))
+    let uncertain = uncertain.filter(|(_, name)| name.contains(':'));
+    let charts: Vec<Chart> = uncertain.map(chart).collect();
+    Ok(svg_file("Stability over every uncertain value", &charts))
 }
 
 /// Runs sorted by one of their values.
@@ -117,20 +111,24 @@ impl Parts {
     }
 
     /// Percentage of each part's runs that are so.
-    fn share(&self, name: &str, rows: &[Vec<f64>], so: impl Fn(&[f64]) -> bool) -> Curve {
+    fn share(
+        &self,
+        name: &str,
+        tone: Tone,
+        rows: &[Vec<f64>],
+        so: impl Fn(&[f64]) -> bool,
+    ) -> Curve {
         let mut counts = [(0, 0); PARTS];
         for (part, row) in self.of.iter().zip(rows) {
             counts[*part].0 += usize::from(so(row));
             counts[*part].1 += 1;
         }
-        let share =
-            |(of, all): &(usize, usize)| (*all > 0).then(|| 100.0 * *of as f64 / *all as f64);
+        let share = |(of, all): (usize, usize)| (all > 0).then(|| 100.0 * of as f64 / all as f64);
         let interval =
             |(of, all): &(usize, usize)| share_interval(*of, *all).map(|end| 100.0 * end);
         Curve {
-            name: name.to_string(),
-            values: counts.iter().map(share).collect(),
             intervals: counts.iter().map(interval).collect(),
+            ..Curve::by_category(name, tone, counts.map(share))
         }
     }
 }

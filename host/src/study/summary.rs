@@ -1,4 +1,4 @@
-//! Many runs in a few figures.
+//! Summary statistics of many runs.
 
 use serde::Serialize;
 
@@ -17,26 +17,28 @@ pub fn share_interval(of: usize, all: usize) -> [f64; 2] {
     ]
 }
 
-/// What a Monte Carlo study came to.
+/// Summary of a Monte Carlo study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// Fingerprint of the study.
     pub fingerprint: String,
     /// Runs.
     pub runs: usize,
-    /// Runs that stood to the end.
-    pub stood: usize,
+    /// Runs that were stabilised.
+    pub stabilised: usize,
     /// Their share.
-    pub survival: f64,
+    pub stabilised_share: f64,
     /// Lower end of its 95 % interval.
-    pub survival_low: f64,
+    pub stabilised_low: f64,
     /// Upper end.
-    pub survival_high: f64,
+    pub stabilised_high: f64,
+    /// Share of the runs that fell.
+    pub fallen_share: f64,
     /// Share of robots whose loop, linearised at their balance, is unstable.
     pub unstable: f64,
-    /// Distribution of each figure over the runs that stood.
+    /// Distribution of each figure over the stabilised runs.
     pub figures: Vec<Distribution>,
-    /// How each uncertain value goes with standing.
+    /// How each uncertain value goes with being stabilised.
     pub influence: Vec<Influence>,
 }
 
@@ -45,18 +47,18 @@ pub struct Summary {
 pub struct Distribution {
     /// Column.
     pub figure: String,
-    /// 5 %, 50 % and 95 %; none if no run stood.
+    /// 5 %, 50 % and 95 %; none if no run was stabilised.
     pub quantiles: Option<[f64; 3]>,
 }
 
-/// An uncertain value's correlation with standing.
+/// An uncertain value's correlation with being stabilised.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Influence {
     /// Column.
     pub value: String,
-    /// Of the value with standing, -1 to 1.
+    /// Of the value with being stabilised, -1 to 1.
     pub correlation: f64,
-    /// Of its distance from its mean with standing: an error that is bad to either side shows here.
+    /// Of its distance from its mean with being stabilised: an error that is bad to either side shows here.
     pub correlation_of_size: f64,
 }
 
@@ -79,18 +81,22 @@ impl Summary {
                 None => Vec::new(),
             }
         };
-        let stood: Vec<bool> = column("fell_s").iter().map(|time| time.is_nan()).collect();
-        let count = stood.iter().filter(|stood| **stood).count();
+        let stabilised: Vec<bool> = column("stabilised").iter().map(|is| *is == 1.0).collect();
+        let count = stabilised.iter().filter(|is| **is).count();
+        let fallen = column("fell_s")
+            .iter()
+            .filter(|time| !time.is_nan())
+            .count();
         let radius = column("spectral_radius");
         let unstable = radius.iter().filter(|radius| **radius >= 1.0).count();
-        let [survival_low, survival_high] = share_interval(count, rows.len());
+        let [stabilised_low, stabilised_high] = share_interval(count, rows.len());
         let share = |of: usize| of as f64 / rows.len().max(1) as f64;
         let distribution = |name: &str| Distribution {
             figure: name.to_string(),
             quantiles: quantiles(
                 column(name)
                     .into_iter()
-                    .zip(&stood)
+                    .zip(&stabilised)
                     .filter(|(_, s)| **s)
                     .map(|(v, _)| v),
             ),
@@ -99,10 +105,11 @@ impl Summary {
         Summary {
             fingerprint: fingerprint.to_string(),
             runs: rows.len(),
-            stood: count,
-            survival: share(count),
-            survival_low,
-            survival_high,
+            stabilised: count,
+            stabilised_share: share(count),
+            stabilised_low,
+            stabilised_high,
+            fallen_share: share(fallen),
             unstable: share(unstable),
             figures: FIGURES.iter().map(|name| distribution(name)).collect(),
             influence: uncertain
@@ -112,8 +119,8 @@ impl Summary {
                     let sizes: Vec<f64> = values.iter().map(|v| (v - mean).abs()).collect();
                     Influence {
                         value: name.clone(),
-                        correlation: correlation(&values, &stood),
-                        correlation_of_size: correlation(&sizes, &stood),
+                        correlation: correlation(&values, &stabilised),
+                        correlation_of_size: correlation(&sizes, &stabilised),
                     }
                 })
                 .collect(),
@@ -131,15 +138,19 @@ fn quantiles(values: impl Iterator<Item = f64>) -> Option<[f64; 3]> {
     Some([0.05, 0.5, 0.95].map(|share| values[(share * last as f64).round() as usize]))
 }
 
-fn correlation(values: &[f64], stood: &[bool]) -> f64 {
+fn correlation(values: &[f64], stabilised: &[bool]) -> f64 {
     let n = values.len().max(1) as f64;
-    let numbers = || stood.iter().map(|stood| f64::from(u8::from(*stood)));
+    let numbers = || {
+        stabilised
+            .iter()
+            .map(|stabilised| f64::from(u8::from(*stabilised)))
+    };
     let (mean, mean_stood) = (values.iter().sum::<f64>() / n, numbers().sum::<f64>() / n);
     let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
-    for (value, stood) in values.iter().zip(numbers()) {
-        both += (value - mean) * (stood - mean_stood);
+    for (value, stabilised) in values.iter().zip(numbers()) {
+        both += (value - mean) * (stabilised - mean_stood);
         own += (value - mean).powi(2);
-        other += (stood - mean_stood).powi(2);
+        other += (stabilised - mean_stood).powi(2);
     }
     if own * other > 0.0 {
         both / (own * other).sqrt()
@@ -163,8 +174,8 @@ mod tests {
     #[test]
     fn a_value_that_decides_correlates_wholly() {
         let values = [1.0, 2.0, 1.0, 2.0];
-        let stood = [true, false, true, false];
-        assert!((correlation(&values, &stood) + 1.0).abs() < 1e-12);
-        assert_eq!(correlation(&[1.0; 4], &stood), 0.0);
+        let stabilised = [true, false, true, false];
+        assert!((correlation(&values, &stabilised) + 1.0).abs() < 1e-12);
+        assert_eq!(correlation(&[1.0; 4], &stabilised), 0.0);
     }
 }

@@ -1,63 +1,13 @@
-//! One thing varied, level by level. A new sweep is a file under `sweeps/` and a line in [`SWEEPS`].
+//! One quantity varied, level by level.
 
 use super::case::Case;
 use super::judge::{Figures, Judging, judge};
-use super::sweeps;
+use super::quantity::{Levels, Quantity};
+use super::region::tilt_border_rad;
 use crate::error::{Error, Result};
 use serde::Serialize;
-use std::fmt;
 
-/// Every sweep there is.
-pub const SWEEPS: &[&dyn Sweep] = &[
-    &sweeps::float_fixed::FloatFixed,
-    &sweeps::word_length::WordLength,
-    &sweeps::position_resolution::PositionResolution,
-    &sweeps::gyro_resolution::GyroResolution,
-    &sweeps::dead_zone::DeadZone,
-    &sweeps::delay::Delay,
-    &sweeps::jitter::Jitter,
-    &sweeps::supply::Supply,
-    &sweeps::saturation::Saturation,
-    &sweeps::sampling_time::SamplingTime,
-];
-
-/// Something of a case that can be varied.
-pub trait Sweep: Sync + fmt::Debug {
-    /// What it is.
-    fn card(&self) -> &'static SweepCard;
-
-    /// Sets the level, in the card's unit.
-    fn set(&self, level: f64, case: &mut Case);
-
-    /// A level as people read it.
-    fn label(&self, level: f64) -> String {
-        crate::number::given(level)
-    }
-}
-
-/// What a sweep says of itself.
-#[derive(Debug, Clone, Copy)]
-pub struct SweepCard {
-    /// Name on the command line.
-    pub id: &'static str,
-    /// Name for people, lower case.
-    pub title: &'static str,
-    /// Unit of its levels; empty for none.
-    pub unit: &'static str,
-    /// What is varied, in a sentence.
-    pub meaning: &'static str,
-    /// Levels that are tried if no others are asked for.
-    pub levels: &'static [f64],
-    /// Lowest and highest level there can be.
-    pub bounds: (f64, f64),
-}
-
-/// The sweep of this id.
-pub fn named(id: &str) -> Option<&'static dyn Sweep> {
-    SWEEPS.iter().copied().find(|sweep| sweep.card().id == id)
-}
-
-/// A level and what came of it.
+/// A level and its figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Level {
     /// Level, in the sweep's unit.
@@ -66,14 +16,16 @@ pub struct Level {
     pub label: String,
     /// Figures; none if there is no controller for this level.
     pub figures: Option<Figures>,
-    /// Why there is none.
+    /// Border of the region of attraction along a tilt of the whole robot, rad: see [`tilt_border_rad`].
+    pub tilt_border_rad: Option<f64>,
+    /// Why there is no controller.
     pub refused: Option<String>,
 }
 
 /// A whole sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Ran {
-    /// Its id.
+pub struct Sweep {
+    /// The quantity's id.
     pub sweep: &'static str,
     /// Unit of its levels.
     pub unit: &'static str,
@@ -81,44 +33,52 @@ pub struct Ran {
     pub levels: Vec<Level>,
 }
 
-/// Judges `case` at every level; `done` is told after each.
+/// Judges `case` at every level; `done` is called after each.
 ///
 /// # Errors
 /// Levels out of bounds; robots that cannot be simulated. A level without a controller is no error but a finding.
 pub fn sweep(
-    sweep: &dyn Sweep,
-    levels: &[f64],
+    (quantity, levels): (&'static Quantity, &'static Levels),
+    values: &[f64],
     case: &Case,
     judging: &Judging,
     mut done: impl FnMut(),
-) -> Result<Ran> {
-    let card = sweep.card();
-    let (low, high) = card.bounds;
-    if let Some(level) = levels.iter().find(|level| !(low..=high).contains(*level)) {
+) -> Result<Sweep> {
+    let (low, high) = levels.bounds;
+    if let Some(level) = values.iter().find(|level| !(low..=high).contains(*level)) {
         return Err(Error::usage(
-            format!("{}: there is no level {level}", card.id),
-            format!("give levels from {low} to {high} {}", card.unit).trim_end(),
+            format!("{}: there is no level {level}", quantity.id),
+            format!("give levels from {low} to {high} {}", levels.unit).trim_end(),
         ));
     }
-    let judged = levels.iter().map(|&level| {
+    let judged = values.iter().map(|&level| {
         let mut case = case.clone();
-        sweep.set(level, &mut case);
-        let (figures, refused) = match judge(&case, judging) {
+        (levels.set)(&mut case, level);
+        let (figures, refused) = match at_level(&case, judging) {
             Ok(figures) => (Some(figures), None),
-            Err(Error::Design { what, .. }) => (None, Some(what)),
+            Err(Error::Design(reason)) => (None, Some(reason.to_string())),
             Err(error) => return Err(error),
         };
         done();
         Ok(Level {
             level,
-            label: sweep.label(level),
-            figures,
+            label: (levels.label)(level),
+            figures: figures.map(|(figures, _)| figures),
+            tilt_border_rad: figures.map(|(_, border)| border),
             refused,
         })
     });
-    Ok(Ran {
-        sweep: card.id,
-        unit: card.unit,
+    Ok(Sweep {
+        sweep: quantity.id,
+        unit: levels.unit,
         levels: judged.collect::<Result<_>>()?,
     })
+}
+
+fn at_level(case: &Case, judging: &Judging) -> Result<(Figures, f64)> {
+    let figures = judge(case, &[], judging, &|| ())?;
+    let (designed, closed) = (case.designed()?, case.closed_loop()?);
+    let controller = case.controller(&designed, &closed);
+    let border = tilt_border_rad(&closed, &*controller, judging.seconds, judging.seed);
+    Ok((figures, border))
 }

@@ -1,18 +1,20 @@
 //! Everything that follows from a model and weights, as one value; `export` writes it in many ways.
 
+use super::controllability::{Controllability, controllability, observability};
 use super::eigen::poles;
+use super::error::DesignError;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
+use super::linearise::{Linearised, linearise};
+use super::omitted::OmittedEffect;
+use super::operating_point::input_delay_s;
 use super::quantise::{Ranges, quantise};
-use super::reach::{Reach, controllability, observability};
 use super::request::{Request, Sensors, Time};
-use super::rest::{Rest, input_delay_s};
-use super::signal::{Signal, driven, input, reach, states};
+use super::signal::{Signal, default_limit, driven, input, states};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
-use super::{linearise, zoh};
-use crate::error::{Error, Result};
+use super::zoh;
 use crate::model::Model;
 use nalgebra::{Complex, DMatrix};
 
@@ -29,6 +31,9 @@ pub struct Design {
     pub x0: Vec<f64>,
     /// The inputs that hold it, SI.
     pub u0: Vec<f64>,
+    /// Effects of the model that the design leaves out: they have no derivative at the operating
+    /// point.
+    pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,
     /// The sampled plant, and the delay it holds, s.
@@ -41,10 +46,10 @@ pub struct Design {
     pub poles: Vec<Complex<f64>>,
     /// Zeros from the inputs to the angles of the driven joints, 1/s.
     pub zeros: Vec<Complex<f64>>,
-    /// Which modes the inputs reach.
-    pub controllability: Reach,
-    /// Which modes the measured angles show.
-    pub observability: Reach,
+    /// Controllability of the plant by its inputs.
+    pub controllability: Controllability,
+    /// Observability of the plant by its measured angles.
+    pub observability: Controllability,
     /// The estimator.
     pub estimator: Option<Estimation>,
     /// The fixed-point law.
@@ -80,9 +85,12 @@ impl Design {
     ///
     /// # Errors
     /// Whatever stands in the way, with what to change.
-    pub fn of(model: &Model, request: &Request) -> Result<Design> {
-        let rest = Rest::of(model, &request.pose_rad)?;
-        let plant = linearise(model, &request.pose_rad)?;
+    pub fn of(model: &Model, request: &Request) -> Result<Design, DesignError> {
+        let Linearised {
+            plant,
+            inputs: u0,
+            omitted,
+        } = linearise(model, &request.pose_rad)?;
         let (n, m) = plant.b.shape();
         let r = request.r.matrix("R", m, "inputs")?;
         let (gains, sampled, q) = match request.time {
@@ -114,8 +122,9 @@ impl Design {
         let mut design = Design {
             model: model.name.clone(),
             states: states(model.link_count(), &inputs, delayed),
-            x0: point(&rest, delayed),
-            u0: rest.inputs.clone(),
+            x0: point(&request.pose_rad, &u0, delayed),
+            u0,
+            omitted,
             poles: poles(&plant.a)?,
             zeros: transmission_zeros(&plant.a, &plant.b, &outputs)?,
             controllability: controllability(&plant.a, &plant.b)?,
@@ -131,7 +140,10 @@ impl Design {
         if let Some((sampled, _)) = design.sampled.clone() {
             let input_range = match &request.input_range {
                 Some(range) => range.diagonal("the range of inputs", m)?,
-                None => driven.iter().map(|joint| reach(model, *joint)).collect(),
+                None => driven
+                    .iter()
+                    .map(|joint| default_limit(model, *joint))
+                    .collect(),
             };
             design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
             if let Some(sensors) = &request.sensors {
@@ -141,7 +153,12 @@ impl Design {
         Ok(design)
     }
 
-    fn fixed(&self, request: &Request, plant: &Discrete, input: Vec<f64>) -> Result<Fixed> {
+    fn fixed(
+        &self,
+        request: &Request,
+        plant: &Discrete,
+        input: Vec<f64>,
+    ) -> Result<Fixed, DesignError> {
         let mut state = request
             .state_range
             .diagonal("the range of states", plant.plant_states())?;
@@ -169,13 +186,10 @@ impl Design {
         let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
         let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
         if loss.radius_fixed >= 1.0 {
-            return Err(Error::design(
-                format!(
-                    "rounded to {} bits the gains no longer stabilise: the spectral radius is {:.6}",
-                    law.bits, loss.radius_fixed
-                ),
-                "declare smaller ranges: steps and gains are rounded to what they need",
-            ));
+            return Err(DesignError::UnstableWhenRounded {
+                bits: law.bits,
+                radius: loss.radius_fixed,
+            });
         }
         Ok(Fixed { ranges, law, loss })
     }
@@ -185,7 +199,7 @@ impl Design {
         sensors: &Sensors,
         plant: Discrete,
         input_range: &[f64],
-    ) -> Result<Estimation> {
+    ) -> Result<Estimation, DesignError> {
         let (own, joints) = (plant.plant_states(), plant.plant_states() / 2);
         let rows: Vec<usize> = (0..=joints).collect();
         let plant = Discrete {
@@ -218,11 +232,12 @@ impl Design {
     }
 }
 
-fn point(rest: &Rest, delayed: usize) -> Vec<f64> {
-    let mut point = rest.pose_rad.clone();
-    point.resize(2 * rest.pose_rad.len(), 0.0);
+/// Angles, speeds of 0, then past inputs.
+fn point(pose_rad: &[f64], inputs: &[f64], delayed: usize) -> Vec<f64> {
+    let mut point = pose_rad.to_vec();
+    point.resize(2 * pose_rad.len(), 0.0);
     for _ in 0..delayed {
-        point.extend(&rest.inputs);
+        point.extend(inputs);
     }
     point
 }

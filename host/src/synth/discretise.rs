@@ -1,12 +1,13 @@
 //! Sampling with inputs held between samples, and arriving late.
 //!
-//! Van Loan, IEEE Trans. Automatic Control 23 (1978) 395: exp([A B; 0 0] t) = [e^{At} int_0^t e^{As} ds B; 0 I].
-//! With a delay of `whole` samples and `late` seconds, the input of sample k - whole - 1 still acts for `late`:
-//! x(k+1) = e^{A Ts} x(k) + e^{A (Ts - late)} S(late) B u(k-whole-1) + S(Ts - late) B u(k-whole), S(t) the integral
-//! (Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 2.3).
+//! Van Loan, IEEE Trans. Automatic Control 23 (1978) 395: exp([A B; 0 0] t) = [e^{At} int_0^t
+//! e^{As} ds B; 0 I]. With a delay of `whole` samples and `late` seconds, the input of sample k -
+//! whole - 1 still acts for `late`: x(k+1) = e^{A Ts} x(k) + e^{A (Ts - late)} S(late) B
+//! u(k-whole-1) + S(Ts - late) B u(k-whole), S(t) the integral (Astrom, Wittenmark,
+//! Computer-Controlled Systems, 3rd ed., section 2.3).
 
+use super::error::DesignError;
 use super::system::{Continuous, Discrete};
-use crate::error::{Error, Result};
 use nalgebra::DMatrix;
 
 /// A delay that differs from whole samples by less than this share of one is whole.
@@ -18,9 +19,9 @@ const MOST_DELAYED: usize = 100;
 /// The plant sampled every `ts_s`, its inputs held between samples and `delay_s` late.
 ///
 /// # Errors
-/// A sampling time that is not positive, a delay that is negative or longer than 100 samples, a plant that grows beyond
-/// all numbers within a sample.
-pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete> {
+/// A sampling time that is not positive, a delay that is negative or longer than 100 samples, a
+/// plant that grows beyond all numbers within a sample.
+pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete, DesignError> {
     check(ts_s, delay_s)?;
     let (n, m) = (plant.a.nrows(), plant.b.ncols());
     let samples = delay_s / ts_s;
@@ -59,10 +60,7 @@ pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete> {
     let mut c = DMatrix::zeros(plant.c.nrows(), size);
     c.view_mut((0, 0), plant.c.shape()).copy_from(&plant.c);
     if a.iter().chain(b.iter()).any(|value| !value.is_finite()) {
-        return Err(Error::design(
-            format!("the plant grows beyond all numbers within one sample of {ts_s} s"),
-            "sample faster",
-        ));
+        return Err(DesignError::GrowsWithinSample(ts_s));
     }
     Ok(Discrete {
         a,
@@ -73,18 +71,16 @@ pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete> {
     })
 }
 
-fn check(ts_s: f64, delay_s: f64) -> Result<()> {
+fn check(ts_s: f64, delay_s: f64) -> Result<(), DesignError> {
     if !(ts_s > 0.0 && ts_s.is_finite()) {
-        return Err(Error::design(
-            format!("a sampling time of {ts_s} s"),
-            "give seconds above 0",
-        ));
+        return Err(DesignError::SamplingTime(ts_s));
     }
     if !(delay_s >= 0.0 && delay_s <= MOST_DELAYED as f64 * ts_s) {
-        return Err(Error::design(
-            format!("a delay of {delay_s} s at a sampling time of {ts_s} s"),
-            format!("give a delay from 0 to {MOST_DELAYED} samples"),
-        ));
+        return Err(DesignError::Delay {
+            delay_s,
+            ts_s,
+            most_samples: MOST_DELAYED,
+        });
     }
     Ok(())
 }
@@ -151,7 +147,8 @@ mod tests {
             assert_eq!(sampled.plant_states(), 2);
         }
         for (ts_s, delay_s) in [(0.0, 0.0), (f64::NAN, 0.0), (0.01, -0.01), (0.01, 1.1)] {
-            assert_eq!(zoh(&plant, ts_s, delay_s).unwrap_err().exit_code(), 3);
+            let error = crate::Error::from(zoh(&plant, ts_s, delay_s).unwrap_err());
+            assert_eq!(error.exit_code(), 3);
         }
     }
 }

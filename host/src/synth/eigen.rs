@@ -1,7 +1,7 @@
-//! Eigenvalues of a general matrix, and the distance of modes from those that an input or output can reach.
+//! Eigenvalues of a general matrix, and the distance of its modes from uncontrollability.
 
+use super::error::DesignError;
 use super::qr::eigenvalues;
-use crate::error::{Error, Result};
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -9,7 +9,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 ///
 /// # Errors
 /// Entries that are no numbers.
-pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
+pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
     if a.iter().all(|value| value.is_finite()) {
         let mut balanced = a.clone();
         balance_parlett_reinsch(&mut balanced);
@@ -18,28 +18,27 @@ pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
             return Ok(poles);
         }
     }
-    Err(Error::design(
-        "the eigenvalues of the system matrix cannot be found",
-        "look for entries that are not numbers or of very different size",
-    ))
+    Err(DesignError::Eigenvalues)
 }
 
-/// How far a mode is from being out of reach.
+/// A mode and its controllability margin.
 #[derive(Debug, Clone)]
 pub struct Mode {
     /// Its eigenvalue, 1/s or per sample.
     pub pole: Complex<f64>,
-    /// Least singular value of [A - pole I, B] (or of that over C), over the largest of A or B (or C): 0 where out of reach.
-    pub measure: f64,
+    /// Least singular value of [A - pole I, B] (or of that over C), over the largest of A or B (or
+    /// C): 0 where uncontrollable.
+    pub margin: f64,
     /// The state in which it shows most, counted from 0.
     pub state: usize,
 }
 
-/// The modes of A with how far each is from being uncontrollable through B (Popov, Belevitch, Hautus).
+/// The modes of A with how far each is from being uncontrollable through B (Popov, Belevitch,
+/// Hautus).
 ///
 /// # Errors
 /// As [`poles`].
-pub fn modes(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Vec<Mode>> {
+pub fn modes(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Vec<Mode>, DesignError> {
     let poles = poles(a)?;
     let complex = |m: &DMatrix<f64>| m.map(|value| Complex::new(value, 0.0));
     let (n, size) = (a.nrows(), a.norm().max(b.norm()).max(f64::MIN_POSITIVE));
@@ -58,7 +57,7 @@ pub fn modes(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Vec<Mode>> {
             .map(|u| DVector::from_column_slice(u.column(least).as_slice()));
         Mode {
             pole,
-            measure: svd.singular_values[least] / size,
+            margin: svd.singular_values[least] / size,
             state: left.map_or(0, |left| left.map(|z| z.norm()).imax()),
         }
     };

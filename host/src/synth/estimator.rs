@@ -1,12 +1,11 @@
 //! The stationary Kalman filter, and with gains the controller that needs no measured state (LQG).
 
 use super::eigen::poles;
+use super::error::{DesignError, Role};
 use super::gains::Gains;
-use super::refusal::ESTIMATOR;
-use super::riccati::{Kind, Problem};
+use super::riccati::{Problem, TimeDomain};
 use super::system::Discrete;
 use super::weights::{self, Sign};
-use crate::error::{Error, Result};
 use nalgebra::{Complex, DMatrix};
 
 /// x(k|k) = x(k|k-1) + L (y - C x(k|k-1)), x(k+1|k) = A x(k|k) + B u.
@@ -42,8 +41,8 @@ pub fn rounding_variance(step: f64) -> f64 {
     step * step / 12.0
 }
 
-/// The stationary Kalman filter of x(k+1) = A x + B u + w, y = C x + v, with covariances `process` (N x N, or of the plant's own states) of w
-/// and `measurement` (p x p) of v.
+/// The stationary Kalman filter of x(k+1) = A x + B u + w, y = C x + v, with covariances `process`
+/// (N x N, or of the plant's own states) of w and `measurement` (p x p) of v.
 ///
 /// # Errors
 /// Covariances of the wrong size or sign; plants whose unstable modes the outputs do not show.
@@ -51,7 +50,7 @@ pub fn kalman(
     plant: &Discrete,
     process: &DMatrix<f64>,
     measurement: &DMatrix<f64>,
-) -> Result<Estimator> {
+) -> Result<Estimator, DesignError> {
     let (n, own, p) = (plant.a.nrows(), plant.plant_states(), plant.c.nrows());
     let size = if process.shape() == (own, own) {
         own
@@ -63,21 +62,20 @@ pub fn kalman(
     let process = process.clone().resize(n, n, 0.0);
     let (a, c) = (plant.a.transpose(), plant.c.transpose());
     let problem = Problem {
-        kind: Kind::Discrete,
+        time: TimeDomain::Discrete,
         a: &a,
         b: &c,
         q: &process,
         r: measurement,
     };
-    let solution = problem.solve().ok_or_else(|| problem.refusal(&ESTIMATOR))?;
+    let solution = problem
+        .solve()
+        .ok_or_else(|| problem.unsolvable(Role::Estimator))?;
     let covariance = solution.x;
     let cp = &plant.c * &covariance;
-    let innovation = (&cp * &c + measurement).cholesky().ok_or_else(|| {
-        Error::design(
-            "the innovation's covariance is not positive definite",
-            "raise the measurement noise V",
-        )
-    })?;
+    let innovation = (&cp * &c + measurement)
+        .cholesky()
+        .ok_or(DesignError::Innovation)?;
     let gain = innovation.solve(&cp).transpose();
     let mut poles = poles(&(&plant.a - &plant.a * &gain * &plant.c))?;
     poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
@@ -93,7 +91,11 @@ pub fn kalman(
 ///
 /// # Errors
 /// Entries that are no numbers.
-pub fn lqg(plant: &Discrete, gains: &Gains, estimator: &Estimator) -> Result<Compensator> {
+pub fn lqg(
+    plant: &Discrete,
+    gains: &Gains,
+    estimator: &Estimator,
+) -> Result<Compensator, DesignError> {
     let n = plant.a.nrows();
     let (k, l) = (&gains.k, &estimator.gain);
     let closed = &plant.a - &plant.b * k;

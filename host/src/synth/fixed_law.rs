@@ -1,11 +1,12 @@
 //! A control law in fixed point of any word length, and what its rounding costs.
 //!
-//! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for studies.
+//! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for
+//! studies.
 
 use super::eigen::poles;
+use super::error::DesignError;
 use super::gains::Gains;
 use super::system::Discrete;
-use crate::error::Result;
 use handstand_shared::crc::crc32;
 use handstand_shared::gains::VERSION;
 use nalgebra::DMatrix;
@@ -17,7 +18,8 @@ pub struct FixedLaw {
     pub bits: u32,
     /// Gains, m x n, in steps of input step / state step / 2^shift.
     pub k: DMatrix<i64>,
-    /// Input at the operating point times 2^shift, and the half that makes the shift round; one per input.
+    /// Input at the operating point times 2^shift, and the half that makes the shift round; one per
+    /// input.
     pub bias: Vec<i64>,
     /// Places by which the sum is shifted right; one per input.
     pub shift: Vec<u32>,
@@ -107,7 +109,7 @@ impl FixedLaw {
         x0: &[f64],
         u0: &[f64],
         state_range: &[f64],
-    ) -> Result<Loss> {
+    ) -> Result<Loss, DesignError> {
         let rounded = self.gain();
         let (m, n) = rounded.shape();
         let per_input = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
@@ -115,7 +117,7 @@ impl FixedLaw {
         };
         let point_off = |j: usize| (self.x0[j] as f64 * self.state_step[j] - x0[j]).abs();
         let overflow = 2f64.powi(2 * self.bits as i32 - 1);
-        let radius = |k: &DMatrix<f64>| -> Result<f64> {
+        let radius = |k: &DMatrix<f64>| -> Result<f64, DesignError> {
             let poles = poles(&(&plant.a - &plant.b * k))?;
             Ok(poles
                 .iter()
@@ -147,7 +149,8 @@ impl FixedLaw {
         })
     }
 
-    /// The canonical bytes of a 16-bit table: those of [`handstand_shared::gains::GainTable::bytes`].
+    /// The canonical bytes of a 16-bit table: those of
+    /// [`handstand_shared::gains::GainTable::bytes`].
     pub fn bytes(&self) -> Vec<u8> {
         let (m, n) = self.k.shape();
         let word = |value: i64| (value as i16).to_le_bytes();

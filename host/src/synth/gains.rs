@@ -1,11 +1,10 @@
 //! The linear-quadratic regulator, continuous and sampled.
 
 use super::eigen::poles;
-use super::refusal::REGULATOR;
-use super::riccati::{Kind, Problem};
+use super::error::{DesignError, Role};
+use super::riccati::{Problem, TimeDomain};
 use super::system::{Continuous, Discrete};
 use super::weights;
-use crate::error::Result;
 use nalgebra::{Complex, DMatrix};
 
 /// A pole this near to the edge of stability is not told from one on it.
@@ -28,10 +27,10 @@ pub struct Gains {
 ///
 /// # Errors
 /// Weights of the wrong size or sign; plants that no gain stabilises.
-pub fn lqr(plant: &Continuous, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains> {
+pub fn lqr(plant: &Continuous, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains, DesignError> {
     weights::check(q, r, plant.a.nrows(), plant.b.ncols())?;
     Gains::of(&Problem {
-        kind: Kind::Continuous,
+        time: TimeDomain::Continuous,
         a: &plant.a,
         b: &plant.b,
         q,
@@ -45,7 +44,7 @@ pub fn lqr(plant: &Continuous, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gai
 ///
 /// # Errors
 /// As [`lqr`].
-pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains> {
+pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains, DesignError> {
     let (n, m) = (plant.a.nrows(), plant.b.ncols());
     let own = plant.plant_states();
     if q.shape() == (own, own) {
@@ -55,7 +54,7 @@ pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gain
     }
     let q = q.clone().resize(n, n, 0.0);
     Gains::of(&Problem {
-        kind: Kind::Discrete,
+        time: TimeDomain::Discrete,
         a: &plant.a,
         b: &plant.b,
         q: &q,
@@ -64,16 +63,16 @@ pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gain
 }
 
 impl Gains {
-    fn of(problem: &Problem<'_>) -> Result<Gains> {
-        let refused = || problem.refusal(&REGULATOR);
+    fn of(problem: &Problem<'_>) -> Result<Gains, DesignError> {
+        let refused = || problem.unsolvable(Role::Regulator);
         let solution = problem.solve().ok_or_else(refused)?;
         let mut poles = poles(&(problem.a - problem.b * &solution.k))?;
-        let stable = match problem.kind {
-            Kind::Continuous => {
+        let stable = match problem.time {
+            TimeDomain::Continuous => {
                 let slack = STABLE * problem.a.norm();
                 poles.iter().all(|pole| pole.re < -slack)
             }
-            Kind::Discrete => {
+            TimeDomain::Discrete => {
                 poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
                 poles.iter().all(|pole| pole.norm() < 1.0 - STABLE)
             }
@@ -100,7 +99,7 @@ mod tests {
     fn handstand() -> Continuous {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
         let model = Model::load(&file).unwrap();
-        linearise(&model, &upright(&model)).unwrap()
+        linearise(&model, &upright(&model)).unwrap().plant
     }
 
     /// Every digit printed must be met: half a unit of the last.
@@ -205,8 +204,8 @@ mod tests {
         }
     }
 
-    fn refusal(result: Result<Gains>) -> String {
-        let error = result.unwrap_err();
+    fn refusal(result: Result<Gains, DesignError>) -> String {
+        let error = crate::Error::from(result.unwrap_err());
         assert_eq!(error.exit_code(), 3);
         assert!(error.remedy().is_some());
         error.to_string()

@@ -1,32 +1,46 @@
 //! The linear model about a pose at rest, exact: no differences are taken.
 //!
-//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so dq''/dq = M^-1 (dtorque/dq - dG/dq). The
-//! Coriolis torques are quadratic in the speeds and leave nothing.
+//! At rest M q'' = torque - G, and M's own change multiplies q'' = 0, so
+//! dq''/dq = M^-1 (dtorque/dq - dG/dq). The Coriolis torques are quadratic in the speeds and
+//! leave nothing.
 
-use super::rest::Rest;
+use super::error::DesignError;
+use super::joint_slope::JointSlope;
+use super::omitted::OmittedEffect;
+use super::operating_point::OperatingPoint;
 use super::system::Continuous;
-use crate::error::{Error, Result};
 use crate::model::{Angles, Model};
 use nalgebra::{DMatrix, DVector};
 
+/// A linear model with the operating point that it departs from.
+#[derive(Debug, Clone)]
+pub struct Linearised {
+    /// The linear model.
+    pub plant: Continuous,
+    /// Inputs of the driven joints that hold the pose, each in the SI unit of its drive.
+    pub inputs: Vec<f64>,
+    /// Effects that it leaves out, by joint.
+    pub omitted: Vec<OmittedEffect>,
+}
+
 /// The linear model of `model` about `pose_rad` (its own convention of angles).
 ///
-/// Body effects, joint torques and drives count with their exact slopes at rest. A delay does not: it is
-/// [`zoh`](super::zoh)'s matter, see [`input_delay_s`](super::input_delay_s).
+/// Body effects, joint torques and drives count with their exact slopes at rest; effects without a
+/// derivative there (Coulomb friction, dead zones, ..) are left out and listed. A delay does not
+/// count: it is [`zoh`](super::zoh)'s matter, see [`input_delay_s`](super::input_delay_s).
 ///
 /// # Errors
-/// A pose that is no equilibrium, effects without a slope (Coulomb friction, dead zones, ..), nothing driven.
-pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Continuous> {
-    let rest = Rest::of(model, pose_rad)?;
+/// A pose that is no equilibrium of the smooth effects, nothing driven.
+pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised, DesignError> {
+    let point = OperatingPoint::of(model, pose_rad)?;
     let n = model.link_count();
     let driven: Vec<usize> = (0..n)
         .filter(|&joint| model.joints[joint].drive.is_driven())
         .collect();
     if driven.is_empty() {
-        return Err(Error::design(
-            format!("no joint of `{}` is driven", model.name),
-            "give a [[joint]] another drive than passive",
-        ));
+        return Err(DesignError::NothingDriven {
+            model: model.name.clone(),
+        });
     }
     // The model's own angles are `convention` times the relative ones.
     let convention = match model.angles {
@@ -41,24 +55,18 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Continuous> {
             _ => 0.0,
         }),
     };
-    let diagonal = |of: fn(&super::rest::JointSlope) -> f64| {
-        DMatrix::from_diagonal(&DVector::from_iterator(n, rest.joints.iter().map(of)))
+    let diagonal = |of: fn(&JointSlope) -> f64| {
+        DMatrix::from_diagonal(&DVector::from_iterator(n, point.joints.iter().map(of)))
     };
-    let per_rad = diagonal(|s| s.per_rad) - rest.equations.gravity_slope(&rest.relative_rad)
+    let per_rad = diagonal(|s| s.per_rad) - point.equations.gravity_slope(&point.relative_rad)
         + diagonal(|s| s.per_pose_rad) * &convention;
     let mut per_input = DMatrix::zeros(n, driven.len());
     for (input, &joint) in driven.iter().enumerate() {
-        per_input[(joint, input)] = rest.joints[joint].per_input;
+        per_input[(joint, input)] = point.joints[joint].per_input;
     }
-    let mass = rest.equations.mass(&rest.relative_rad);
-    let mass = mass.cholesky().ok_or_else(|| {
-        Error::design(
-            format!(
-                "the masses and inertias of `{}` do not make a positive inertia",
-                model.name
-            ),
-            "give every link a mass and an inertia",
-        )
+    let mass = point.equations.mass(&point.relative_rad);
+    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
+        model: model.name.clone(),
     })?;
     let accelerate = |torque: DMatrix<f64>| &convention * mass.solve(&torque);
     let mut a = DMatrix::zeros(2 * n, 2 * n);
@@ -71,18 +79,22 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Continuous> {
     b.view_mut((n, 0), (n, driven.len()))
         .copy_from(&accelerate(per_input));
     let mut c = DMatrix::identity(2 * n, 2 * n);
-    for (joint, slope) in rest.joints.iter().enumerate() {
+    for (joint, slope) in point.joints.iter().enumerate() {
         c[(joint, joint)] = slope.reading;
         c[(n + joint, n + joint)] = slope.reading;
     }
-    Ok(Continuous { a, b, c })
+    Ok(Linearised {
+        plant: Continuous { a, b, c },
+        inputs: point.inputs,
+        omitted: point.omitted,
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::Rig;
-    use crate::synth::{Equations, balanced};
+    use crate::synth::operating_point::equations;
+    use crate::synth::{NonSmooth, balanced, upright};
     use std::path::Path;
 
     /// Three links with drives and effects of every kind that has a slope.
@@ -194,7 +206,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         ];
         let mut hanging = q.clone();
         hanging[0] += std::f64::consts::PI;
-        let equations = Equations::of(&Rig::of(model, false));
+        let equations = equations(model);
         let left = torque
             - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
             - equations.gravity(&hanging);
@@ -211,12 +223,16 @@ input = {{ column = "u3", unit = "rad/s" }}
         for angles in ["relative", "absolute"] {
             let model = model(angles);
             let pose = balanced(&model, &[0.1, 0.3, -0.2]).unwrap();
-            let rest = Rest::of(&model, &pose).unwrap();
-            let still = accelerations(&model, &pose, &[0.0; 3], &rest.inputs);
+            let Linearised {
+                plant,
+                inputs,
+                omitted,
+            } = linearise(&model, &pose).unwrap();
+            assert_eq!(omitted, []);
+            let still = accelerations(&model, &pose, &[0.0; 3], &inputs);
             assert!(still.iter().all(|a| a.abs() < 1e-9), "{still:?}");
-            let plant = linearise(&model, &pose).unwrap();
             let at = |column: usize, h: f64| {
-                let mut z = [pose.clone(), vec![0.0; 3], rest.inputs.clone()].concat();
+                let mut z = [pose.clone(), vec![0.0; 3], inputs.clone()].concat();
                 z[column] += h;
                 accelerations(&model, &z[..3], &z[3..6], &z[6..])
             };
@@ -240,24 +256,85 @@ input = {{ column = "u3", unit = "rad/s" }}
         }
     }
 
+    fn put(model: &mut Model, id: &str, joint: usize, values: &[f64]) {
+        model.effects.push(crate::model::EffectInstance {
+            effect: crate::effects::named(id).unwrap(),
+            joint: Some(joint),
+            values: values.to_vec(),
+        });
+    }
+
     #[test]
-    fn what_has_no_slope_is_named_with_its_remedy() {
+    fn what_has_no_derivative_is_left_out_and_listed() {
         let mut model = model("relative");
         let pose = balanced(&model, &[0.0; 3]).unwrap();
-        let coulomb = crate::effects::named("coulomb").unwrap();
-        model.effects.push(crate::model::EffectInstance {
-            effect: coulomb,
-            joint: Some(1),
-            values: vec![0.1],
-        });
-        let error = linearise(&model, &pose).unwrap_err();
-        assert!(
-            error.to_string().contains("at joint 2 has no slope"),
-            "{error}"
+        let smooth = linearise(&model, &pose).unwrap();
+        put(&mut model, "coulomb", 0, &[0.1]);
+        put(&mut model, "coulomb", 1, &[0.1]);
+        put(&mut model, "dead_zone", 1, &[0.08, 0.0]);
+        put(&mut model, "backlash", 2, &[0.02]);
+        put(&mut model, "torque_saturation", 1, &[1.0]);
+        // At the value at which it does nothing, an effect is not left out: it is not there.
+        put(&mut model, "coulomb", 2, &[0.0]);
+        assert_eq!(balanced(&model, &[0.0; 3]).unwrap(), pose);
+        let found = linearise(&model, &pose).unwrap();
+        assert_eq!(found.plant, smooth.plant);
+        assert_eq!(found.inputs, smooth.inputs);
+        let listed: Vec<_> = found
+            .omitted
+            .iter()
+            .map(|o| (o.effect.info().id, o.joint, o.why))
+            .collect();
+        assert_eq!(
+            listed,
+            [
+                ("coulomb", 0, NonSmooth::JumpsAtStandstill),
+                ("dead_zone", 1, NonSmooth::DeadAtZero),
+                ("coulomb", 1, NonSmooth::JumpsAtStandstill),
+                ("backlash", 2, NonSmooth::Memory),
+            ]
         );
-        assert!(error.remedy().unwrap().contains("--without coulomb"));
-        model.effects.last_mut().unwrap().values = vec![0.0];
-        assert!(linearise(&model, &pose).is_ok());
+    }
+
+    /// A limit at the very torque that the pose takes is left out; below that nothing holds the
+    /// pose.
+    #[test]
+    fn a_torque_limit_counts_by_what_the_pose_takes() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
+        let mut model = Model::load(&file).unwrap();
+        let pose = balanced(&model, &[1.5, 1.9, 1.9]).unwrap();
+        let inputs = linearise(&model, &pose).unwrap().inputs;
+        assert!(inputs[1].abs() > 0.1, "{inputs:?}");
+        put(&mut model, "torque_saturation", 2, &[inputs[1].abs()]);
+        let omitted = linearise(&model, &pose).unwrap().omitted;
+        assert_eq!(omitted[0].why, NonSmooth::AtLimit);
+        model.effects.last_mut().unwrap().values[0] *= 0.9;
+        let error = linearise(&model, &pose).unwrap_err();
+        assert!(error.to_string().contains("joint 3 needs"), "{error}");
+        model.effects.last_mut().unwrap().values[0] *= 2.0;
+        assert_eq!(linearise(&model, &pose).unwrap().omitted, []);
+    }
+
+    /// What `handstand virtual --robot` simulates: position servos, viscous friction on the bar,
+    /// Coulomb in the gears.
+    #[test]
+    fn the_robot_behind_its_servos_has_a_linear_model() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/robot.toml");
+        let model = Model::load(&file).unwrap();
+        let found = linearise(&model, &upright(&model)).unwrap();
+        assert!(
+            found.inputs.iter().all(|u| u.abs() < 1e-12),
+            "{:?}",
+            found.inputs
+        );
+        let joints: Vec<usize> = found.omitted.iter().map(|o| o.joint).collect();
+        assert_eq!(joints, [1, 2]);
+        assert!(found.plant.a[(3, 3)] < 0.0, "friction of the bar counts");
+    }
+
+    #[test]
+    fn what_makes_a_design_impossible_is_refused() {
+        let mut model = model("relative");
         let error = linearise(&model, &[0.5, 0.0, 0.0]).unwrap_err();
         assert!(error.to_string().contains("joint 1 is passive"), "{error}");
         for joint in &mut model.joints {

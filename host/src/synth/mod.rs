@@ -1,48 +1,51 @@
 //! From a model to a controller: linearise at a pose, discretise, solve for gains, judge the loop.
 //!
-//! `equations` -> `rest` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` -> `reach`,
-//! `zeros` look at plants; `quantise` -> `fixed_law` is what
+//! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` ->
+//! `controllability`, `zeros` look at plants; `quantise` -> `fixed_law` is what
 //! ships; `design` is all of it as one value, `export` writes that;
 //! `robust` makes one gain for many plants.
 
+mod controllability;
 mod design;
 mod discretise;
 mod eigen;
-mod equations;
+mod error;
 mod estimator;
 pub mod export;
 mod fixed_law;
 mod gains;
+mod joint_slope;
 mod linearise;
+mod omitted;
+mod operating_point;
 mod pose;
 mod qr;
 mod quantise;
-mod reach;
-mod refusal;
 mod request;
-mod rest;
 mod riccati;
 mod robust;
 mod signal;
 mod system;
+mod unsolvable;
 mod weight;
 mod weights;
 mod zeros;
 
+pub use controllability::{Controllability, controllability, observability};
 pub use design::{Design, Estimation, Fixed};
 pub use discretise::zoh;
 pub use eigen::{Mode, poles};
-pub use equations::Equations;
+pub use error::{DesignError, PlantMode, Role};
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, dlqr, lqr};
-pub use linearise::linearise;
+pub use linearise::{Linearised, linearise};
+pub use omitted::{NonSmooth, OmittedEffect};
+pub use operating_point::input_delay_s;
 pub use pose::{balanced, upright};
 pub use quantise::{Format, Ranges, quantise};
-pub use reach::{Reach, controllability, observability};
 pub use request::{Request, Sensors, Time};
-pub use rest::{Rest, input_delay_s};
-pub use robust::{grown, lost_share, multi_model, spectral_radius};
+pub use robust::{lost_share, multi_model, multi_model_continuation, spectral_radius};
 pub use signal::Signal;
 pub use system::{Continuous, Discrete};
 pub use weight::Weight;

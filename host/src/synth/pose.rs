@@ -1,9 +1,8 @@
 //! Poses in a model's own convention of angles, and the equilibrium next to one.
 
-use super::equations::Equations;
-use super::rest::At;
-use crate::effects::Rig;
-use crate::error::{Error, Result};
+use super::error::DesignError;
+use super::joint_slope::JointAt;
+use super::operating_point::equations;
 use crate::model::{Angles, Model};
 use nalgebra::DVector;
 
@@ -25,18 +24,20 @@ pub fn upright(model: &Model) -> Vec<f64> {
         .collect()
 }
 
-/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they balance.
+/// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they
+/// balance.
 ///
-/// This is the angle compensation that links with eccentric centres of mass need.
+/// This is the angle compensation that links with eccentric centres of mass need. Friction and
+/// other effects without a derivative do not count: sticking may hold the robot elsewhere too.
 ///
 /// # Errors
-/// No equilibrium within reach of Newton's iteration, or an effect without a slope.
-pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
+/// No equilibrium within reach of Newton's iteration.
+pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError> {
     check_size(model, pose_rad)?;
     let passive: Vec<usize> = (0..model.link_count())
         .filter(|&joint| !model.joints[joint].drive.is_driven())
         .collect();
-    let equations = Equations::of(&Rig::of(model, false));
+    let equations = equations(model);
     let mut angle_rad = relative(model, pose_rad);
     for _ in 0..MOST_STEPS {
         let pose_rad = convention(model, &angle_rad);
@@ -48,7 +49,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
         let mut left = DVector::zeros(passive.len());
         let mut slope = slope.select_rows(&passive).select_columns(&passive);
         for (i, &joint) in passive.iter().enumerate() {
-            let own = At::new(model, joint, &angle_rad, &pose_rad).own()?;
+            let own = JointAt::new(model, joint, &angle_rad, &pose_rad).torque(&mut Vec::new());
             left[i] = gravity_nm[joint] - own.torque_nm;
             slope[(i, i)] -= own.per_rad;
         }
@@ -62,10 +63,7 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>> {
             return Ok(convention(model, &angle_rad));
         }
     }
-    Err(Error::design(
-        "no equilibrium was found near this pose",
-        "start from a pose nearer to balance",
-    ))
+    Err(DesignError::EquilibriumNotFound)
 }
 
 /// Relative angles, the first from hanging, in the model's own convention.
@@ -96,22 +94,16 @@ pub(super) fn relative(model: &Model, pose_rad: &[f64]) -> Vec<f64> {
 }
 
 /// One angle per joint, all of them numbers.
-pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<()> {
+pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<(), DesignError> {
     let n = model.link_count();
     if pose_rad.len() != n {
-        return Err(Error::design(
-            format!(
-                "the pose has {} angles, the model {n} joints",
-                pose_rad.len()
-            ),
-            "give one angle per joint, from the base outwards",
-        ));
+        return Err(DesignError::PoseSize {
+            angles: pose_rad.len(),
+            joints: n,
+        });
     }
     match pose_rad.iter().find(|angle| !angle.is_finite()) {
         None => Ok(()),
-        Some(angle) => Err(Error::design(
-            format!("the pose has an angle of {angle}"),
-            "give angles in rad",
-        )),
+        Some(angle) => Err(DesignError::PoseAngle(*angle)),
     }
 }

@@ -1,12 +1,13 @@
 //! Choosing the steps of a fixed-point law: powers of two, from declared ranges.
 //!
-//! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift / (input step). It is
-//! made as large as gains and sum allow: every gain fits a word, and sum |k| 2^(bits-1) + |bias| < 2^(2 bits-1), so that no
-//! states whatever overflow the sum. The shift is then as many whole bytes as the input's range needs: an 8-bit machine
-//! shifts by bytes for nothing.
+//! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift /
+//! (input step). It is made as large as gains and sum allow: every gain fits a word, and sum |k|
+//! 2^(bits-1) + |bias| < 2^(2 bits-1), so that no states whatever overflow the sum. The shift is
+//! then as many whole bytes as the input's range needs: an 8-bit machine shifts by bytes for
+//! nothing.
 
+use super::error::DesignError;
 use super::fixed_law::FixedLaw;
-use crate::error::{Error, Result};
 use nalgebra::DMatrix;
 
 /// What a fixed-point law must cover, in SI.
@@ -49,13 +50,10 @@ pub fn quantise(
     u0: &[f64],
     ranges: &Ranges,
     format: &Format,
-) -> Result<FixedLaw> {
+) -> Result<FixedLaw, DesignError> {
     let bits = format.bits;
     if !(8..=32).contains(&bits) {
-        return Err(Error::design(
-            format!("a word of {bits} bits"),
-            "choose 8 to 32 bits",
-        ));
+        return Err(DesignError::WordLength(bits));
     }
     positive("range", "state", &ranges.state, k.ncols())?;
     positive("range", "input", &ranges.input, k.nrows())?;
@@ -84,7 +82,7 @@ pub fn quantise(
         steps("input", Some(given), &ranges.input, word)?;
     }
     for i in 0..k.nrows() {
-        let row = Row {
+        let row = GainRow {
             weights: (0..k.ncols())
                 .map(|j| k[(i, j)] * law.state_step[j])
                 .collect(),
@@ -112,14 +110,14 @@ pub fn quantise(
 }
 
 /// One input's gains times the states' steps.
-struct Row {
+struct GainRow {
     weights: Vec<f64>,
     u0: f64,
     range: f64,
     bits: u32,
 }
 
-impl Row {
+impl GainRow {
     /// Whether gains and sum fit at this scale.
     fn fits(&self, scale: f64, shift: u32) -> bool {
         let word = 2f64.powi(self.bits as i32 - 1);
@@ -132,11 +130,13 @@ impl Row {
         most < word && sum * word + bias < 2.0 * word * word - 1.0
     }
 
-    /// The largest scale that fits, and its split into bytes of shift and a step that the range needs.
+    /// The largest scale that fits, and its split into bytes of shift and a step that the range
+    /// needs.
     fn shift_and_step(&self) -> (u32, f64) {
         let word = 2f64.powi(self.bits as i32 - 1) - 1.0;
         let most_shift = self.bits.next_multiple_of(8);
-        // The step must let the range fit, so 2^shift / step has a largest value for the longest shift.
+        // The step must let the range fit, so 2^shift / step has a largest value for the longest
+        // shift.
         let least_step = power_of_two_above(self.range.max(self.u0.abs()) / word);
         let mut scale = 2f64.powi(most_shift as i32) / least_step;
         while !self.fits(scale, most_shift) {
@@ -152,46 +152,55 @@ impl Row {
     }
 
     /// The longest shift that fits with a given step.
-    fn shift_for(&self, step: f64, input: usize) -> Result<(u32, f64)> {
+    fn shift_for(&self, step: f64, input: usize) -> Result<(u32, f64), DesignError> {
         let fits = |shift: &u32| self.fits(2f64.powi(*shift as i32) / step, *shift);
-        let shift = (0..2 * self.bits - 1).rev().find(fits).ok_or_else(|| {
-            Error::design(
-                format!(
-                    "the gains of input {} overflow {} bits: the sum over the declared ranges is too large for its step of {step}",
-                    input + 1,
-                    self.bits
-                ),
-                "declare smaller ranges, take a coarser input step, or more bits",
-            )
-        })?;
+        let shift = (0..2 * self.bits - 1)
+            .rev()
+            .find(fits)
+            .ok_or(DesignError::Overflow {
+                input,
+                bits: self.bits,
+                step,
+            })?;
         Ok((shift, step))
     }
 }
 
-fn positive(what: &str, of: &str, values: &[f64], count: usize) -> Result<()> {
+fn positive(
+    what: &'static str,
+    of: &'static str,
+    values: &[f64],
+    count: usize,
+) -> Result<(), DesignError> {
     if values.len() != count {
-        return Err(Error::design(
-            format!(
-                "{} values of {of} {what}, but there are {count} {of}s",
-                values.len()
-            ),
-            format!("give one per {of}, or one for all"),
-        ));
+        return Err(DesignError::Count {
+            what,
+            of,
+            found: values.len(),
+            needed: count,
+        });
     }
     match values
         .iter()
         .position(|value| !(*value > 0.0 && value.is_finite()))
     {
         None => Ok(()),
-        Some(at) => Err(Error::design(
-            format!("the {what} of {of} {} is {}", at + 1, values[at]),
-            "give a number above 0",
-        )),
+        Some(at) => Err(DesignError::NotPositive {
+            what,
+            of,
+            index: at,
+            value: values[at],
+        }),
     }
 }
 
 /// Steps that let `reach` fit a word: the given ones, checked, or powers of two.
-fn steps(of: &str, given: Option<&[f64]>, reach: &[f64], word: f64) -> Result<Vec<f64>> {
+fn steps(
+    of: &'static str,
+    given: Option<&[f64]>,
+    reach: &[f64],
+    word: f64,
+) -> Result<Vec<f64>, DesignError> {
     let Some(given) = given else {
         return Ok(reach
             .iter()
@@ -205,15 +214,13 @@ fn steps(of: &str, given: Option<&[f64]>, reach: &[f64], word: f64) -> Result<Ve
         .position(|(step, reach)| reach / step > word);
     match beyond {
         None => Ok(given.to_vec()),
-        Some(at) => Err(Error::design(
-            format!(
-                "{of} {} reaches {:.0} steps of {}, but a word holds {word}",
-                at + 1,
-                reach[at] / given[at],
-                given[at]
-            ),
-            "declare a smaller range, a coarser step, or more bits",
-        )),
+        Some(at) => Err(DesignError::BeyondWord {
+            of,
+            index: at,
+            steps: reach[at] / given[at],
+            step: given[at],
+            word,
+        }),
     }
 }
 
@@ -309,7 +316,7 @@ mod tests {
         format.state_step = Some(vec![1e-6, 0.5]);
         let error = quantise(&k, &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();
         assert!(error.to_string().contains("1000000 steps"), "{error}");
-        assert_eq!(error.exit_code(), 3);
+        assert_eq!(crate::Error::from(error).exit_code(), 3);
         format.state_step = Some(vec![0.005, 0.5]);
         format.input_step = Some(vec![1e-4]);
         let error = quantise(&(1000.0 * &k), &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();

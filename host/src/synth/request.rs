@@ -45,6 +45,7 @@ pub struct Sensors {
     pub position_step_rad: f64,
     /// Step of the gyro, rad/s.
     pub gyro_step_rad_s: f64,
-    /// Covariance of the process noise; without it, that of inputs that err by a hundredth of their range.
+    /// Covariance of the process noise; without it, that of inputs that err by a hundredth of their
+    /// range.
     pub process: Option<Weight>,
 }

@@ -1,15 +1,17 @@
 //! One gain for many plants: the multi-model regulator.
 //!
-//! Minimises the mean, over plants, of trace(P_i), the cost x'Qx + u'Ru summed from every start of unit size, by
-//! gradient. With S_i the sum of x x' over those runs,
-//! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control 15 (1970) 44, told
-//! for sampled plants and several of them: Makila, Toivonen, IEEE Trans. Automatic Control 32 (1987) 658). The step is
-//! quasi-Newton (BFGS). A gain that one plant escapes has infinite cost, so the search never leaves the gains that
-//! hold all of them; it has to start from one, which [`grown`] finds by letting the plants part little by little.
+//! Minimises the mean, over plants, of trace(P_i), the cost x'Qx + u'Ru summed from every start of
+//! unit size, by gradient. With S_i the sum of x x' over those runs,
+//! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control
+//! 15 (1970) 44, told for sampled plants and several of them: Makila, Toivonen, IEEE Trans.
+//! Automatic Control 32 (1987) 658). The step is quasi-Newton (BFGS). A gain that one plant escapes
+//! has infinite cost, so the search never leaves the gains that hold all of them; it has to start
+//! from one, which [`multi_model_continuation`] finds by widening the spread of the plants in
+//! stages.
 
+use super::error::DesignError;
 use super::gains::dlqr;
 use super::system::Discrete;
-use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 
 /// Most quasi-Newton steps.
@@ -20,7 +22,8 @@ const STILL: f64 = 1e-9;
 
 /// Largest modulus of the eigenvalues of a square matrix: below 1, A^k dies out.
 ///
-/// By squaring: the growth of |A^N| for N = 2^24, exact to about ln(condition)/N. Never fails to converge.
+/// By squaring: the growth of |A^N| for N = 2^24, exact to about ln(condition)/N. Never fails to
+/// converge.
 pub fn spectral_radius(a: &DMatrix<f64>) -> f64 {
     const SQUARINGS: i32 = 24;
     let (mut power, mut log_scale, mut share) = (a.clone(), 0.0, 1.0);
@@ -61,15 +64,10 @@ pub fn multi_model(
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
     start: &DMatrix<f64>,
-) -> Result<DMatrix<f64>> {
+) -> Result<DMatrix<f64>, DesignError> {
     let (m, n) = start.shape();
     let mut k = start.clone();
-    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or_else(|| {
-        Error::design(
-            "the gain to start from lets one of the plants fall",
-            "start from plants that differ less",
-        )
-    })?;
+    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or(DesignError::UnstableStart)?;
     let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
     let mut slope = flat(&gradient);
     let mut curvature =
@@ -98,17 +96,17 @@ pub fn multi_model(
     Ok(k)
 }
 
-/// The multi-model gain for the plants that `spread(share)` gives, `share` growing to 1 in `stages` equal steps from
-/// the regulator of `spread(0)`'s first plant.
+/// The multi-model gain for the plants that `spread(share)` gives, `share` growing to 1 in `stages`
+/// equal steps from the regulator of `spread(0)`'s first plant.
 ///
 /// # Errors
 /// Plants that part too far: no gain that holds all of them was found on the way.
-pub fn grown(
-    spread: impl Fn(f64) -> Result<Vec<Discrete>>,
+pub fn multi_model_continuation<E: From<DesignError>>(
+    spread: impl Fn(f64) -> Result<Vec<Discrete>, E>,
     stages: usize,
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
-) -> Result<DMatrix<f64>> {
+) -> Result<DMatrix<f64>, E> {
     let nominal = spread(0.0)?;
     let mut k = dlqr(&nominal[0], q, r)?.k;
     let q = &q
@@ -116,12 +114,8 @@ pub fn grown(
         .resize(nominal[0].a.nrows(), nominal[0].a.nrows(), 0.0);
     for stage in 1..=stages {
         let share = stage as f64 / stages as f64;
-        k = multi_model(&spread(share)?, q, r, &k).map_err(|_| {
-            Error::design(
-                format!("no gain was found that holds all plants at {share:.2} of the spread"),
-                "ask for less spread, or for more stages on the way",
-            )
-        })?;
+        k = multi_model(&spread(share)?, q, r, &k)
+            .map_err(|_| DesignError::SpreadTooWide { share })?;
     }
     Ok(k)
 }
@@ -148,7 +142,8 @@ fn mean_cost(
     (cost > 0.0 && cost.is_finite()).then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
 }
 
-/// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if it has no end.
+/// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if
+/// it has no end.
 fn summed(a: &DMatrix<f64>, w: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     // 2^22 terms: a radius nearer to 1 than 1e-5 counts as fallen.
     const DOUBLINGS: usize = 22;
@@ -190,8 +185,9 @@ fn search(
     None
 }
 
-/// The update of the inverse curvature from a step and the change of slope along it (Nocedal, Wright, Numerical
-/// Optimization, 2nd ed., equation 6.17); skipped where the cost does not curve upwards.
+/// The update of the inverse curvature from a step and the change of slope along it (Nocedal,
+/// Wright, Numerical Optimization, 2nd ed., equation 6.17); skipped where the cost does not curve
+/// upwards.
 fn bfgs(inverse: &mut DMatrix<f64>, moved: &DVector<f64>, turned: &DVector<f64>) {
     let along = moved.dot(turned);
     if along <= 1e-12 * moved.norm() * turned.norm() {
@@ -252,6 +248,6 @@ mod tests {
             .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
         assert!((k - best.unwrap()).abs() < 1e-3, "{k} {best:?}");
         let fallen = multi_model(&plants, &q, &r, &DMatrix::from_element(1, 1, 0.1)).unwrap_err();
-        assert_eq!(fallen.exit_code(), 3);
+        assert_eq!(fallen, DesignError::UnstableStart);
     }
 }

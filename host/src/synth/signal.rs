@@ -1,4 +1,4 @@
-//! What states and inputs are called, and how far inputs reach.
+//! Names and units of states and inputs, and the default limits of inputs.
 
 use crate::model::{Drive, Model};
 
@@ -31,13 +31,14 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
     }
 }
 
-/// The largest input that makes sense for a drive: its torque limit where the model has one, else 2 N m (the torque at which the paper's
-/// servos saturate); full duty; half a turn; the no-load speed.
-pub(super) fn reach(model: &Model, joint: usize) -> f64 {
+/// The largest input that makes sense for a drive: its torque limit where the model has one, else 2
+/// N m (the torque at which the paper's servos saturate); full duty; half a turn; the no-load
+/// speed.
+pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     let limit = model
         .effects
         .iter()
-        .find(|e| e.joint == Some(joint) && e.effect.card().id == "torque_saturation")
+        .find(|e| e.joint == Some(joint) && e.effect.info().id == "torque_saturation")
         .and_then(|e| e.values.first().copied());
     match &model.joints[joint].drive {
         Drive::Passive | Drive::Duty(_) => 1.0,

@@ -4,8 +4,9 @@ use nalgebra::DMatrix;
 
 /// x' = A x + B u, y = C x, in SI.
 ///
-/// From [`linearise`](super::linearise) the state is [q - q0, dq] in the model's own convention of angles, the
-/// inputs are those of the driven joints, from the base outwards, as departures from what holds the pose.
+/// From [`linearise`](super::linearise) the state is [q - q0, dq] in the model's own convention of
+/// angles, the inputs are those of the driven joints, from the base outwards, as departures from
+/// what holds the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Continuous {
     /// n x n, 1/s.

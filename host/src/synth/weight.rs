@@ -1,6 +1,6 @@
 //! A square matrix as people give it: one number, a diagonal, or all of it.
 
-use crate::error::{Error, Result};
+use super::error::DesignError;
 use nalgebra::DMatrix;
 use std::fmt;
 
@@ -29,28 +29,30 @@ impl Weight {
     ///
     /// # Errors
     /// Another size.
-    pub fn matrix(&self, name: &str, size: usize, of: &str) -> Result<DMatrix<f64>> {
+    pub fn matrix(
+        &self,
+        name: &'static str,
+        size: usize,
+        of: &'static str,
+    ) -> Result<DMatrix<f64>, DesignError> {
         match self {
             Weight::Scalar(value) => Ok(DMatrix::from_diagonal_element(size, size, *value)),
             Weight::Diagonal(values) if values.len() == size => {
                 Ok(DMatrix::from_diagonal(&values.clone().into()))
             }
             Weight::Matrix(matrix) if matrix.shape() == (size, size) => Ok(matrix.clone()),
-            Weight::Diagonal(values) => Err(Error::design(
-                format!(
-                    "{name} has {} values, but there are {size} {of}",
-                    values.len()
-                ),
-                "give one number for all, or one for each",
-            )),
-            Weight::Matrix(matrix) => Err(Error::design(
-                format!(
-                    "{name} is {} x {}, but there are {size} {of}",
-                    matrix.nrows(),
-                    matrix.ncols()
-                ),
-                format!("give {name} as {size} x {size}, as its diagonal, or as one number"),
-            )),
+            Weight::Diagonal(values) => Err(DesignError::DiagonalSize {
+                name,
+                found: values.len(),
+                size,
+                of,
+            }),
+            Weight::Matrix(matrix) => Err(DesignError::MatrixSize {
+                name,
+                shape: matrix.shape(),
+                size,
+                of,
+            }),
         }
     }
 
@@ -58,17 +60,15 @@ impl Weight {
     ///
     /// # Errors
     /// Another number of them, or a whole matrix.
-    pub fn diagonal(&self, name: &str, size: usize) -> Result<Vec<f64>> {
+    pub fn diagonal(&self, name: &'static str, size: usize) -> Result<Vec<f64>, DesignError> {
         match self {
             Weight::Scalar(value) => Ok(vec![*value; size]),
             Weight::Diagonal(values) if values.len() == size => Ok(values.clone()),
-            _ => Err(Error::design(
-                format!(
-                    "{name} has {} values, but {size} are needed",
-                    self.size().unwrap_or(1)
-                ),
-                "give one number for all, or one for each",
-            )),
+            _ => Err(DesignError::ListSize {
+                name,
+                found: self.size().unwrap_or(1),
+                size,
+            }),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Whether weights and covariances are ones that a quadratic cost, or noise, can have.
 
-use crate::error::{Error, Result};
+use super::error::DesignError;
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalues up to this share of the largest entry are rounding.
@@ -19,7 +19,12 @@ pub(super) enum Sign {
 ///
 /// # Errors
 /// As [`of`].
-pub(super) fn check(q: &DMatrix<f64>, r: &DMatrix<f64>, n: usize, m: usize) -> Result<()> {
+pub(super) fn check(
+    q: &DMatrix<f64>,
+    r: &DMatrix<f64>,
+    n: usize,
+    m: usize,
+) -> Result<(), DesignError> {
     of("Q", q, n, "states", Sign::Semidefinite)?;
     of("R", r, m, "inputs", Sign::Definite)
 }
@@ -27,52 +32,58 @@ pub(super) fn check(q: &DMatrix<f64>, r: &DMatrix<f64>, n: usize, m: usize) -> R
 /// A symmetric matrix for so many states (inputs, outputs), of a sign.
 ///
 /// # Errors
-/// Another size, entries that are no numbers, not symmetric, of another sign: each with what was found.
-pub(super) fn of(name: &str, m: &DMatrix<f64>, size: usize, of: &str, sign: Sign) -> Result<()> {
+/// Another size, entries that are no numbers, not symmetric, of another sign: each with what was
+/// found.
+pub(super) fn of(
+    name: &'static str,
+    m: &DMatrix<f64>,
+    size: usize,
+    of: &'static str,
+    sign: Sign,
+) -> Result<(), DesignError> {
     symmetric(name, m, size, of)?;
     let least = least_eigenvalue(m);
     let slack = ROUNDING * size as f64 * m.amax();
     match sign {
-        Sign::Semidefinite if least < -slack => Err(Error::design(
-            format!("{name} is not positive semidefinite: its least eigenvalue is {least:.3e}"),
-            format!(
-                "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
-            ),
-        )),
-        Sign::Definite if least.is_nan() || least <= slack => Err(Error::design(
-            format!("{name} is not positive definite: its least eigenvalue is {least:.3e}"),
-            format!("give every one of the {of} a weight or variance above 0 in {name}"),
-        )),
+        Sign::Semidefinite if least < -slack => Err(DesignError::Indefinite { name, least }),
+        Sign::Definite if least.is_nan() || least <= slack => {
+            Err(DesignError::NotDefinite { name, least, of })
+        }
         _ => Ok(()),
     }
 }
 
-fn symmetric(name: &str, matrix: &DMatrix<f64>, size: usize, of: &str) -> Result<()> {
+fn symmetric(
+    name: &'static str,
+    matrix: &DMatrix<f64>,
+    size: usize,
+    of: &'static str,
+) -> Result<(), DesignError> {
     if matrix.shape() != (size, size) {
-        let (rows, columns) = matrix.shape();
-        return Err(Error::design(
-            format!("{name} is {rows} x {columns}, but there are {size} {of}"),
-            format!("give {name} as {size} x {size}, as its diagonal, or as one number"),
-        ));
+        return Err(DesignError::MatrixSize {
+            name,
+            shape: matrix.shape(),
+            size,
+            of,
+        });
     }
     if let Some(value) = matrix.iter().find(|value| !value.is_finite()) {
-        return Err(Error::design(
-            format!("{name} has an entry of {value}"),
-            "give numbers",
-        ));
+        return Err(DesignError::Entry {
+            name,
+            value: *value,
+        });
     }
     let slack = ROUNDING * matrix.amax();
     for i in 0..size {
         for j in 0..i {
             let (below, above) = (matrix[(i, j)], matrix[(j, i)]);
             if (below - above).abs() > slack {
-                let [row, column] = [i + 1, j + 1];
-                return Err(Error::design(
-                    format!(
-                        "{name} is not symmetric: entry ({row}, {column}) is {below}, entry ({column}, {row}) is {above}"
-                    ),
-                    format!("give its symmetric part, half of {name} plus its transpose"),
-                ));
+                return Err(DesignError::Asymmetric {
+                    name,
+                    at: (i, j),
+                    below,
+                    above,
+                });
             }
         }
     }

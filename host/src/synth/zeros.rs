@@ -1,10 +1,11 @@
 //! Transmission zeros: where the Rosenbrock pencil [A - s I, B; C, D] loses rank.
 //!
-//! Emami-Naeini, Van Dooren, Automatica 18 (1982) 415: orthogonal steps strip the pencil of what is infinite or
-//! singular until D is square and of full rank; what is left has the zeros as the eigenvalues of A - B D^-1 C.
+//! Emami-Naeini, Van Dooren, Automatica 18 (1982) 415: orthogonal steps strip the pencil of what is
+//! infinite or singular until D is square and of full rank; what is left has the zeros as the
+//! eigenvalues of A - B D^-1 C.
 
 use super::eigen::poles;
-use crate::error::Result;
+use super::error::DesignError;
 use nalgebra::{Complex, DMatrix};
 
 /// Singular values below this share of the system's size count as zero.
@@ -18,8 +19,9 @@ struct Reduced {
     d: DMatrix<f64>,
 }
 
-/// The finite transmission zeros of x' = A x + B u, y = C x, those with the largest real part first; inputs as many
-/// as outputs or not. A zero with a positive real part (sampled: beyond the unit circle) makes it non-minimum phase.
+/// The finite transmission zeros of x' = A x + B u, y = C x, those with the largest real part
+/// first; inputs as many as outputs or not. A zero with a positive real part (sampled: beyond the
+/// unit circle) makes it non-minimum phase.
 ///
 /// # Errors
 /// Entries that are no numbers.
@@ -27,7 +29,7 @@ pub fn transmission_zeros(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     c: &DMatrix<f64>,
-) -> Result<Vec<Complex<f64>>> {
+) -> Result<Vec<Complex<f64>>, DesignError> {
     poles(a)?;
     // Equal size keeps one threshold fair to all three.
     let unit = |m: &DMatrix<f64>| match m.norm() {

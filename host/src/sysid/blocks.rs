@@ -1,28 +1,35 @@
-//! Motions in short blocks of time: what a servo was told and did on average, for maps of what it does at rest.
+//! Motions in short blocks of time: means of command and output, for static maps.
 
-use super::record::Output;
+use super::record::OutputQuantity;
 use crate::log::Motion;
 
-/// Most the input may change over a block and the one before, as a share of its whole range: more is a step, and
-/// what follows one is not rest.
+/// Most the input may change over a block and the one before, as a share of its whole range: more
+/// is a step, and what follows one is not rest.
 const STEP: f64 = 0.05;
 
 /// Means over a stretch of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
-    /// What the servo was told, SI of its kind.
+pub struct BlockMean {
+    /// Raw command, SI of its kind.
     pub input: f64,
-    /// What it did, SI: a mean, or the speed from the first angle to the last, rad/s.
+    /// Measured output, SI: a mean, or the speed from the first angle to the last, rad/s.
     pub output: f64,
-    /// Supply, V; not a number where it was not logged.
+    /// SupplyLine, V; not a number where it was not logged.
     pub supply_v: f64,
 }
 
-/// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right after a step of
-/// the input, and the first of a motion, whose past is not known; what is left at a motion's end is dropped.
+/// Joint `joint` (from 0) of the motions in blocks of `block_s` seconds, but for blocks in or right
+/// after a step of the input, and the first of a motion, whose past is not known; what is left at a
+/// motion's end is dropped.
 ///
-/// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a passive joint: none.
-pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) -> Vec<Block> {
+/// A mean over time takes the steps out that a coarse encoder puts into a speed. Blocks of a
+/// passive joint: none.
+pub fn blocks(
+    motions: &[Motion],
+    joint: usize,
+    output: OutputQuantity,
+    block_s: f64,
+) -> Vec<BlockMean> {
     let inputs = motions.iter().filter_map(|m| m.input[joint].as_deref());
     let whole = inputs
         .map(range)
@@ -51,11 +58,11 @@ pub fn blocks(motions: &[Motion], joint: usize, output: Output, block_s: f64) ->
                 high - low <= most
             };
             if before.is_some_and(calm) {
-                all.push(Block {
+                all.push(BlockMean {
                     input: mean(input),
                     output: match output {
-                        Output::AsMeasured => mean(measured),
-                        Output::Velocity => (measured[last] - measured[first]) / duration_s,
+                        OutputQuantity::AsMeasured => mean(measured),
+                        OutputQuantity::Velocity => (measured[last] - measured[first]) / duration_s,
                     },
                     supply_v: motion.supply_v.as_ref().map_or(f64::NAN, |v| mean(v)),
                 });
@@ -77,7 +84,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Source;
+    use crate::log::MotionSource;
 
     #[test]
     fn blocks_after_a_step_are_left_out() {
@@ -89,7 +96,7 @@ mod tests {
         }
         let motion = Motion {
             name: String::new(),
-            source: Source {
+            source: MotionSource {
                 path: "a.csv".into(),
                 sha256: String::new(),
                 lines: (1, 1),
@@ -103,7 +110,7 @@ mod tests {
             payload_kg: 0.0,
             turned: false,
         };
-        let blocks = blocks(&[motion], 0, Output::Velocity, 0.5);
+        let blocks = blocks(&[motion], 0, OutputQuantity::Velocity, 0.5);
         let speeds: Vec<f64> = blocks
             .iter()
             .map(|b| (b.output * 1e9).round() / 1e9)

@@ -1,7 +1,8 @@
-//! A dead zone, a line on either side of it, and saturation: the shape of the paper's Figures 4 and 7.
+//! A dead zone, a line on either side of it, and saturation: the shape of the paper's Figures 4 and
+//! 7.
 
-use super::blocks::Block;
-use super::dynamics::Known;
+use super::blocks::BlockMean;
+use super::dynamics::Interval;
 use crate::fitting::quantile_975;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
@@ -17,11 +18,11 @@ const LEAST: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Side {
     /// Where the dead zone ends, in the input's unit.
-    pub edge: Known,
-    /// Output per input outside.
-    pub slope: Known,
-    /// Output at which it stays; none where no saturation is seen.
-    pub limit: Option<Known>,
+    pub edge: Interval,
+    /// OutputQuantity per input outside.
+    pub slope: Interval,
+    /// OutputQuantity at which it stays; none where no saturation is seen.
+    pub limit: Option<Interval>,
     /// Blocks on this side.
     pub blocks: usize,
     /// Root-mean-square of what is left, in the output's unit.
@@ -30,7 +31,7 @@ pub struct Side {
 
 /// Both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct DeadZone {
+pub struct DeadZoneMap {
     /// Inputs above zero.
     pub up: Side,
     /// Inputs below zero, both axes turned round.
@@ -63,12 +64,12 @@ pub enum Unmapped {
     Flat(&'static str),
 }
 
-impl DeadZone {
+impl DeadZoneMap {
     /// Fits both sides.
     ///
     /// # Errors
     /// A side with too few blocks, or one that never moves.
-    pub fn fit(blocks: &[Block]) -> Result<DeadZone, Unmapped> {
+    pub fn fit(blocks: &[BlockMean]) -> Result<DeadZoneMap, Unmapped> {
         let side = |sign: f64, name: &'static str| {
             let points: Vec<(f64, f64)> = blocks
                 .iter()
@@ -77,7 +78,7 @@ impl DeadZone {
                 .collect();
             fit_side(&points, name)
         };
-        Ok(DeadZone {
+        Ok(DeadZoneMap {
             up: side(1.0, "positive")?,
             down: side(-1.0, "negative")?,
         })
@@ -124,13 +125,13 @@ impl Inverse {
 
 /// Slope, edge, limit; an infinite limit is none.
 #[derive(Debug, Clone, Copy)]
-struct Curve {
+struct DeadZoneCurve {
     slope: f64,
     edge: f64,
     limit: f64,
 }
 
-impl Curve {
+impl DeadZoneCurve {
     fn output(&self, input: f64) -> f64 {
         (self.slope * (input - self.edge).max(0.0)).min(self.limit)
     }
@@ -146,7 +147,8 @@ impl Curve {
         self.edge + self.limit / self.slope
     }
 
-    /// Normal matrix and gradient; rows and columns of what the points do not touch stay zero.
+    /// NormalEquations matrix and gradient; rows and columns of what the points do not touch stay
+    /// zero.
     fn normal(&self, points: &[(f64, f64)]) -> (Matrix3<f64>, Vector3<f64>) {
         let (mut matrix, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
         for (u, y) in points {
@@ -164,7 +166,7 @@ impl Curve {
     }
 
     /// Gauss and Newton's steps, halved until the error falls.
-    fn refined(mut self, points: &[(f64, f64)]) -> Curve {
+    fn refined(mut self, points: &[(f64, f64)]) -> DeadZoneCurve {
         let mut cost = self.cost(points);
         for _ in 0..STEPS {
             let (mut matrix, gradient) = self.normal(points);
@@ -175,7 +177,7 @@ impl Curve {
                 break;
             };
             let better = (0..12).map(|k| 0.5f64.powi(k)).find_map(|share| {
-                let trial = Curve {
+                let trial = DeadZoneCurve {
                     slope: self.slope + share * step[0],
                     edge: self.edge + share * step[1],
                     limit: self.limit + share * step[2],
@@ -199,7 +201,7 @@ fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Unmapped>
         return Err(Unmapped::OneSided(name));
     }
     let count = points.len() as f64;
-    let criterion = |curve: &Curve, coefficients: f64| {
+    let criterion = |curve: &DeadZoneCurve, coefficients: f64| {
         count * (curve.cost(points) / count).max(f64::MIN_POSITIVE).ln() + coefficients * count.ln()
     };
     let open = best(points, false).ok_or(Unmapped::Flat(name))?;
@@ -212,14 +214,14 @@ fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Unmapped>
 }
 
 /// The best curve over a grid of edges and onsets, refined.
-fn best(points: &[(f64, f64)], limited: bool) -> Option<Curve> {
+fn best(points: &[(f64, f64)], limited: bool) -> Option<DeadZoneCurve> {
     let mut inputs: Vec<f64> = points.iter().map(|(u, _)| *u).collect();
     inputs.sort_by(f64::total_cmp);
     let places: Vec<f64> = (0..GRID)
         .map(|k| inputs[k * (inputs.len() - 1) / (GRID - 1)])
         .collect();
     let beyond = |onset: f64| inputs.iter().filter(|u| **u >= onset).count();
-    let mut curves: Vec<Curve> = Vec::new();
+    let mut curves: Vec<DeadZoneCurve> = Vec::new();
     for edge in std::iter::once(0.0).chain(places.iter().copied()) {
         let onsets: Vec<f64> = match limited {
             false => vec![f64::INFINITY],
@@ -239,7 +241,7 @@ fn best(points: &[(f64, f64)], limited: bool) -> Option<Curve> {
             let slope = product / square;
             if slope > 0.0 && slope.is_finite() {
                 let limit = slope * (onset - edge);
-                curves.push(Curve { slope, edge, limit });
+                curves.push(DeadZoneCurve { slope, edge, limit });
             }
         }
     }
@@ -250,7 +252,7 @@ fn best(points: &[(f64, f64)], limited: bool) -> Option<Curve> {
 }
 
 /// Intervals from the normal matrix of what the points do touch.
-fn side(curve: &Curve, points: &[(f64, f64)]) -> Option<Side> {
+fn side(curve: &DeadZoneCurve, points: &[(f64, f64)]) -> Option<Side> {
     let (mut matrix, _) = curve.normal(points);
     let limited = curve.limit.is_finite();
     let coefficients = if limited { 3 } else { 2 };
@@ -261,7 +263,7 @@ fn side(curve: &Curve, points: &[(f64, f64)]) -> Option<Side> {
     let (variance, reach) = (curve.cost(points) / freedom, quantile_975(freedom));
     let inverse = matrix.try_inverse()?;
     let known = |value: f64, k: usize| {
-        Known::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
+        Interval::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
     };
     Some(Side {
         slope: known(curve.slope, 0),
@@ -277,13 +279,13 @@ mod tests {
     use super::*;
     use crate::sysid::generate::noise;
 
-    fn measured(edge: f64, slope: f64, limit: f64, deviation: f64, seed: u64) -> Vec<Block> {
+    fn measured(edge: f64, slope: f64, limit: f64, deviation: f64, seed: u64) -> Vec<BlockMean> {
         let noise = noise(201, deviation, seed);
         (0..201)
             .map(|k| {
                 let input = (k as f64 - 100.0) / 100.0;
                 let size = (slope * (input.abs() - edge).max(0.0)).min(limit);
-                Block {
+                BlockMean {
                     input,
                     output: size.copysign(input) + noise[k],
                     supply_v: f64::NAN,
@@ -296,7 +298,7 @@ mod tests {
     fn intervals_hold_the_truth() {
         let mut held = [0; 3];
         for seed in 0..100 {
-            let map = DeadZone::fit(&measured(0.085, 3.0, 2.0, 0.05, seed)).unwrap();
+            let map = DeadZoneMap::fit(&measured(0.085, 3.0, 2.0, 0.05, seed)).unwrap();
             held[0] += usize::from(map.up.edge.holds(0.085));
             held[1] += usize::from(map.up.slope.holds(3.0));
             held[2] += usize::from(map.up.limit.is_some_and(|limit| limit.holds(2.0)));
@@ -306,14 +308,14 @@ mod tests {
 
     #[test]
     fn no_limit_is_seen_where_there_is_none() {
-        let map = DeadZone::fit(&measured(0.1, 2.0, f64::INFINITY, 0.02, 1)).unwrap();
+        let map = DeadZoneMap::fit(&measured(0.1, 2.0, f64::INFINITY, 0.02, 1)).unwrap();
         assert_eq!((map.up.limit, map.down.limit), (None, None));
         assert!((map.down.edge.value - 0.1).abs() < 0.02);
     }
 
     #[test]
     fn the_inverse_undoes_the_map() {
-        let map = DeadZone::fit(&measured(0.085, 3.0, 2.0, 0.01, 4)).unwrap();
+        let map = DeadZoneMap::fit(&measured(0.085, 3.0, 2.0, 0.01, 4)).unwrap();
         let inverse = map.inverse();
         for output in [-1.9, -0.3, 0.2, 1.5] {
             assert!((map.output(inverse.input(output)) - output).abs() < 1e-9);
@@ -324,14 +326,14 @@ mod tests {
 
     #[test]
     fn what_never_moves_is_no_map() {
-        let still: Vec<Block> = measured(2.0, 1.0, 1.0, 0.0, 1);
-        assert_eq!(DeadZone::fit(&still), Err(Unmapped::Flat("positive")));
-        let one_sided: Vec<Block> = measured(0.1, 1.0, 1.0, 0.01, 1)
+        let still: Vec<BlockMean> = measured(2.0, 1.0, 1.0, 0.0, 1);
+        assert_eq!(DeadZoneMap::fit(&still), Err(Unmapped::Flat("positive")));
+        let one_sided: Vec<BlockMean> = measured(0.1, 1.0, 1.0, 0.01, 1)
             .into_iter()
             .filter(|block| block.input > 0.0)
             .collect();
         assert_eq!(
-            DeadZone::fit(&one_sided),
+            DeadZoneMap::fit(&one_sided),
             Err(Unmapped::OneSided("negative"))
         );
     }

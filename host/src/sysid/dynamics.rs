@@ -1,4 +1,5 @@
-//! What a fitted model says of the servo: static gain, poles, settling, each with its 95 % interval.
+//! What a fitted model says of the servo: static gain, poles, settling, each with its 95 %
+//! interval.
 
 use super::estimate::Estimate;
 use super::polynomial::{at_one, roots};
@@ -10,7 +11,7 @@ const HALF_95: f64 = 1.96;
 
 /// A value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Known {
+pub struct Interval {
     /// The value.
     pub value: f64,
     /// Lower end.
@@ -19,10 +20,10 @@ pub struct Known {
     pub high: f64,
 }
 
-impl Known {
+impl Interval {
     /// `value` give or take `half`.
     pub fn around(value: f64, half: f64) -> Self {
-        Known {
+        Interval {
             value,
             low: value - half,
             high: value + half,
@@ -39,11 +40,11 @@ impl Known {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pole {
     /// Real part.
-    pub re: Known,
+    pub re: Interval,
     /// Imaginary part; 0 for a real pole.
-    pub im: Known,
+    pub im: Interval,
     /// Distance from the origin: below 1 where stable.
-    pub radius: Known,
+    pub radius: Interval,
     /// Real part of `ln(z) / Ts`, 1/s: how fast it dies.
     pub decay_rad_s: f64,
     /// Imaginary part of `ln(z) / Ts`, rad/s: how fast it turns.
@@ -53,17 +54,17 @@ pub struct Pole {
 /// From input to output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Dynamics {
-    /// Output over a constant input, once at rest.
-    pub gain: Known,
+    /// OutputQuantity over a constant input, once at rest.
+    pub gain: Interval,
     /// Poles, largest first; of a pair both.
     pub poles: Vec<Pole>,
-    /// Time after a step from which the output stays within 2 % of its end, s; none if it never does in 10 000
-    /// samples.
+    /// Time after a step from which the output stays within 2 % of its end, s; none if it never
+    /// does in 10 000 samples.
     pub settling_s: Option<f64>,
 }
 
-/// Of a fitted model, sampled every `ts_s`. Intervals are by the delta method: the covariance of the coefficients
-/// through the derivatives of gain and poles.
+/// Of a fitted model, sampled every `ts_s`. Intervals are by the delta method: the covariance of
+/// the coefficients through the derivatives of gain and poles.
 pub fn dynamics(estimate: &Estimate, ts_s: f64) -> Dynamics {
     Dynamics {
         gain: gain(estimate),
@@ -92,7 +93,7 @@ fn deviation(estimate: &Estimate, gradient: &DVector<f64>) -> f64 {
 }
 
 /// B(1) / (A(1) F(1)).
-fn gain(estimate: &Estimate) -> Known {
+fn gain(estimate: &Estimate) -> Interval {
     let (structure, model) = (&estimate.structure, &estimate.model);
     let (a, b, f) = (at_one(&model.a), at_one(&model.b), at_one(&model.f));
     let value = b / (a * f);
@@ -102,7 +103,7 @@ fn gain(estimate: &Estimate) -> Known {
     gradient.rows_mut(0, structure.na).fill(-value / a);
     gradient.rows_mut(b_at, structure.nb).fill(1.0 / (a * f));
     gradient.rows_mut(f_at, structure.nf).fill(-value / f);
-    Known::around(value, HALF_95 * deviation(estimate, &gradient))
+    Interval::around(value, HALF_95 * deviation(estimate, &gradient))
 }
 
 fn poles(estimate: &Estimate, ts_s: f64) -> Vec<Pole> {
@@ -139,7 +140,7 @@ fn pole(
         gradient[2][first + k - 1] = (root.conj() * moved).re / root.norm();
     }
     let known = |value: f64, gradient: &DVector<f64>| {
-        Known::around(value, HALF_95 * deviation(estimate, gradient))
+        Interval::around(value, HALF_95 * deviation(estimate, gradient))
     };
     let continuous = root.ln() / ts_s;
     Pole {

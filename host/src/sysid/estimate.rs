@@ -1,7 +1,7 @@
 //! The prediction-error method: coefficients that make the one-step errors smallest.
 //!
-//! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that makes the
-//! error larger, so that the noise model and its inverse stay stable.
+//! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that
+//! makes the error larger, so that the noise model and its inverse stay stable.
 
 use super::model::TransferModel;
 use super::record::Record;
@@ -102,19 +102,19 @@ pub fn estimate(structure: &Structure, records: &[Record]) -> Result<Estimate, U
 }
 
 /// Squared error, and its normal equations.
-struct Normal {
+struct NormalEquations {
     cost: f64,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
 }
 
-struct Search {
+struct MinimumSearch {
     model: TransferModel,
-    normal: Normal,
+    normal: NormalEquations,
     converged: bool,
 }
 
-fn search(structure: &Structure, records: &[Record], start: TransferModel) -> Search {
+fn search(structure: &Structure, records: &[Record], start: TransferModel) -> MinimumSearch {
     let mut model = start;
     let mut normal = normal_equations(structure, records, &model);
     let mut damping = 1e-3;
@@ -148,7 +148,7 @@ fn search(structure: &Structure, records: &[Record], start: TransferModel) -> Se
             break;
         }
     }
-    Search {
+    MinimumSearch {
         model,
         normal,
         converged,
@@ -167,9 +167,13 @@ fn cost(records: &[Record], model: &TransferModel) -> f64 {
         .sum()
 }
 
-fn normal_equations(structure: &Structure, records: &[Record], model: &TransferModel) -> Normal {
+fn normal_equations(
+    structure: &Structure,
+    records: &[Record],
+    model: &TransferModel,
+) -> NormalEquations {
     let count = structure.count();
-    let mut normal = Normal {
+    let mut normal = NormalEquations {
         cost: 0.0,
         matrix: DMatrix::zeros(count, count),
         gradient: DVector::zeros(count),
@@ -186,7 +190,7 @@ fn normal_equations(structure: &Structure, records: &[Record], model: &TransferM
 }
 
 /// The step of Levenberg and Marquardt, each coefficient in its own scale.
-fn damped_step(normal: &Normal, damping: f64) -> Option<DVector<f64>> {
+fn damped_step(normal: &NormalEquations, damping: f64) -> Option<DVector<f64>> {
     let mut matrix = normal.matrix.clone();
     for k in 0..matrix.nrows() {
         matrix[(k, k)] *= 1.0 + damping;

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 /// Sampling period of the paper's servo logs, s.
 pub const PAPER_TS_S: f64 = 0.01;
 
-/// The paper's servo, eq. (2): from commanded to estimated speed, `0.06217 z / (z^2 - 1.469 z + 0.5544)`, without
-/// noise.
+/// The paper's servo, eq. (2): from commanded to estimated speed, `0.06217 z / (z^2 - 1.469 z +
+/// 0.5544)`, without noise.
 pub fn paper_model() -> TransferModel {
     TransferModel {
         a: vec![1.0],
@@ -21,8 +21,8 @@ pub fn paper_model() -> TransferModel {
     }
 }
 
-/// [`paper_model`] with noise of the orders the paper's BJ(2,1,2,1) leaves room for, two in C and one in D.
-/// The paper prints no noise model: these coefficients are chosen.
+/// [`paper_model`] with noise of the orders the paper's BJ(2,1,2,1) leaves room for, two in C and
+/// one in D. The paper prints no noise model: these coefficients are chosen.
 pub fn paper_noise_model() -> TransferModel {
     TransferModel {
         c: vec![1.0, -0.6, 0.2],
@@ -42,7 +42,7 @@ pub fn noise(samples: usize, deviation: f64, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Plus and minus 1, each held for `hold` samples, by lot.
+/// Plus and minus 1, each held for `hold` samples, drawn at random.
 pub fn pseudo_random(samples: usize, hold: usize, seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let levels: Vec<f64> = (0..samples.div_ceil(hold.max(1)))

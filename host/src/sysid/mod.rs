@@ -1,5 +1,5 @@
-//! A servo as a black box: discrete-time models from commanded to measured speed, by the prediction-error method,
-//! and static maps of what it does at rest.
+//! A servo as a black box: discrete-time models from commanded to measured speed, by the
+//! prediction-error method, and static maps of what it does at rest.
 
 mod blocks;
 mod dead_zone;
@@ -19,14 +19,14 @@ mod text;
 #[cfg(test)]
 mod tests;
 
-pub use blocks::{Block, blocks};
-pub use dead_zone::{DeadZone, Inverse, Side, Unmapped};
-pub use dynamics::{Dynamics, Known, Pole, dynamics, settling_samples};
+pub use blocks::{BlockMean, blocks};
+pub use dead_zone::{DeadZoneMap, Inverse, Side, Unmapped};
+pub use dynamics::{Dynamics, Interval, Pole, dynamics, settling_samples};
 pub use estimate::{Estimate, Unfitted, estimate};
 pub use model::TransferModel;
-pub use record::{Output, Record, record, sampling_period_s, velocity};
-pub use score::{Score, prediction_errors, score};
-pub use select::{Fitted, Trial, select, try_all};
+pub use record::{OutputQuantity, Record, record, sampling_period_s, velocity};
+pub use score::{FitScore, prediction_errors, score};
+pub use select::{Candidate, FittedModel, select, try_all};
 pub use structure::{FAMILIES, Family, Structure, structures};
-pub use supply::{NoLine, Supply, errors as supply_errors};
+pub use supply::{NoLine, SupplyLine, errors as supply_errors};
 pub use text::transfer_function;

@@ -79,7 +79,8 @@ impl TransferModel {
         (w, v)
     }
 
-    /// Errors, and their derivatives by every coefficient as one column each (Ljung 1999, eq. 10.53).
+    /// Errors, and their derivatives by every coefficient as one column each (Ljung 1999, eq.
+    /// 10.53).
     ///
     /// A coefficient's derivative is its polynomial's own filtered signal, delayed.
     pub fn gradient(&self, structure: &Structure, record: &Record) -> (Vec<f64>, DMatrix<f64>) {

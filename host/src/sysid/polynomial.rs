@@ -41,8 +41,8 @@ pub fn at_one(polynomial: &[f64]) -> f64 {
 
 /// Whether every root, as a polynomial in `q`, lies inside the unit circle: the Schur-Cohn test.
 ///
-/// `monic[0]` is 1. Steps the order down by its reflection coefficients, which must all be below 1 in size
-/// (Jury, Theory and Application of the z-Transform Method, 1964).
+/// `monic[0]` is 1. Steps the order down by its reflection coefficients, which must all be below 1
+/// in size (Jury, Theory and Application of the z-Transform Method, 1964).
 pub fn is_stable(monic: &[f64]) -> bool {
     let mut row = monic.to_vec();
     while row.len() > 1 {
@@ -61,7 +61,8 @@ pub fn is_stable(monic: &[f64]) -> bool {
 
 /// Roots in `q` of `c[0] q^n + c[1] q^(n-1) + ... + c[n]`, largest first; `c[0]` is not 0.
 ///
-/// Eigenvalues of the companion matrix. `None` where they are not found, as with coefficients that are no numbers.
+/// Eigenvalues of the companion matrix. `None` where they are not found, as with coefficients that
+/// are no numbers.
 pub fn roots(polynomial: &[f64]) -> Option<Vec<Complex<f64>>> {
     let order = polynomial.len().saturating_sub(1);
     if order == 0 {
@@ -94,8 +95,8 @@ pub fn with_roots(roots: &[Complex<f64>]) -> Vec<f64> {
     product.into_iter().map(|c| c.re).collect()
 }
 
-/// The polynomial with every root outside the circle `|q| = most` brought inside: mirrored at the unit circle,
-/// which leaves the shape of its spectrum, and held at `most` if still outside.
+/// The polynomial with every root outside the circle `|q| = most` brought inside: mirrored at the
+/// unit circle, which leaves the shape of its spectrum, and held at `most` if still outside.
 pub fn stabilised(monic: &[f64], most: f64) -> Vec<f64> {
     if is_stable(monic) {
         return monic.to_vec();

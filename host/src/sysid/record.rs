@@ -12,9 +12,9 @@ const JITTER: f64 = 0.25;
 pub struct Record {
     /// Name of the motion.
     pub name: String,
-    /// What the servo was told, SI of its kind.
+    /// Raw command, SI of its kind.
     pub input: Vec<f64>,
-    /// What it did, SI.
+    /// Measured output, SI.
     pub output: Vec<f64>,
     /// Samples that count; filters run from the first sample all the same.
     pub scored: Range<usize>,
@@ -50,10 +50,11 @@ impl Record {
 
 /// What of the motion is the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Output {
+pub enum OutputQuantity {
     /// The measured quantity as it is.
     AsMeasured,
-    /// The speed estimated from a measured angle, `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1).
+    /// The speed estimated from a measured angle, `(theta(t) - theta(t - 1)) / Ts`, the paper's eq.
+    /// (1).
     Velocity,
 }
 
@@ -67,12 +68,13 @@ pub fn sampling_period_s(motions: &[Motion]) -> f64 {
     steps.get(steps.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Joint `joint` of the motion (from 0) as a record. Taken as measured, input and output count from their first
-/// samples; of a velocity estimate the first sample does not count.
+/// Joint `joint` of the motion (from 0) as a record. Taken as measured, input and output count from
+/// their first samples; of a velocity estimate the first sample does not count.
 ///
 /// # Errors
-/// A joint that nothing drives; a time step more than a quarter off `ts_s`: a sample is missing there.
-pub fn record(motion: &Motion, joint: usize, output: Output, ts_s: f64) -> Result<Record> {
+/// A joint that nothing drives; a time step more than a quarter off `ts_s`: a sample is missing
+/// there.
+pub fn record(motion: &Motion, joint: usize, output: OutputQuantity, ts_s: f64) -> Result<Record> {
     for (k, pair) in motion.time_s.windows(2).enumerate() {
         let step = pair[1] - pair[0];
         if (step - ts_s).abs() > JITTER * ts_s {
@@ -95,15 +97,18 @@ pub fn record(motion: &Motion, joint: usize, output: Output, ts_s: f64) -> Resul
     };
     let measured = &motion.position_rad[joint];
     Ok(match output {
-        Output::AsMeasured => Record::new(&motion.name, from_first(input), from_first(measured)),
-        Output::Velocity => Record {
+        OutputQuantity::AsMeasured => {
+            Record::new(&motion.name, from_first(input), from_first(measured))
+        }
+        OutputQuantity::Velocity => Record {
             scored: 1..measured.len(),
             ..Record::new(&motion.name, input.clone(), velocity(measured, ts_s))
         },
     })
 }
 
-/// `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1); 0 for the first sample, which has none before it.
+/// `(theta(t) - theta(t - 1)) / Ts`, the paper's eq. (1); 0 for the first sample, which has none
+/// before it.
 pub fn velocity(angle_rad: &[f64], ts_s: f64) -> Vec<f64> {
     let pairs = angle_rad.windows(2);
     let speeds = pairs.map(|pair| (pair[1] - pair[0]) / ts_s);

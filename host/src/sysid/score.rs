@@ -1,4 +1,4 @@
-//! How well a fitted model foretells records: one step ahead, and from the input alone.
+//! How well a fitted model predicts records: one step ahead, and from the input alone.
 
 use super::model::TransferModel;
 use super::record::Record;
@@ -7,10 +7,11 @@ use serde::Serialize;
 
 /// A model on a set of records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Score {
+pub struct FitScore {
     /// Samples that counted.
     pub samples: usize,
-    /// 100 (1 - |y - yhat| / |y - mean y|) with yhat from the input alone, as MATLAB's `compare`; 100 is perfect.
+    /// 100 (1 - |y - yhat| / |y - mean y|) with yhat from the input alone, as MATLAB's `compare`;
+    /// 100 is perfect.
     pub simulated_fit_percent: f64,
     /// The same with yhat predicted one step ahead.
     pub predicted_fit_percent: f64,
@@ -27,7 +28,7 @@ pub fn prediction_errors(model: &TransferModel, records: &[Record]) -> Vec<Vec<f
 }
 
 /// Scores `model` on the records.
-pub fn score(model: &TransferModel, records: &[Record]) -> Score {
+pub fn score(model: &TransferModel, records: &[Record]) -> FitScore {
     let errors = prediction_errors(model, records);
     let output: Vec<&[f64]> = records
         .iter()
@@ -49,7 +50,7 @@ pub fn score(model: &TransferModel, records: &[Record]) -> Score {
     let squares: f64 = errors.iter().flatten().map(|e| e * e).sum();
     let mut tests = vec![whiteness(&errors)];
     tests.extend(independence(&errors, &input, "input"));
-    Score {
+    FitScore {
         samples,
         simulated_fit_percent: fit_percent(&output, &left),
         predicted_fit_percent: fit_percent(&output, &errors),

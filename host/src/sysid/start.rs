@@ -34,18 +34,18 @@ pub(super) fn starts(structure: &Structure, records: &[Record]) -> Vec<TransferM
 }
 
 /// One column of a regression: a signal of each record, and its delay.
-struct Column<'a> {
+struct Regressor<'a> {
     signal: &'a [Vec<f64>],
     delay: usize,
 }
 
-/// Weights of `columns` that come nearest to `target` over the scored samples. With `instruments`, one per column,
-/// the error is made orthogonal to them instead (Ljung 1999, eq. 7.118).
+/// Weights of `columns` that come nearest to `target` over the scored samples. With `instruments`,
+/// one per column, the error is made orthogonal to them instead (Ljung 1999, eq. 7.118).
 fn regress(
     records: &[Record],
     target: &[Vec<f64>],
-    columns: &[Column],
-    instruments: &[Column],
+    columns: &[Regressor],
+    instruments: &[Regressor],
 ) -> Option<DVector<f64>> {
     let count = columns.len();
     let against = if instruments.is_empty() {
@@ -55,7 +55,7 @@ fn regress(
     };
     let mut normal = DMatrix::<f64>::zeros(count, count);
     let mut right = DVector::zeros(count);
-    let at = |column: &Column, r: usize, t: usize| match t.checked_sub(column.delay) {
+    let at = |column: &Regressor, r: usize, t: usize| match t.checked_sub(column.delay) {
         Some(t) => column.signal[r][t],
         None => 0.0,
     };
@@ -99,8 +99,8 @@ fn signals(records: &[Record], of: impl Fn(&Record) -> Vec<f64>) -> Vec<Vec<f64>
 fn delayed<'a>(
     signal: &'a [Vec<f64>],
     delays: std::ops::Range<usize>,
-) -> impl Iterator<Item = Column<'a>> {
-    delays.map(move |delay| Column { signal, delay })
+) -> impl Iterator<Item = Regressor<'a>> {
+    delays.map(move |delay| Regressor { signal, delay })
 }
 
 /// Least squares on `y = -a y(past) + b u`; filtered by `1/prefilter` first, where there is one.
@@ -117,7 +117,7 @@ fn arx(
     };
     let output = signals(records, |r| through(&r.output));
     let input = signals(records, |r| through(&r.input));
-    let columns: Vec<Column> = delayed(&output, 1..na + 1)
+    let columns: Vec<Regressor> = delayed(&output, 1..na + 1)
         .chain(delayed(&input, nk..nk + nb))
         .collect();
     let mut weights = regress(records, &output, &columns, &[])?;
@@ -142,7 +142,7 @@ fn armax(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
     let output = signals(records, |r| r.output.clone());
     let input = signals(records, |r| r.input.clone());
     let errors = signals(records, |r| long.errors(r));
-    let columns: Vec<Column> = delayed(&output, 1..na + 1)
+    let columns: Vec<Regressor> = delayed(&output, 1..na + 1)
         .chain(delayed(&input, nk..nk + nb))
         .chain(delayed(&errors, 1..nc + 1))
         .collect();
@@ -161,10 +161,10 @@ fn instrumented(structure: &Structure, records: &[Record]) -> Option<TransferMod
     let output = signals(records, |r| r.output.clone());
     let input = signals(records, |r| r.input.clone());
     let clean = signals(records, |r| long.simulated(&r.input));
-    let columns: Vec<Column> = delayed(&output, 1..nf + 1)
+    let columns: Vec<Regressor> = delayed(&output, 1..nf + 1)
         .chain(delayed(&input, nk..nk + nb))
         .collect();
-    let instruments: Vec<Column> = delayed(&clean, 1..nf + 1)
+    let instruments: Vec<Regressor> = delayed(&clean, 1..nf + 1)
         .chain(delayed(&input, nk..nk + nb))
         .collect();
     let mut weights = regress(records, &output, &columns, &instruments)?;
@@ -175,8 +175,8 @@ fn instrumented(structure: &Structure, records: &[Record]) -> Option<TransferMod
     ))
 }
 
-/// B/F by least squares on signals filtered by the denominator found before (Steiglitz & McBride, IEEE Trans.
-/// Automatic Control 10, 1965, 461-464).
+/// B/F by least squares on signals filtered by the denominator found before (Steiglitz & McBride,
+/// IEEE Trans. Automatic Control 10, 1965, 461-464).
 fn steiglitz_mcbride(
     structure: &Structure,
     records: &[Record],
@@ -196,7 +196,8 @@ fn steiglitz_mcbride(
     Some(model)
 }
 
-/// An ARX model's A becomes F, and C/D is fitted to what B/F leaves (Hannan & Rissanen, Biometrika 69, 1982, 81-94).
+/// An ARX model's A becomes F, and C/D is fitted to what B/F leaves (Hannan & Rissanen, Biometrika
+/// 69, 1982, 81-94).
 fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) -> TransferModel {
     let mut model = TransferModel {
         a: vec![1.0],
@@ -215,7 +216,7 @@ fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) 
     });
     let samples: usize = records.iter().map(Record::count).sum();
     let long = LONG.min(samples / 10).max(1);
-    let past: Vec<Column> = delayed(&left, 1..long + 1).collect();
+    let past: Vec<Regressor> = delayed(&left, 1..long + 1).collect();
     let Some(weights) = regress(records, &left, &past, &[]) else {
         return model;
     };
@@ -226,7 +227,7 @@ fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) 
         .iter()
         .map(|left| filter(&whitening, &[1.0], left))
         .collect();
-    let columns: Vec<Column> = delayed(&errors, 1..structure.nc + 1)
+    let columns: Vec<Regressor> = delayed(&errors, 1..structure.nc + 1)
         .chain(delayed(&left, 1..structure.nd + 1))
         .collect();
     if let Some(weights) = regress(records, &left, &columns, &[]) {
@@ -241,7 +242,8 @@ fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) 
     model
 }
 
-/// Whether the predictor and the noise model are stable: C and F, and D, have their roots inside the circle.
+/// Whether the predictor and the noise model are stable: C and F, and D, have their roots inside
+/// the circle.
 pub(super) fn is_usable(model: &TransferModel) -> bool {
     super::polynomial::is_stable(&multiply(&multiply(&model.c, &model.f), &model.d))
 }

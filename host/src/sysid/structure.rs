@@ -1,6 +1,7 @@
 //! Which polynomials a model has, and of which order.
 //!
-//! All are cases of `A(q) y = B(q)/F(q) u + C(q)/D(q) e` (Ljung, System Identification, 2nd ed. 1999, eq. 4.33).
+//! All are cases of `A(q) y = B(q)/F(q) u + C(q)/D(q) e` (Ljung, System Identification, 2nd ed.
+//! 1999, eq. 4.33).
 
 use crate::error::{Error, Result};
 use serde::Serialize;
@@ -25,7 +26,8 @@ pub enum Family {
     Bj,
 }
 
-/// The families, their keys and the names of their orders, in the order of MATLAB's functions of the same names.
+/// The families, their keys and the names of their orders, in the order of MATLAB's functions of
+/// the same names.
 pub const FAMILIES: [(&str, Family, &[&str]); 4] = [
     ("arx", Family::Arx, &["na", "nb", "nk"]),
     ("armax", Family::Armax, &["na", "nb", "nc", "nk"]),
@@ -66,7 +68,7 @@ impl Structure {
         }
     }
 
-    /// Output error, orders as MATLAB's `oe` has them.
+    /// OutputQuantity error, orders as MATLAB's `oe` has them.
     pub fn oe([nb, nf, nk]: [usize; 3]) -> Self {
         Structure {
             family: Family::Oe,
@@ -107,7 +109,8 @@ impl Structure {
         self.na + self.nb + self.nc + self.nd + self.nf
     }
 
-    /// Names of the coefficients in the order of a parameter vector; the number is the delay in samples.
+    /// Names of the coefficients in the order of a parameter vector; the number is the delay in
+    /// samples.
     pub fn names(&self) -> Vec<String> {
         let from_one =
             |letter: char, order: usize| (1..=order).map(move |k| format!("{letter}{k}"));
@@ -137,7 +140,8 @@ impl fmt::Display for Structure {
 /// The structures that `text` asks for: `bj:1,2,1,2,1`, or with ranges `bj:1-2,1-2,1,1-3,1`.
 ///
 /// # Errors
-/// A family that is not known, the wrong number of orders, orders beyond 20, B without a coefficient.
+/// A family that is not known, the wrong number of orders, orders beyond 20, B without a
+/// coefficient.
 pub fn structures(text: &str) -> Result<Vec<Structure>> {
     let wrong = |what: String| {
         let forms = FAMILIES.map(|(key, _, orders)| format!("{key}:{}", orders.join(",")));

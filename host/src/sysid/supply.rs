@@ -1,7 +1,7 @@
 //! Speed error against supply voltage: the paper's Figure 5.
 
-use super::blocks::Block;
-use super::dynamics::Known;
+use super::blocks::BlockMean;
+use super::dynamics::Interval;
 use crate::fitting::quantile_975;
 use serde::Serialize;
 
@@ -12,11 +12,11 @@ const LEAST: usize = 8;
 
 /// A line: relative speed error against supply.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Supply {
+pub struct SupplyLine {
     /// Change of `speed / command - 1` per volt.
-    pub error_per_v: Known,
-    /// Supply at which the speed is the one commanded, V; its interval may be unbounded.
-    pub right_at_v: Known,
+    pub error_per_v: Interval,
+    /// SupplyLine at which the speed is the one commanded, V; its interval may be unbounded.
+    pub right_at_v: Interval,
     /// Lowest and highest supply seen, V.
     pub range_v: (f64, f64),
     /// Blocks that counted.
@@ -37,7 +37,7 @@ pub enum NoLine {
 }
 
 /// Blocks that count, as (supply, speed / command - 1).
-pub fn errors(blocks: &[Block]) -> Vec<(f64, f64)> {
+pub fn errors(blocks: &[BlockMean]) -> Vec<(f64, f64)> {
     let largest = blocks.iter().map(|b| b.input.abs()).fold(0.0, f64::max);
     blocks
         .iter()
@@ -47,15 +47,15 @@ pub fn errors(blocks: &[Block]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-impl Supply {
+impl SupplyLine {
     /// Fits the line; `output` of the blocks is a speed in the unit of their `input`.
     ///
-    /// The interval of the supply at which the error is zero is Fieller's (1954): exact, and unbounded where the
-    /// slope is not significant.
+    /// The interval of the supply at which the error is zero is Fieller's (1954): exact, and
+    /// unbounded where the slope is not significant.
     ///
     /// # Errors
     /// Too few blocks, or a supply that does not change.
-    pub fn fit(blocks: &[Block]) -> Result<Supply, NoLine> {
+    pub fn fit(blocks: &[BlockMean]) -> Result<SupplyLine, NoLine> {
         let points = errors(blocks);
         if points.len() < LEAST {
             return Err(NoLine::TooFew);
@@ -76,8 +76,8 @@ impl Supply {
         let variance = cost / (count - 2.0);
         let reach = quantile_975(count - 2.0);
         let volts = || points.iter().map(|p| p.0);
-        Ok(Supply {
-            error_per_v: Known::around(slope, reach * (variance / square).sqrt()),
+        Ok(SupplyLine {
+            error_per_v: Interval::around(slope, reach * (variance / square).sqrt()),
             right_at_v: zero(
                 (mean_v, mean),
                 slope,
@@ -94,28 +94,30 @@ impl Supply {
     }
 }
 
-/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within `reach` standard errors of it.
+/// Where `mean + slope (v - mean_v)` crosses zero: all v at which it is within `reach` standard
+/// errors of it.
 fn zero(
     (mean_v, mean): (f64, f64),
     slope: f64,
     [mean_variance, slope_variance]: [f64; 2],
     reach: f64,
-) -> Known {
+) -> Interval {
     let z = reach * reach;
     let value = mean_v - mean / slope;
-    // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v - mean_v.
+    // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v -
+    // mean_v.
     let a = slope * slope - z * slope_variance;
     let b = mean * slope;
     let c = mean * mean - z * mean_variance;
     let root = b * b - a * c;
     if a <= 0.0 || root < 0.0 {
-        return Known {
+        return Interval {
             value,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         };
     }
-    Known {
+    Interval {
         value,
         low: mean_v + (-b - root.sqrt()) / a,
         high: mean_v + (-b + root.sqrt()) / a,
@@ -127,13 +129,13 @@ mod tests {
     use super::*;
     use crate::sysid::generate::noise;
 
-    fn measured(per_v: f64, right_at_v: f64, seed: u64) -> Vec<Block> {
+    fn measured(per_v: f64, right_at_v: f64, seed: u64) -> Vec<BlockMean> {
         let noise = noise(60, 0.02, seed);
         (0..60)
             .map(|k| {
                 let supply_v = 8.0 + 3.0 * k as f64 / 59.0;
                 let input = if k % 2 == 0 { 5.0 } else { -4.0 };
-                Block {
+                BlockMean {
                     input,
                     output: input * (1.0 + per_v * (supply_v - right_at_v) + noise[k]),
                     supply_v,
@@ -145,7 +147,7 @@ mod tests {
     #[test]
     fn intervals_hold_the_truth() {
         let held = (0..1000).map(|seed| {
-            let line = Supply::fit(&measured(0.1, 9.8, seed)).unwrap();
+            let line = SupplyLine::fit(&measured(0.1, 9.8, seed)).unwrap();
             [line.error_per_v.holds(0.1), line.right_at_v.holds(9.8)].map(usize::from)
         });
         let held = held.fold([0, 0], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
@@ -158,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_supply_that_does_not_matter_is_right_nowhere_in_particular() {
-        let line = Supply::fit(&measured(0.0, 9.8, 1)).unwrap();
+        let line = SupplyLine::fit(&measured(0.0, 9.8, 1)).unwrap();
         assert!(line.error_per_v.holds(0.0));
         let width = line.right_at_v.high - line.right_at_v.low;
         assert!(width > 3.0, "{line:?}");
@@ -168,7 +170,7 @@ mod tests {
     fn a_constant_supply_is_refused() {
         let mut blocks = measured(0.1, 9.8, 1);
         blocks.iter_mut().for_each(|block| block.supply_v = 9.8);
-        assert_eq!(Supply::fit(&blocks), Err(NoLine::Constant));
-        assert_eq!(Supply::fit(&blocks[..3]), Err(NoLine::TooFew));
+        assert_eq!(SupplyLine::fit(&blocks), Err(NoLine::Constant));
+        assert_eq!(SupplyLine::fit(&blocks[..3]), Err(NoLine::TooFew));
     }
 }

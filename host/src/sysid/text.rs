@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// `0.06217 z / (z^2 - 1.469 z + 0.5544)`: polynomials in the delay as polynomials in z, `digits` significant.
+/// `0.06217 z / (z^2 - 1.469 z + 0.5544)`: polynomials in the delay as polynomials in z, `digits`
+/// significant.
 pub fn transfer_function(b: &[f64], denominator: &[f64], digits: usize) -> String {
     let order = b.len().max(denominator.len()) - 1;
     let top = polynomial(b, order, digits);

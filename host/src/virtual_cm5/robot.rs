@@ -93,7 +93,7 @@ impl Plant for Live {
     }
 
     fn set_duty(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
-        self.tell(joint, duty, supply_v);
+        self.command(joint, duty, supply_v);
     }
 
     fn advance(&mut self, span_s: f64) {

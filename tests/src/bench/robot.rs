@@ -37,7 +37,7 @@ pub fn model() -> Model {
 impl Robot {
     /// At rest where it starts.
     pub fn new(conditions: &Conditions) -> Self {
-        let mut chain = Chain::of(&model());
+        let mut chain = model().chain();
         for (link, aside_m) in chain.links.iter_mut().zip(conditions.eccentric_m) {
             link.com_angle_rad = (aside_m / link.com_m).atan();
         }

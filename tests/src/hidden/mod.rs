@@ -7,7 +7,7 @@ mod text;
 mod trial;
 
 pub use tally::{Figure, Row, Tally};
-pub use text::{line, misses, table};
+pub use text::{line, misses, tables};
 pub use trial::{Case, Outcome, Value, try_case};
 
 use handstand::Result;

@@ -2,11 +2,12 @@
 
 use super::tally::{Figure, Row, Tally};
 use super::trial::Outcome;
+use crate::measured::Measured;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand::diagnose::Verdict;
 
 /// The confusion and the figures beside their targets.
-pub fn table(tally: &Tally) -> String {
+pub fn tables(tally: &Tally) -> Measured {
     let mut confusion = Table::new();
     confusion.load_preset(UTF8_HORIZONTAL_ONLY);
     confusion.set_header([
@@ -26,16 +27,16 @@ pub fn table(tally: &Tally) -> String {
     for figure in &tally.figures {
         figures.add_row(figure_cells(figure));
     }
-    let mut text = format!("{confusion}\n\n{figures}\n");
+    let mut measured = Measured::default().table(confusion).table(figures);
     if let (Some(median), Some(largest)) = (tally.median_ratio, tally.largest_ratio) {
-        text += &format!(
-            "\nHeld-out error against the true model's: median {median:.2}, largest {largest:.2}.\n"
-        );
+        measured = measured.line(format!(
+            "Held-out error against the true model's: median {median:.2}, largest {largest:.2}."
+        ));
     }
     if let Some(seconds) = tally.median_seconds {
-        text += &format!("Seconds per diagnosis: median {seconds:.2}.\n");
+        measured = measured.line(format!("Seconds per diagnosis: median {seconds:.2}."));
     }
-    text
+    measured
 }
 
 fn cells(row: &Row) -> Vec<String> {
@@ -161,7 +162,10 @@ fn miss(outcome: &Outcome) -> Option<String> {
             || "no interval".to_owned(),
             |(low, high)| format!("{low:.5} to {high:.5}"),
         );
-        notes.push(format!("{} is {}, not {interval}", value.key, value.hidden));
+        notes.push(format!(
+            "{} is {}, not {interval}",
+            value.key, value.true_value
+        ));
     }
     (!notes.is_empty()).then(|| format!("{hidden}, seed {seed}: named, but {}", notes.join("; ")))
 }

@@ -1,9 +1,8 @@
 //! One bench diagnosed, and what was said of it.
 
-use handstand::challenge::{Answer, Hidden, generate};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedValue, Verdict, diagnose};
-use handstand::fitting::rms_rad;
-use handstand::fitting::{Data, Horizon, settle};
+use handstand::challenge::{ChallengeAnswer, Hidden, generate};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use handstand::fitting::{FitData, FittedValue, Horizon, fit_start_states};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::{Error, Model, Result};
 use serde::Serialize;
@@ -28,9 +27,9 @@ pub struct Value {
     /// Its key.
     pub key: String,
     /// The truth.
-    pub hidden: f64,
+    pub true_value: f64,
     /// What was fitted; none when the library's effect has no such value.
-    pub found: Option<f64>,
+    pub estimate: Option<f64>,
     /// The 95 % interval.
     pub interval: Option<(f64, f64)>,
     /// Whether the truth lies in it.
@@ -118,8 +117,8 @@ pub fn try_case(case: &Case) -> Result<Outcome> {
             .iter()
             .map(|set| set.effects.iter().map(|e| e.kind.clone()).collect())
             .collect(),
-        before_rad: said.error.before,
-        after_rad: said.error.after,
+        before_rad: said.error.before_rad,
+        after_rad: said.error.after_rad,
         true_rad: true_error_rad(&truth, motions, held_out, said.horizon_s),
         values: Vec::new(),
         seconds,
@@ -138,26 +137,26 @@ fn true_error_rad(
     horizon_s: Option<f64>,
 ) -> f64 {
     let horizon = horizon_s.map_or(Horizon::Whole, Horizon::Seconds);
-    let data = Data {
-        sigma_rad: Data::new(truth, training, horizon).sigma_rad,
-        ..Data::new(truth, held_out, horizon)
+    let data = FitData {
+        sigma_rad: FitData::new(truth, training, horizon).sigma_rad,
+        ..FitData::new(truth, held_out, horizon)
     };
-    rms_rad(&settle(truth, &data), &data)
+    fit_start_states(truth, &data).rms_rad(&data)
 }
 
-fn values(answer: &Answer, said: &Diagnosis) -> Vec<Value> {
+fn values(answer: &ChallengeAnswer, said: &Diagnosis) -> Vec<Value> {
     let fitted = |key: &str| {
         let mut all = said.effects.iter().flat_map(|effect| &effect.parameters);
         all.find(|value| value.key == key)
     };
-    let value = |(key, hidden): &(String, f64)| {
+    let value = |(key, truth): &(String, f64)| {
         let fitted = fitted(key);
         Value {
             key: key.clone(),
-            hidden: *hidden,
-            found: fitted.map(|fitted| fitted.value),
+            true_value: *truth,
+            estimate: fitted.map(|fitted| fitted.value),
             interval: fitted.map(|fitted| (fitted.low, fitted.high)),
-            covered: fitted.is_some_and(|fitted| covers(fitted, *hidden)),
+            covered: fitted.is_some_and(|fitted| covers(fitted, *truth)),
         }
     };
     answer.parameters.iter().map(value).collect()

@@ -10,8 +10,10 @@ mod loops;
 mod safety;
 mod streams;
 
+use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::firmware::{Built, find_built};
+use handstand_tests::measured::Measured;
 use serde_json::{Value, json};
 
 /// Measure the firmware: cycles, times, losses and frames.
@@ -41,6 +43,8 @@ pub struct Args {
     /// Print the rows as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    page: Page,
 }
 
 /// A promise, what was measured, and whether it holds.
@@ -73,15 +77,19 @@ pub fn run(args: &Args) -> bool {
             rows.extend(measure(args, built.as_ref()));
         }
     }
-    if args.json {
+    let json = args.json.then(|| {
         let rows: Vec<_> = (rows.iter())
             .map(|row| json!({"row": row.name, "measured": row.measured, "limit": row.limit, "holds": row.holds, "values": row.values}))
             .collect();
-        println!("{}", json!({"on": on, "rows": rows}));
-    } else {
-        println!("{}", table(&rows));
-    }
-    rows.iter().all(|row| row.holds != Some(false))
+        json!({"on": on, "rows": rows})
+    });
+    let measured = Measured::default()
+        .table(table(&rows))
+        .line(format!("Measured on {on}."));
+    let written = args
+        .page
+        .show(json, &measured, "bench-firmware", "The firmware's promises");
+    written && rows.iter().all(|row| row.holds != Some(false))
 }
 
 type Measure = fn(&Args, Option<&Built>) -> Vec<Row>;

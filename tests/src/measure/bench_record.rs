@@ -1,6 +1,9 @@
 //! `cargo xtask bench-record`: recorders killed a thousand times; no file may be lost, nor more than a second of any.
 
-use handstand_tests::kills::kill_recorders;
+use super::page::Page;
+use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use handstand_tests::kills::{Tally, kill_recorders};
+use handstand_tests::measured::Measured;
 use handstand_xtask::{cargo, program};
 use std::path::PathBuf;
 
@@ -16,7 +19,12 @@ pub struct Args {
     /// Seed of the moments
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    page: Page,
 }
+
+/// Most that a killed recorder may lose, s.
+const LIMIT_S: f64 = 1.0;
 
 /// Whether every file was read and lost a second at most.
 pub fn run(args: &Args) -> bool {
@@ -31,24 +39,46 @@ pub fn run(args: &Args) -> bool {
     };
     match kill_recorders(&program, args.kills, args.at_once as usize, args.seed, told) {
         Ok(tally) => {
-            for why in &tally.unreadable {
-                println!("{why}");
-            }
-            println!(
-                "{} recorders killed: {} files unreadable, {} torn, at most {:.3} s lost of one (limit 1), {} samples read",
-                tally.kills,
-                tally.unreadable.len(),
-                tally.torn,
-                tally.worst_lost_s,
-                tally.samples
-            );
-            tally.unreadable.is_empty() && tally.worst_lost_s <= 1.0
+            let title = "Recorders killed at random moments";
+            let written = args.page.show(None, &tables(&tally), "bench-record", title);
+            written && tally.unreadable.is_empty() && tally.worst_lost_s <= LIMIT_S
         }
         Err(why) => {
             eprintln!("{why}");
             false
         }
     }
+}
+
+fn tables(tally: &Tally) -> Measured {
+    let mut table = Table::new();
+    table.load_preset(UTF8_HORIZONTAL_ONLY);
+    table.set_header(["", "Measured", "Limit"]);
+    let rows = [
+        ("recorders killed", tally.kills.to_string(), "-".into()),
+        (
+            "files that cannot be read",
+            tally.unreadable.len().to_string(),
+            "0".into(),
+        ),
+        (
+            "files without an end, read up to it",
+            tally.torn.to_string(),
+            "-".into(),
+        ),
+        (
+            "most that one file lost, s",
+            format!("{:.3}", tally.worst_lost_s),
+            LIMIT_S.to_string(),
+        ),
+        ("samples read", tally.samples.to_string(), "-".into()),
+    ];
+    for (name, measured, limit) in rows {
+        table.add_row([name.to_string(), measured, limit]);
+    }
+    Measured::default()
+        .table(table)
+        .lines(tally.unreadable.iter().cloned())
 }
 
 /// The program beside this one.

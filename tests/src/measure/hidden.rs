@@ -5,9 +5,10 @@
 //! tables on any number of threads. A line goes to stderr as each diagnosis ends, whichever ends first; the tables
 //! go to stdout. Fails when a target is missed.
 
+use super::page::Page;
 use clap::builder::PossibleValuesParser;
 use handstand::challenge::{KINDS, kind_named};
-use handstand_tests::hidden::{Plan, Tally, line, misses, table, try_all};
+use handstand_tests::hidden::{Plan, Tally, line, misses, tables, try_all};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
@@ -38,6 +39,8 @@ pub struct Args {
     /// Print every outcome and the figures as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    page: Page,
 }
 
 /// Whether every target is met.
@@ -70,15 +73,15 @@ pub fn run(args: &Args) -> bool {
         }
     };
     let tally = Tally::of(&outcomes);
-    if args.json {
-        println!("{}", json!({ "tally": tally, "outcomes": outcomes }));
-    } else {
-        println!("{}", table(&tally));
-        for line in misses(&outcomes) {
-            println!("{line}");
-        }
-    }
-    tally.is_met()
+    let json = (args.json).then(|| json!({ "tally": tally, "outcomes": outcomes }));
+    let measured = tables(&tally).lines(misses(&outcomes));
+    let written = args.page.show(
+        json,
+        &measured,
+        "hidden",
+        "Hidden effects named, missed and invented",
+    );
+    tally.is_met() && written
 }
 
 fn style() -> ProgressStyle {

@@ -4,6 +4,7 @@ mod bench_firmware;
 #[cfg(unix)]
 mod bench_record;
 mod hidden;
+mod page;
 mod peers;
 mod real;
 mod scatter;

@@ -3,7 +3,9 @@
 //! First says and installs what the peers need, into `target/peers`; `--no-install` leaves that out. A figure is
 //! a ratio of two times taken one after the other on this machine. Fails when a target is missed.
 
+use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use handstand_tests::measured::Measured;
 use handstand_tests::peers::{
     Arm, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off, forward_seconds,
     runs_per_second,
@@ -25,6 +27,8 @@ pub struct Args {
     /// Only these tasks
     #[arg(long, value_enum, value_delimiter = ',')]
     only: Vec<Task>,
+    #[command(flatten)]
+    page: Page,
 }
 
 /// What is measured.
@@ -40,6 +44,13 @@ enum Task {
     Fits,
 }
 
+const NOTES: [&str; 2] = [
+    "Times are seconds of wall clock, medians; the library uses every core, SciPy one.",
+    "A start converges when it leaves at most 1.1 times the floor: with SciPy over one free run; \
+     with the library over the longest stable windows, and then every value must be within 10 % \
+     of the truth too.",
+];
+
 /// Whether every target is met.
 pub fn run(args: &Args) -> bool {
     let bench = Bench::new();
@@ -49,18 +60,19 @@ pub fn run(args: &Args) -> bool {
     let mut table = Rows::default();
     let wanted = |task| args.only.is_empty() || args.only.contains(&task);
     let well = bench.measure(args.rounds.max(1), &wanted, &mut table);
-    println!("\n{}", table.table);
-    if let Err(why) = &well {
-        println!("{why}");
-    }
-    println!("Times are seconds of wall clock, medians; the library uses every core, SciPy one.");
-    println!(
-        "A start converges when it leaves at most 1.1 times the floor: with SciPy over one free run; with the"
+    println!();
+    let measured = Measured::default()
+        .table(table.table)
+        .lines(table.left_out)
+        .lines(well.as_ref().err().cloned())
+        .lines(NOTES.map(String::from));
+    let written = args.page.show(
+        None,
+        &measured,
+        "peers",
+        "Other programs and the library on the same tasks",
     );
-    println!(
-        "library over the longest stable windows, and then every value must be within 10 % of the truth too."
-    );
-    well.is_ok() && !table.missed
+    well.is_ok() && !table.missed && written
 }
 
 struct Bench {
@@ -295,7 +307,9 @@ impl Bench {
         for (pairs, (peer, states, target)) in pairs.iter().zip(targets) {
             match there(peer) {
                 true => table.faster(&format!("DLQR, {states} states: {peer}"), pairs, target),
-                false => println!("{peer} is not installed: its rows are left out"),
+                false => table
+                    .left_out
+                    .push(format!("{peer} is not installed: its rows are left out")),
             }
         }
         let ours = dlqr_off().unwrap_or(f64::NAN);
@@ -317,6 +331,8 @@ fn number(value: &Value, place: &[&str]) -> f64 {
 
 struct Rows {
     table: Table,
+    /// Peers whose rows are missing, and why.
+    left_out: Vec<String>,
     missed: bool,
 }
 
@@ -327,6 +343,7 @@ impl Default for Rows {
         table.set_header(["task: peer", "ours", "theirs", "ratio", "target", ""]);
         Rows {
             table,
+            left_out: Vec::new(),
             missed: false,
         }
     }

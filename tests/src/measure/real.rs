@@ -5,14 +5,15 @@
 //! readings lie from the cubic through their neighbours: no law that moves smoothly leaves much less. Where a row
 //! misses what a careful analyst expects, the last lines say why.
 
+use super::page::Page;
 use super::scatter::scatter_rad;
 use comfy_table::{ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand::diagnose::words::address;
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, diagnose};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::{Error, Model, Result};
-use serde_json::json;
+use handstand_tests::measured::Measured;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Diagnose public logs of real rigs.
@@ -24,6 +25,8 @@ pub struct Args {
     /// Print the rows as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    page: Page,
 }
 
 /// A rig: its model, what is fitted, what is held out, and what a careful analyst expects.
@@ -136,24 +139,25 @@ pub fn run(args: &Args) -> bool {
             }
         }
     }
-    if args.json {
-        let rows: Vec<_> = rows
-            .iter()
-            .map(|(rig, row)| {
-                json!({
-                    "rig": rig.name,
-                    "expected": rig.expected,
-                    "why": rig.why,
-                    "scatter_rad": row.scatter_rad,
-                    "diagnosis": handstand::report::diagnosis_json(&row.diagnosis),
-                })
-            })
-            .collect();
-        println!("{}", json!(rows));
-    } else {
-        println!("{}", text(&rows));
-    }
-    true
+    let json = args
+        .json
+        .then(|| rows.iter().map(|(rig, row)| as_json(rig, row)).collect());
+    args.page.show(
+        json,
+        &tables(&rows),
+        "real",
+        "Diagnoses of public logs of real rigs",
+    )
+}
+
+fn as_json(rig: &Rig, row: &Row) -> Value {
+    json!({
+        "rig": rig.name,
+        "expected": rig.expected,
+        "why": rig.why,
+        "scatter_rad": row.scatter_rad,
+        "diagnosis": handstand::report::diagnosis_json(&row.diagnosis),
+    })
 }
 
 fn judge(rig: &Rig, data: &Path) -> Result<Row> {
@@ -191,7 +195,7 @@ fn judge(rig: &Rig, data: &Path) -> Result<Row> {
 }
 
 /// The table, then why rows miss what was expected. Sets stand on lines of their own, so that no id is broken.
-fn text(rows: &[(&Rig, Row)]) -> String {
+fn tables(rows: &[(&Rig, Row)]) -> Measured {
     let mut table = Table::new();
     table
         .load_preset(UTF8_HORIZONTAL_ONLY)
@@ -203,8 +207,12 @@ fn text(rows: &[(&Rig, Row)]) -> String {
         let error = &row.diagnosis.error;
         table.add_row([
             rig.name.to_string(),
-            format!("{:.2} -> {:.2}", 1e3 * error.before, 1e3 * error.after),
-            format!("{:.2}", 1e3 * error.floor),
+            format!(
+                "{:.2} -> {:.2}",
+                1e3 * error.before_rad,
+                1e3 * error.after_rad
+            ),
+            format!("{:.2}", 1e3 * error.floor_rad),
             format!("{:.2}", 1e3 * row.scatter_rad),
             if error.held_out { "held out" } else { "fitted" }.to_string(),
             format!("{:?}", row.diagnosis.verdict).to_lowercase(),
@@ -214,12 +222,12 @@ fn text(rows: &[(&Rig, Row)]) -> String {
     }
     let whys = rows.iter().filter_map(|(rig, _)| {
         let why = rig.why?;
-        Some(format!("{}: {why}\n", rig.name))
+        Some(format!("{}: {why}", rig.name))
     });
-    format!(
-        "{table}\nError, floor and scatter in mrad.\n\n{}",
-        whys.collect::<String>()
-    )
+    Measured::default()
+        .table(table)
+        .line("Error, floor and scatter in mrad.")
+        .lines(whys)
 }
 
 /// The effects with their values, a line for each value; then the sets that do as well.
@@ -228,7 +236,7 @@ fn effects(diagnosis: &Diagnosis) -> String {
         effect.parameters.iter().map(move |value| {
             format!(
                 "{}.{} = {:.3e} {} ({:.3e} to {:.3e})",
-                address(effect),
+                effect.address(),
                 value.key,
                 value.value,
                 value.unit,
@@ -238,7 +246,7 @@ fn effects(diagnosis: &Diagnosis) -> String {
         })
     });
     let rivals = diagnosis.alternatives.iter().map(|rival| {
-        let names: Vec<String> = rival.effects.iter().map(address).collect();
+        let names: Vec<String> = rival.effects.iter().map(FittedEffect::address).collect();
         format!("or {}", names.join(" + "))
     });
     values.chain(rivals).collect::<Vec<_>>().join("\n")

@@ -2,9 +2,8 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::fitting::rms_rad;
 use handstand::fitting::{
-    Data, FitOptions, Horizon, approach, fit, fit_staged, longest_stable, settle,
+    FitData, FitOptions, Horizon, fit, fit_staged, fit_start_states, initial_guess, longest_stable,
 };
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
@@ -135,18 +134,18 @@ impl Arm {
     /// Seconds of the four-parameter fit of the whole log, and the error it leaves, rad.
     pub fn fit_seconds(&self, repeats: usize) -> (f64, f64) {
         let start = self.off_by(&FIXED_START);
-        let data = Data::new(&self.model, self.motions.clone(), Horizon::Whole);
+        let data = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
         let mut left = 0.0;
         let seconds = median_seconds(repeats, || {
             let found = fit(&start, &self.free, &data, None, FitOptions::default());
-            left = rms_rad(&found, &data);
+            left = found.rms_rad(&data);
         });
         (seconds, left)
     }
 
     /// Fits by stages from seeded starts, each parameter up to a factor 5 off.
     pub fn starts(&self, count: usize, seed: u64) -> Starts {
-        let whole = Data::new(&self.model, self.motions.clone(), Horizon::Whole);
+        let whole = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
         let judged = whole.recut(longest_stable(&self.model, &whole));
         let at_truth = fit(
             &self.model,
@@ -155,8 +154,9 @@ impl Arm {
             None,
             FitOptions::default(),
         );
-        let floor_rad =
-            rms_rad(&at_truth, &judged).min(rms_rad(&settle(&self.model, &judged), &judged));
+        let floor_rad = at_truth
+            .rms_rad(&judged)
+            .min(fit_start_states(&self.model, &judged).rms_rad(&judged));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (mut ends, mut times) = (Vec::new(), Vec::new());
         for _ in 0..count {
@@ -169,10 +169,10 @@ impl Arm {
             let mut values = Vec::new();
             let mut left = 0.0;
             times.push(median_seconds(1, || {
-                let near = approach(&start, &self.free, &whole);
+                let near = initial_guess(&start, &self.free, &whole);
                 let data = whole.recut(longest_stable(&near, &whole));
                 let found = fit_staged(&near, &self.free, &data);
-                left = rms_rad(&settle(&found.model, &judged), &judged);
+                left = fit_start_states(&found.model, &judged).rms_rad(&judged);
                 values = found.values();
             }));
             let off = values
@@ -199,7 +199,7 @@ impl Arm {
         let mut model = self.off_by(&FIXED_START);
         model
             .effects
-            .retain(|effect| effect.effect.card().id != "coulomb");
+            .retain(|effect| effect.effect.info().id != "coulomb");
         model.free = self
             .free
             .iter()

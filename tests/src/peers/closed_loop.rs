@@ -1,7 +1,8 @@
 //! Closed-loop runs of the paper's robot, as `closed_loop.py` has them.
 
-use super::dynamics::chain;
-use handstand::closed_loop::{ClosedLoop, Plant, Start, StateFeedback, stream};
+use handstand::Model;
+use handstand::sim::closed_loop::{ClosedLoop, Commands, InitialState, StateFeedback, stream};
+use std::path::Path;
 use std::time::Instant;
 
 /// Sampled regulator for Q = 100 I, R = I, 10 ms.
@@ -17,9 +18,11 @@ const START_RAD: [f64; 3] = [0.01, -0.02, 0.02];
 const RUN_S: f64 = 5.0;
 
 fn task() -> (ClosedLoop, StateFeedback) {
-    let pose = vec![std::f64::consts::PI, 0.0, 0.0];
-    let plant = Plant::of(chain(3), 0.0, vec![1, 2], pose, 1e-3);
-    let closed = ClosedLoop::ideal(plant.expect("three links, two drives"), 0.01);
+    let text = include_str!("../../../host/models/handstand.toml");
+    let model = Model::parse(text, Path::new("handstand.toml")).expect("our own model");
+    let pose = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
+    let closed = ClosedLoop::new(&model, &pose, Commands::Torque, 0.01);
+    let closed = closed.expect("three links, two drives");
     (
         closed,
         StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec()),
@@ -29,15 +32,15 @@ fn task() -> (ClosedLoop, StateFeedback) {
 /// 5-s runs per second on that many threads.
 pub fn runs_per_second(threads: usize, runs: usize) -> f64 {
     let (closed, controller) = task();
-    let starts: Vec<Start> = (0..runs)
-        .map(|i| Start::at(START_RAD.map(|angle| angle + 1e-6 * i as f64)))
+    let starts: Vec<InitialState> = (0..runs)
+        .map(|i| InitialState::at(START_RAD.map(|angle| angle + 1e-6 * i as f64)))
         .collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads can be started").install(|| {
         let begun = Instant::now();
         let outcomes = closed.run_all(&controller, &starts, RUN_S, 1);
         let seconds = begun.elapsed().as_secs_f64();
-        assert!(outcomes.iter().all(|outcome| outcome.survived()));
+        assert!(outcomes.iter().all(|outcome| outcome.stabilised));
         runs as f64 / seconds
     })
 }
@@ -46,7 +49,7 @@ pub fn runs_per_second(threads: usize, runs: usize) -> f64 {
 pub fn angles_after(seconds: f64) -> Vec<f64> {
     let (closed, controller) = task();
     let mut last = Vec::new();
-    let start = Start::at(START_RAD);
+    let start = InitialState::at(START_RAD);
     closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {
         last = sample.angle_rad.to_vec();
     });

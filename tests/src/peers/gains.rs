@@ -66,6 +66,6 @@ fn chain(links: usize) -> Discrete {
     model.links = vec![link; links];
     model.joints = vec![joint; links];
     model.joints[0].drive = Drive::Passive;
-    let plant = linearise(&model, &upright(&model)).expect("upright is an equilibrium");
-    zoh(&plant, 0.01, 0.0).expect("it can be sampled")
+    let linear = linearise(&model, &upright(&model)).expect("upright is an equilibrium");
+    zoh(&linear.plant, 0.01, 0.0).expect("it can be sampled")
 }

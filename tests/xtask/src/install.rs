@@ -1,5 +1,6 @@
 //! What the tests need beside cargo: said, and installed where it can be.
 
+use handstand_xtask::cargo;
 use handstand_xtask::firmware::Toolchain;
 use handstand_xtask::program::{self, found, is_root};
 use std::process::Command;
@@ -15,6 +16,8 @@ pub struct Need {
     pub sign: Sign,
     /// Debian's packages.
     pub packages: &'static [&'static str],
+    /// Whether it must be here before anything is built; else before the tests run.
+    pub for_builds: bool,
 }
 
 /// How a need is known to be met.
@@ -26,49 +29,56 @@ pub enum Sign {
     Asked(fn() -> bool),
 }
 
-/// Every need; a new one is one entry.
+/// Every need, those of builds first; a new one is one entry.
 pub const NEEDS: &[Need] = &[
     Need {
-        name: "Chromium",
-        wanted_for: "the tests that render pages",
-        sign: Sign::Files(&["chromium", "chromium-browser", "google-chrome"]),
-        packages: &["chromium"],
-    },
-    Need {
-        name: "Slurm",
-        wanted_for: "the test of the recipe for job arrays",
-        sign: Sign::Files(&["slurmctld", "/usr/sbin/slurmctld"]),
-        packages: &["slurm-wlm"],
-    },
-    Need {
-        name: "GNU parallel",
-        wanted_for: "the test of the recipe for several processes",
-        sign: Sign::Files(&["parallel"]),
-        packages: &["parallel"],
-    },
-    Need {
-        name: "Python 3",
-        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
-        sign: Sign::Files(&["python3"]),
-        packages: &["python3", "python3-venv"],
+        name: "simavr",
+        wanted_for: "the tests of the firmware's ELF",
+        sign: Sign::Files(&["/usr/include/simavr/sim_avr.h"]),
+        packages: &["libsimavr-dev", "simavr"],
+        for_builds: true,
     },
     Need {
         name: "The AVR's linker",
         wanted_for: "the build and the tests of the firmware's ELF",
         sign: Sign::Files(&["avr-gcc"]),
         packages: &["gcc-avr", "binutils-avr", "avr-libc"],
+        for_builds: true,
     },
     Need {
         name: "A Rust compiler with its sources",
         wanted_for: "the build and the tests of the firmware's ELF",
         sign: Sign::Asked(Toolchain::is_there),
         packages: &["rustc-web", "rust-web-src", "cargo-web"],
+        for_builds: true,
     },
     Need {
-        name: "simavr",
-        wanted_for: "the tests of the firmware's ELF",
-        sign: Sign::Files(&["/usr/include/simavr/sim_avr.h"]),
-        packages: &["libsimavr-dev", "simavr"],
+        name: "Chromium",
+        wanted_for: "the tests that render pages",
+        sign: Sign::Files(&["chromium", "chromium-browser", "google-chrome"]),
+        packages: &["chromium"],
+        for_builds: false,
+    },
+    Need {
+        name: "Slurm",
+        wanted_for: "the test of the recipe for job arrays",
+        sign: Sign::Files(&["slurmctld", "/usr/sbin/slurmctld"]),
+        packages: &["slurm-wlm"],
+        for_builds: false,
+    },
+    Need {
+        name: "GNU parallel",
+        wanted_for: "the test of the recipe for several processes",
+        sign: Sign::Files(&["parallel"]),
+        packages: &["parallel"],
+        for_builds: false,
+    },
+    Need {
+        name: "Python 3",
+        wanted_for: "the test that drives simulated servos by ROBOTIS's own SDK",
+        sign: Sign::Files(&["python3"]),
+        packages: &["python3", "python3-venv"],
+        for_builds: false,
     },
 ];
 
@@ -82,9 +92,44 @@ impl Need {
     }
 }
 
+/// Install what the builds and the tests need.
+#[derive(Debug, Default, clap::Args)]
+pub struct Args {
+    /// Only what must be here before anything is built
+    #[arg(long, conflicts_with = "only_tests")]
+    only_builds: bool,
+    /// Only what must be here before the tests run
+    #[arg(long)]
+    only_tests: bool,
+}
+
 /// Says what is needed and installs what is not here; what cannot be installed is said, and its tests skipped.
-pub fn all() {
-    for need in NEEDS {
+pub fn run(args: &Args) {
+    if !args.only_tests {
+        crates();
+        each(|need| need.for_builds);
+    }
+    if !args.only_builds {
+        each(|need| !need.for_builds);
+        super::python::all();
+    }
+}
+
+/// What the builds need alone.
+pub fn for_builds() {
+    run(&Args {
+        only_builds: true,
+        only_tests: false,
+    });
+}
+
+fn crates() {
+    println!("Needed: the crates in Cargo.lock. Fetching them where they are not here yet.");
+    program::run(&mut cargo(&["fetch", "--locked"]));
+}
+
+fn each(wanted: impl Fn(&Need) -> bool) {
+    for need in NEEDS.iter().filter(|need| wanted(need)) {
         let Need {
             name, wanted_for, ..
         } = need;
@@ -94,7 +139,6 @@ pub fn all() {
             Some(why) => println!("{name}, for {wanted_for}: {why}; they are skipped."),
         }
     }
-    super::python::all();
 }
 
 fn obstacle(need: &Need) -> Option<&'static str> {

@@ -1,8 +1,11 @@
 //! `cargo xtask`: the project's own chores. What measures is another program, built in release when it is asked for: the
 //! chores here start at once.
 
+mod checks;
+mod fuzz;
 mod image;
 mod install;
+mod lane;
 mod python;
 mod test;
 
@@ -23,6 +26,10 @@ struct Chores {
 enum Chore {
     /// Install what the tests need, then run all of them
     Test(test::Args),
+    /// Install what the builds and the tests need, without running them
+    Install(install::Args),
+    /// Fuzz the parsers with libFuzzer
+    Fuzz(fuzz::Args),
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(image::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -52,6 +59,11 @@ fn main() -> ExitCode {
     let chores = Chores::parse();
     let (name, words) = match chores.chore {
         Chore::Test(args) => return code(test::run(&args)),
+        Chore::Install(args) => {
+            install::run(&args);
+            return ExitCode::SUCCESS;
+        }
+        Chore::Fuzz(args) => return code(fuzz::run(&args)),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchRecord(words) => ("bench-record", words),

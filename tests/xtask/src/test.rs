@@ -1,13 +1,17 @@
 //! `cargo xtask test`: everything that must hold; at its end what failed, by name, and `N passed, N failed`.
 //!
-//! First says and installs what is needed; `--no-install` leaves that out. Then formatting, lints and
-//! documentation count as one test each, as does the firmware's build, and every test of the workspace as one.
+//! First says and installs what the builds need; `--no-install` leaves that out. Then each check of the sources counts as
+//! one test, as does the firmware's build, and every test of the workspace as one. The firmware is built, and what only
+//! the tests need installed, beside the checks: either alone keeps one core waiting.
 
-use super::{image, install};
+use super::checks::CHECKS;
+use super::install;
+use super::lane::Lane;
 use handstand_xtask::cargo;
 use handstand_xtask::firmware::Toolchain;
 use handstand_xtask::program::{self, overheard};
 use std::path::Path;
+use std::time::Instant;
 
 /// Install what the tests need, then run all of them.
 #[derive(Debug, clap::Args)]
@@ -19,43 +23,78 @@ pub struct Args {
 
 /// Goes on after a failure; whether all passed.
 pub fn run(args: &Args) -> bool {
+    let mut clock = Clock::start();
     if !args.no_install {
-        install();
+        install::for_builds();
+        clock.lap("installing for the builds");
     }
+    let install = (!args.no_install).then(|| Lane::start(&["install", "--only-tests"]));
+    let firmware = firmware();
     let mut tally = Tally::default();
-    for words in CHECKS {
-        let mut check = cargo(words);
-        let well = program::run(check.env("RUSTDOCFLAGS", "-D warnings"));
-        tally.count(well, &format!("cargo {}", words[0]));
+    for (name, holds) in CHECKS {
+        tally.count(holds(), name);
+        clock.lap(name);
     }
-    firmware(&mut tally);
+    program::run(&mut cargo(&["test", "--workspace", "--no-run"]));
+    clock.lap("building the tests");
+    // The tests that follow find the firmware's ELF, and what was installed.
+    if let Some(firmware) = firmware {
+        tally.count(firmware.end(), "cargo xtask firmware");
+    }
+    if let Some(install) = install {
+        install.end();
+    }
+    clock.lap("waiting for the firmware and the installation");
     tests(&mut tally);
+    clock.lap("running the tests");
+    clock.tell();
     tally.tell();
     tally.failed == 0
 }
 
-const CHECKS: &[&[&str]] = &[
-    &["fmt", "--all", "--check"],
-    &[
-        "clippy",
-        "--workspace",
-        "--all-targets",
-        "--",
-        "-D",
-        "warnings",
-    ],
-    &["doc", "--workspace", "--no-deps"],
-];
-
-/// Builds the firmware, so that the tests that follow find its ELF.
-fn firmware(tally: &mut Tally) {
-    println!("\nThe firmware for the AVR:");
-    match Toolchain::find() {
-        Ok(_) => tally.count(image::run(&image::Args::default()), "cargo xtask firmware"),
-        Err(why) => println!("SKIPPED, and with it the tests of its ELF: {why}"),
-    }
+/// Begins to build the firmware, if that can be.
+fn firmware() -> Option<Lane> {
     if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
         println!("SKIPPED: the tests of the firmware's ELF, for simavr is not installed");
+    }
+    match Toolchain::find() {
+        Ok(_) => Some(Lane::start(&["firmware"])),
+        Err(why) => {
+            println!("SKIPPED: the firmware for the AVR, and with it the tests of its ELF: {why}");
+            None
+        }
+    }
+}
+
+/// Seconds of each phase, told at the end.
+struct Clock {
+    last: Instant,
+    laps: Vec<(String, f64)>,
+}
+
+impl Clock {
+    fn start() -> Clock {
+        Clock {
+            last: Instant::now(),
+            laps: Vec::new(),
+        }
+    }
+
+    fn lap(&mut self, name: &str) {
+        self.laps
+            .push((name.into(), self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+
+    fn tell(&self) {
+        println!("\nSeconds:");
+        for (name, seconds) in &self.laps {
+            println!("{seconds:7.1}  {name}");
+        }
+        println!(
+            "{:7.1}  in all",
+            self.laps.iter().map(|lap| lap.1).sum::<f64>()
+        );
     }
 }
 
@@ -85,12 +124,6 @@ impl Tally {
         }
         println!("\n{} passed, {} failed", self.passed, self.failed);
     }
-}
-
-fn install() {
-    println!("Needed: the crates in Cargo.lock. Fetching them where they are not here yet.");
-    program::run(&mut cargo(&["fetch", "--locked"]));
-    install::all();
 }
 
 fn tests(tally: &mut Tally) {

@@ -4,6 +4,7 @@ use super::super::Outcome;
 use super::super::port::Port;
 use super::super::show::table;
 use super::super::talk::Talk;
+use handstand::model::suggest::suggest;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
@@ -43,14 +44,7 @@ pub fn register(text: &str) -> Result<Register, String> {
     };
     found.copied().ok_or_else(|| {
         let names: Vec<&str> = REGISTERS.iter().map(|r| r.name).collect();
-        let near = names
-            .iter()
-            .max_by(|a, b| strsim::jaro_winkler(a, text).total_cmp(&strsim::jaro_winkler(b, text)));
-        format!(
-            "no such register; did you mean `{}`? There are: {}",
-            near.unwrap_or(&""),
-            names.join(", ")
-        )
+        format!("no such register; {}", suggest(text, &names))
     })
 }
 

@@ -11,7 +11,7 @@ use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::Position;
 use serde::Serialize;
 
-/// Find servos.
+/// Scan the bus for servos.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]

@@ -3,32 +3,33 @@
 use super::super::talk::Talk;
 use super::super::{Outcome, show};
 use handstand::Result;
-use handstand::controllers::{CONDITIONS, DESIGNS, Speeds};
+use handstand::controllers::{DESIGNS, Speeds};
+use handstand::study::CONDITIONS;
 use serde_json::json;
 
 /// Lists them.
 pub fn run(talk: &Talk) -> Result<Outcome> {
     if talk.json {
-        let cards = DESIGNS.iter().map(|design| {
-            let card = design.card();
+        let infos = DESIGNS.iter().map(|design| {
+            let info = design.info();
             json!({
-                "controller": card.id,
-                "title": card.title,
-                "law": card.law,
-                "speeds": speeds(card.speeds),
-                "told_balance": card.told_balance,
-                "reference": card.reference,
+                "controller": info.id,
+                "title": info.title,
+                "law": info.law,
+                "speeds": speeds(info.speeds),
+                "known_equilibrium": info.known_equilibrium,
+                "reference": info.reference,
             })
         });
-        talk.data(&cards.collect::<Vec<_>>())?;
+        talk.data(&infos.collect::<Vec<_>>())?;
         return Ok(Outcome::Done);
     }
-    let mut table = show::table(["Controller", "What it is", "Speeds", "Told balance"]);
+    let mut table = show::table(["Controller", "What it is", "Speeds", "Known equilibrium"]);
     for design in DESIGNS {
-        let card = design.card();
-        let told = if card.told_balance { "yes" } else { "" };
-        let what = format!("{}\n{}", card.title, card.law);
-        table.add_row([card.id, &what, speeds(card.speeds), told]);
+        let info = design.info();
+        let known = if info.known_equilibrium { "yes" } else { "" };
+        let what = format!("{}\n{}", info.title, info.law);
+        table.add_row([info.id, &what, speeds(info.speeds), known]);
     }
     let mut conditions = show::table(["Condition", "What it is"]);
     for condition in CONDITIONS {

@@ -1,24 +1,28 @@
-//! What became of the robots: tables, CSV, JSON, a picture.
+//! Results of the trials: tables, CSV, JSON, a plot.
 
 use super::super::show;
 use super::Row;
-use handstand::controllers::{Condition, Design, Region, picture};
+use handstand::controllers::Design;
+use handstand::plot::heat_map;
+use handstand::study::{Condition, Region};
 use serde_json::{Value, json};
 
-/// Three tables: who is held, from how far, and how well under the last condition.
+/// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(
     rows: &[Row],
     designs: &[&'static dyn Design],
     conditions: &[&'static Condition],
 ) -> String {
     let mut parts = vec![format!(
-        "Robots held, % of {}:\n{}",
-        rows.first().map_or(0, |row| row.tried.robots),
-        matrix(rows, designs, conditions, |row| percent(row.tried.held))
+        "Robots stabilised, % of {}:\n{}",
+        rows.first().map_or(0, |row| row.figures.runs),
+        matrix(rows, designs, conditions, |row| percent(
+            row.figures.stabilised_share
+        ))
     )];
     if rows.iter().any(|row| row.region.is_some()) {
         parts.push(format!(
-            "Region: largest spread of starts of which 95 % are held, deg:\n{}",
+            "Region: largest spread of starts of which 95 % are stabilised, deg:\n{}",
             matrix(rows, designs, conditions, |row| row
                 .region
                 .map_or(String::new(), degrees))
@@ -30,23 +34,26 @@ pub fn text(
     {
         let mut table = show::table([
             "Controller",
-            "held %",
-            "fell %",
+            "stabilised %",
+            "fallen %",
             "rms deg",
-            "swing deg",
+            "limit cycle deg",
             "rms N m",
         ]);
         for row in rows.iter().filter(|row| row.condition.id == condition.id) {
             table.add_row([
-                row.design.card().id.to_string(),
-                percent(row.tried.held),
-                percent(row.tried.fell),
-                known(row.tried.rms_angle_rad.map(f64::to_degrees)),
-                known(row.tried.swing_rad.map(f64::to_degrees)),
-                known(row.tried.rms_torque_nm),
+                row.design.info().id.to_string(),
+                percent(row.figures.stabilised_share),
+                percent(row.figures.fallen_share),
+                or_dash(row.figures.rms_angle_rad.map(f64::to_degrees)),
+                or_dash(row.figures.limit_cycle_rad.map(f64::to_degrees)),
+                or_dash(row.figures.rms_torque_nm),
             ]);
         }
-        parts.push(format!("{}, of those held:\n{table}", condition.title));
+        parts.push(format!(
+            "{}, of those stabilised:\n{table}",
+            condition.title
+        ));
     }
     parts.join("\n\n")
 }
@@ -63,8 +70,8 @@ fn matrix(
     for design in designs {
         let own = rows
             .iter()
-            .filter(|row| row.design.card().id == design.card().id);
-        table.add_row(std::iter::once(design.card().id.to_string()).chain(own.map(&cell)));
+            .filter(|row| row.design.info().id == design.info().id);
+        table.add_row(std::iter::once(design.info().id.to_string()).chain(own.map(&cell)));
     }
     table.to_string()
 }
@@ -73,7 +80,7 @@ fn percent(share: f64) -> String {
     format!("{:.1}", 100.0 * share)
 }
 
-fn known(value: Option<f64>) -> String {
+fn or_dash(value: Option<f64>) -> String {
     value.map_or("-".into(), |value| format!("{value:.2}"))
 }
 
@@ -82,23 +89,23 @@ fn degrees(region: Region) -> String {
     format!("{sign}{:.1}", region.spread_rad.to_degrees())
 }
 
-/// The shares that were held, as a picture.
+/// Heat map of the shares that were stabilised.
 pub fn plot(
     rows: &[Row],
     designs: &[&'static dyn Design],
     conditions: &[&'static Condition],
 ) -> String {
-    let ids: Vec<&str> = designs.iter().map(|design| design.card().id).collect();
+    let ids: Vec<&str> = designs.iter().map(|design| design.info().id).collect();
     let titles: Vec<&str> = conditions.iter().map(|condition| condition.title).collect();
     let fields: Vec<Vec<f64>> = ids
         .iter()
         .map(|id| {
-            let own = rows.iter().filter(|row| row.design.card().id == *id);
-            own.map(|row| row.tried.held).collect()
+            let own = rows.iter().filter(|row| row.design.info().id == *id);
+            own.map(|row| row.figures.stabilised_share).collect()
         })
         .collect();
-    picture(
-        "Robots held by each controller under each condition",
+    heat_map(
+        "Robots stabilised by each controller under each condition",
         &ids,
         &titles,
         &fields,
@@ -108,19 +115,19 @@ pub fn plot(
 /// One line for each trial.
 pub fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
-        "controller,condition,robots,held,fell,rms_angle_rad,swing_rad,rms_torque_nm,region_rad,region_open\n",
+        "controller,condition,robots,stabilised,fallen,rms_angle_rad,limit_cycle_rad,rms_torque_nm,region_rad,region_open\n",
     );
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for row in rows {
         let fields = [
-            row.design.card().id.to_string(),
+            row.design.info().id.to_string(),
             row.condition.id.to_string(),
-            row.tried.robots.to_string(),
-            row.tried.held.to_string(),
-            row.tried.fell.to_string(),
-            number(row.tried.rms_angle_rad),
-            number(row.tried.swing_rad),
-            number(row.tried.rms_torque_nm),
+            row.figures.runs.to_string(),
+            row.figures.stabilised_share.to_string(),
+            row.figures.fallen_share.to_string(),
+            number(row.figures.rms_angle_rad),
+            number(row.figures.limit_cycle_rad),
+            number(row.figures.rms_torque_nm),
             number(row.region.map(|region| region.spread_rad)),
             row.region
                 .map_or(String::new(), |region| region.open.to_string()),
@@ -134,14 +141,14 @@ pub fn csv(rows: &[Row]) -> String {
 /// One trial under its keys.
 pub fn data(row: &Row) -> Value {
     json!({
-        "controller": row.design.card().id,
+        "controller": row.design.info().id,
         "condition": row.condition.id,
-        "robots": row.tried.robots,
-        "held": row.tried.held,
-        "fell": row.tried.fell,
-        "rms_angle_rad": row.tried.rms_angle_rad,
-        "swing_rad": row.tried.swing_rad,
-        "rms_torque_nm": row.tried.rms_torque_nm,
+        "robots": row.figures.runs,
+        "stabilised": row.figures.stabilised_share,
+        "fallen": row.figures.fallen_share,
+        "rms_angle_rad": row.figures.rms_angle_rad,
+        "limit_cycle_rad": row.figures.limit_cycle_rad,
+        "rms_torque_nm": row.figures.rms_torque_nm,
         "region_rad": row.region.map(|region| region.spread_rad),
         "region_open": row.region.map(|region| region.open),
     })

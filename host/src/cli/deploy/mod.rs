@@ -96,7 +96,7 @@ pub struct GainsCommand {
 
 #[derive(Debug, clap::Subcommand)]
 enum Then {
-    /// Bring them onto the CM-5, and read them back
+    /// Deploy the gains to the CM-5, and read them back
     Deploy(Box<Args>),
 }
 
@@ -144,7 +144,8 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
     let (reduced, request, made) = gains::requested(&args.gains, talk)?;
     let design = deploy::state_design(&reduced, request, &board)?;
     let plan = deploy::plan(&model, BoardLaw::State(&design), &board)?;
-    gains::write(&args.gains, &design, &made, talk)?;
+    let data = handstand::synth::export::json(&design, &made);
+    gains::write(&args.gains, &design, &made, &data, talk)?;
     Ok(plan)
 }
 

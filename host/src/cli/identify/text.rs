@@ -3,13 +3,15 @@
 use super::super::show;
 use super::Data;
 use handstand::number::exact;
-use handstand::sysid::{Estimate, Fitted, Known, Pole, Record, Trial, dynamics, transfer_function};
+use handstand::sysid::{
+    Candidate, Estimate, FittedModel, Interval, Pole, Record, dynamics, transfer_function,
+};
 
 /// Rows of the table of orders.
 const SHOWN: usize = 12;
 
 /// The whole answer in words.
-pub fn text(data: &Data, trials: &[Trial], chosen: Option<usize>) -> String {
+pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String {
     let count = |records: &[Record]| records.iter().map(Record::count).sum::<usize>();
     let head = format!(
         "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
@@ -21,7 +23,7 @@ pub fn text(data: &Data, trials: &[Trial], chosen: Option<usize>) -> String {
     );
     let mut parts = vec![head, table(trials, chosen)];
     match chosen.map(|index| &trials[index]) {
-        Some(Trial {
+        Some(Candidate {
             outcome: Ok(fitted),
             ..
         }) => parts.push(model(data, fitted)),
@@ -43,14 +45,14 @@ fn unit(unit: &str) -> &str {
 }
 
 /// Best first; the chosen one marked.
-fn table(trials: &[Trial], chosen: Option<usize>) -> String {
-    let mut rows: Vec<(usize, &Trial, &Fitted)> = trials
+fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
+    let mut rows: Vec<(usize, &Candidate, &FittedModel)> = trials
         .iter()
         .enumerate()
         .filter_map(|(k, trial)| Some((k, trial, trial.outcome.as_ref().ok()?)))
         .collect();
     rows.sort_by(|a, b| {
-        let error = |fitted: &Fitted| fitted.validation.error_rms;
+        let error = |fitted: &FittedModel| fitted.validation.error_rms;
         error(a.2).total_cmp(&error(b.2))
     });
     let least = |of: fn(&Estimate) -> f64| {
@@ -100,7 +102,7 @@ fn table(trials: &[Trial], chosen: Option<usize>) -> String {
     text
 }
 
-fn model(data: &Data, fitted: &Fitted) -> String {
+fn model(data: &Data, fitted: &FittedModel) -> String {
     let estimate = &fitted.estimate;
     let (model, structure) = (&estimate.model, &estimate.structure);
     let mut coefficients = show::table(["Coefficient", "Value", "95 % interval"]);
@@ -111,7 +113,7 @@ fn model(data: &Data, fitted: &Fitted) -> String {
         .zip(values)
         .zip(estimate.half_widths())
     {
-        coefficients.add_row([name, exact(value), ends(&Known::around(value, half))]);
+        coefficients.add_row([name, exact(value), ends(&Interval::around(value, half))]);
     }
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
@@ -166,6 +168,6 @@ fn pole_text(pole: &Pole) -> String {
     )
 }
 
-fn ends(known: &Known) -> String {
+fn ends(known: &Interval) -> String {
     format!("{} to {}", exact(known.low), exact(known.high))
 }

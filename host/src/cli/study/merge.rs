@@ -11,7 +11,7 @@ use handstand::study::{Missing, merge};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Put a study's shards together.
+/// Merge a study's shards.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Journals, or folders that hold them

@@ -23,11 +23,11 @@ use handstand::Result;
 /// What can be done with studies.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Vary one thing and see what the loop bears
+    /// Sweep one parameter of the closed loop
     Sweep(sweep::Args),
-    /// Run robots that all differ within what is uncertain
+    /// Simulate robots drawn from the uncertain quantities
     MonteCarlo(monte_carlo::Args),
-    /// Put a study's shards together
+    /// Merge a study's shards
     Merge(merge::Args),
 }
 

@@ -2,23 +2,22 @@
 //!
 //! Every finished chunk of runs is on disk before the next is counted: killed at any time, the same command goes on where
 //! it was. The rows are the same for any number of threads and shards. A whole study ends in `runs.csv`,
-//! `summary.json` and `survival.svg`; a shard leaves its journal for `handstand study merge`.
+//! `summary.json` and `stabilised.svg`; a shard leaves its journal for `handstand study merge`.
 //!
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
 use super::super::{Outcome, talk::Talk};
 use handstand::study::{
-    CHUNK, FORMAT, Header, Journal, Shard, Study, chunk_rows, chunks, columns, merge,
+    CHUNK, Designed, FORMAT, Header, Journal, Shard, Study, chunk_rows, chunks, columns, merge,
 };
 use handstand::{Error, Result};
 use indicatif::ProgressBar;
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::mpsc;
 
-/// Run robots that all differ within what is uncertain.
+/// Simulate robots drawn from the uncertain quantities.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Study file
@@ -47,11 +46,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
     }
     study.judging.seed = args.seed.unwrap_or(study.judging.seed);
-    let gains = study.case.gains()?;
-    // What every run would stumble over is said before the first.
-    study
-        .case
-        .controller(&gains, &study.case.closed_loop(study.judging.fall_rad)?)?;
+    let designed = study.case.designed()?;
+    // What would stop every run stops before the first.
+    study.case.closed_loop()?;
     let shard = args.shard.unwrap_or(Shard::WHOLE);
     let header = Header {
         handstand_study: FORMAT,
@@ -87,7 +84,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     bar.set_length(own.len() as u64);
     bar.set_position((own.len() - left.len()) as u64);
     bar.set_message(format!("chunks of {CHUNK} runs"));
-    fill(&mut journal, &study, &gains, &left, &bar)?;
+    fill(&mut journal, &study, &designed, &left, &bar)?;
     bar.finish_and_clear();
     if shard != Shard::WHOLE {
         let chunks = own.len();
@@ -118,7 +115,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 fn fill(
     journal: &mut Journal,
     study: &Study,
-    gains: &DMatrix<f64>,
+    designed: &Designed,
     left: &[usize],
     bar: &ProgressBar,
 ) -> Result<()> {
@@ -126,7 +123,7 @@ fn fill(
     std::thread::scope(|scope| {
         let computing = scope.spawn(move || {
             left.par_iter().try_for_each_with(send, |send, &chunk| {
-                let rows = chunk_rows(study, gains, chunk)?;
+                let rows = chunk_rows(study, designed, chunk)?;
                 // Nobody listens any more after a write has failed.
                 send.send((chunk, rows))
                     .map_err(|_| Error::usage("writing has stopped", "see the error before"))

@@ -8,13 +8,14 @@
 
 use super::super::show::table;
 use super::super::{Outcome, input, talk::Talk};
+use handstand::controllers::{DESIGNS, design};
 use handstand::number::exact;
-use handstand::study::{Level, Ran, SWEEPS, Study, Sweep, named, sweep, sweep_svg};
+use handstand::study::{Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps};
 use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Vary one thing and see what the loop bears.
+/// Sweep one parameter of the closed loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Sweeps, or `all`
@@ -23,13 +24,16 @@ pub struct Args {
     /// Study file; the paper's robot under ideal circumstances without one
     #[arg(long, value_name = "FILE.toml")]
     study: Option<PathBuf>,
+    /// Controller instead of the study's
+    #[arg(long, value_name = "NAME", value_parser = controller)]
+    controller: Option<&'static str>,
     /// Levels instead of the sweep's own
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true)]
     levels: Vec<f64>,
     /// Runs at each level
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     runs: Option<u64>,
-    /// Seed of starts and chances
+    /// Seed of robots, starts and noise
     #[arg(long)]
     seed: Option<u64>,
     /// Folder for tables and plots
@@ -44,8 +48,23 @@ fn known(text: &str) -> Result<String, String> {
     if text == "all" || named(text).is_some() {
         return Ok(text.to_string());
     }
-    let names: Vec<&str> = SWEEPS.iter().map(|sweep| sweep.card().id).collect();
+    let names: Vec<&str> = sweeps().map(|(quantity, _)| quantity.id).collect();
     Err(format!("known here: {}, all", names.join(", ")))
+}
+
+/// A quantity with the levels at which it is swept.
+type Swept = (&'static Quantity, &'static Levels);
+
+fn named(id: &str) -> Option<Swept> {
+    let quantity = quantity(id)?;
+    Some((quantity, quantity.levels.as_ref()?))
+}
+
+fn controller(id: &str) -> Result<&'static str, String> {
+    let ids = || DESIGNS.iter().map(|design| design.info().id);
+    ids()
+        .find(|known| *known == id)
+        .ok_or_else(|| format!("one of these: {}", ids().collect::<Vec<_>>().join(", ")))
 }
 
 /// Sweeps, prints, writes.
@@ -53,8 +72,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if args.names.is_empty() {
         return list(talk);
     }
-    let chosen: Vec<&dyn Sweep> = match args.names.iter().any(|name| name == "all") {
-        true => SWEEPS.to_vec(),
+    let chosen: Vec<Swept> = match args.names.iter().any(|name| name == "all") {
+        true => sweeps().collect(),
         false => args.names.iter().filter_map(|name| named(name)).collect(),
     };
     if !args.levels.is_empty() && chosen.len() > 1 {
@@ -71,32 +90,35 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
     }
     study.judging.seed = args.seed.unwrap_or(study.judging.seed);
+    if let Some(design) = args.controller.and_then(design) {
+        study.case.control.design = design;
+    }
     if let Some(folder) = &args.output {
-        for sweep in &chosen {
+        for (quantity, _) in &chosen {
             for ending in ["csv", "svg"] {
-                let file = folder.join(format!("{}.{ending}", sweep.card().id));
+                let file = folder.join(format!("{}.{ending}", quantity.id));
                 input::vacant(&file, args.force)?;
             }
         }
         super::write::folder(folder)?;
     }
     let bar = talk.bar();
-    let levels = |sweep: &dyn Sweep| match args.levels.is_empty() {
-        true => sweep.card().levels.to_vec(),
+    let levels = |levels: &Levels| match args.levels.is_empty() {
+        true => levels.values.to_vec(),
         false => args.levels.clone(),
     };
-    bar.set_length(chosen.iter().map(|sweep| levels(*sweep).len() as u64).sum());
+    bar.set_length(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
     let mut all = Vec::new();
     for one in chosen {
-        bar.set_message(one.card().title);
-        let ran = sweep(one, &levels(one), &study.case, &study.judging, || {
+        bar.set_message(one.0.title);
+        let ran = sweep(one, &levels(one.1), &study.case, &study.judging, || {
             bar.inc(1)
         })?;
         if !talk.json {
             bar.suspend(|| talk.print(&shown(one, &ran)))?;
         }
         if let Some(folder) = &args.output {
-            let file = |ending: &str| folder.join(format!("{}.{ending}", one.card().id));
+            let file = |ending: &str| folder.join(format!("{}.{ending}", one.0.id));
             output::write_new(&file("csv"), &csv(&ran), args.force)?;
             let svg = sweep_svg(one, &ran, &study.case.nominal.name);
             output::write_new(&file("svg"), &svg, args.force)?;
@@ -111,31 +133,34 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 fn list(talk: &Talk) -> Result<Outcome> {
-    let cards = SWEEPS.iter().map(|sweep| sweep.card());
     if talk.json {
-        let cards = cards.map(|card| {
-            json!({ "id": card.id, "unit": card.unit, "meaning": card.meaning, "levels": card.levels })
+        let all = sweeps().map(|(quantity, levels)| {
+            json!({
+                "id": quantity.id,
+                "unit": levels.unit,
+                "meaning": quantity.meaning,
+                "levels": levels.values,
+            })
         });
-        talk.data(&cards.collect::<Vec<_>>())?;
+        talk.data(&all.collect::<Vec<_>>())?;
         return Ok(Outcome::Done);
     }
     let mut rows = table(["Sweep", "Unit", "What is varied"]);
-    for card in cards {
-        rows.add_row([card.id, card.unit, card.meaning]);
+    for (quantity, levels) in sweeps() {
+        rows.add_row([quantity.id, levels.unit, quantity.meaning]);
     }
     talk.print(&rows.to_string())?;
     Ok(Outcome::Done)
 }
 
-fn shown(sweep: &dyn Sweep, ran: &Ran) -> String {
-    let card = sweep.card();
-    let level = match card.unit {
-        "" => card.title.to_string(),
-        unit => format!("{}, {unit}", card.title),
+fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
+    let level = match levels.unit {
+        "" => quantity.title.to_string(),
+        unit => format!("{}, {unit}", quantity.title),
     };
     let mut rows = table([
         level.as_str(),
-        "stand",
+        "stabilised",
         "95 % interval",
         "tilt, deg",
         "rms, deg",
@@ -165,13 +190,15 @@ fn cells(level: &Level) -> Vec<String> {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     vec![
         level.label.clone(),
-        percent(figures.survival),
+        percent(figures.stabilised_share),
         format!(
             "{:.0} to {}",
-            100.0 * figures.survival_low,
-            percent(figures.survival_high)
+            100.0 * figures.stabilised_low,
+            percent(figures.stabilised_high)
         ),
-        format!("{:.1}", figures.tilt_border_rad.to_degrees()),
+        level
+            .tilt_border_rad
+            .map_or("–".to_string(), |rad| format!("{:.1}", rad.to_degrees())),
         degrees(figures.rms_angle_rad),
         degrees(figures.limit_cycle_rad),
         or(figures.rms_torque_nm),
@@ -179,9 +206,9 @@ fn cells(level: &Level) -> Vec<String> {
     ]
 }
 
-fn csv(ran: &Ran) -> String {
+fn csv(ran: &Sweep) -> String {
     let mut text = String::from(
-        "level,unit,runs,stood,survival,survival_low,survival_high,tilt_border_rad,rms_angle_rad,rms_torque_nm,limit_cycle_rad,settle_s\n",
+        "level,unit,runs,stabilised,stabilised_share,stabilised_low,stabilised_high,tilt_border_rad,rms_angle_rad,rms_torque_nm,limit_cycle_rad,settle_s\n",
     );
     for level in &ran.levels {
         let Some(f) = &level.figures else {
@@ -193,11 +220,11 @@ fn csv(ran: &Ran) -> String {
             level.level.to_string(),
             ran.unit.to_string(),
             f.runs.to_string(),
-            f.stood.to_string(),
-            f.survival.to_string(),
-            f.survival_low.to_string(),
-            f.survival_high.to_string(),
-            f.tilt_border_rad.to_string(),
+            f.stabilised.to_string(),
+            f.stabilised_share.to_string(),
+            f.stabilised_low.to_string(),
+            f.stabilised_high.to_string(),
+            or(level.tilt_border_rad),
             or(f.rms_angle_rad),
             or(f.rms_torque_nm),
             or(f.limit_cycle_rad),

@@ -13,7 +13,7 @@ pub fn folder(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Error::file(folder, "write", error))
 }
 
-/// Writes `runs.csv`, `summary.json`, `survival.svg`, prints the summary. What is there already with the same content
+/// Writes `runs.csv`, `summary.json`, `stabilised.svg`, prints the summary. What is there already with the same content
 /// stays.
 pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Result<()> {
     let file = into.join("runs.csv");
@@ -24,7 +24,7 @@ pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Resul
     for (name, text) in [
         ("runs.csv", merged.csv()),
         ("summary.json", json + "\n"),
-        ("survival.svg", monte_carlo_svg(merged, &file)?),
+        ("stabilised.svg", monte_carlo_svg(merged, &file)?),
     ] {
         let file = into.join(name);
         if std::fs::read(&file).is_ok_and(|there| there == text.as_bytes()) {
@@ -37,7 +37,7 @@ pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Resul
     }
     talk.print(&shown(&summary))?;
     talk.say(&format!(
-        "{}: runs.csv, summary.json, survival.svg",
+        "{}: runs.csv, summary.json, stabilised.svg",
         into.display()
     ));
     Ok(())
@@ -46,15 +46,16 @@ pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Resul
 fn shown(summary: &Summary) -> String {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let mut text = format!(
-        "{} of {} runs stand: {} (95 % interval {} to {})\n{} of the robots are unstable in the small\n\n",
-        summary.stood,
+        "{} of {} runs are stabilised: {} (95 % interval {} to {}), {} fall\n{} of the robots are unstable in the small\n\n",
+        summary.stabilised,
         summary.runs,
-        percent(summary.survival),
-        percent(summary.survival_low),
-        percent(summary.survival_high),
+        percent(summary.stabilised_share),
+        percent(summary.stabilised_low),
+        percent(summary.stabilised_high),
+        percent(summary.fallen_share),
         percent(summary.unstable),
     );
-    let mut figures = table(["Of those that stand", "5 %", "median", "95 %"]);
+    let mut figures = table(["Of the stabilised", "5 %", "median", "95 %"]);
     for figure in &summary.figures {
         let quantile = |place: usize| match figure.quantiles.map(|q| q[place]) {
             Some(value) if value.is_finite() => exact(value),
@@ -65,7 +66,11 @@ fn shown(summary: &Summary) -> String {
     }
     text += &format!("{figures}\n");
     if !summary.influence.is_empty() {
-        let mut influence = table(["Uncertain", "correlation with standing", "of its size"]);
+        let mut influence = table([
+            "Uncertain",
+            "correlation with being stabilised",
+            "of its size",
+        ]);
         for value in &summary.influence {
             influence.add_row([
                 value.value.clone(),

@@ -1,5 +1,6 @@
 use super::*;
-use crate::diagnose::{Alternative, ErrorFall, FittedValue};
+use crate::diagnose::Alternative;
+use crate::fitting::{ErrorReduction, FittedValue};
 
 fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
     FittedValue {
@@ -16,7 +17,7 @@ fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
 fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
     FittedEffect {
         kind: kind.to_owned(),
-        title: crate::effects::named(kind).unwrap().card().title.to_owned(),
+        title: crate::effects::named(kind).unwrap().info().title.to_owned(),
         joint,
         parameters: vec![value(&format!("{kind}@1.torque_nm"), 0.05, false)],
     }
@@ -25,24 +26,22 @@ fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
 fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffect>>) -> Diagnosis {
     let alternatives = rivals.into_iter().map(|effects| Alternative {
         effects,
-        error: 2e-3,
+        error_rad: 2e-3,
     });
     let mut diagnosis = Diagnosis {
         verdict,
         effects,
-        error: ErrorFall {
-            unit: "rad".to_owned(),
-            before: 40e-3,
-            after: 2e-3,
-            floor: 1.5e-3,
+        error: ErrorReduction {
+            before_rad: 40e-3,
+            after_rad: 2e-3,
+            floor_rad: 1.5e-3,
             held_out: true,
-            fall_low: 0.9,
-            fall_high: 0.96,
+            reduction: Some([0.9, 0.96]),
         },
         alternatives: alternatives.collect(),
         base: Vec::new(),
         ruled_out: Vec::new(),
-        remainder: None,
+        residual_structure: None,
         motions: Vec::new(),
         collinear: Vec::new(),
         summary: Vec::new(),
@@ -153,6 +152,6 @@ fn names_are_joined_as_in_a_sentence() {
     assert_eq!(names(&["a"]), "a");
     assert_eq!(names(&["a", "b"]), "a and b");
     assert_eq!(names(&["a", "b", "c"]), "a, b and c");
-    assert_eq!(address(&effect("coulomb", Some(2))), "coulomb@2");
-    assert_eq!(address(&effect("base_tilt", None)), "base_tilt");
+    assert_eq!(effect("coulomb", Some(2)).address(), "coulomb@2");
+    assert_eq!(effect("base_tilt", None).address(), "base_tilt");
 }

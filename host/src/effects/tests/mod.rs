@@ -5,7 +5,7 @@ use super::*;
 use crate::dynamics::ChainLink;
 use std::collections::HashSet;
 
-mod cards;
+mod infos;
 mod laws;
 mod off;
 mod sensors;
@@ -24,12 +24,12 @@ const SUFFIXES: &[(&str, &str)] = &[
     ("N m s^2/rad^2", "_nm_s2_rad2"),
 ];
 
-fn cards() -> impl Iterator<Item = &'static Card> {
-    EFFECTS.iter().map(|effect| effect.card())
+fn infos() -> impl Iterator<Item = &'static EffectInfo> {
+    EFFECTS.iter().map(|effect| effect.info())
 }
 
 fn parameters() -> impl Iterator<Item = (&'static str, &'static Parameter)> {
-    cards().flat_map(|card| card.parameters.iter().map(|parameter| (card.id, parameter)))
+    infos().flat_map(|info| info.parameters.iter().map(|parameter| (info.id, parameter)))
 }
 
 fn effect(id: &str) -> &'static dyn Effect {

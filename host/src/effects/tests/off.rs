@@ -7,7 +7,7 @@ const SPEEDS_RAD_S: [f64; 5] = [-7.0, -0.3, 0.0, 0.01, 4.0];
 #[test]
 fn off_is_identity_for_commands_and_drives() {
     for effect in EFFECTS {
-        let (id, off) = (effect.card().id, off_values(*effect));
+        let (id, off) = (effect.info().id, off_values(*effect));
         assert_eq!(effect.delay_s(&off), 0.0, "{id}");
         for duty in [-1.0, -0.2, 0.0, 0.001, 1.0] {
             assert_eq!(effect.command(&off, duty), duty, "{id}");
@@ -27,7 +27,7 @@ fn off_is_identity_for_commands_and_drives() {
 #[test]
 fn off_leaves_no_torque() {
     for effect in EFFECTS {
-        let (id, off) = (effect.card().id, off_values(*effect));
+        let (id, off) = (effect.info().id, off_values(*effect));
         for speed_rad_s in SPEEDS_RAD_S {
             let joint = JointState::undriven(0.7, speed_rad_s);
             assert_eq!(effect.torque(&off, &joint), 0.0, "{id}");
@@ -39,7 +39,7 @@ fn off_leaves_no_torque() {
 #[test]
 fn off_reads_the_angle_itself() {
     for effect in EFFECTS {
-        let (id, off) = (effect.card().id, off_values(*effect));
+        let (id, off) = (effect.info().id, off_values(*effect));
         let mut memory = None;
         for angle_rad in [0.3, 0.31, -1.0, -1.0, 2.0] {
             assert_eq!(effect.encode(&off, angle_rad), angle_rad, "{id}");
@@ -61,7 +61,7 @@ fn off_leaves_the_rig_alone() {
             format!("{changed:?}"),
             format!("{:?}", rig()),
             "{}",
-            effect.card().id
+            effect.info().id
         );
     }
 }
@@ -69,11 +69,11 @@ fn off_leaves_the_rig_alone() {
 #[test]
 fn the_first_reading_is_the_angle() {
     for effect in EFFECTS.iter().filter(|effect| {
-        effect.card().site != Site::Timing
-            && matches!(effect.card().site, Site::Encoder | Site::Sensor)
+        effect.info().site != Site::Timing
+            && matches!(effect.info().site, Site::Encoder | Site::Sensor)
     }) {
         let values: Vec<f64> = effect
-            .card()
+            .info()
             .parameters
             .iter()
             .map(|p| p.typical.1)
@@ -82,7 +82,7 @@ fn the_first_reading_is_the_angle() {
             effect.sense(&values, &mut None, 0.4, 0.01),
             0.4,
             "{}",
-            effect.card().id
+            effect.info().id
         );
     }
 }
@@ -91,14 +91,14 @@ fn the_first_reading_is_the_angle() {
 fn friction_resists_except_for_the_asymmetry() {
     let frictions = EFFECTS
         .iter()
-        .filter(|effect| effect.card().site == Site::Friction);
-    for effect in frictions.filter(|effect| effect.card().id != "direction_asymmetry") {
+        .filter(|effect| effect.info().site == Site::Friction);
+    for effect in frictions.filter(|effect| effect.info().id != "direction_asymmetry") {
         for end in [|p: &Parameter| p.typical.0, |p: &Parameter| p.typical.1] {
-            let values: Vec<f64> = effect.card().parameters.iter().map(end).collect();
+            let values: Vec<f64> = effect.info().parameters.iter().map(end).collect();
             for direction in [-1.0, 1.0] {
                 for speed_rad_s in SPEEDS_RAD_S {
                     let friction_nm = effect.friction(&values, &slide(speed_rad_s, direction));
-                    assert!(friction_nm >= 0.0, "{}", effect.card().id);
+                    assert!(friction_nm >= 0.0, "{}", effect.info().id);
                 }
             }
         }

@@ -1,8 +1,9 @@
-//! What all motions together can tell apart.
+//! Excitation of each joint over all motions: reversals, travel, speed, holds.
 
-use super::finding::{Findings, Severity};
+use super::extremes::Extremes;
+use super::finding::Findings;
 use crate::error::Place;
-use crate::log::row::Row;
+use crate::log::row::LogRow;
 use crate::model::Model;
 
 /// Least swing that counts as a reversal where the encoder is fine, rad.
@@ -12,25 +13,25 @@ const HOLD_S: f64 = 0.5;
 
 /// Running account of every joint.
 pub(super) struct Excitation {
-    joints: Vec<Joint>,
+    joints: Vec<JointExcitation>,
     motions: usize,
 }
 
-struct Joint {
+struct JointExcitation {
     position_name: String,
     input_name: Option<String>,
     driven: bool,
     swing_rad: f64,
-    range_rad: (f64, f64),
-    input: (f64, f64),
+    position_rad: Extremes,
+    input: Extremes,
     reversals: usize,
     holds: usize,
     top_speed_rad_s: f64,
-    now: Option<Now>,
+    now: Option<MotionState>,
 }
 
 /// State within a motion.
-struct Now {
+struct MotionState {
     /// Farthest point in the present direction, rad.
     turning_rad: f64,
     /// -1, 0 or 1.
@@ -47,13 +48,13 @@ impl Excitation {
         Excitation {
             motions: 0,
             joints: joints
-                .map(|(columns, joint)| Joint {
+                .map(|(columns, joint)| JointExcitation {
                     position_name: columns.position.name.clone(),
                     input_name: columns.input.as_ref().map(|column| column.name.clone()),
                     driven: joint.drive.is_driven(),
                     swing_rad: SWING_RAD.max(4.0 * columns.position.resolution.unwrap_or(0.0)),
-                    range_rad: (f64::INFINITY, f64::NEG_INFINITY),
-                    input: (f64::INFINITY, f64::NEG_INFINITY),
+                    position_rad: Extremes::NONE,
+                    input: Extremes::NONE,
                     reversals: 0,
                     holds: 0,
                     top_speed_rad_s: 0.0,
@@ -63,7 +64,7 @@ impl Excitation {
         }
     }
 
-    pub fn take(&mut self, row: &Row, fresh: bool) {
+    pub fn take(&mut self, row: &LogRow, fresh: bool) {
         self.motions += usize::from(fresh);
         for (i, joint) in self.joints.iter_mut().enumerate() {
             if fresh {
@@ -71,7 +72,7 @@ impl Excitation {
             }
             let energised = row.torque_on != Some(false);
             if let Some(input) = row.input[i].filter(|_| energised) {
-                joint.input = (joint.input.0.min(input), joint.input.1.max(input));
+                joint.input.take(input);
             }
             joint.take(row.time_s, row.position_rad[i]);
         }
@@ -81,17 +82,17 @@ impl Excitation {
         for joint in self
             .joints
             .iter()
-            .filter(|joint| joint.range_rad.0.is_finite())
+            .filter(|joint| joint.position_rad.count > 0)
         {
             joint.judge(place, self.motions, findings);
         }
     }
 }
 
-impl Joint {
+impl JointExcitation {
     fn take(&mut self, time_s: f64, angle: f64) {
-        self.range_rad = (self.range_rad.0.min(angle), self.range_rad.1.max(angle));
-        let now = self.now.get_or_insert(Now {
+        self.position_rad.take(angle);
+        let now = self.now.get_or_insert(MotionState {
             turning_rad: angle,
             direction: 0.0,
             rest: (angle, time_s, false),
@@ -121,66 +122,48 @@ impl Joint {
     }
 
     fn judge(&self, place: Option<&Place>, motions: usize, findings: &mut Findings) {
-        let name = &self.position_name;
-        let range = self.range_rad.1 - self.range_rad.0;
-        let mut add = |severity, what: String, remedy: &str| {
-            findings.add("excitation", severity, place.cloned(), what, remedy);
-        };
-        add(
-            Severity::Note,
-            format!(
-                "{name} in {}: {}, {range:.2} rad of travel, up to {:.1} rad/s, {}",
-                counted(motions, "motion"),
-                counted(self.reversals, "reversal"),
-                self.top_speed_rad_s,
-                counted(self.holds, "hold")
-            ),
-            "what the logs can tell apart depends on these",
+        let (name, kind) = (&self.position_name, "excitation");
+        let (range, top) = (self.position_rad.range(), self.top_speed_rad_s);
+        let what = format!(
+            "{name} in {}: {}, {range:.2} rad of travel, up to {top:.1} rad/s, {}",
+            counted(motions, "motion"),
+            counted(self.reversals, "reversal"),
+            counted(self.holds, "hold")
         );
+        let remedy = "what the logs can tell apart depends on these";
+        findings.note(kind, place.cloned(), (what, remedy));
+        let mut warn = |what: String, remedy| findings.warn(kind, place.cloned(), (what, remedy));
         if self.reversals < 4 {
-            add(
-                Severity::Warn,
-                format!(
-                    "{name} shows {}: friction and backlash can't be told apart",
-                    counted(self.reversals, "reversal")
-                ),
-                "record motions that go to and fro",
-            );
+            let reversals = counted(self.reversals, "reversal");
+            let what =
+                format!("{name} shows {reversals}: friction and backlash can't be told apart");
+            warn(what, "record motions that go to and fro");
         }
         if range < 0.3 {
-            add(
-                Severity::Warn,
-                format!(
-                    "{name} travels only {range:.3} rad: gravity and a constant torque can't be told apart"
-                ),
-                "record wider motions",
+            let what = format!(
+                "{name} travels only {range:.3} rad: gravity and a constant torque can't be told \
+                 apart"
             );
+            warn(what, "record wider motions");
         }
-        if self.top_speed_rad_s < 0.5 {
-            add(
-                Severity::Warn,
-                format!(
-                    "{name} never exceeds {:.2} rad/s: what grows with speed can't be told from what does not",
-                    self.top_speed_rad_s
-                ),
-                "record faster motions too",
+        if top < 0.5 {
+            let what = format!(
+                "{name} never exceeds {top:.2} rad/s: what grows with speed can't be told from what \
+                 does not"
             );
+            warn(what, "record faster motions too");
         }
         if self.holds == 0 {
-            add(
-                Severity::Note,
-                format!("{name} is never held still: breakaway does not show"),
-                "add a rest of a second, then a slow start",
-            );
+            let what = format!("{name} is never held still: breakaway does not show");
+            let remedy = "add a rest of a second, then a slow start";
+            findings.note(kind, place.cloned(), (what, remedy));
         }
         if let Some(input) = self.input_name.as_ref().filter(|_| self.driven)
-            && self.input.1 - self.input.0 <= 0.0
+            && self.input.range() <= 0.0
         {
-            add(
-                Severity::Warn,
-                format!("{input} never changes: the drive's constants can't be found"),
-                "record motions under changing input",
-            );
+            let what = format!("{input} never changes: the drive's constants can't be found");
+            let remedy = "record motions under changing input";
+            findings.warn(kind, place.cloned(), (what, remedy));
         }
     }
 }

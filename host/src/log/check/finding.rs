@@ -1,6 +1,6 @@
-//! What a check has to say.
+//! The findings of a check.
 
-use crate::error::Place;
+use crate::error::{Place, Reason};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -18,9 +18,24 @@ pub enum Severity {
     Refuse,
 }
 
+impl Severity {
+    /// Its name in JSON: `note`, `warning`, `refused`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Severity::Note => "note",
+            Severity::Warn => "warning",
+            Severity::Refuse => "refused",
+        }
+    }
+}
+
 /// One thing found in a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct LogFinding {
+    /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`,
+    /// `payload`, `turned`, `wrap`, `stuck`, `extreme`, `step`, `unit`, `relation`, `supply` or
+    /// `excitation`.
+    pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,
     /// Where; nowhere in particular if it is about all logs together.
@@ -31,7 +46,7 @@ pub struct Finding {
     pub remedy: String,
 }
 
-impl Finding {
+impl LogFinding {
     /// Where it is and what it is, without the remedy.
     pub fn statement(&self) -> String {
         match &self.place {
@@ -41,40 +56,49 @@ impl Finding {
     }
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for LogFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let word = match self.severity {
-            Severity::Note => "note",
-            Severity::Warn => "warning",
-            Severity::Refuse => "refused",
-        };
-        write!(f, "{word}: {} ({})", self.statement(), self.remedy)
+        let severity = self.severity.name();
+        write!(f, "{severity}: {} ({})", self.statement(), self.remedy)
     }
 }
+
+/// What was found, and what to do about it.
+pub(super) type Advice<'a> = (String, &'a str);
 
 /// Findings so far, a bounded number of each kind per file.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
     /// In the order found.
-    pub list: Vec<Finding>,
-    counts: BTreeMap<&'static str, (usize, Option<Finding>)>,
+    pub list: Vec<LogFinding>,
+    counts: BTreeMap<&'static str, (usize, Option<LogFinding>)>,
 }
 
 impl Findings {
+    /// Something worth knowing.
+    pub fn note(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Advice) {
+        self.add(kind, Severity::Note, place.into(), words);
+    }
+
+    /// Something that may mislead, or leaves a question open.
+    pub fn warn(&mut self, kind: &'static str, place: impl Into<Option<Place>>, words: Advice) {
+        self.add(kind, Severity::Warn, place.into(), words);
+    }
+
+    /// Something that makes the log useless.
+    pub fn refuse(&mut self, kind: &'static str, place: Place, reason: &dyn Reason) {
+        let words = (reason.to_string(), &*reason.remedy());
+        self.add(kind, Severity::Refuse, Some(place), words);
+    }
+
     /// Adds a finding, or counts it if its kind has been shown often enough.
-    pub fn add(
-        &mut self,
-        kind: &'static str,
-        severity: Severity,
-        place: impl Into<Option<Place>>,
-        what: impl Into<String>,
-        remedy: impl Into<String>,
-    ) {
-        let finding = Finding {
+    fn add(&mut self, kind: &'static str, severity: Severity, place: Option<Place>, words: Advice) {
+        let finding = LogFinding {
+            kind,
             severity,
-            place: place.into(),
-            what: what.into(),
-            remedy: remedy.into(),
+            place,
+            what: words.0,
+            remedy: words.1.to_string(),
         };
         let (count, first_hidden) = self.counts.entry(kind).or_default();
         *count += 1;
@@ -89,7 +113,7 @@ impl Findings {
     pub fn close(&mut self) {
         for (count, hidden) in std::mem::take(&mut self.counts).into_values() {
             if let Some(first) = hidden {
-                self.list.push(Finding {
+                self.list.push(LogFinding {
                     what: format!("{}; and {} more like it", first.what, count - SHOWN - 1),
                     ..first
                 });

@@ -37,8 +37,8 @@ impl Regression {
         self.count += 1;
     }
 
-    /// All coefficients; none while there are too few samples. A regressor that never differs from zero, or
-    /// that others explain, gets `t = 0`.
+    /// All coefficients; none while there are too few samples. A regressor that never differs from
+    /// zero, or that others explain, gets `t = 0`.
     pub fn solve(&self) -> Option<Vec<Coefficient>> {
         let n = self.xy.len();
         if self.count < 3 * n + 10 {
@@ -72,7 +72,7 @@ impl Regression {
 
 /// Sums for a straight line y = offset + slope x.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Line {
+pub(super) struct LineFit {
     count: f64,
     x: f64,
     y: f64,
@@ -81,7 +81,7 @@ pub(super) struct Line {
     dyy: f64,
 }
 
-impl Line {
+impl LineFit {
     pub fn add(&mut self, x: f64, y: f64) {
         self.count += 1.0;
         let (dx, dy) = (x - self.x, y - self.y);

@@ -1,40 +1,43 @@
-//! Is a log fit to be learned from? Streams it once, in memory that does not grow with it.
+//! Checks the quality of logs: one pass over the rows, in memory that does not grow with them.
 //!
-//! What is broken is refused; what looks wrong (unit, sign, zero, gaps, an end stop) or leaves a question open
-//! (too few reversals) is warned of; the rest is noted. Judging goes on after a finding.
+//! What is broken is refused; what looks wrong (unit, sign, zero, gaps, an end stop) or leaves a
+//! question open (too few reversals) is warned of; the rest is noted. Judging goes on after a
+//! finding.
 
-mod block;
 mod excitation;
+mod extremes;
 mod finding;
 mod fit;
 mod joint;
 mod relation;
-mod timing;
+mod sampling;
+mod stretch;
 
 #[cfg(test)]
 mod tests;
 
-pub use finding::{Finding, Severity};
+pub use finding::{LogFinding, Severity};
 
-use super::read::{GAP_REMEDY, LONGEST_GAP_S};
+use super::reason::LogReason;
 use super::request::LogRequest;
-use super::row::Row;
+use super::row::LogRow;
 use super::{LEAST_ROWS, bam, csv};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, words};
 use crate::model::Model;
 use excitation::Excitation;
 use finding::Findings;
 use joint::JointCheck;
 use relation::Relations;
-use timing::Timing;
+use sampling::Sampling;
 
 /// Judges the requested logs against the model that is to explain them.
 ///
-/// Findings come in the order of the files; those about several files together come last, and without a place.
+/// Findings come in the order of the files; those about several files together come last, and
+/// without a place.
 ///
 /// # Errors
 /// Only what the system refuses; everything wrong with the content is a finding.
-pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<Finding>> {
+pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> {
     let mut findings = Findings::default();
     let mut excitation = Excitation::new(model);
     for request in requests {
@@ -75,9 +78,9 @@ struct FileCheck<'a> {
     model: &'a Model,
     findings: &'a mut Findings,
     excitation: &'a mut Excitation,
-    previous: Option<Row>,
+    previous: Option<LogRow>,
     rows_in_motion: usize,
-    timing: Timing,
+    sampling: Sampling,
     joints: Vec<JointCheck>,
     relations: Relations,
 }
@@ -96,7 +99,7 @@ impl<'a> FileCheck<'a> {
             excitation,
             previous: None,
             rows_in_motion: 0,
-            timing: Timing::default(),
+            sampling: Sampling::default(),
             joints: model.log.joints.iter().map(JointCheck::new).collect(),
             relations: Relations::new(model),
         }
@@ -105,13 +108,8 @@ impl<'a> FileCheck<'a> {
     /// A row or file that cannot be read becomes a finding; the system's refusals stay errors.
     fn broken(&mut self, kind: &'static str, error: Error) -> Result<()> {
         match error {
-            Error::Data {
-                place,
-                what,
-                remedy,
-            } => {
-                self.findings
-                    .add(kind, Severity::Refuse, place, what, remedy);
+            Error::Data { place, reason } => {
+                self.findings.refuse(kind, place, &*reason);
                 Ok(())
             }
             other => Err(other),
@@ -121,12 +119,12 @@ impl<'a> FileCheck<'a> {
     fn json(&mut self) -> Result<usize> {
         let motion = bam::read(self.request)?;
         for index in 0..motion.len() {
-            self.take(&Row::of(&motion, index));
+            self.take(&LogRow::of(&motion, index));
         }
         Ok(self.request.rows.map_or(motion.len(), |(_, last)| last + 1))
     }
 
-    fn take(&mut self, row: &Row) {
+    fn take(&mut self, row: &LogRow) {
         if row.position_rad.len() != self.joints.len() {
             return;
         }
@@ -134,7 +132,7 @@ impl<'a> FileCheck<'a> {
         if fresh {
             self.close_motion();
         }
-        let forward = self.timing.take(row, fresh, self.findings);
+        let forward = self.sampling.take(row, fresh, self.findings);
         // A sample out of order would spoil every difference after it.
         if !forward {
             return;
@@ -151,81 +149,50 @@ impl<'a> FileCheck<'a> {
         }
     }
 
-    fn begins(&mut self, row: &Row) -> bool {
-        let Some(previous) = &self.previous else {
+    /// Whether a new motion begins with `row`; if not, it must fit the present one.
+    fn begins(&mut self, row: &LogRow) -> bool {
+        let previous = self.previous.as_ref().map(LogRow::before);
+        let gap_s = self.model.log.split_at_gap_s;
+        let Some(wrong) = previous.and_then(|previous| row.follows(&previous, gap_s)) else {
             return true;
         };
-        if row.segment != previous.segment {
-            return true;
-        }
-        let gap = self.model.log.split_at_gap_s;
-        if gap.is_some_and(|gap| row.time_s - previous.time_s > gap) {
-            return true;
-        }
-        if row.time_s - previous.time_s > LONGEST_GAP_S {
-            let what = format!(
-                "time jumps from {} s to {} s within a motion",
-                previous.time_s, row.time_s
-            );
-            let place = row.place(row.fields.time);
-            self.findings
-                .add("jump", Severity::Refuse, place, what, GAP_REMEDY);
-        }
-        if row.payload_kg != previous.payload_kg {
-            let what = format!(
-                "payload changes from {} kg to {} kg within a motion",
-                previous.payload_kg, row.payload_kg
-            );
-            let place = row.place(row.fields.payload);
-            let remedy = "mark motions in a segment column";
-            self.findings
-                .add("payload", Severity::Refuse, place, what, remedy);
-        }
-        if row.turned != previous.turned {
-            let place = row.place(row.fields.turned);
-            let what = "the rig is turned round within a motion";
-            let remedy = "mark motions in a segment column";
-            self.findings
-                .add("turned", Severity::Refuse, place, what, remedy);
+        // The order of time is judged with the sampling.
+        let in_time = |reason: &LogReason| !matches!(reason, LogReason::TimeNotIncreasing { .. });
+        for (field, reason) in wrong.into_iter().filter(|(_, reason)| in_time(reason)) {
+            let kind = match reason {
+                LogReason::TimeJumps { .. } => "jump",
+                LogReason::PayloadChanges { .. } => "payload",
+                _ => "turned",
+            };
+            self.findings.refuse(kind, row.place(field), &reason);
         }
         false
     }
 
     fn close_motion(&mut self) {
-        if let Some(last) = self
-            .previous
-            .as_ref()
-            .filter(|_| self.rows_in_motion < LEAST_ROWS)
-        {
-            let what = format!(
-                "a motion of {} rows ends here; {LEAST_ROWS} are the least",
-                self.rows_in_motion
-            );
+        let rows = std::mem::take(&mut self.rows_in_motion);
+        if let Some(last) = self.previous.as_ref().filter(|_| rows < LEAST_ROWS) {
             let place = last.place(last.fields.time);
-            let remedy = "leave it out by a row range such as log.csv:26-139, or record longer";
             self.findings
-                .add("short", Severity::Refuse, place, what, remedy);
+                .refuse("short", place, &LogReason::TooShort { rows });
         }
-        self.rows_in_motion = 0;
     }
 
     fn finish(mut self, rows: usize) {
         let place = Place::file(&self.request.path);
-        if let Some((first, last)) = self.request.rows.filter(|(_, last)| *last >= rows) {
-            let what = format!("rows {first}-{last} asked for, but it has {rows} rows");
-            let remedy = "data rows count from 0, after the header";
-            self.findings
-                .add("range", Severity::Refuse, place.clone(), what, remedy);
+        if let Some(reason) = self.request.beyond(rows) {
+            self.findings.refuse("range", place.clone(), &reason);
         }
         if self.previous.is_none() {
-            let what = "no sample could be read";
-            let remedy = "see the rows refused, or record again";
-            self.findings
-                .add("none", Severity::Refuse, place, what, remedy);
+            let reason = words(
+                "no sample could be read",
+                "see the rows refused, or record again",
+            );
+            self.findings.refuse("none", place, &reason);
             return;
         }
         self.close_motion();
-        self.timing.judge(&place, self.findings);
+        self.sampling.judge(&place, self.findings);
         for (joint, check) in self.joints.iter_mut().enumerate() {
             check.judge(&place, &self.model.joints[joint].drive, self.findings);
         }

@@ -1,10 +1,11 @@
 //! Columns against each other: a wrong sign, scale or zero shows in how one follows the other.
 
-use super::block::{Block, Blocks};
-use super::finding::{Findings, Severity};
-use super::fit::{Line, Regression};
+use super::extremes::Extremes;
+use super::finding::Findings;
+use super::fit::{LineFit, Regression};
+use super::stretch::{Stretch, Stretches};
 use crate::error::Place;
-use crate::log::row::Row;
+use crate::log::row::LogRow;
 use crate::model::{AngleZero, Angles, Drive, Model};
 use std::collections::VecDeque;
 
@@ -12,8 +13,9 @@ use std::collections::VecDeque;
 const LAGS: [usize; 6] = [0, 1, 2, 4, 8, 16];
 /// A joint slower than this may be held by stiction, rad/s.
 const MOVING_RAD_S: f64 = 0.1;
-/// Standard errors for a sign to be believed. Under feedback the input follows the motion: an idle shoulder
-/// of a public double pendulum reaches -4.8 with the sign right, and a delayed PD loop shows no sign at all.
+/// Standard errors for a sign to be believed. Under feedback the input follows the motion: an idle
+/// shoulder of a public double pendulum reaches -4.8 with the sign right, and a delayed PD loop
+/// shows no sign at all.
 const SURE: f64 = 8.0;
 
 /// Running sums of one file.
@@ -21,22 +23,21 @@ pub(super) struct Relations {
     zero: AngleZero,
     angles: Angles,
     /// Per joint: how the input drives it.
-    drives: Vec<Kind>,
+    drives: Vec<InputKind>,
     /// Recent samples' inputs, newest first.
     recent: VecDeque<Vec<Option<f64>>>,
     /// Per joint and lag: measured against goal.
-    follow: Vec<[Line; LAGS.len()]>,
+    follow: Vec<[LineFit; LAGS.len()]>,
     /// Per joint: logged speed against the angle's.
-    speed: Vec<Line>,
+    speed: Vec<LineFit>,
     /// Per joint: acceleration on inputs, gravity, speed and the direction of motion.
     push: Vec<Regression>,
-    blocks: Blocks,
-    /// Smallest and largest supply, V.
-    supply_v: Option<(f64, f64)>,
+    stretches: Stretches,
+    supply_v: Extremes,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum InputKind {
     None,
     Push,
     Angle,
@@ -47,10 +48,10 @@ impl Relations {
     pub fn new(model: &Model) -> Self {
         let n = model.log.joints.len();
         let kind = |drive: &Drive| match drive {
-            Drive::Passive => Kind::None,
-            Drive::Torque | Drive::Duty(_) => Kind::Push,
-            Drive::Position { .. } => Kind::Angle,
-            Drive::Speed { .. } => Kind::Speed,
+            Drive::Passive => InputKind::None,
+            Drive::Torque | Drive::Duty(_) => InputKind::Push,
+            Drive::Position { .. } => InputKind::Angle,
+            Drive::Speed { .. } => InputKind::Speed,
         };
         Relations {
             zero: model.angle_zero,
@@ -61,32 +62,31 @@ impl Relations {
                 .map(|joint| kind(&joint.drive))
                 .collect(),
             recent: VecDeque::new(),
-            follow: vec![[Line::default(); LAGS.len()]; n],
-            speed: vec![Line::default(); n],
+            follow: vec![[LineFit::default(); LAGS.len()]; n],
+            speed: vec![LineFit::default(); n],
             push: (0..n).map(|_| Regression::new(5 * n + 1)).collect(),
-            blocks: Blocks::default(),
-            supply_v: None,
+            stretches: Stretches::default(),
+            supply_v: Extremes::NONE,
         }
     }
 
-    pub fn take(&mut self, row: &Row, fresh: bool) {
+    pub fn take(&mut self, row: &LogRow, fresh: bool) {
         if fresh || row.torque_on == Some(false) {
             self.recent.clear();
-            self.blocks.reset();
+            self.stretches.reset();
         }
         if let Some(volts) = row.supply_v {
-            let (low, high) = self.supply_v.unwrap_or((volts, volts));
-            self.supply_v = Some((low.min(volts), high.max(volts)));
+            self.supply_v.take(volts);
         }
-        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != Kind::None) {
+        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != InputKind::None) {
             return;
         }
         self.recent.push_front(row.input.clone());
         self.recent.truncate(LAGS[LAGS.len() - 1] + 1);
         for joint in 0..self.drives.len() {
             let measured = match self.drives[joint] {
-                Kind::Angle => Some(row.position_rad[joint]),
-                Kind::Speed => row.velocity_rad_s[joint],
+                InputKind::Angle => Some(row.position_rad[joint]),
+                InputKind::Speed => row.velocity_rad_s[joint],
                 _ => None,
             };
             let Some(measured) = measured else { continue };
@@ -96,12 +96,12 @@ impl Relations {
                 }
             }
         }
-        if let Some(block) = self.blocks.take(row) {
-            self.take_block(&block, row);
+        if let Some(stretch) = self.stretches.take(row) {
+            self.take_stretch(&stretch, row);
         }
     }
 
-    fn take_block(&mut self, block: &Block, row: &Row) {
+    fn take_stretch(&mut self, stretch: &Stretch, row: &LogRow) {
         let n = self.drives.len();
         // Relative angles drive; absolute ones feel gravity.
         let relative = |values: &[f64], i: usize| match (self.angles, i) {
@@ -112,12 +112,12 @@ impl Relations {
         let mut absolute = self.zero.from_hanging_rad();
         for i in 0..n {
             absolute = match self.angles {
-                Angles::Relative => absolute + block.position_rad[i],
-                Angles::Absolute => self.zero.from_hanging_rad() + block.position_rad[i],
+                Angles::Relative => absolute + stretch.position_rad[i],
+                Angles::Absolute => self.zero.from_hanging_rad() + stretch.position_rad[i],
             };
-            let speed = relative(&block.speed_rad_s, i);
-            let input = if self.drives[i] == Kind::Push {
-                block.input[i]
+            let speed = relative(&stretch.speed_rad_s, i);
+            let input = if self.drives[i] == InputKind::Push {
+                stretch.input[i]
             } else {
                 0.0
             };
@@ -126,10 +126,10 @@ impl Relations {
         x.push(1.0);
         for i in 0..n {
             if row.velocity_rad_s[i].is_some() {
-                self.speed[i].add(block.speed_rad_s[i], block.logged_speed_rad_s[i]);
+                self.speed[i].add(stretch.speed_rad_s[i], stretch.logged_speed_rad_s[i]);
             }
-            if relative(&block.speed_rad_s, i).abs() > MOVING_RAD_S {
-                self.push[i].add(&x, relative(&block.acceleration_rad_s2, i));
+            if relative(&stretch.speed_rad_s, i).abs() > MOVING_RAD_S {
+                self.push[i].add(&x, relative(&stretch.acceleration_rad_s2, i));
             }
         }
     }
@@ -138,7 +138,7 @@ impl Relations {
         for joint in 0..self.drives.len() {
             let columns = &model.log.joints[joint];
             let measured = match (self.drives[joint], &columns.velocity) {
-                (Kind::Speed, Some(speed)) => &speed.name,
+                (InputKind::Speed, Some(speed)) => &speed.name,
                 _ => &columns.position.name,
             };
             if let Some(input) = &columns.input {
@@ -167,7 +167,8 @@ impl Relations {
         findings: &mut Findings,
     ) {
         let lines = &self.follow[joint];
-        let by_correlation = |a: &&Line, b: &&Line| a.correlation().total_cmp(&b.correlation());
+        let by_correlation =
+            |a: &&LineFit, b: &&LineFit| a.correlation().total_cmp(&b.correlation());
         let enough = lines
             .iter()
             .filter(|line| line.count() >= 20 && line.spread() > 0.02);
@@ -175,56 +176,42 @@ impl Relations {
             return;
         };
         let worst = enough.min_by(by_correlation).unwrap_or(best);
-        let mut warn = |what: String, remedy: &str| {
-            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
-        };
-        if best.correlation() < 0.3 && worst.correlation() < -0.5 {
-            warn(
-                format!(
-                    "{measured} runs against {goal} (correlation {:.2})",
-                    worst.correlation()
-                ),
+        let (correlation, slope, offset) = (best.correlation(), best.slope(), best.offset());
+        let (what, remedy) = if correlation < 0.3 && worst.correlation() < -0.5 {
+            let against = worst.correlation();
+            (
+                format!("{measured} runs against {goal} (correlation {against:.2})"),
                 "one of the two counts the other way round: set reversed on it",
-            );
-            return;
-        }
-        if best.correlation() < 0.8 {
-            warn(
-                format!(
-                    "{measured} hardly follows {goal} (correlation {:.2})",
-                    best.correlation()
-                ),
+            )
+        } else if correlation < 0.8 {
+            (
+                format!("{measured} hardly follows {goal} (correlation {correlation:.2})"),
                 "was the drive saturated, stuck, or off? Are the columns named right?",
-            );
-            return;
-        }
-        let slope = best.slope();
-        if !(0.8..1.25).contains(&slope) {
-            let guess = match slope.max(1.0 / slope) {
-                ratio if (45.0..72.0).contains(&ratio) => {
-                    "degrees on one side, radians on the other?"
-                }
-                _ => {
+            )
+        } else if !(0.8..1.25).contains(&slope) {
+            let guess = match (45.0..72.0).contains(&slope.max(1.0 / slope)) {
+                true => "degrees on one side, radians on the other?",
+                false => {
                     "a wrong unit, count per turn or gear ratio, or a drive too weak for its goal?"
                 }
             };
-            warn(
+            (
                 format!("{measured} moves {slope:.3} times as far as {goal}: {guess}"),
                 "check both columns' units in the model's [log]",
-            );
-        } else if self.drives[joint] == Kind::Angle && best.offset().abs() > 0.1 {
-            warn(
-                format!(
-                    "{measured} lies {:.3} rad from {goal} on the mean: a wrong zero?",
-                    best.offset()
-                ),
+            )
+        } else if self.drives[joint] == InputKind::Angle && offset.abs() > 0.1 {
+            (
+                format!("{measured} lies {offset:.3} rad from {goal} on the mean: a wrong zero?"),
                 "set the offset of one of them, unless the load really makes the joint sag so far",
-            );
-        }
+            )
+        } else {
+            return;
+        };
+        findings.warn("relation", place.clone(), (what, remedy));
     }
 
     fn judge_push(&self, joint: usize, input: &str, place: &Place, findings: &mut Findings) {
-        if self.drives[joint] != Kind::Push {
+        if self.drives[joint] != InputKind::Push {
             return;
         }
         let Some(own) = self.push[joint].solve().map(|all| all[5 * joint]) else {
@@ -236,13 +223,13 @@ impl Relations {
                 own.t
             );
             let remedy = "the input or the angle counts the other way round: set reversed on it";
-            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("relation", place.clone(), (what, remedy));
         }
     }
 
     /// A single link must be pulled towards hanging.
     fn judge_gravity(&self, model: &Model, place: &Place, findings: &mut Findings) {
-        if self.drives.len() != 1 || matches!(self.drives[0], Kind::Angle | Kind::Speed) {
+        if self.drives.len() != 1 || matches!(self.drives[0], InputKind::Angle | InputKind::Speed) {
             return;
         }
         let Some(all) = self.push[0].solve() else {
@@ -253,28 +240,34 @@ impl Relations {
         if tilt.abs() > 0.35 && sine.t.hypot(cosine.t) > 3.0 * SURE {
             let name = &model.log.joints[0].position.name;
             let what = format!(
-                "gravity pulls {:.2} rad beside where {name} has it hang: a wrong angle_zero, sign or unit, or a tilted rig",
-                tilt
+                "gravity pulls {tilt:.2} rad beside where {name} has it hang: a wrong angle_zero, \
+                 sign or unit, or a tilted rig"
             );
             let remedy = "compare the resting angle in the log with the model's angle_zero";
-            findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("relation", place.clone(), (what, remedy));
         }
     }
 
     fn judge_supply(&self, nominal: Option<f64>, place: &Place, findings: &mut Findings) {
-        let (Some((low, high)), Some(nominal)) = (self.supply_v, nominal) else {
+        let Some(nominal) = nominal else {
             return;
         };
+        let (low, high) = (self.supply_v.low.0, self.supply_v.high.0);
         if low < 0.5 * nominal || high > 1.5 * nominal {
             let what =
                 format!("the supply ranges from {low:.2} to {high:.2} V; {nominal} V is nominal");
             let remedy = "check the supply column's unit, and the wiring";
-            findings.add("supply", Severity::Warn, place.clone(), what, remedy);
+            findings.warn("supply", place.clone(), (what, remedy));
         }
     }
 }
 
-fn judge_speed(line: &Line, (speed, angle): (&str, &str), place: &Place, findings: &mut Findings) {
+fn judge_speed(
+    line: &LineFit,
+    (speed, angle): (&str, &str),
+    place: &Place,
+    findings: &mut Findings,
+) {
     if line.count() < 20 || line.spread() < MOVING_RAD_S {
         return;
     }
@@ -291,5 +284,5 @@ fn judge_speed(line: &Line, (speed, angle): (&str, &str), place: &Place, finding
         return;
     };
     let remedy = "check names, units and signs of both columns, and the unit of time";
-    findings.add("relation", Severity::Warn, place.clone(), what, remedy);
+    findings.warn("relation", place.clone(), (what, remedy));
 }

@@ -1,11 +1,11 @@
-//! Each fault is found, and a good log is left in peace.
+//! The check finds each fault, and warns of nothing in a good log.
 
 use super::*;
-use crate::log::fixture::{columns, model, motion, position_drive};
+use crate::log::tests::fixture::{columns, model, motion, position_drive};
 use crate::log::{Motion, to_csv};
 use crate::model::{Drive, LogColumns};
 
-fn found(text: &str, model: &Model) -> Vec<Finding> {
+fn found(text: &str, model: &Model) -> Vec<LogFinding> {
     let log = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
     std::fs::write(log.path(), text).unwrap();
     check(&[LogRequest::whole(log.path())], model).unwrap()
@@ -24,7 +24,7 @@ fn text(motion: &Motion) -> String {
 }
 
 #[track_caller]
-fn finds(findings: &[Finding], severity: Severity, what: &str) {
+fn finds(findings: &[LogFinding], severity: Severity, what: &str) {
     let all: Vec<String> = findings.iter().map(ToString::to_string).collect();
     let hit = findings
         .iter()
@@ -57,8 +57,8 @@ fn broken_rows_are_all_told_with_their_places() {
     };
     at(101, 2, "not finite");
     at(201, 3, "2 fields");
-    at(301, 1, "stands still");
-    at(401, 1, "goes back");
+    at(301, 1, "does not increase: 2.98 s after 2.98 s");
+    at(401, 1, "does not increase: 0.5 s after 3.98 s");
 }
 
 #[test]
@@ -229,7 +229,8 @@ fn wraps_stops_and_steps_are_found() {
 
 #[test]
 fn what_is_kept_does_not_grow_with_the_log() {
-    // 200,000 rows, every hundredth late, every thousandth broken: all a check holds is of fixed size.
+    // 200,000 rows, every hundredth late, every thousandth broken: all a check holds is of fixed
+    // size.
     let mut text = String::from("t_s,q,u\n");
     for i in 0..200_000 {
         let t = f64::from(i) * 0.001 + f64::from(i / 100) * 0.02;

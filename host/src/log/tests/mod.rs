@@ -1,6 +1,6 @@
 //! Dialects, refusals, the round trip, hostile bytes, and the real logs.
 
-use super::fixture::{column, columns, model, motion, position_drive};
+use self::fixture::{column, columns, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
 use crate::model::{Column, LogColumns};
@@ -8,7 +8,9 @@ use proptest::prelude::*;
 
 mod bam;
 mod dialects;
+pub mod fixture;
 mod motions;
+mod real;
 mod refusals;
 mod survival;
 mod written;
@@ -35,13 +37,9 @@ fn rows(header: &str, separator: char) -> String {
 
 fn refused(text: &str, columns: &LogColumns) -> (Option<usize>, Option<usize>, String) {
     match read_text(text, columns).unwrap_err() {
-        Error::Data {
-            place,
-            what,
-            remedy,
-        } => {
-            assert!(!remedy.is_empty());
-            (place.line, place.column, what)
+        Error::Data { place, reason } => {
+            assert!(!reason.remedy().is_empty());
+            (place.line, place.column, reason.to_string())
         }
         other => panic!("{other}"),
     }

@@ -165,3 +165,13 @@ fn each_refusal_names_its_place() {
     let absent = read(&[LogRequest::whole("no/such.csv")], &columns()).unwrap_err();
     assert_eq!(absent.exit_code(), 3);
 }
+
+#[test]
+fn a_reason_can_be_matched_on() {
+    let late = rows("t_s,q,u", ',').replace("0.06", "0.01");
+    let log = file(late.as_bytes(), ".csv");
+    let error = read(&[LogRequest::whole(log.path())], &columns()).unwrap_err();
+    let (time_s, previous_s) = (0.01, 0.05);
+    let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
+    assert_eq!(error.reason(), Some(&reason));
+}

@@ -15,8 +15,8 @@ fn effect(id: &str, joint: usize, value: f64) -> EffectInstance {
     }
 }
 
-fn fitted() -> Fitted {
-    Fitted {
+fn fitted() -> FitRecord {
+    FitRecord {
         intervals: vec![("torque_nm".into(), 0.018, 0.022)],
         logs: vec![("drop \"1\".csv".into(), "ab12".into())],
         error_before: 0.012_345_678,
@@ -31,7 +31,7 @@ fn an_added_effect_is_there_and_every_old_line_too() {
     let text = add_effect(MODEL, path(), &added, Some(&fitted())).unwrap();
     let model = Model::parse(&text, path()).unwrap();
     let last = model.effects.last().unwrap();
-    assert_eq!(last.effect.card().id, "coulomb");
+    assert_eq!(last.effect.info().id, "coulomb");
     assert_eq!((last.joint, last.values[0]), (Some(1), 0.019_876_5));
     let mut lines = text.lines();
     for old in MODEL.lines().filter(|line| !line.starts_with("free")) {

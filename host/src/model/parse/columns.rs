@@ -2,6 +2,7 @@
 
 use super::super::limits::Limits;
 use super::super::reader::Table;
+use super::super::reason::ModelReason;
 use super::super::{Column, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
@@ -23,22 +24,14 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
     ])?;
     let name = |key: &str| -> Result<_> { Ok(log.text(key)?.map(str::to_string)) };
     let payload = log.table("payload")?;
+    let at_m = payload.map(|table| table.required_number("at_m", EITHER_SIGN));
     Ok(LogColumns {
         time: column(&log.required_table("time")?, "time", Dimension::Time)?,
         segment: name("segment")?,
-        supply: match log.table("supply")? {
-            Some(table) => Some(column(&table, "supply", Dimension::Voltage)?),
-            None => None,
-        },
+        supply: optional(&log, "supply", Dimension::Voltage)?,
         torque_on: name("torque_on")?,
-        payload_at_m: match &payload {
-            Some(table) => table.required_number("at_m", EITHER_SIGN)?,
-            None => 0.0,
-        },
-        payload: match &payload {
-            Some(table) => Some(column(table, "payload", Dimension::Mass)?),
-            None => None,
-        },
+        payload_at_m: at_m.transpose()?.unwrap_or(0.0),
+        payload: optional(&log, "payload", Dimension::Mass)?,
         turned: name("turned")?,
         joints: joint_columns(&log, joints)?,
         split_at_gap_s: log.number("split_at_gap_s", ABOVE_ZERO)?,
@@ -47,21 +40,17 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
 
 fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
     let tables = log.tables("joint")?;
-    if let Some(extra) = tables.get(joints.len()) {
-        return Err(extra.bad_table(
-            format!("is one too many for {} joint(s)", joints.len()),
-            "give one `[[log.joint]]` for each `[[joint]]`, in order",
-        ));
+    let (named, joints_known) = (tables.len(), joints.len());
+    if let Some(extra) = tables.get(joints_known) {
+        return Err(extra.bad_table(ModelReason::ExtraColumns {
+            joints: joints_known,
+        }));
     }
-    if tables.len() < joints.len() {
-        return Err(log.bad_table(
-            format!(
-                "names the columns of {} joint(s) out of {}",
-                tables.len(),
-                joints.len()
-            ),
-            "add one `[[log.joint]]` for each `[[joint]]`, in order",
-        ));
+    if named < joints_known {
+        return Err(log.bad_table(ModelReason::MissingColumns {
+            named,
+            joints: joints_known,
+        }));
     }
     let pairs = tables.iter().zip(joints);
     pairs.map(|(table, joint)| of_joint(table, joint)).collect()
@@ -70,36 +59,27 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
 fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
     let position = table.required_table("position")?;
-    let velocity = match table.table("velocity")? {
-        Some(velocity) => Some(column(&velocity, "velocity", Dimension::Speed)?),
-        None => None,
-    };
-    let drive = joint.drive.name();
-    let dimension = match joint.drive {
+    let velocity = optional(table, "velocity", Dimension::Speed)?;
+    let wanted = match joint.drive {
         Drive::Passive => None,
         Drive::Torque => Some(Dimension::Torque),
         Drive::Duty(_) => Some(Dimension::Ratio),
         Drive::Position { .. } => Some(Dimension::Angle),
         Drive::Speed { .. } => Some(Dimension::Speed),
     };
-    let input = match (dimension, table.table("input")?) {
-        (None, None) => None,
-        (Some(dimension), Some(input)) => Some(column(&input, "input", dimension)?),
-        (None, Some(_)) => {
-            return Err(table.bad_key(
-                "input",
-                "a passive joint has no input",
-                "remove `input`, or say what drives the joint",
-            ));
+    let input = match (wanted, table.has("input")) {
+        (None, false) => None,
+        (Some(wanted), true) => optional(table, "input", wanted)?,
+        (None, true) => {
+            table.table("input")?;
+            return Err(table.bad_key("input", ModelReason::PassiveInput));
         }
-        (Some(dimension), None) => {
-            return Err(table.bad_table(
-                format!("lacks `input`, and its joint is driven by `{drive}`"),
-                format!(
-                    "add `input = {{ column = \"...\", unit = \"{}\" }}`",
-                    dimension.unit_names().next().unwrap_or("1")
-                ),
-            ));
+        (Some(wanted), false) => {
+            return Err(table.bad_table(ModelReason::MissingInput {
+                table: table.name.clone(),
+                drive: joint.drive.name(),
+                wanted,
+            }));
         }
     };
     Ok(JointColumns {
@@ -109,8 +89,17 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     })
 }
 
-fn column(table: &Table, quantity: &str, dimension: Dimension) -> Result<Column> {
-    let (offset, resolution) = (key("offset", dimension), key("resolution", dimension));
+/// The column under `key`, if there is one.
+fn optional(table: &Table, key: &'static str, dimension: Dimension) -> Result<Option<Column>> {
+    let found = table.table(key)?;
+    found
+        .map(|found| column(&found, key, dimension))
+        .transpose()
+}
+
+fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result<Column> {
+    let offset = format!("offset{}", dimension.suffix());
+    let resolution = format!("resolution{}", dimension.suffix());
     let mut known = vec!["column", "unit", offset.as_str(), resolution.as_str()];
     if dimension != Dimension::Time {
         known.push("reversed");
@@ -124,63 +113,34 @@ fn column(table: &Table, quantity: &str, dimension: Dimension) -> Result<Column>
     table.only(&known)?;
     let unit = unit(table, quantity, dimension)?;
     let one_tick = (unit.name == "ticks").then_some(unit.si);
+    let offset = table.number(&offset, Limits::within(-1e9, 1e9))?;
     Ok(Column {
         name: table.required_text("column")?.to_string(),
         unit,
-        offset: table
-            .number(&offset, Limits::within(-1e9, 1e9))?
-            .unwrap_or(0.0),
+        offset: offset.unwrap_or(0.0),
         reversed: table.flag("reversed")?,
         resolution: table.number(&resolution, NOT_NEGATIVE)?.or(one_tick),
     })
 }
 
-fn unit(table: &Table, quantity: &str, dimension: Dimension) -> Result<Unit> {
+fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit> {
     let name = table.required_text("unit")?;
-    let wanted = || {
-        let names: Vec<_> = dimension.unit_names().collect();
-        format!("write one of: {}", names.join(", "))
-    };
     let ticks = table.number("ticks_per_turn", TICKS)?;
     let Some(unit) = Unit::named(name, ticks) else {
-        return Err(table.bad("unit", format!("unknown unit `{name}`"), wanted()));
+        let unit = name.to_string();
+        return Err(table.bad("unit", ModelReason::UnknownUnit { unit, wanted }));
     };
-    if unit.dimension != dimension {
-        let what = format!(
-            "unit `{name}` measures {}, and `{quantity}` is {}",
-            said(unit.dimension),
-            said(dimension)
-        );
-        return Err(table.bad("unit", what, wanted()));
+    if unit.dimension != wanted {
+        let reason = ModelReason::OtherDimension {
+            unit: unit.name,
+            found: unit.dimension,
+            quantity,
+            wanted,
+        };
+        return Err(table.bad("unit", reason));
     }
-    if unit.si.is_nan() {
-        return Err(table.lacks("ticks_per_turn"));
-    }
-    Ok(unit)
-}
-
-/// `offset_rad`, `resolution_nm`: the stem with the suffix of the SI unit.
-fn key(stem: &str, dimension: Dimension) -> String {
-    let suffix = match dimension {
-        Dimension::Time => "_s",
-        Dimension::Angle => "_rad",
-        Dimension::Speed => "_rad_s",
-        Dimension::Torque => "_nm",
-        Dimension::Voltage => "_v",
-        Dimension::Mass => "_kg",
-        Dimension::Ratio => "",
-    };
-    format!("{stem}{suffix}")
-}
-
-fn said(dimension: Dimension) -> &'static str {
-    match dimension {
-        Dimension::Time => "a time",
-        Dimension::Angle => "an angle",
-        Dimension::Speed => "an angular speed",
-        Dimension::Torque => "a torque",
-        Dimension::Voltage => "a voltage",
-        Dimension::Mass => "a mass",
-        Dimension::Ratio => "a share",
+    match unit.si.is_nan() {
+        true => Err(table.lacks("ticks_per_turn")),
+        false => Ok(unit),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::limits::Limits;
 use super::super::reader::Table;
+use super::super::reason::ModelReason;
 use super::super::{EffectInstance, Joint};
 use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
@@ -10,15 +11,9 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
         let effect = effect(&table, joints)?;
-        if effects
-            .iter()
-            .any(|other| other.effect == effect.effect && other.joint == effect.joint)
-        {
-            return Err(table.bad(
-                "kind",
-                format!("`{}` is there twice", effect.effect.card().id),
-                "keep one of the two, or give it another joint",
-            ));
+        let id = effect.effect.info().id;
+        if effects.iter().any(|other| other.is(id, effect.joint)) {
+            return Err(table.bad("kind", ModelReason::EffectTwice { id }));
         }
         effects.push(effect);
     }
@@ -26,23 +21,19 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
 }
 
 fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
-    let kinds: Vec<(&str, &'static dyn Effect)> = EFFECTS
-        .iter()
-        .map(|effect| (effect.card().id, *effect))
-        .collect();
-    let effect = table
-        .choice("kind", &kinds)?
-        .ok_or_else(|| table.lacks("kind"))?;
-    let card = effect.card();
+    let kinds = EFFECTS.iter().map(|effect| (effect.info().id, *effect));
+    let kinds: Vec<(&str, &'static dyn Effect)> = kinds.collect();
+    let effect = table.required("kind", table.choice("kind", &kinds)?)?;
+    let info = effect.info();
 
     let mut known = vec!["kind", "joint", "fitted"];
-    known.extend(card.parameters.iter().map(|parameter| parameter.key));
+    known.extend(info.parameters.iter().map(|parameter| parameter.key));
     table.only(&known)?;
     // Where its values came from: for people and reports, so any content will do.
     table.table("fitted")?;
 
-    let joint = at(table, card.id, card.scope, joints)?;
-    let values = card.parameters.iter().map(|parameter| {
+    let joint = at(table, effect, joints)?;
+    let values = info.parameters.iter().map(|parameter| {
         let (low, high) = parameter.bounds;
         table.required_number(parameter.key, Limits::within(low, high))
     });
@@ -54,30 +45,15 @@ fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
 }
 
 /// The joint it acts on, if it acts on one.
-fn at(table: &Table, id: &str, scope: Scope, joints: &[Joint]) -> Result<Option<usize>> {
-    if scope == Scope::WholeRig {
-        if table.has("joint") {
-            let what = format!("`{id}` acts on the whole rig, not on one joint");
-            return Err(table.bad_key("joint", what, "remove `joint`"));
-        }
-        return Ok(None);
+fn at(table: &Table, effect: &dyn Effect, joints: &[Joint]) -> Result<Option<usize>> {
+    if effect.info().scope == Scope::WholeRig {
+        let id = effect.info().id;
+        return match table.has("joint") {
+            true => Err(table.bad_key("joint", ModelReason::WholeRig { id })),
+            false => Ok(None),
+        };
     }
-    let joint = table
-        .index("joint", joints.len())?
-        .ok_or_else(|| table.lacks("joint"))?;
-    let driven = joints[joint].drive.is_driven();
-    let wanted = match scope {
-        Scope::DrivenJoint if !driven => "driven",
-        Scope::PassiveJoint if driven => "passive",
-        _ => return Ok(Some(joint)),
-    };
-    Err(table.bad(
-        "joint",
-        format!(
-            "`{id}` acts on {wanted} joints only, and joint {} is `{}`",
-            joint + 1,
-            joints[joint].drive.name()
-        ),
-        format!("name a {wanted} joint, or remove the effect"),
-    ))
+    let joint = table.required("joint", table.index("joint", joints.len())?)?;
+    ModelReason::unsuited(effect, joint, &joints[joint])
+        .map_or(Ok(Some(joint)), |reason| Err(table.bad("joint", reason)))
 }

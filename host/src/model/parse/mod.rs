@@ -5,11 +5,12 @@ mod effects;
 #[cfg(test)]
 mod tests;
 
-use super::field::{JointField, LinkField, POSITIVE};
+use super::field::{LinkField, POSITIVE};
 use super::limits::Limits;
 use super::path::ParameterPath;
 use super::reader::Table;
-use super::source::Source;
+use super::reason::ModelReason;
+use super::source::TomlSource;
 use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor};
 use crate::error::Result;
 use std::path::Path;
@@ -27,7 +28,7 @@ const STEP: Limits = Limits::within(1e-5, 0.1);
 /// # Errors
 /// The first thing that is unknown, missing or impossible.
 pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
-    let source = Source { text, file };
+    let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
     root.only(&["rig", "link", "joint", "effect", "fit", "log"])?;
@@ -40,9 +41,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     let log = columns::read(&root, &joints)?;
     let mut model = Model {
         name: rig.required_text("name")?.to_string(),
-        angle_zero: rig
-            .choice("angle_zero", &ANGLE_ZERO)?
-            .ok_or_else(|| rig.lacks("angle_zero"))?,
+        angle_zero: rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,
         angles: rig.choice("angles", &ANGLES)?.unwrap_or(Angles::Relative),
         gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(9.81),
         step_s: rig.number("step_s", STEP)?.unwrap_or(0.005),
@@ -52,7 +51,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         free: Vec::new(),
         log,
     };
-    model.free = free(&root, &source, &model)?;
+    model.free = free(&root, &model)?;
     Ok(model)
 }
 
@@ -77,11 +76,10 @@ fn links(root: &Table) -> Result<Vec<Link>> {
         table.only(&LinkField::ALL.map(LinkField::key))?;
         let com_m = table.required_number("com_m", EITHER_SIGN)?;
         let length_m = table.number("length_m", NOT_NEGATIVE)?;
+        // Nothing hangs on the last link, so its length only shows in pictures.
+        let length_m = length_m.or_else(|| (i == last).then_some(com_m.abs()));
         Ok(Link {
-            // Nothing hangs on the last link, so its length only shows in pictures.
-            length_m: length_m
-                .or_else(|| (i == last).then_some(com_m.abs()))
-                .ok_or_else(|| table.lacks("length_m"))?,
+            length_m: table.required("length_m", length_m)?,
             com_m,
             mass_kg: table.required_number("mass_kg", ABOVE_ZERO)?,
             inertia_kg_m2: table.required_number("inertia_kg_m2", NOT_NEGATIVE)?,
@@ -92,55 +90,49 @@ fn links(root: &Table) -> Result<Vec<Link>> {
 
 fn joints(root: &Table, links: usize) -> Result<Vec<Joint>> {
     let tables = root.tables("joint")?;
+    let joints = tables.len();
     if let Some(extra) = tables.get(links) {
-        return Err(extra.bad_table(
-            format!("is one joint too many for {links} link(s)"),
-            "every link follows one joint: add a `[[link]]` or remove the joint",
-        ));
+        return Err(extra.bad_table(ModelReason::ExtraJoint { links }));
     }
-    if tables.len() < links {
-        return Err(root.bad_table(
-            format!("has {links} link(s) but {} joint(s)", tables.len()),
-            "every link follows one joint: add a `[[joint]]` for each",
-        ));
+    if joints < links {
+        return Err(root.bad_table(ModelReason::MissingJoint { links, joints }));
     }
     tables.iter().map(joint).collect()
 }
 
+/// Keys of a joint with a motor, and the key of its gain.
+const MOTOR: [&str; 4] = [
+    "drive",
+    "stall_torque_nm",
+    "no_load_speed_rad_s",
+    "nominal_supply_v",
+];
+
 fn joint(table: &Table) -> Result<Joint> {
-    let gain = |field: JointField| table.required_number(field.key(), ABOVE_ZERO);
-    let known = |more: &[&'static str]| {
-        let figures = ["stall_torque_nm", "no_load_speed_rad_s", "nominal_supply_v"];
-        table.only(&[&["drive"], &figures[..], more].concat())
+    let drive = table.required("drive", table.choice("drive", &DRIVES)?)?;
+    let gain = match drive {
+        "position" => Some("gain_per_rad"),
+        "speed" => Some("gain_s_per_rad"),
+        _ => None,
     };
-    let drive = match table.choice("drive", &DRIVES)? {
-        None => return Err(table.lacks("drive")),
-        Some(name @ ("passive" | "torque")) => {
-            table.only(&["drive"])?;
-            if name == "passive" {
-                Drive::Passive
-            } else {
-                Drive::Torque
-            }
-        }
-        Some("duty") => {
-            known(&[])?;
-            Drive::Duty(motor(table)?)
-        }
-        Some("position") => {
-            known(&["gain_per_rad"])?;
-            Drive::Position {
-                gain_per_rad: gain(JointField::GainPerRad)?,
-                motor: motor(table)?,
-            }
-        }
-        Some(_) => {
-            known(&["gain_s_per_rad"])?;
-            Drive::Speed {
-                gain_s_per_rad: gain(JointField::GainSPerRad)?,
-                motor: motor(table)?,
-            }
-        }
+    let known = match drive {
+        "passive" | "torque" => &MOTOR[..1],
+        _ => &MOTOR,
+    };
+    table.only(&[known, gain.as_slice()].concat())?;
+    let gain = |key: &str| table.required_number(key, ABOVE_ZERO);
+    let drive = match drive {
+        "passive" => Drive::Passive,
+        "torque" => Drive::Torque,
+        "duty" => Drive::Duty(motor(table)?),
+        "position" => Drive::Position {
+            gain_per_rad: gain("gain_per_rad")?,
+            motor: motor(table)?,
+        },
+        _ => Drive::Speed {
+            gain_s_per_rad: gain("gain_s_per_rad")?,
+            motor: motor(table)?,
+        },
     };
     Ok(Joint { drive })
 }
@@ -154,53 +146,39 @@ const DRIVES: [(&str, &str); 5] = [
 ];
 
 fn motor(table: &Table) -> Result<Motor> {
+    let no_load_speed = table.number("no_load_speed_rad_s", ABOVE_ZERO)?;
     Ok(Motor {
         stall_torque_nm: table.required_number("stall_torque_nm", ABOVE_ZERO)?,
-        no_load_speed_rad_s: table
-            .number("no_load_speed_rad_s", ABOVE_ZERO)?
-            .unwrap_or(f64::INFINITY),
+        no_load_speed_rad_s: no_load_speed.unwrap_or(f64::INFINITY),
         nominal_supply_v: table.number("nominal_supply_v", ABOVE_ZERO)?,
     })
 }
 
-/// The parameters `[fit]` names, or else all of the effects'.
-fn free(root: &Table, source: &Source, model: &Model) -> Result<Vec<ParameterPath>> {
-    let named = match root.table("fit")? {
-        None => None,
-        Some(fit) => {
-            fit.only(&["free"])?;
-            fit.texts("free")?
-        }
-    };
-    let Some(named) = named else {
-        return Ok(model
-            .effects
-            .iter()
-            .flat_map(ParameterPath::of_effect)
-            .collect());
+/// The parameters that `[fit]` names, or else all of the effects'.
+fn free(root: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
+    let fit = root.table("fit")?;
+    if let Some(fit) = &fit {
+        fit.only(&["free"])?;
+    }
+    let Some(named) = fit.map(|fit| fit.texts("free")).transpose()?.flatten() else {
+        let effects = model.effects.iter();
+        return Ok(effects.flat_map(ParameterPath::of_effect).collect());
     };
     let mut free = Vec::new();
     for (text, span) in named {
-        let refused = |what: String, remedy: &str| Err(source.error(span.clone(), what, remedy));
-        let path: ParameterPath = match text.parse() {
-            Ok(path) => path,
-            Err(error) => return refused(error.to_string(), error.remedy().unwrap_or_default()),
+        let parsed = super::address::read(text);
+        let parameter = parsed.map_err(|reason| root.refused(span.clone(), reason))?;
+        let path = text.to_string();
+        let reason = match parameter.get(model) {
+            None => ModelReason::FreeAbsent { path },
+            Some(value) if !value.is_finite() => ModelReason::FreeInfinite { path },
+            Some(_) if free.contains(&parameter) => ModelReason::FreeTwice { path },
+            Some(_) => {
+                free.push(parameter);
+                continue;
+            }
         };
-        match path.get(model) {
-            None => {
-                let what = format!("`{text}` is not in this model");
-                return refused(what, "add its link, drive or effect, or remove it here");
-            }
-            Some(value) if !value.is_finite() => {
-                let what = format!("`{text}` is infinite, so nothing can be fitted");
-                return refused(what, "give it a value to start from");
-            }
-            Some(_) if free.contains(&path) => {
-                let what = format!("`{text}` is named twice");
-                return refused(what, "remove one");
-            }
-            Some(_) => free.push(path),
-        }
+        return Err(root.refused(span, reason));
     }
     Ok(free)
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::model::{PathReason, TomlReason};
 use proptest::prelude::*;
 
 const GOOD: &str = include_str!("../testdata/full.toml");
@@ -68,7 +69,8 @@ fn what_is_left_out_takes_its_default() {
     assert_eq!(free, ["coulomb@1.torque_nm", "delay@2.delay_s"]);
 }
 
-/// Replace this by that in the good file; the complaint's place, message and remedy must hold these.
+/// Replace this by that in the good file; the complaint's place, message and remedy must hold
+/// these.
 #[rustfmt::skip]
 const REFUSED: &[(&str, &str, &str, &str, &str)] = &[
     // Keys.
@@ -170,6 +172,28 @@ fn wrong_files_are_refused_at_the_place_with_a_remedy() {
         }
     }
     assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn a_reason_can_be_matched_on() {
+    let reason = |this: &str, that: &str| parse(&GOOD.replacen(this, that, 1)).unwrap_err();
+    let error = reason("mass_kg = 0.2", "mass_kg = -1");
+    let limits = Limits::above(0.0, 1e3);
+    let (key, value) = ("mass_kg".to_string(), -1.0);
+    let out_of_range = TomlReason::OutOfRange { key, value, limits };
+    assert_eq!(error.reason::<TomlReason>(), Some(&out_of_range));
+    assert_eq!(error.reason::<ModelReason>(), None);
+    let error = reason("joint = 2\ndelay", "joint = 1\ndelay");
+    let unsuited = ModelReason::UnsuitedJoint {
+        id: "delay",
+        wanted: "driven",
+        joint: 0,
+        drive: "passive",
+    };
+    assert_eq!(error.reason(), Some(&unsuited));
+    let error = reason("link1.inertia_kg_m2", "mass_kg");
+    let text = "mass_kg".to_string();
+    assert_eq!(error.reason(), Some(&PathReason::NoParameter { text }));
 }
 
 #[test]

@@ -1,10 +1,23 @@
 //! The page around the scene.
 
 use super::scene::Scene;
-use maud::{DOCTYPE, PreEscaped, html as markup};
+use crate::plot;
+use crate::report::page::self_contained;
+use maud::{Markup, PreEscaped, html as markup};
 
 const STYLE: &str = include_str!("view.css");
 const SCRIPT: &str = include_str!("view.js");
+/// Keys and what they do.
+const KEYS: [(&[&str], &str); 8] = [
+    (&["Space"], "play, pause"),
+    (&["←", "→"], "a sample; with Shift ten"),
+    (&["Home", "End"], "start, end"),
+    (&["-", "+"], "slower, faster"),
+    (&["T"], "trail"),
+    (&["C"], "centres of mass"),
+    (&["M"], "next motion"),
+    (&["D"], "light, dark"),
+];
 
 /// A self-contained page that plays `scene`. `command` is the line that makes it again.
 ///
@@ -13,56 +26,43 @@ const SCRIPT: &str = include_str!("view.js");
 pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
     // What could end the script element is written otherwise.
     let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
-    let page = markup! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (scene.title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { (scene.title) }
-                    select #motion aria-label="Motion" {}
-                    div #legend {}
-                    button #theme title="Light or dark (D)" aria-label="Light or dark" { "◐" }
+    let style = markup! { (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) };
+    let body = markup! {
+        header {
+            h1 { (scene.title) }
+            select #motion aria-label="Motion" {}
+            div #legend {}
+            button #theme title="Light or dark (D)" aria-label="Light or dark" { "◐" }
+        }
+        main {
+            canvas #stage aria-label="The robot" {}
+            aside { div #drives {} table #angles {} (keys()) }
+        }
+        canvas #chart aria-label="Angles over time" {}
+        footer {
+            button #play title="Play, pause (Space)" { "▶" }
+            input #scrub type="range" min="0" max="1000" value="0" step="1" aria-label="Time";
+            output #clock {}
+            select #speed aria-label="Speed" {}
+        }
+        p.note { code { (command) } }
+        noscript { p { "This page draws with a script of its own; allow it to run." } }
+        script type="application/json" id="scene" { (PreEscaped(data)) }
+        script { (PreEscaped(SCRIPT)) }
+    };
+    Ok(self_contained(&scene.title, &style, &body))
+}
+
+fn keys() -> Markup {
+    markup! {
+        details {
+            summary { "Keys" }
+            dl {
+                @for (keys, what) in KEYS {
+                    dt { @for key in keys { kbd { (key) } " " } }
+                    dd { (what) }
                 }
-                main {
-                    canvas #stage aria-label="The robot" {}
-                    aside {
-                        div #drives {}
-                        table #angles {}
-                        details {
-                            summary { "Keys" }
-                            dl {
-                                dt { kbd { "Space" } } dd { "play, pause" }
-                                dt { kbd { "←" } " " kbd { "→" } } dd { "a sample; with Shift ten" }
-                                dt { kbd { "Home" } " " kbd { "End" } } dd { "start, end" }
-                                dt { kbd { "-" } " " kbd { "+" } } dd { "slower, faster" }
-                                dt { kbd { "T" } } dd { "trail" }
-                                dt { kbd { "C" } } dd { "centres of mass" }
-                                dt { kbd { "M" } } dd { "next motion" }
-                                dt { kbd { "D" } } dd { "light, dark" }
-                            }
-                        }
-                    }
-                }
-                canvas #chart aria-label="Angles over time" {}
-                footer {
-                    button #play title="Play, pause (Space)" { "▶" }
-                    input #scrub type="range" min="0" max="1000" value="0" step="1" aria-label="Time";
-                    output #clock {}
-                    select #speed aria-label="Speed" {}
-                }
-                p.note { code { (command) } }
-                noscript { p { "This page draws with a script of its own; allow it to run." } }
-                script type="application/json" id="scene" { (PreEscaped(data)) }
-                script { (PreEscaped(SCRIPT)) }
             }
         }
-    };
-    Ok(page.into_string())
+    }
 }

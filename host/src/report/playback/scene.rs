@@ -17,7 +17,8 @@ pub struct Scene {
     pub links: Vec<DrawnLink>,
     /// Whether the first joint turns freely on a bar; else a drive holds it.
     pub on_bar: bool,
-    /// Whether to draw a head below the shoulder: three links that hang or stand on a bar by the first.
+    /// Whether to draw a head below the shoulder: three links that hang or stand on a bar by the
+    /// first.
     pub head: bool,
     /// What can be played.
     pub motions: Vec<DrawnMotion>,
@@ -41,7 +42,7 @@ pub struct DrawnMotion {
     pub name: String,
     /// What moves along, the measurement first.
     pub tracks: Vec<Track>,
-    /// What the drives were told.
+    /// What the drives were commanded.
     pub inputs: Vec<Input>,
 }
 
@@ -54,7 +55,7 @@ pub enum Kind {
     /// A model along the log's inputs.
     Model,
     /// Another log.
-    Beside,
+    Overlay,
 }
 
 /// Angles over time.
@@ -99,126 +100,102 @@ impl Scene {
                 .iter()
                 .map(|motion| DrawnMotion {
                     name: motion.name.clone(),
-                    tracks: vec![of_motion(
-                        model,
-                        motion,
-                        "measured".to_string(),
-                        Kind::Measured,
-                    )],
+                    tracks: vec![measured(model, motion, "measured", Kind::Measured)],
                     inputs: inputs(model, motion),
                 })
                 .collect(),
         }
     }
 
-    /// Adds what a model foretold for each motion.
+    /// Adds what a model predicts for each motion.
     pub fn add_model(&mut self, model: &Model, comparison: &Comparison) {
         for motion in &mut self.motions {
-            let traces: Vec<_> = comparison
+            let own = comparison
                 .traces
                 .iter()
-                .filter(|trace| trace.motion == motion.name)
-                .collect();
-            let Some(first) = traces
-                .first()
-                .filter(|_| traces.len() == model.link_count())
-            else {
+                .filter(|trace| trace.motion == motion.name);
+            let traces: Vec<_> = own.collect();
+            if traces.len() != model.link_count() {
                 continue;
-            };
-            let joint_rad = traces.iter().map(|t| t.predicted_rad.clone()).collect();
-            let name = comparison.model.clone();
-            let time_s = first.time_s.clone();
+            }
+            let joint_rad: Vec<_> = traces.iter().map(|t| t.predicted_rad.as_slice()).collect();
+            let (name, time_s) = (&comparison.model, &traces[0].time_s);
             motion
                 .tracks
-                .push(track(model, name, Kind::Model, time_s, joint_rad));
+                .push(track(model, name, Kind::Model, time_s, &joint_rad));
         }
     }
 
-    /// Adds the motions of another log, the first beside the first and so on.
-    pub fn add_beside(&mut self, model: &Model, others: &[Motion]) {
+    /// Adds the motions of another log, the first over the first and so on.
+    pub fn add_overlay(&mut self, model: &Model, others: &[Motion]) {
         for (motion, other) in self.motions.iter_mut().zip(others) {
-            let name = other.name.clone();
             motion
                 .tracks
-                .push(of_motion(model, other, name, Kind::Beside));
+                .push(measured(model, other, &other.name, Kind::Overlay));
         }
     }
 }
 
 fn links(model: &Model) -> Vec<DrawnLink> {
-    model
-        .links
+    let links = model.links.iter().map(|link| DrawnLink {
+        // A last link may come without a length: an even rod's is twice its centre of mass.
+        length_m: match link.length_m {
+            0.0 => 2.0 * link.com_m.abs(),
+            length => length,
+        },
+        com_m: link.com_m,
+        mass_kg: link.mass_kg,
+    });
+    links.collect()
+}
+
+/// Samples that are kept: every n-th.
+fn thinned(values: &[f64]) -> Vec<f64> {
+    let stride = values.len().div_ceil(MOST_SAMPLES).max(1);
+    values.iter().copied().step_by(stride).collect()
+}
+
+/// To five decimals, finer than can be seen.
+fn rounded(values: &[f64]) -> Vec<f64> {
+    values
         .iter()
-        .map(|link| DrawnLink {
-            // A last link may come without a length: an even rod's is twice its centre of mass.
-            length_m: match link.length_m {
-                0.0 => 2.0 * link.com_m.abs(),
-                length => length,
-            },
-            com_m: link.com_m,
-            mass_kg: link.mass_kg,
-        })
+        .map(|value| (value * 1e5).round() / 1e5)
         .collect()
 }
 
-fn stride(samples: usize) -> usize {
-    samples.div_ceil(MOST_SAMPLES).max(1)
+fn measured(model: &Model, motion: &Motion, name: &str, kind: Kind) -> Track {
+    let joint_rad: Vec<Vec<f64>> = motion.position_rad.iter().map(|q| thinned(q)).collect();
+    let joint_rad: Vec<&[f64]> = joint_rad.iter().map(Vec::as_slice).collect();
+    track(model, name, kind, &thinned(&motion.time_s), &joint_rad)
 }
 
-fn of_motion(model: &Model, motion: &Motion, name: String, kind: Kind) -> Track {
-    let thin = |values: &[f64]| -> Vec<f64> {
-        let every = values.iter().copied().step_by(stride(values.len()));
-        every.collect()
-    };
-    let joint_rad = motion
-        .position_rad
-        .iter()
-        .map(|values| thin(values))
-        .collect();
-    track(model, name, kind, thin(&motion.time_s), joint_rad)
-}
-
-/// Times from the first, angles rounded to what can be seen.
-fn track(
-    model: &Model,
-    name: String,
-    kind: Kind,
-    time_s: Vec<f64>,
-    joint_rad: Vec<Vec<f64>>,
-) -> Track {
+/// Times from the first; the links' angles from the joints', which are relative or absolute.
+fn track(model: &Model, name: &str, kind: Kind, time_s: &[f64], joint_rad: &[&[f64]]) -> Track {
     let first = time_s.first().copied().unwrap_or(0.0);
-    let round = |value: f64, places: f64| (value * places).round() / places;
+    let mut from = vec![model.angle_zero.from_hanging_rad(); time_s.len()];
     let mut link_rad = Vec::new();
-    let mut before = vec![model.angle_zero.from_hanging_rad(); time_s.len()];
-    for (joint, angles) in joint_rad.iter().enumerate() {
-        let own: Vec<f64> = match model.angles {
-            Angles::Relative => angles.iter().zip(&before).map(|(a, b)| a + b).collect(),
-            Angles::Absolute => {
-                let zero = model.angle_zero.from_hanging_rad();
-                angles.iter().map(|a| a + zero).collect()
-            }
-        };
-        link_rad.push(own.iter().map(|a| round(*a, 1e5)).collect());
-        if joint == 0 || model.angles == Angles::Relative {
-            before = own;
+    for angles in joint_rad {
+        let own: Vec<f64> = angles
+            .iter()
+            .zip(&from)
+            .map(|(angle, from)| angle + from)
+            .collect();
+        link_rad.push(rounded(&own));
+        if model.angles == Angles::Relative {
+            from = own;
         }
     }
-    let joint_rad = joint_rad
-        .into_iter()
-        .map(|angles| angles.into_iter().map(|a| round(a, 1e5)).collect())
-        .collect();
     Track {
-        name,
+        name: name.to_string(),
         kind,
-        time_s: time_s.iter().map(|t| round(t - first, 1e5)).collect(),
+        time_s: rounded(&time_s.iter().map(|time| time - first).collect::<Vec<_>>()),
         link_rad,
-        joint_rad,
+        joint_rad: joint_rad.iter().map(|angles| rounded(angles)).collect(),
     }
 }
 
 fn inputs(model: &Model, motion: &Motion) -> Vec<Input> {
     let of = |(joint, values): (usize, &Option<Vec<f64>>)| {
-        let values = values.as_ref()?;
         let (what, unit) = match model.joints[joint].drive {
             Drive::Passive => return None,
             Drive::Torque => ("torque", "N m"),
@@ -226,12 +203,11 @@ fn inputs(model: &Model, motion: &Motion) -> Vec<Input> {
             Drive::Position { .. } => ("goal", "rad"),
             Drive::Speed { .. } => ("goal", "rad/s"),
         };
-        let thin = values.iter().step_by(stride(values.len()));
         Some(Input {
             joint: joint + 1,
             what,
             unit,
-            values: thin.map(|v| (v * 1e5).round() / 1e5).collect(),
+            values: rounded(&thinned(values.as_ref()?)),
         })
     };
     motion.input.iter().enumerate().filter_map(of).collect()
@@ -240,7 +216,7 @@ fn inputs(model: &Model, motion: &Motion) -> Vec<Input> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Source;
+    use crate::log::MotionSource;
     use std::f64::consts::PI;
     use std::path::Path;
 
@@ -249,7 +225,7 @@ mod tests {
     fn motion() -> Motion {
         Motion {
             name: "a.csv".into(),
-            source: Source {
+            source: MotionSource {
                 path: "a.csv".into(),
                 sha256: String::new(),
                 lines: (1, 2),

@@ -5,7 +5,7 @@
   const stage = $("stage"), chart = $("chart"), scrub = $("scrub");
   const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
   const TRAIL_S = 1.2;
-  const TONES = { measured: ["--measured"], model: ["--model", "--third"], beside: ["--beside", "--third"] };
+  const TONES = { measured: ["--ink"], model: ["--orange", "--green"], overlay: ["--blue", "--green"] };
   const state = { motion: 0, time: 0, speed: 1, playing: false, trail: true, com: true, shown: [], last: 0 };
   const hash = new URLSearchParams(location.hash.slice(1));
 
@@ -204,7 +204,7 @@
 
   const drawTrail = (pen, to, track) => {
     const from = before(track.time_s, state.time - TRAIL_S), until = before(track.time_s, state.time);
-    pen.strokeStyle = track.kind === "measured" ? colour("--trail") : colour(toneOf(track));
+    pen.strokeStyle = track.kind === "measured" ? colour("--blue") : colour(toneOf(track));
     pen.lineWidth = 2.2; pen.lineCap = "round";
     let last = null;
     for (let k = from; k <= until; k++) {
@@ -276,7 +276,7 @@
         pen.stroke(); pen.globalAlpha = 1;
       });
       pen.restore();
-      pen.strokeStyle = colour("--beside"); pen.lineWidth = 1.5;
+      pen.strokeStyle = colour("--blue"); pen.lineWidth = 1.5;
       pen.beginPath(); pen.moveTo(X(state.time), top - 4); pen.lineTo(X(state.time), bottom); pen.stroke();
     });
   };
@@ -297,7 +297,7 @@
     const shown = motion().tracks.filter((_, i) => state.shown[i]);
     const rows = first.joint_rad.map((_, joint) => `<tr><td>joint ${joint + 1}</td>` + shown.map((track) =>
       `<td style="color:var(${toneOf(track)})">${number(between(track, [track.joint_rad[joint]], state.time)[0] * 180 / Math.PI, 2)}°</td>`).join("") + "</tr>");
-    $("angles").innerHTML = `<tr><th>Angle</th>${shown.map((t) => `<th>${t.kind === "measured" ? "measured" : t.kind === "model" ? "model" : "beside"}</th>`).join("")}</tr>${rows.join("")}`;
+    $("angles").innerHTML = `<tr><th>Angle</th>${shown.map((t) => `<th>${t.kind === "measured" ? "measured" : t.kind === "model" ? "model" : "overlay"}</th>`).join("")}</tr>${rows.join("")}`;
     $("clock").textContent = `${state.time.toFixed(2)} / ${end().toFixed(2)} s`;
     scrub.value = Math.round(1000 * state.time / end());
     $("play").textContent = state.playing ? "❚❚" : "▶";
@@ -323,7 +323,7 @@
       node.className = "drive";
       node.innerHTML = `<div><span>joint ${input.joint}, ${input.what}</span><b></b></div>
         <svg viewBox="0 0 200 10" preserveAspectRatio="none"><rect width="200" height="10" rx="2" fill="var(--grid)"/>
-        <rect class="level" y="0" height="10" fill="var(--beside)"/><line x1="100" x2="100" y2="10" stroke="var(--soft)"/></svg>`;
+        <rect class="level" y="0" height="10" fill="var(--blue)"/><line x1="100" x2="100" y2="10" stroke="var(--soft)"/></svg>`;
       return node;
     }));
     measure(); legend(); draw();

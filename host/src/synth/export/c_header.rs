@@ -6,7 +6,27 @@ use super::values::{head, list};
 use crate::synth::{Design, Fixed};
 use std::fmt::Write as _;
 
-/// `gains.h`: C99; right shifts of negative values must be arithmetic, as they are with gcc and clang.
+const LAW: &str = "\
+/* The inputs u for the states x, both in steps. */
+static inline void gains_control(const int16_t x[GAINS_STATES], int16_t u[GAINS_INPUTS])
+{
+    for (uint8_t i = 0; i < GAINS_INPUTS; i++) {
+        int32_t sum = gains_bias[i];
+        for (uint8_t j = 0; j < GAINS_STATES; j++) {
+            int32_t off = (int32_t)x[j] - gains_x0[j];
+            if (off > INT16_MAX) off = INT16_MAX;
+            if (off < INT16_MIN) off = INT16_MIN;
+            sum -= (int32_t)gains_k[i][j] * off;
+        }
+        sum >>= gains_shift[i];
+        if (sum < gains_limits[i][0]) sum = gains_limits[i][0];
+        if (sum > gains_limits[i][1]) sum = gains_limits[i][1];
+        u[i] = (int16_t)sum;
+    }
+}";
+
+/// `gains.h`: C99; right shifts of negative values must be arithmetic, as they are with gcc and
+/// clang.
 pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
     let law = &fixed.law;
     let (m, n) = law.k.shape();
@@ -44,23 +64,7 @@ static const int16_t gains_limits[GAINS_INPUTS][2] = {{{}}};
 /* The operating point, in steps. */
 static const int16_t gains_x0[GAINS_STATES] = {{{}}};
 
-/* The inputs u for the states x, both in steps. */
-static inline void gains_control(const int16_t x[GAINS_STATES], int16_t u[GAINS_INPUTS])
-{{
-    for (uint8_t i = 0; i < GAINS_INPUTS; i++) {{
-        int32_t sum = gains_bias[i];
-        for (uint8_t j = 0; j < GAINS_STATES; j++) {{
-            int32_t off = (int32_t)x[j] - gains_x0[j];
-            if (off > INT16_MAX) off = INT16_MAX;
-            if (off < INT16_MIN) off = INT16_MIN;
-            sum -= (int32_t)gains_k[i][j] * off;
-        }}
-        sum >>= gains_shift[i];
-        if (sum < gains_limits[i][0]) sum = gains_limits[i][0];
-        if (sum > gains_limits[i][1]) sum = gains_limits[i][1];
-        u[i] = (int16_t)sum;
-    }}
-}}
+{LAW}
 
 /* States, and the inputs that a right law gives for them. */
 static const int16_t gains_golden_x[GAINS_GOLDEN][GAINS_STATES] = {{

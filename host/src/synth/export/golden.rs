@@ -14,7 +14,8 @@ pub struct Golden {
     pub u: Vec<i64>,
 }
 
-/// The corners of all words, the operating point, and seeded states near and far: the same for the same law.
+/// The corners of all words, the operating point, and seeded states near and far: the same for the
+/// same law.
 pub fn golden(law: &FixedLaw) -> Vec<Golden> {
     let most = 1_i64 << (law.bits - 1);
     let mut random = SplitMix(u64::from(law.fingerprint()));

@@ -1,6 +1,7 @@
 //! A design written for people, for other programs, and for firmware.
 
 mod c_header;
+mod format;
 mod golden;
 mod rust_file;
 mod state_space;

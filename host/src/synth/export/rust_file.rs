@@ -6,7 +6,8 @@ use super::values::{head, list};
 use crate::synth::{Design, Fixed};
 use std::fmt::Write as _;
 
-/// `gains.rs`: table, fingerprint, golden vectors, the law itself, and `check`, which runs the vectors.
+/// `gains.rs`: table, fingerprint, golden vectors, the law itself, and `check`, which runs the
+/// vectors.
 pub fn rust_file(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
     let law = &fixed.law;
     let (m, n) = law.k.shape();

@@ -2,7 +2,7 @@
 
 use super::Provenance;
 use crate::synth::Discrete;
-use crate::synth::{Design, Estimation, Fixed, Signal};
+use crate::synth::{Design, Estimation, Fixed, OmittedEffect, Signal};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -24,7 +24,8 @@ pub fn csv(design: &Design) -> String {
     text
 }
 
-/// Everything, matrices as lists of rows. `plant` is what python-control's `ss(a, b, c, d, ts)` takes.
+/// Everything, matrices as lists of rows. `plant` is what python-control's `ss(a, b, c, d, ts)`
+/// takes.
 pub fn json(design: &Design, made: &Provenance) -> Value {
     let [q, r] = &design.weights;
     let gains = &design.gains;
@@ -34,6 +35,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
         "inputs": signals(&design.inputs),
         "x0": design.x0,
         "u0": design.u0,
+        "omitted_effects": design.omitted.iter().map(omitted).collect::<Vec<Value>>(),
         "q": rows(q),
         "r": rows(r),
         "k": rows(&gains.k),
@@ -59,6 +61,14 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
             "sha256": made.sha256,
             "command": made.command,
         },
+    })
+}
+
+fn omitted(omitted: &OmittedEffect) -> Value {
+    json!({
+        "effect": omitted.effect.info().id,
+        "joint": omitted.joint + 1,
+        "why": omitted.why.to_string(),
     })
 }
 
@@ -131,7 +141,8 @@ fn complex(values: &[Complex<f64>]) -> Vec<[f64; 2]> {
     values.iter().map(|z| [z.re, z.im]).collect()
 }
 
-/// A script that makes `plant`, `K` and, with an estimator, `controller`, in MATLAB's Control System Toolbox or Octave's control package.
+/// A script that makes `plant`, `K` and, with an estimator, `controller`, in MATLAB's Control
+/// System Toolbox or Octave's control package.
 pub fn matlab(design: &Design, made: &Provenance) -> String {
     let mut text = format!(
         "% `{}` by handstand {} from {}\n% sha256 {}\n% {}\n",

@@ -1,7 +1,8 @@
 //! A design for people.
 
+use super::format::{digits, plain, several};
 use crate::number::short;
-use crate::synth::{Design, Estimation, Fixed, Mode, Reach};
+use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};
 
@@ -33,6 +34,7 @@ pub fn text(design: &Design) -> String {
             plant.delayed_inputs * design.inputs.len()
         ),
     });
+    parts.extend(omitted_lines(&design.omitted));
     parts.push(String::new());
     parts.push(gain_table(design));
     parts.push(String::new());
@@ -47,6 +49,27 @@ pub fn text(design: &Design) -> String {
         parts.extend(fixed_lines(design, fixed));
     }
     parts.join("\n")
+}
+
+/// A line per effect that the design leaves out, its joints together.
+pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
+    let kinds = omitted.iter().map(|o| (o.effect, o.why));
+    let mut lines = Vec::new();
+    for (at, (effect, why)) in kinds.enumerate() {
+        let same = |o: &&OmittedEffect| (o.effect, o.why) == (effect, why);
+        if omitted[..at].iter().any(|o| same(&o)) {
+            continue;
+        }
+        let joints = omitted.iter().filter(same).map(|o| o.joint + 1);
+        let joints: Vec<String> = joints.map(|joint| joint.to_string()).collect();
+        lines.push(format!(
+            "The design leaves out {} at joint{} {}: {why}",
+            effect.info().title,
+            if joints.len() > 1 { "s" } else { "" },
+            joints.join(", ")
+        ));
+    }
+    lines
 }
 
 fn gain_table(design: &Design) -> String {
@@ -111,34 +134,31 @@ fn plant_lines(design: &Design) -> Vec<String> {
         ),
         format!("Zeros to driven q     {kind}"),
         format!(
-            "Inputs reach          {}",
-            reach(&design.controllability, design)
+            "Controllability       {}",
+            controllability(&design.controllability, design)
         ),
         format!(
-            "Angles show           {}",
-            reach(&design.observability, design)
+            "Observability         {}",
+            controllability(&design.observability, design)
         ),
     ]
 }
 
-fn reach(reach: &Reach, design: &Design) -> String {
+fn controllability(of: &Controllability, design: &Design) -> String {
     let n = design.plant.a.nrows();
     // Mirrored modes are equally hard: rounded, the growing one is named, which comes first.
-    let size = |mode: &Mode| (1e6 * mode.measure.max(f64::MIN_POSITIVE).ln()).round();
-    let weakest = reach
-        .modes
-        .iter()
-        .min_by(|a, b| size(a).total_cmp(&size(b)));
-    let all = match reach.is_full() {
+    let size = |mode: &Mode| (1e6 * mode.margin.max(f64::MIN_POSITIVE).ln()).round();
+    let weakest = of.modes.iter().min_by(|a, b| size(a).total_cmp(&size(b)));
+    let all = match of.is_full() {
         true => "every mode".to_string(),
-        false => format!("NOT every mode: rank {} of {n}", reach.rank),
+        false => format!("NOT every mode: rank {} of {n}", of.rank),
     };
     match weakest {
         None => all,
         Some(mode) => format!(
-            "{all}; hardest {} 1/s, {} from lost",
+            "{all}; weakest {} 1/s, margin {}",
             several(&[mode.pole]),
-            short(mode.measure)
+            short(mode.margin)
         ),
     }
 }
@@ -249,62 +269,4 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
             law.fingerprint()
         ),
     ]
-}
-
-/// Numbers, real or complex, conjugates together; many are counted.
-fn several(values: &[Complex<f64>]) -> String {
-    const MOST: usize = 8;
-    const NOTHING: f64 = 1e-6;
-    let largest = values.iter().fold(0.0, |most: f64, z| most.max(z.norm()));
-    let mut said = Vec::new();
-    for value in values {
-        // Past inputs bring poles at 0, which rounding scatters.
-        if value.norm() < NOTHING * largest {
-            said.push("0".to_string());
-            continue;
-        }
-        let real = value.im.abs() <= 1e-9 * value.norm();
-        match real {
-            true => said.push(number(value.re)),
-            false if value.im > 0.0 => {
-                said.push(format!("{}±{}i", number(value.re), number(value.im)));
-            }
-            false => {}
-        }
-    }
-    let more = said.len().saturating_sub(MOST);
-    said.truncate(MOST);
-    match more {
-        0 => said.join(", "),
-        more => format!("{}, and {more} more", said.join(", ")),
-    }
-}
-
-fn number(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".to_string(),
-        size if (1e-4..1e6).contains(&size) => format!("{value:.4}"),
-        _ => format!("{value:.3e}"),
-    }
-}
-
-/// Eight significant digits.
-fn digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let power = value.abs().log10().floor() as i32;
-    match (-4..7).contains(&power) {
-        true => format!("{value:.*}", (7 - power).clamp(0, 11) as usize),
-        false => format!("{value:.7e}"),
-    }
-}
-
-/// A given number, to six digits at most.
-fn plain(value: f64) -> String {
-    let text = format!("{value:.6}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
-    }
 }

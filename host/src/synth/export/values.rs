@@ -1,6 +1,7 @@
 //! Values that every file of gains names, in its own syntax.
 
 use super::Provenance;
+use super::text::omitted_lines;
 use crate::synth::{Design, Fixed, Signal};
 use std::fmt::Display;
 
@@ -16,7 +17,7 @@ pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<Str
     let names =
         |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));
     let plain = |values: &[f64]| list(values.iter());
-    vec![
+    let mut lines = vec![
         format!(
             "Gains of `{}`: u = sat(u0 - K (x - x0)) in fixed point.",
             design.model
@@ -48,5 +49,7 @@ pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<Str
             "Spectral radius of the loop: {:.6} as designed, {:.6} with these gains.",
             fixed.loss.radius, fixed.loss.radius_fixed
         ),
-    ]
+    ];
+    lines.extend(omitted_lines(&design.omitted));
+    lines
 }

@@ -1,6 +1,7 @@
 //! Products and solutions of small and large dense matrices, faster than the general ones.
 //!
-//! Small matrices lose more to packing and calls than to arithmetic; large triangular solutions are mostly products.
+//! Small matrices lose more to packing and calls than to arithmetic; large triangular solutions are
+//! mostly products.
 
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, Dyn, LU};
 

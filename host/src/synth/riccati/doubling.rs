@@ -1,13 +1,14 @@
-//! Riccati equations by structure-preserving doubling: fast, and as accurate as their conditioning allows.
+//! Riccati equations by structure-preserving doubling: fast, and as accurate as their conditioning
+//! allows.
 //!
-//! Chu, Fan, Lin, Wang, International Journal of Control 77 (2004) 767 (discrete); Chu, Fan, Lin, Linear Algebra and
-//! its Applications 396 (2005) 55 (continuous, by Cayley's transform).
+//! Chu, Fan, Lin, Wang, International Journal of Control 77 (2004) 767 (discrete); Chu, Fan, Lin,
+//! Linear Algebra and its Applications 396 (2005) 55 (continuous, by Cayley's transform).
 
 use super::dense::{product, solve_both};
 use nalgebra::DMatrix;
 
-/// Most doublings: each squares the slowest closed-loop pole. One within 1e-6 of the unit circle takes 24; one on it, 27 and
-/// a wrong answer.
+/// Most doublings: each squares the slowest closed-loop pole. One within 1e-6 of the unit circle
+/// takes 24; one on it, 27 and a wrong answer.
 const MOST_DOUBLINGS: usize = 25;
 
 /// Where Newton's iteration takes over.

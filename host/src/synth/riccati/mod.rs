@@ -1,8 +1,9 @@
 //! Riccati equations, solved to the last digits that the gains can have.
 //!
-//! `doubling` finds the stabilising solution fast, to the digits that the plant's conditioning leaves of double
-//! precision; `newton` then corrects it against a residual taken in twice the digits (`twofold`), each correction
-//! being a Stein equation (`stein`). Of 60 states that is the difference between two digits of K and ten.
+//! `doubling` finds the stabilising solution fast, to the digits that the plant's conditioning
+//! leaves of double precision; `newton` then corrects it against a residual taken in twice the
+//! digits (`twofold`), each correction being a Stein equation (`stein`). Of 60 states that is the
+//! difference between two digits of K and ten.
 
 mod dense;
 mod doubling;
@@ -12,4 +13,4 @@ mod stein;
 mod twofold;
 
 use doubling::symmetrise;
-pub(super) use problem::{Kind, Problem};
+pub(super) use problem::{Problem, TimeDomain};

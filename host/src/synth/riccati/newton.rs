@@ -1,9 +1,9 @@
-//! Newton's iteration on a Riccati equation (Kleinman, IEEE Trans. Automatic Control 13 (1968) 114; Hewer, ibid. 16
-//! (1971) 382), with residuals in twice the digits.
+//! Newton's iteration on a Riccati equation (Kleinman, IEEE Trans. Automatic Control 13 (1968) 114;
+//! Hewer, ibid. 16 (1971) 382), with residuals in twice the digits.
 
-use super::problem::{Kind, Problem, Solution, rms};
+use super::problem::{Problem, Solution, TimeDomain, rms};
 use super::stein::{lyapunov, stein};
-use super::twofold::{Split, Twofold};
+use super::twofold::{SplitMatrix, Twofold};
 use nalgebra::DMatrix;
 
 /// Far starts halve their distance at each step before the iteration turns quadratic.
@@ -17,12 +17,12 @@ const CORRECTION: f64 = 1e-4;
 
 /// Refines `x`; `None` if its gain does not stabilise or nothing settles.
 pub(super) fn refine(problem: &Problem<'_>, x: DMatrix<f64>) -> Option<Solution> {
-    let data = Data::new(problem);
+    let equation = Equation::new(problem);
     let mut x = Twofold::exact(x);
     let mut before: Option<DMatrix<f64>> = None;
     let mut moved_before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
-        let (k, left) = data.gain_and_residual(&x)?;
+        let (k, left) = equation.gain_and_residual(&x)?;
         let moved = before.map_or(f64::INFINITY, |before| {
             (&k - before).amax() / k.amax().max(f64::MIN_POSITIVE)
         });
@@ -37,9 +37,9 @@ pub(super) fn refine(problem: &Problem<'_>, x: DMatrix<f64>) -> Option<Solution>
                 k,
             });
         }
-        let correction = match problem.kind {
-            Kind::Discrete => stein(closed, left, CORRECTION)?,
-            Kind::Continuous => {
+        let correction = match problem.time {
+            TimeDomain::Discrete => stein(closed, left, CORRECTION)?,
+            TimeDomain::Continuous => {
                 let shift = rms(&closed).max(f64::MIN_POSITIVE);
                 lyapunov(&closed, &left, shift, CORRECTION)?
             }
@@ -51,31 +51,31 @@ pub(super) fn refine(problem: &Problem<'_>, x: DMatrix<f64>) -> Option<Solution>
 }
 
 /// What stays the same from step to step.
-struct Data<'a> {
+struct Equation<'a> {
     problem: &'a Problem<'a>,
     /// Transposes, split.
-    a: Split,
-    b: Split,
+    a: SplitMatrix,
+    b: SplitMatrix,
 }
 
-impl Data<'_> {
-    fn new<'a>(problem: &'a Problem<'a>) -> Data<'a> {
-        Data {
+impl Equation<'_> {
+    fn new<'a>(problem: &'a Problem<'a>) -> Equation<'a> {
+        Equation {
             problem,
-            a: Split::new(problem.a.transpose()),
-            b: Split::new(problem.b.transpose()),
+            a: SplitMatrix::new(problem.a.transpose()),
+            b: SplitMatrix::new(problem.b.transpose()),
         }
     }
 
     /// The gain that goes with X, and what X leaves in the equation.
     fn gain_and_residual(&self, x: &Twofold) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-        let Problem { kind, q, r, .. } = *self.problem;
+        let Problem { time, q, r, .. } = *self.problem;
         let ax = self.a.times(x);
         let bx = self.b.times(x);
         // The gain solves weight * K = moment.
-        let (weight, moment) = match kind {
-            Kind::Continuous => (Twofold::exact(r.clone()), bx),
-            Kind::Discrete => {
+        let (weight, moment) = match time {
+            TimeDomain::Continuous => (Twofold::exact(r.clone()), bx),
+            TimeDomain::Discrete => {
                 let xb = bx.transpose();
                 let weight = self.b.times(&xb).plus_exact(r);
                 (weight, self.a.times(&xb).transpose())
@@ -83,10 +83,10 @@ impl Data<'_> {
         };
         let (k, off) = solve(&weight, &moment)?;
         // With moment = weight * K + off: K' moment + off' K, where a small off may be rounded.
-        let spent = Split::new(k.transpose()).times_symmetric(&moment);
-        let left = match kind {
-            Kind::Continuous => ax.transpose().plus(1.0, &ax),
-            Kind::Discrete => self.a.times_symmetric(&ax.transpose()).plus(-1.0, x),
+        let spent = SplitMatrix::new(k.transpose()).times_symmetric(&moment);
+        let left = match time {
+            TimeDomain::Continuous => ax.transpose().plus(1.0, &ax),
+            TimeDomain::Discrete => self.a.times_symmetric(&ax.transpose()).plus(-1.0, x),
         };
         let left = left.plus_exact(q).plus(-1.0, &spent).rounded() - off.transpose() * &k;
         left.iter().all(|value| value.is_finite()).then(|| {
@@ -103,7 +103,7 @@ fn solve(weight: &Twofold, moment: &Twofold) -> Option<(DMatrix<f64>, DMatrix<f6
     let mut rounded = weight.rounded();
     super::symmetrise(&mut rounded);
     let factor = rounded.cholesky()?;
-    let hi = Split::new(weight.hi.clone());
+    let hi = SplitMatrix::new(weight.hi.clone());
     let off = |k: &DMatrix<f64>| {
         let product = hi.times(&Twofold::exact(k.clone()));
         moment.clone().plus(-1.0, &product).rounded() - &weight.lo * k

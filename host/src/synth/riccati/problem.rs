@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 /// In which time the plant runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::synth) enum Kind {
+pub(in crate::synth) enum TimeDomain {
     /// A'X + XA - XB R^-1 B'X + Q = 0.
     Continuous,
     /// X = A'XA - A'XB (R + B'XB)^-1 B'XA + Q.
@@ -15,7 +15,7 @@ pub(in crate::synth) enum Kind {
 /// The data of a Riccati equation: A n x n, B n x m, Q and R symmetric, R positive definite.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::synth) struct Problem<'a> {
-    pub kind: Kind,
+    pub time: TimeDomain,
     pub a: &'a DMatrix<f64>,
     pub b: &'a DMatrix<f64>,
     pub q: &'a DMatrix<f64>,
@@ -40,8 +40,8 @@ impl Problem<'_> {
         if let Some(solution) = direct.and_then(|x| newton::refine(self, x)) {
             return Some(solution);
         }
-        // Modes that Q does not see are left as they are by doubling, even if they grow. Newton's iteration needs
-        // only a gain that stabilises, such as one for a cost that sees everything.
+        // Modes that Q does not see are left as they are by doubling, even if they grow. Newton's
+        // iteration needs only a gain that stabilises, such as one for a cost that sees everything.
         let n = self.a.nrows();
         let size = self.q.amax().max(1e-3 * self.r.amax());
         let seen = self.q + DMatrix::identity(n, n) * size;
@@ -51,9 +51,9 @@ impl Problem<'_> {
     fn doubled(&self, q: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let mut g = self.b * self.r.clone().cholesky()?.solve(&self.b.transpose());
         doubling::symmetrise(&mut g);
-        match self.kind {
-            Kind::Discrete => doubling::doubling(self.a.clone(), g, q.clone()),
-            Kind::Continuous => {
+        match self.time {
+            TimeDomain::Discrete => doubling::doubling(self.a.clone(), g, q.clone()),
+            TimeDomain::Continuous => {
                 let size = rms(self.a).max(rms(&g).sqrt() * rms(q).sqrt());
                 let shifts = [1.0, 3.3, 0.31, 11.0].map(|factor| factor * size);
                 let shifts = shifts.into_iter().filter(|shift| *shift > 0.0);

@@ -1,10 +1,12 @@
-//! E = M'E M + F by doubling (Smith, SIAM Journal on Applied Mathematics 16 (1968) 198), and Lyapunov's equation.
+//! E = M'E M + F by doubling (Smith, SIAM Journal on Applied Mathematics 16 (1968) 198), and
+//! Lyapunov's equation.
 
 use super::dense::{product, transposed_product};
 use super::doubling::symmetrise;
 use nalgebra::DMatrix;
 
-/// Each doubling squares M: after 60, a pole within 1e-16 of the circle has been seen to decay or not.
+/// Each doubling squares M: after 60, a pole within 1e-16 of the circle has been seen to decay or
+/// not.
 const MOST_DOUBLINGS: usize = 60;
 
 /// The solution to about `accuracy`; `None` if M does not decay.

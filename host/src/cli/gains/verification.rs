@@ -1,0 +1,53 @@
+//! The verification of a design in words.
+
+use handstand::study::{Verification, Without};
+
+/// Whether the simulated loop is stabilised, from how far, and what limits it.
+pub fn text(verified: &Verification) -> String {
+    let degrees = |rad: f64| format!("{:.1} deg", rad.to_degrees());
+    let near = &verified.near;
+    let mut lines = vec![format!(
+        "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg: {}.",
+        near.runs,
+        match verified.stabilised {
+            true => "stabilised".to_string(),
+            false => format!(
+                "NOT stabilised: {} of them, {:.0} % fall",
+                near.stabilised,
+                100.0 * near.fallen_share
+            ),
+        }
+    )];
+    if let (Some(cycle), Some(torque)) = (near.limit_cycle_rad, near.rms_torque_nm) {
+        lines.push(format!(
+            "Limit cycle {:.2} deg peak to peak, {torque:.3} N m RMS (medians).",
+            cycle.to_degrees()
+        ));
+    }
+    lines.push(match verified.region_rad > 0.0 {
+        true => format!(
+            "Largest cube of starts of which 95 % are stabilised: within {}.",
+            degrees(verified.region_rad)
+        ),
+        false => "There is no cube of starts of which 95 % are stabilised.".to_string(),
+    });
+    if !verified.without.is_empty() {
+        let place = |without: &Without| match without.joint {
+            Some(joint) => format!("{} at joint {joint}", without.effect),
+            None => without.effect.to_string(),
+        };
+        lines.push(format!(
+            "Without the effects that the design leaves out: within {}.",
+            degrees(verified.region_as_designed_rad)
+        ));
+        lines.push(match verified.limiting() {
+            Some(limiting) => format!(
+                "It is limited by {}: without it within {}.",
+                place(limiting),
+                degrees(limiting.region_rad)
+            ),
+            None => "None of them alone limits it.".to_string(),
+        });
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,39 @@
+//! How much a diagnosis tries, and how many steps of progress that takes.
+
+/// Iterations of a first look at a candidate.
+pub(super) const LOOK: usize = 4;
+/// Iterations of a finalist.
+pub(super) const FINISH: usize = 25;
+/// Finalists of each size.
+pub(super) const FINALISTS: usize = 6;
+/// Hypotheses that get a second look.
+pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
+/// Sets from which larger ones grow.
+pub(super) const BEAM: usize = 5;
+/// Partners tried for each set of the beam.
+pub(super) const PARTNERS: usize = 5;
+/// Fewer training samples than this are few.
+pub(super) const FEW_SAMPLES: usize = 1500;
+/// Random starts of each candidate where samples are few, and their iterations.
+pub(super) const STARTS: usize = 100;
+pub(super) const START_ITERATIONS: usize = 30;
+
+/// Steps of progress are short fits. To evaluate a hypothesis takes as long as so many:
+pub(super) const EVALUATION_STEPS: usize = 2;
+/// The base model and the placebos, likewise.
+pub(super) const BASE_STEPS: usize = 10;
+/// The finals of one size.
+const FINALS_STEPS: usize = SECOND_LOOKS + FINALISTS * (1 + EVALUATION_STEPS);
+/// The residual structure.
+pub(super) const STRUCTURE_STEPS: usize = 10;
+
+/// Steps until sets of `size` are done.
+pub(super) fn steps_up_to(size: usize, candidates: usize) -> usize {
+    let larger = BEAM * PARTNERS + 2 * FINALS_STEPS;
+    BASE_STEPS + candidates + FINALS_STEPS + (size.max(1) - 1) * larger
+}
+
+/// Steps of a diagnosis with so many candidates, when it does not end early.
+pub(super) fn planned_steps(candidates: usize, most_effects: usize) -> usize {
+    steps_up_to(most_effects, candidates) + STRUCTURE_STEPS
+}

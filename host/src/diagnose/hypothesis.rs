@@ -1,0 +1,213 @@
+//! A set of effects added to the base model, everything refitted and evaluated on held-out motions.
+
+use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
+use crate::fitting::{Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals};
+use std::cmp::Ordering;
+
+/// A fitted set of effects.
+///
+/// It is searched on short windows, where the squared error has few false valleys, and evaluated over the longest
+/// useful horizon, where small effects show most.
+#[derive(Debug, Clone)]
+pub(super) struct Hypothesis {
+    /// The effects added to the base, in the order they were added.
+    pub set: Vec<Candidate>,
+    /// The fit on short windows.
+    pub search: Fit,
+    /// Its mean squared weighted residual.
+    pub search_mean: f64,
+    /// The fit over the evaluation horizon, once it has come that far.
+    pub evaluation: Option<Evaluation>,
+}
+
+/// A hypothesis over the evaluation horizon.
+#[derive(Debug, Clone)]
+pub(super) struct Evaluation {
+    pub fit: Fit,
+    pub training: BlockErrors,
+    pub held_out: Option<BlockErrors>,
+    /// Whether every added effect differs from nothing by more than its interval.
+    pub significant: bool,
+}
+
+impl Evaluation {
+    /// The blocks that decide: held-out ones where there are any.
+    pub fn deciding(&self) -> &BlockErrors {
+        self.held_out.as_ref().unwrap_or(&self.training)
+    }
+
+    /// Whether it leaves nothing but noise, on the motions fitted and on those held out.
+    pub fn is_noise(&self) -> bool {
+        let is_noise = |errors: &BlockErrors| errors.rms() < AT_NOISE_FLOOR;
+        is_noise(&self.training) && self.held_out.as_ref().is_none_or(is_noise)
+    }
+}
+
+impl Hypothesis {
+    /// Effects added, fitted on short windows.
+    pub fn new(set: Vec<Candidate>, search: Fit) -> Hypothesis {
+        Hypothesis {
+            set,
+            search_mean: search.residuals.mean_square(),
+            search,
+            evaluation: None,
+        }
+    }
+
+    /// Orders hypotheses by their error on the short windows, smallest first.
+    pub fn by_error(a: &Hypothesis, b: &Hypothesis) -> Ordering {
+        a.search_mean.total_cmp(&b.search_mean)
+    }
+
+    /// Number of values the added effects bring.
+    pub fn added_values(&self) -> usize {
+        self.set.iter().map(|c| c.parameters().len()).sum()
+    }
+
+    /// Names of the set.
+    pub fn names(&self) -> Vec<String> {
+        self.set.iter().map(ToString::to_string).collect()
+    }
+
+    /// Whether this hypothesis adds the same effects as that set.
+    pub fn adds(&self, set: &[Candidate]) -> bool {
+        self.set.len() == set.len() && set.iter().all(|c| self.set.contains(c))
+    }
+
+    /// The set with one more effect.
+    pub fn set_with(&self, candidate: Candidate) -> Vec<Candidate> {
+        let mut set = self.set.clone();
+        set.push(candidate);
+        set
+    }
+
+    /// Adds an effect at these values and refits everything on short windows, for at most `iterations`.
+    pub fn with(
+        &self,
+        candidate: Candidate,
+        values: &[f64],
+        data: &FitData,
+        iterations: usize,
+    ) -> Hypothesis {
+        let mut model = self.search.model.clone();
+        model.effects.push(candidate.instance(values));
+        let mut free = self.search.free.clone();
+        free.extend(candidate.paths());
+        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(iterations));
+        let search = fit(&model, &free, data, Some(nodes), options.rough());
+        Hypothesis::new(self.set_with(candidate), search)
+    }
+
+    /// Whether nothing but noise is left in the short windows it was searched on.
+    pub fn follows_windows(&self) -> bool {
+        self.search_mean.sqrt() < AT_NOISE_FLOOR
+    }
+
+    /// Goes on fitting where an earlier, short fit stopped.
+    pub fn resume(&mut self, data: &FitData, options: FitOptions) {
+        self.search = self.search.resume(data, options);
+        self.search_mean = self.search.residuals.mean_square();
+    }
+
+    /// This hypothesis less one of its effects, refitted from the values it has.
+    pub fn without(
+        &self,
+        leaving: usize,
+        base: &Hypothesis,
+        data: &FitData,
+        iterations: usize,
+    ) -> Hypothesis {
+        let mut set = self.set.clone();
+        let out = set.remove(leaving);
+        let mut model = self.search.model.clone();
+        model.effects.retain(|e| Candidate::from(e) != out);
+        let mut free = base.search.free.clone();
+        free.extend(set.iter().flat_map(|c| c.paths().collect::<Vec<_>>()));
+        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(iterations));
+        Hypothesis::new(set, fit(&model, &free, data, Some(nodes), options))
+    }
+
+    /// Refits over the evaluation horizon from the values found, and predicts the held-out motions.
+    pub fn evaluate(&mut self, training: &FitData, held_out: Option<&FitData>, iterations: usize) {
+        if self.evaluation.is_some() {
+            return;
+        }
+        let (search, options) = (&self.search, FitOptions::iterations(iterations));
+        // Start states carry over where the windows are the same.
+        let same = search.nodes.len() == training.windows.len();
+        let nodes = same.then_some(&search.nodes[..]);
+        let fit = fit(&search.model, &search.free, training, nodes, options);
+        let held_out = held_out
+            .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
+        self.evaluation = Some(Evaluation {
+            // One effect alone is judged by the error; only among several may one be idle.
+            significant: self.set.len() < 2 || significant(&self.set, &fit, training),
+            training: BlockErrors::of(&fit.residuals, training),
+            held_out,
+            fit,
+        });
+    }
+
+    /// The blocks that decide; `None` before it was evaluated.
+    pub fn deciding(&self) -> Option<&BlockErrors> {
+        self.evaluation.as_ref().map(Evaluation::deciding)
+    }
+
+    /// Mean squared weighted error where it counts; infinite before it was evaluated.
+    pub fn deciding_mean(&self) -> f64 {
+        self.deciding().map_or(f64::INFINITY, BlockErrors::mean)
+    }
+
+    /// Root-mean-square error where it counts, rad; infinite before it was evaluated.
+    pub fn deciding_rms_rad(&self) -> f64 {
+        self.deciding().map_or(f64::INFINITY, BlockErrors::rms_rad)
+    }
+
+    /// Root-mean-square error on the training motions, rad: over the evaluation horizon where it came that far.
+    pub fn training_rms_rad(&self, search: &FitData) -> f64 {
+        match &self.evaluation {
+            Some(evaluation) => evaluation.training.rms_rad(),
+            None => BlockErrors::of(&self.search.residuals, search).rms_rad(),
+        }
+    }
+
+    /// All blocks.
+    pub fn pooled(&self) -> Option<BlockErrors> {
+        let evaluation = self.evaluation.as_ref()?;
+        let mut pooled = evaluation.training.clone();
+        pooled.extend(evaluation.held_out.as_ref());
+        Some(pooled)
+    }
+
+    /// The fit that counts: over the evaluation horizon where there is one.
+    pub fn fit(&self) -> &Fit {
+        self.evaluation.as_ref().map_or(&self.search, |e| &e.fit)
+    }
+
+    /// Whether an added effect has a value at the edge of the possible: it vanishes there, or stands in for another.
+    pub fn rests_on_bound(&self) -> bool {
+        let on_bound = self.fit().on_bound();
+        let added = on_bound.len() - self.added_values();
+        on_bound[added..].contains(&true)
+    }
+}
+
+/// Whether every effect of the set, the last ones freed, has a value whose interval leaves out where it vanishes.
+fn significant(set: &[Candidate], fit: &Fit, data: &FitData) -> bool {
+    let Some((intervals, _)) = intervals(fit, data) else {
+        return set.is_empty();
+    };
+    let added: usize = set.iter().map(|c| c.parameters().len()).sum();
+    let mut own = intervals[intervals.len() - added..].iter();
+    let mut all = true;
+    for candidate in set {
+        let present = candidate.parameters().iter().zip(&mut own);
+        let present = present.filter(|(parameter, interval)| {
+            parameter.off.is_some_and(|off| {
+                interval.low > off || interval.high < off.min(parameter.bounds.1)
+            })
+        });
+        all &= present.count() > 0;
+    }
+    all
+}

@@ -1,0 +1,180 @@
+//! Where to start the fit of a candidate: the values that promise most, found by one simulation each.
+
+use crate::fitting::{Candidate, Fit, FitData, Node, Projector, residuals};
+use crate::model::Model;
+
+/// Initial values for a candidate, and how much of the squared residual they could remove.
+#[derive(Debug, Clone)]
+pub(super) struct InitialGuess {
+    pub candidate: Candidate,
+    pub values: Vec<f64>,
+    pub gain: f64,
+}
+
+/// What a start of a candidate changes in the prediction.
+#[derive(Debug, Clone)]
+pub(super) struct PredictionChange {
+    pub candidate: Candidate,
+    pub start: Vec<f64>,
+    windows: Vec<Vec<f64>>,
+}
+
+/// What each start of a candidate changes in the prediction of a fitted model: one simulation each.
+///
+/// Where an effect comes in many shapes, as a ripple does, each is tried at one amplitude.
+pub(super) fn changes(from: &Fit, candidate: Candidate, data: &FitData) -> Vec<PredictionChange> {
+    let mut starts = candidate.starts();
+    let firsts = first_of_each(starts.clone(), |start| shape(candidate, start));
+    if firsts.len() > FEW_SHAPES {
+        starts = firsts;
+    }
+    simulated(from, candidate, starts, data)
+}
+
+/// Shapes an effect may have for each to be tried at every amplitude.
+const FEW_SHAPES: usize = 4;
+
+/// The changes of all starts of this shape, each as it is and small.
+pub(super) fn changes_like(
+    from: &Fit,
+    like: &PredictionChange,
+    data: &FitData,
+) -> Vec<PredictionChange> {
+    let wanted = shape(like.candidate, &like.start);
+    let mut starts = like.candidate.starts();
+    starts.retain(|start| shape(like.candidate, start) == wanted);
+    simulated(from, like.candidate, starts, data)
+}
+
+fn simulated(
+    from: &Fit,
+    candidate: Candidate,
+    starts: Vec<Vec<f64>>,
+    data: &FitData,
+) -> Vec<PredictionChange> {
+    let before = &from.residuals.windows;
+    let starts = starts
+        .into_iter()
+        .flat_map(|start| [start.clone(), small(candidate, &start)]);
+    starts
+        .map(|start| PredictionChange {
+            windows: change(&from.model, candidate, &start, data, &from.nodes, before),
+            candidate,
+            start,
+        })
+        .collect()
+}
+
+/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have smaller effects.
+fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
+    let parameters = candidate.parameters().iter().zip(start);
+    let small = parameters.map(|(parameter, value)| match parameter.off {
+        Some(off) if off.is_finite() => off + 0.05 * (value - off),
+        _ => *value,
+    });
+    small.collect()
+}
+
+/// A fitted model's residual without what its own values can imitate: what candidates are to explain.
+pub(super) struct ProjectedResidual<'a> {
+    projector: Projector<'a>,
+    residual: Vec<Vec<f64>>,
+}
+
+impl<'a> ProjectedResidual<'a> {
+    pub fn new(fit: &'a Fit) -> Self {
+        let projector = Projector::new(fit);
+        ProjectedResidual {
+            residual: projector.off(&fit.residuals.windows),
+            projector,
+        }
+    }
+
+    /// The best starts of a candidate, best first, one for each shape.
+    ///
+    /// What each changes in the prediction is projected off what the fitted values could imitate; the rest is scaled
+    /// to fit the residual, and the squared error it would remove is its gain.
+    pub fn guesses<'c>(
+        &self,
+        changes: impl IntoIterator<Item = &'c PredictionChange>,
+    ) -> Vec<InitialGuess> {
+        let mut found: Vec<InitialGuess> = changes.into_iter().map(|c| self.guess(c)).collect();
+        found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        first_of_each(found, |guess| signed_shape(guess.candidate, &guess.values))
+    }
+
+    /// A start scaled to fit the residual.
+    pub fn guess(&self, change: &PredictionChange) -> InitialGuess {
+        let candidate = change.candidate;
+        let moved = self.projector.off(&change.windows);
+        let (mut along, mut size) = (0.0, 1e-12);
+        for (moved, residual) in moved.iter().flatten().zip(self.residual.iter().flatten()) {
+            along += moved * residual;
+            size += moved * moved;
+        }
+        let scale = along / size;
+        let parameters = candidate.parameters().iter().zip(&change.start);
+        let values = parameters.map(|(parameter, value)| match parameter.off {
+            Some(off) if off.is_finite() => {
+                let moved = off + (value - off) * scale.clamp(0.02, 20.0);
+                moved.clamp(parameter.bounds.0, parameter.bounds.1)
+            }
+            _ => *value,
+        });
+        InitialGuess {
+            candidate,
+            values: values.collect(),
+            gain: if scale > 0.0 {
+                along * along / size
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
+/// The first item of each key, in order.
+fn first_of_each<T>(mut items: Vec<T>, key: impl Fn(&T) -> Vec<f64>) -> Vec<T> {
+    let mut known: Vec<Vec<f64>> = Vec::new();
+    items.retain(|item| {
+        let key = key(item);
+        let is_new = !known.contains(&key);
+        known.push(key);
+        is_new
+    });
+    items
+}
+
+/// The values that shape an effect without switching it on or off.
+fn shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
+    let parameters = candidate.parameters().iter().zip(values);
+    let shaping = parameters.filter(|(parameter, _)| !parameter.off.is_some_and(f64::is_finite));
+    shaping.map(|(_, value)| *value).collect()
+}
+
+/// The shape, and the side of off: a mass may be missing or be too much.
+fn signed_shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
+    let parameters = candidate.parameters().iter().zip(values);
+    let sides = parameters.filter_map(|(parameter, value)| {
+        Some((value - parameter.off.filter(|off| off.is_finite())?).signum())
+    });
+    shape(candidate, values).into_iter().chain(sides).collect()
+}
+
+/// How the prediction changes, weighted, when an effect is added: residual before minus residual after.
+pub(super) fn change(
+    model: &Model,
+    candidate: Candidate,
+    values: &[f64],
+    data: &FitData,
+    nodes: &[Node],
+    before: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let mut model = model.clone();
+    model.effects.push(candidate.instance(values));
+    let after = residuals(&model, data, nodes).windows;
+    let difference = |(before, after): (&Vec<f64>, &Vec<f64>)| {
+        before.iter().zip(after).map(|(b, a)| b - a).collect()
+    };
+    before.iter().zip(&after).map(difference).collect()
+}

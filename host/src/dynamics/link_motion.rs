@@ -1,0 +1,51 @@
+//! A moving link in axes that do not turn: what both recursions along the chain start from.
+
+use super::chain::ChainLink;
+use super::lanes::Lane;
+
+/// Positions and velocity terms of a link, relative to its own joint.
+///
+/// The link's end lies at length (sin, -cos), so a quarter turn to the left of it is length (cos,
+/// sin).
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct LinkMotion {
+    /// Joint to next joint, turned left: velocity of its end per rad/s, m.
+    pub lever: [f64; 2],
+    /// Centripetal acceleration of the link's end, m/s^2.
+    pub centripetal: [f64; 2],
+    /// First moment about the joint, turned left, kg m.
+    pub moment: [f64; 2],
+    /// Square of the angular velocity, rad^2/s^2.
+    pub speed_squared: f64,
+}
+
+impl LinkMotion {
+    /// At an absolute angle, rad, and angular velocity, rad/s.
+    #[inline(always)]
+    pub fn new(link: &ChainLink, angle_rad: f64, speed_rad_s: f64) -> LinkMotion {
+        let (sin, cos) = Lane::sin_cos(angle_rad);
+        let (com_sin, com_cos) = match link.com_angle_rad == 0.0 {
+            true => (sin, cos),
+            false => Lane::sin_cos(angle_rad + link.com_angle_rad),
+        };
+        let first_moment = link.mass_kg * link.com_m;
+        let speed_squared = speed_rad_s * speed_rad_s;
+        let lever = [link.length_m * cos, link.length_m * sin];
+        LinkMotion {
+            lever,
+            centripetal: [-speed_squared * lever[1], speed_squared * lever[0]],
+            moment: [first_moment * com_cos, first_moment * com_sin],
+            speed_squared,
+        }
+    }
+
+    /// Acceleration of the link's end, m/s^2, from that of its joint and the link's angular
+    /// acceleration.
+    #[inline(always)]
+    pub fn end_m_s2(&self, joint_m_s2: [f64; 2], angular_rad_s2: f64) -> [f64; 2] {
+        [
+            joint_m_s2[0] + self.centripetal[0] + angular_rad_s2 * self.lever[0],
+            joint_m_s2[1] + self.centripetal[1] + angular_rad_s2 * self.lever[1],
+        ]
+    }
+}

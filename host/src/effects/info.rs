@@ -1,0 +1,110 @@
+//! What an effect says of itself.
+
+use serde::Serialize;
+
+/// Where in the chain command -> drive -> joint -> body -> sensor an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Site {
+    /// On the way to the drive.
+    Timing,
+    /// On the duty.
+    Command,
+    /// On the torque the drive makes.
+    Drive,
+    /// On the joint, as friction.
+    Friction,
+    /// On the joint, as any other torque.
+    Joint,
+    /// On masses and gravity.
+    Body,
+    /// On what is read, at once.
+    Encoder,
+    /// On what is read, with memory.
+    Sensor,
+}
+
+/// Which joints an effect can act on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scope {
+    /// Every joint.
+    AnyJoint,
+    /// Joints that are driven.
+    DrivenJoint,
+    /// Joints that swing freely.
+    PassiveJoint,
+    /// Once for the whole rig.
+    WholeRig,
+}
+
+/// What must be logged or known for an effect to be a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing beyond angles and inputs.
+    Nothing,
+    /// The supply, logged and varying, and the motor's nominal supply.
+    Supply,
+    /// The torque through the gear, computed along with the dynamics.
+    GearLoad,
+    /// The force in the bearing, computed along with the dynamics.
+    BearingLoad,
+}
+
+/// One value of an effect.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Parameter {
+    /// Key in model files, with its unit: `torque_nm`.
+    pub key: &'static str,
+    /// Unit as shown to people: `N m`.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// Value at which the effect vanishes; `None` for a shape parameter, which has none. JSON
+    /// knows no infinity: an effect that is off at infinity has `null` there as well.
+    pub off: Option<f64>,
+    /// Range met in practice on servo arms of this size.
+    pub typical: (f64, f64),
+    /// Physically possible range: signs are enforced by it.
+    pub bounds: (f64, f64),
+    /// Values to start a fit from, the first being the default.
+    #[serde(skip)]
+    pub starts: &'static [f64],
+}
+
+/// Another effect that looks alike.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Confusion {
+    /// Its id.
+    pub with: &'static str,
+    /// Why they look alike and what tells them apart.
+    pub why: &'static str,
+}
+
+/// The whole description of an effect.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct EffectInfo {
+    /// Name in commands and model files: `coulomb`.
+    pub id: &'static str,
+    /// Name for people.
+    pub title: &'static str,
+    /// The law in one line.
+    pub law: &'static str,
+    /// Which joints it can act on.
+    pub scope: Scope,
+    /// Where it acts.
+    #[serde(skip)]
+    pub site: Site,
+    /// What it takes to be a candidate.
+    #[serde(skip)]
+    pub needs: Needs,
+    /// Its values.
+    pub parameters: &'static [Parameter],
+    /// What a log shows.
+    pub looks_like: &'static str,
+    /// What it is taken for.
+    pub confused_with: &'static [Confusion],
+    /// The experiment that reveals it.
+    pub experiment: &'static str,
+    /// Where the law comes from.
+    pub reference: &'static str,
+}

@@ -1,0 +1,233 @@
+//! An effect of the library at a place of the model: by its name, its addresses, its start values.
+
+use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope};
+use crate::error::Error;
+use crate::model::{EffectInstance, Model, ParameterPath};
+use std::fmt;
+
+/// An effect of the library at a joint, or on the whole rig.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Joint index from 0; `None` for the whole rig.
+    pub joint: Option<usize>,
+}
+
+impl fmt::Display for Candidate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.joint {
+            Some(joint) => write!(f, "{}@{}", self.effect.info().id, joint + 1),
+            None => write!(f, "{}", self.effect.info().id),
+        }
+    }
+}
+
+impl From<&EffectInstance> for Candidate {
+    fn from(instance: &EffectInstance) -> Candidate {
+        Candidate {
+            effect: instance.effect,
+            joint: instance.joint,
+        }
+    }
+}
+
+impl Candidate {
+    /// The effect at the joint that `name` says (`coulomb`, `coulomb@2`), if the model has room for it. Where there is
+    /// only one joint it need not be named.
+    ///
+    /// # Errors
+    /// As [`CandidateError`] says.
+    pub fn named(name: &str, model: &Model) -> Result<Candidate, CandidateError> {
+        let (id, at) = match name.split_once('@') {
+            Some((id, at)) => (id, Some(at)),
+            None => (name, None),
+        };
+        let effect = effect_named(id)?;
+        let joint = joint(effect, at, model)?;
+        let candidate = Candidate { effect, joint };
+        match candidate.in_model(model) {
+            true => Err(CandidateError::InModel(candidate)),
+            false => Ok(candidate),
+        }
+    }
+
+    /// Whether the model holds it already.
+    pub fn in_model(&self, model: &Model) -> bool {
+        model.has_effect(self.effect.info().id, self.joint)
+    }
+
+    /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
+    pub fn jumps(&self) -> bool {
+        self.effect.difference() > SMOOTH_DIFFERENCE
+    }
+
+    /// What the effect's values are, in their order.
+    pub fn parameters(&self) -> &'static [Parameter] {
+        self.effect.info().parameters
+    }
+
+    /// The effect with these values, to be added to a model.
+    pub fn instance(&self, values: &[f64]) -> EffectInstance {
+        EffectInstance {
+            effect: self.effect,
+            joint: self.joint,
+            values: values.to_vec(),
+        }
+    }
+
+    /// Addresses of its values.
+    pub fn paths(&self) -> impl Iterator<Item = ParameterPath> + '_ {
+        let info = self.effect.info();
+        (0..info.parameters.len()).map(move |parameter| ParameterPath::Effect {
+            id: info.id,
+            joint: self.joint,
+            parameter,
+        })
+    }
+
+    /// Every combination of the parameters' start values.
+    pub fn starts(&self) -> Vec<Vec<f64>> {
+        let mut combinations = vec![Vec::new()];
+        for parameter in self.parameters() {
+            combinations = combinations
+                .iter()
+                .flat_map(|head: &Vec<f64>| {
+                    parameter.starts.iter().map(move |start| {
+                        let mut next = head.clone();
+                        next.push(*start);
+                        next
+                    })
+                })
+                .collect();
+        }
+        combinations
+    }
+}
+
+/// Why a name is no candidate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CandidateError {
+    /// No effect has this name.
+    #[error("there is no effect `{name}`")]
+    UnknownEffect {
+        /// The name.
+        name: String,
+        /// The name most like it.
+        nearest: Option<&'static str>,
+    },
+    /// The effect acts on the whole rig, and a joint was named.
+    #[error("`{id}` acts on the whole rig, not on one joint")]
+    WholeRig {
+        /// The effect.
+        id: &'static str,
+    },
+    /// The effect acts on one of several joints, and none was named.
+    #[error("`{id}` acts on one joint, and the model has {count}")]
+    JointNotNamed {
+        /// The effect.
+        id: &'static str,
+        /// Joints of the model.
+        count: usize,
+    },
+    /// The model has no such joint.
+    #[error("there is no joint `{joint}`")]
+    UnknownJoint {
+        /// What was named.
+        joint: String,
+        /// Joints of the model.
+        count: usize,
+    },
+    /// The joint's drive does not suit the effect.
+    #[error("`{id}` acts on {wanted} joints only, and joint {joint} is `{drive}`")]
+    UnsuitedDrive {
+        /// The effect.
+        id: &'static str,
+        /// `driven` or `passive`.
+        wanted: &'static str,
+        /// Joint counted from 1.
+        joint: usize,
+        /// The joint's drive.
+        drive: &'static str,
+    },
+    /// The model holds the effect already.
+    #[error("the model holds `{0}` already")]
+    InModel(Candidate),
+}
+
+impl From<CandidateError> for Error {
+    fn from(error: CandidateError) -> Error {
+        use CandidateError as E;
+        let remedy = match &error {
+            E::UnknownEffect { nearest: None, .. } => "`handstand effects` lists all".to_string(),
+            E::UnknownEffect {
+                nearest: Some(near),
+                ..
+            } => {
+                format!("did you mean `{near}`? `handstand effects` lists all")
+            }
+            E::WholeRig { id } => format!("write `{id}`"),
+            E::JointNotNamed { id, count } => format!("say which: `{id}@1` to `{id}@{count}`"),
+            E::UnknownJoint { count, .. } => {
+                format!("joints of this model count from 1 to {count}")
+            }
+            E::UnsuitedDrive { wanted, .. } => format!("name a {wanted} joint, or another effect"),
+            E::InModel(_) => "refit its values with `handstand fit`".to_string(),
+        };
+        Error::usage(error.to_string(), remedy)
+    }
+}
+
+/// The effect of this name.
+///
+/// # Errors
+/// [`CandidateError::UnknownEffect`] with the nearest name.
+pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
+    let ids = || EFFECTS.iter().map(|effect| effect.info().id);
+    let effect = EFFECTS
+        .iter()
+        .copied()
+        .zip(ids())
+        .find(|(_, id)| *id == name);
+    effect.map(|(effect, _)| effect).ok_or_else(|| {
+        let likeness = ids().map(|id| (strsim::jaro_winkler(name, id), id));
+        let near = likeness.filter(|(likeness, _)| *likeness > 0.7);
+        CandidateError::UnknownEffect {
+            name: name.to_string(),
+            nearest: near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id),
+        }
+    })
+}
+
+fn joint(
+    effect: &dyn Effect,
+    at: Option<&str>,
+    model: &Model,
+) -> Result<Option<usize>, CandidateError> {
+    let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
+    let joint = match (scope, at) {
+        (Scope::WholeRig, None) => return Ok(None),
+        (Scope::WholeRig, Some(_)) => return Err(CandidateError::WholeRig { id }),
+        (_, None) if count == 1 => 0,
+        (_, None) => return Err(CandidateError::JointNotNamed { id, count }),
+        (_, Some(at)) => match at.parse::<usize>() {
+            Ok(joint) if (1..=count).contains(&joint) => joint - 1,
+            _ => {
+                let joint = at.to_string();
+                return Err(CandidateError::UnknownJoint { joint, count });
+            }
+        },
+    };
+    let drive = &model.joints[joint].drive;
+    let wanted = match scope {
+        Scope::DrivenJoint if !drive.is_driven() => "driven",
+        Scope::PassiveJoint if drive.is_driven() => "passive",
+        _ => return Ok(Some(joint)),
+    };
+    Err(CandidateError::UnsuitedDrive {
+        id,
+        wanted,
+        joint: joint + 1,
+        drive: drive.name(),
+    })
+}

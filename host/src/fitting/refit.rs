@@ -1,0 +1,202 @@
+//! A model refitted, alone or with one more effect: its values, how well they are known, and how far the error is
+//! reduced.
+
+#[cfg(test)]
+mod tests;
+
+use super::data::{FitData, Horizon};
+use super::error_reduction::ErrorReduction;
+use super::fit::{Fit, FitOptions};
+use super::fitted_value::{FittedValue, fitted_values};
+use super::horizon::longest_stable;
+use super::residual::residuals;
+use super::solve::{fit, fit_start_states};
+use super::staged::{fit_staged, initial_guess};
+use crate::fitting::Candidate;
+use crate::log::Split;
+use crate::model::edit::FitRecord;
+use crate::model::{EffectInstance, Model, ParameterPath};
+
+/// Iterations that tell a promising start from a hopeless one.
+const SCREENING: FitOptions = FitOptions {
+    rough: true,
+    iterations: 8,
+    tolerance: 1e-3,
+};
+
+/// A refitted model.
+#[derive(Debug, Clone)]
+pub struct Refitted {
+    /// The model with its new values.
+    pub model: Model,
+    /// What was free: the base's parameters first, then the effect's.
+    pub free: Vec<ParameterPath>,
+    /// Fitted values in the order of `free`.
+    pub values: Vec<FittedValue>,
+    /// Error before and after.
+    pub error: ErrorReduction,
+    /// How long the model ran without correction.
+    pub horizon: Horizon,
+    /// Whether the search met its tolerance before its iterations ran out.
+    pub converged: bool,
+}
+
+/// The motions do not determine the values.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", undetermined(.blind))]
+pub struct Undetermined {
+    /// Parameters that change nothing in these motions; none when only a mixture of several is undetermined.
+    pub blind: Vec<String>,
+}
+
+fn undetermined(blind: &[String]) -> String {
+    match blind {
+        [] => "these motions do not tell the free parameters apart".to_string(),
+        [one] => format!("`{one}` has no effect on these motions"),
+        several => format!("`{}` have no effect on these motions", several.join("`, `")),
+    }
+}
+
+impl Refitted {
+    /// Addresses and values of those parameters that `model` has too.
+    pub fn values_of(&self, model: &Model) -> Vec<(ParameterPath, f64)> {
+        let values = self.values.iter().map(|value| value.value);
+        let all = self.free.iter().copied().zip(values);
+        all.filter(|(path, _)| path.get(model).is_some()).collect()
+    }
+
+    /// The effect that was added, at its fitted values, and how they came about; `logs` are name and SHA-256 of every
+    /// file it was fitted to.
+    pub fn added(
+        &self,
+        candidate: Candidate,
+        logs: Vec<(String, String)>,
+    ) -> (EffectInstance, FitRecord) {
+        let (mut values, mut intervals) = (Vec::new(), Vec::new());
+        for path in candidate.paths() {
+            let at = self.free.iter().position(|free| *free == path);
+            if let Some(value) = at.map(|at| &self.values[at]) {
+                values.push(value.value);
+                intervals.push((value.key.clone(), value.low, value.high));
+            }
+        }
+        let fitted = FitRecord {
+            intervals,
+            logs,
+            error_before: self.error.before_rad,
+            error_after: self.error.after_rad,
+            error_unit: "rad".to_string(),
+        };
+        (candidate.instance(&values), fitted)
+    }
+}
+
+/// Fits `free` to the training motions. The error before is that of the model as it is.
+///
+/// # Errors
+/// The motions do not determine the values.
+pub fn refit(
+    model: &Model,
+    free: &[ParameterPath],
+    split: &Split,
+    horizon: Option<Horizon>,
+) -> Result<Refitted, Undetermined> {
+    let (data, horizon) = match horizon {
+        Some(_) => training(model, split, horizon),
+        // How long a run is stable depends on the values, which may be far off.
+        None => {
+            let whole = FitData::new(model, split.training.clone(), Horizon::Whole);
+            training(&initial_guess(model, free, &whole), split, None)
+        }
+    };
+    let found = fit_staged(model, free, &data);
+    finish(model, found, &data, split, horizon)
+}
+
+/// Adds the candidate and fits its values along with the model's free ones, from every start value of the effect.
+/// The error before is that of the model refitted without it. `progress` hears of starts done and starts in all.
+///
+/// # Errors
+/// The motions do not determine the values.
+pub fn refit_with(
+    model: &Model,
+    candidate: Candidate,
+    split: &Split,
+    horizon: Option<Horizon>,
+    progress: &dyn Fn(usize, usize),
+) -> Result<Refitted, Undetermined> {
+    let (data, horizon) = training(model, split, horizon);
+    let base = fit(model, &model.free, &data, None, FitOptions::default());
+    let mut free = model.free.clone();
+    free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
+
+    let starts = candidate.starts();
+    let screened = starts.iter().enumerate().map(|(done, start)| {
+        progress(done, starts.len());
+        let mut with = base.model.clone();
+        with.effects.push(candidate.instance(start));
+        // Whoever goes on with this model refits the new values too.
+        with.free.clone_from(&free);
+        fit(&with, &free, &data, Some(&base.nodes), SCREENING)
+    });
+    let cost = |fit: &Fit| fit.residuals.cost();
+    let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    progress(starts.len(), starts.len());
+    let from = best.unwrap_or_else(|| base.clone());
+    let options = FitOptions::default();
+    let found = fit(&from.model, &free, &data, Some(&from.nodes), options);
+    finish(&base.model, found, &data, split, horizon)
+}
+
+fn training(model: &Model, split: &Split, horizon: Option<Horizon>) -> (FitData, Horizon) {
+    let data = FitData::new(model, split.training.clone(), Horizon::Whole);
+    let horizon = horizon.unwrap_or_else(|| longest_stable(model, &data));
+    (data.recut(horizon), horizon)
+}
+
+fn finish(
+    before: &Model,
+    found: Fit,
+    data: &FitData,
+    split: &Split,
+    horizon: Horizon,
+) -> Result<Refitted, Undetermined> {
+    let (values, Some(_)) = fitted_values(&found, data) else {
+        let blind = blind(&found, data);
+        return Err(Undetermined { blind });
+    };
+    let judged = match split.held_out.as_slice() {
+        [] => data.clone(),
+        held_out => FitData::new(before, held_out.to_vec(), horizon),
+    };
+    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms_rad(&judged);
+    Ok(Refitted {
+        values,
+        error: ErrorReduction {
+            before_rad: rms_rad(before),
+            after_rad: rms_rad(&found.model),
+            floor_rad: judged.floor_rad(),
+            held_out: !split.held_out.is_empty(),
+            reduction: None,
+        },
+        free: found.free,
+        converged: found.converged,
+        model: found.model,
+        horizon,
+    })
+}
+
+/// The free parameters whose change leaves every prediction as it was.
+fn blind(found: &Fit, data: &FitData) -> Vec<String> {
+    let base = residuals(&found.model, data, &found.nodes);
+    let changes_nothing = |path: &&ParameterPath| {
+        let value = path.get(&found.model).unwrap_or(0.0);
+        let (_, high) = path.bounds(&found.model);
+        let size = 1e-3 * value.abs().max(1e-3);
+        let size = if value + size > high { -size } else { size };
+        let mut moved = found.model.clone();
+        path.set(&mut moved, value + size) && residuals(&moved, data, &found.nodes) == base
+    };
+    let blind = found.free.iter().filter(changes_nothing);
+    blind.map(ToString::to_string).collect()
+}

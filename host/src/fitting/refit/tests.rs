@@ -1,0 +1,122 @@
+//! Known values, simulated, found again.
+
+use super::*;
+use crate::effects;
+use crate::log::{Motion, MotionSource};
+use crate::sim::{Plant, SensorState, Start, predict};
+use std::path::Path;
+
+const PENDULUM: &str = r#"
+[rig]
+name = "pendulum"
+angle_zero = "hanging"
+step_s = 0.005
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 1e-4
+
+[[joint]]
+drive = "passive"
+
+[log]
+time = { column = "t", unit = "s" }
+
+[[log.joint]]
+position = { column = "q", unit = "rad", resolution_rad = 0.001 }
+"#;
+
+fn pendulum() -> Model {
+    Model::parse(PENDULUM, Path::new("pendulum.toml")).unwrap()
+}
+
+fn candidate(id: &str) -> Candidate {
+    Candidate {
+        effect: effects::named(id).unwrap(),
+        joint: Some(0),
+    }
+}
+
+/// The pendulum let go at `angle`, as `model` swings.
+fn swing(model: &Model, angle: f64) -> Motion {
+    let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.01).collect();
+    let mut motion = Motion {
+        name: format!("from {angle}"),
+        source: MotionSource {
+            path: "swing.csv".into(),
+            sha256: "0".into(),
+            lines: (1, 300),
+        },
+        position_rad: vec![vec![0.0; time_s.len()]],
+        time_s,
+        velocity_rad_s: vec![None],
+        input: vec![None],
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+    };
+    let start = Start {
+        angle_rad: vec![angle],
+        speed_rad_s: vec![0.0],
+        ..Start::default()
+    };
+    let mut readings = vec![0.0; motion.len()];
+    let plant = Plant::new(model, &motion);
+    let mut memory = SensorState::default();
+    let whole = 0..motion.len();
+    predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
+    motion.position_rad[0] = readings
+        .iter()
+        .map(|rad| (rad / 0.001).round() * 0.001)
+        .collect();
+    motion
+}
+
+fn swings(truth: &Model) -> Split {
+    Split {
+        training: vec![swing(truth, 1.5), swing(truth, -0.7)],
+        held_out: vec![swing(truth, 1.0)],
+    }
+}
+
+#[test]
+fn an_added_effect_gets_its_true_value_and_new_motions_are_predicted() {
+    let mut truth = pendulum();
+    truth.effects.push(candidate("coulomb").instance(&[0.004]));
+    let split = swings(&truth);
+    let refitted = refit_with(&pendulum(), candidate("coulomb"), &split, None, &|_, _| {}).unwrap();
+    let value = &refitted.values[0];
+    assert_eq!(value.path, "coulomb@1.torque_nm");
+    assert_eq!(refitted.model.free, refitted.free);
+    assert_eq!(refitted.free.len(), 1);
+    assert!((value.value - 0.004).abs() < 4e-5, "{value:?}");
+    assert!(value.low <= value.value && value.value <= value.high);
+    let error = refitted.error;
+    assert!(error.held_out && error.before_rad > 0.05, "{error:?}");
+    assert!(error.after_rad < 2.0 * error.floor_rad, "{error:?}");
+}
+
+#[test]
+fn a_value_that_nothing_shows_is_refused() {
+    let split = swings(&pendulum());
+    // Without friction there is no fading whose speed could be told.
+    let mut model = pendulum();
+    model
+        .effects
+        .push(candidate("stribeck").instance(&[0.0, 0.1]));
+    let speed: ParameterPath = "stribeck@1.speed_rad_s".parse().unwrap();
+    let error = refit(&model, &[speed], &split, None).unwrap_err();
+    assert_eq!(error.blind, ["stribeck@1.speed_rad_s"]);
+}
+
+#[test]
+fn a_refit_finds_a_mass_moved_outwards() {
+    let mut truth = pendulum();
+    truth.links[0].com_m = 0.12;
+    let com: ParameterPath = "link1.com_m".parse().unwrap();
+    let refitted = refit(&pendulum(), &[com], &swings(&truth), None).unwrap();
+    assert!((refitted.values[0].value - 0.12).abs() < 1e-4);
+    assert!(refitted.error.after_rad < 0.1 * refitted.error.before_rad);
+}

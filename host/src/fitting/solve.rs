@@ -1,0 +1,61 @@
+//! The calls that start a fit, or go on with one.
+
+use super::data::FitData;
+use super::fit::{Fit, FitOptions};
+use super::levenberg_marquardt::LevenbergMarquardt;
+use super::node::{Guess, Node};
+use super::residual::residuals;
+use crate::model::{Model, ParameterPath};
+
+impl Fit {
+    /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it lacks.
+    pub fn resume(&self, data: &FitData, options: FitOptions) -> Fit {
+        if self.converged && (self.fresh || options.rough) {
+            return self.clone();
+        }
+        let iterations = match self.converged {
+            true => 0,
+            false => options.iterations,
+        };
+        let options = FitOptions {
+            iterations,
+            ..options
+        };
+        LevenbergMarquardt::new(self.clone(), data, guesses(data)).run(options)
+    }
+}
+
+/// Fits the free parameters and every window's start state; nodes are guessed where none are given.
+pub fn fit(
+    model: &Model,
+    free: &[ParameterPath],
+    data: &FitData,
+    nodes: Option<&[Node]>,
+    options: FitOptions,
+) -> Fit {
+    let guesses = guesses(data);
+    let nodes = match nodes {
+        Some(nodes) => nodes.to_vec(),
+        None => guesses.iter().map(|g| g.node.clone()).collect(),
+    };
+    let start = Fit {
+        model: model.clone(),
+        free: free.to_vec(),
+        residuals: residuals(model, data, &nodes),
+        nodes,
+        converged: false,
+        simulations: 1,
+        jacobian: Vec::new(),
+        fresh: false,
+    };
+    LevenbergMarquardt::new(start, data, guesses).run(options)
+}
+
+/// Fits only the windows' start states: how the model, as it is, does on these motions.
+pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
+    fit(model, &[], data, None, FitOptions::iterations(8))
+}
+
+fn guesses(data: &FitData) -> Vec<Guess> {
+    data.windows.iter().map(|w| Guess::of(data, w)).collect()
+}

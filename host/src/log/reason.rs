@@ -1,0 +1,243 @@
+//! Why a log is refused: the data, its sentence, and the remedy.
+
+use super::LEAST_ROWS;
+use super::lines::LONGEST_LINE;
+use crate::error::Reason;
+use std::borrow::Cow;
+
+/// What is wrong with a file, a row, a field, or the order of rows of a log.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LogReason {
+    /// A line too long for a log.
+    #[error("a line longer than {LONGEST_LINE} bytes")]
+    LineTooLong,
+    /// Bytes that are no text.
+    #[error("not UTF-8: byte 0x{byte:02x}")]
+    NotUtf8 {
+        /// The first such byte.
+        byte: u8,
+    },
+    /// No line of column names.
+    #[error("the log holds no header line")]
+    NoHeader,
+    /// Numbers where the column names should be.
+    #[error("numbers where the column names should be, and no column '{column}'")]
+    NoNames {
+        /// A column that the model reads.
+        column: String,
+    },
+    /// A column that the log does not have.
+    #[error(
+        "no column '{column}'{} The log has: {}",
+        meant(nearest),
+        listed(found)
+    )]
+    NoColumn {
+        /// The column that the model reads.
+        column: String,
+        /// The log's column most like it.
+        nearest: Option<String>,
+        /// The log's columns.
+        found: Vec<String>,
+    },
+    /// A column that the log has twice.
+    #[error("column '{column}' stands there twice")]
+    ColumnTwice {
+        /// Its name.
+        column: String,
+    },
+    /// A row with too few or too many fields.
+    #[error("{found} fields where the header has {expected}")]
+    FieldCount {
+        /// Fields of the row.
+        found: usize,
+        /// Fields of the header.
+        expected: usize,
+    },
+    /// A field that holds something else.
+    #[error("{column}: {} is not {expected}", quoted(found))]
+    WrongField {
+        /// The column.
+        column: String,
+        /// What the field holds.
+        found: String,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// Time that does not increase.
+    #[error("time does not increase: {time_s} s after {previous_s} s")]
+    TimeNotIncreasing {
+        /// Time of the row.
+        time_s: f64,
+        /// Time of the row before it.
+        previous_s: f64,
+    },
+    /// A gap too long to be simulated.
+    #[error("time jumps from {previous_s} s to {time_s} s within a motion")]
+    TimeJumps {
+        /// Time of the row.
+        time_s: f64,
+        /// Time of the row before it.
+        previous_s: f64,
+    },
+    /// A payload that changes within a motion.
+    #[error("payload changes from {previous_kg} kg to {payload_kg} kg within a motion")]
+    PayloadChanges {
+        /// Payload of the row.
+        payload_kg: f64,
+        /// Payload of the row before it.
+        previous_kg: f64,
+    },
+    /// A rig that is turned round within a motion.
+    #[error("the rig is turned round within a motion")]
+    TurnedRound,
+    /// An angle that jumps by a whole turn.
+    #[error("{column} jumps by a whole turn")]
+    AngleWraps {
+        /// Its column.
+        column: String,
+    },
+    /// A motion of too few rows.
+    #[error("a motion of {rows} rows; {LEAST_ROWS} are the least")]
+    TooShort {
+        /// Its rows.
+        rows: usize,
+    },
+    /// A range beyond the last row.
+    #[error("rows {first}-{last} asked for, but it has {rows} rows")]
+    RowsBeyond {
+        /// First row asked for, from 0.
+        first: usize,
+        /// Last row asked for.
+        last: usize,
+        /// Rows of the log.
+        rows: usize,
+    },
+    /// No row at all.
+    #[error("the log holds no sample")]
+    NoSample,
+    /// A JSON log that is not JSON.
+    #[error("not JSON: {message}")]
+    NotJson {
+        /// The parser's message.
+        message: String,
+    },
+    /// A JSON log without its list.
+    #[error("no list 'entries'")]
+    NoEntries,
+    /// A range of entries beyond the last, or of too few.
+    #[error("entries {first}-{last} of {entries}; at least {LEAST_ROWS} are needed")]
+    EntryRange {
+        /// First entry asked for, from 0.
+        first: usize,
+        /// Last entry asked for.
+        last: usize,
+        /// Entries of the log.
+        entries: usize,
+    },
+    /// A value of an entry that is something else.
+    #[error("entry {entry}, {key}: {found} is not {expected}")]
+    WrongEntry {
+        /// The entry, from 0.
+        entry: usize,
+        /// Its key.
+        key: &'static str,
+        /// What it holds.
+        found: String,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// An entry whose time does not increase.
+    #[error("entry {entry}, timestamp: time does not increase: {time_s} s after {previous_s} s")]
+    EntryTime {
+        /// The entry, from 0.
+        entry: usize,
+        /// Its time.
+        time_s: f64,
+        /// Time of the entry before it.
+        previous_s: f64,
+    },
+}
+
+use LogReason::*;
+
+impl Reason for LogReason {
+    fn remedy(&self) -> Cow<'_, str> {
+        Cow::Borrowed(match self {
+            LineTooLong => "this is no CSV log; name a text file with one sample per line",
+            NotUtf8 { .. } => "save the log as UTF-8 text",
+            NoHeader => "record again: a log is a line of column names, then a line per sample",
+            NoNames { .. } => "put a line of column names above the first sample",
+            NoColumn { column, .. } => {
+                return format!(
+                    "name the column under [log] in the model, or, if it never changes, write \
+                     '# {column} = VALUE' above the header"
+                )
+                .into();
+            }
+            ColumnTwice { .. } => "rename one of them, so that it is clear which is meant",
+            FieldCount { .. } => {
+                "the line is broken off or joined with another: delete it, or record again"
+            }
+            WrongField { .. } => {
+                "the model reads this column: delete the line, or leave it out by a row range \
+                 such as log.csv:26-139"
+            }
+            TimeNotIncreasing { .. } => {
+                "cut the log there, mark the recordings in a segment column, or name a range of \
+                 rows"
+            }
+            TimeJumps { .. } => {
+                "check the time column's unit, or set split_at_gap_s in the model's [log] to \
+                 begin a new motion there"
+            }
+            PayloadChanges { .. } => {
+                "stop the recording to change the payload, or mark motions in a segment column"
+            }
+            TurnedRound => {
+                "stop the recording to turn the rig, or mark motions in a segment column"
+            }
+            AngleWraps { .. } => "the angle wraps round: log it unwrapped, or add the turns",
+            TooShort { .. } => {
+                "leave it out by a row range such as log.csv:26-139, or record longer"
+            }
+            RowsBeyond { .. } => "data rows count from 0, after the header",
+            NoSample => "record again: below the column names there is no row",
+            NotJson { .. } => "was the recording broken off? Record again, or export CSV",
+            NoEntries => "a BAM log is an object with a list 'entries'",
+            EntryRange { .. } => "entries count from 0; record longer if there are too few",
+            WrongEntry { .. } => {
+                "leave the entry out by a range such as log.json:0-99, or record again"
+            }
+            EntryTime { .. } => {
+                "ask for a range of entries without the step, such as log.json:0-99"
+            }
+        })
+    }
+}
+
+fn meant(nearest: &Option<String>) -> String {
+    match nearest {
+        Some(nearest) => format!("; did you mean '{nearest}'?"),
+        None => ".".to_string(),
+    }
+}
+
+/// Up to 40 names.
+fn listed(names: &[String]) -> String {
+    let shown: Vec<&str> = names
+        .iter()
+        .take(40)
+        .map(|name| if name.is_empty() { "(unnamed)" } else { name })
+        .collect();
+    let more = if names.len() > 40 { ", ..." } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// What a field holds, up to 40 characters.
+fn quoted(text: &str) -> String {
+    match text {
+        "" => "nothing".to_string(),
+        text => format!("'{}'", text.chars().take(40).collect::<String>()),
+    }
+}

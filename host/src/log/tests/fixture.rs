@@ -1,0 +1,89 @@
+//! Columns, motions and models for the log's tests.
+
+use super::{Motion, MotionSource};
+use crate::model::*;
+use std::path::PathBuf;
+
+pub fn column(name: &str, unit: &str) -> Column {
+    Column {
+        name: name.into(),
+        unit: Unit::named(unit, Some(4096.0)).unwrap(),
+        offset: 0.0,
+        reversed: false,
+        resolution: None,
+    }
+}
+
+/// `t_s, q, u` of one joint.
+pub fn columns() -> LogColumns {
+    LogColumns {
+        time: column("t_s", "s"),
+        segment: None,
+        supply: None,
+        torque_on: None,
+        payload: None,
+        payload_at_m: 0.0,
+        turned: None,
+        joints: vec![JointColumns {
+            position: column("q", "rad"),
+            velocity: None,
+            input: Some(column("u", "rad")),
+        }],
+        split_at_gap_s: None,
+    }
+}
+
+/// A swing sampled at 100 Hz that follows its goal.
+pub fn motion(name: &str, samples: usize) -> Motion {
+    let time_s: Vec<f64> = (0..samples).map(|i| i as f64 * 0.01).collect();
+    let swing = |t: &f64| 0.7 * (3.0 * t).sin();
+    Motion {
+        name: name.into(),
+        source: MotionSource {
+            path: PathBuf::from(name),
+            sha256: String::new(),
+            lines: (2, samples + 1),
+        },
+        position_rad: vec![time_s.iter().map(swing).collect()],
+        velocity_rad_s: vec![None],
+        input: vec![Some(time_s.iter().map(|t| swing(&(t + 0.02))).collect())],
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+        time_s,
+    }
+}
+
+/// A model of one link with this drive.
+pub fn model(drive: Drive, log: LogColumns) -> Model {
+    let link = Link {
+        length_m: 0.1,
+        com_m: 0.1,
+        mass_kg: 0.3,
+        inertia_kg_m2: 1e-4,
+    };
+    Model {
+        name: "test".into(),
+        angle_zero: AngleZero::Hanging,
+        angles: Angles::Relative,
+        gravity_m_s2: 9.81,
+        step_s: 0.001,
+        links: vec![link; log.joints.len()],
+        joints: vec![Joint { drive }; log.joints.len()],
+        effects: Vec::new(),
+        free: Vec::new(),
+        log,
+    }
+}
+
+pub fn position_drive() -> Drive {
+    Drive::Position {
+        gain_per_rad: 5.0,
+        motor: Motor {
+            stall_torque_nm: 1.0,
+            no_load_speed_rad_s: 6.0,
+            nominal_supply_v: None,
+        },
+    }
+}

@@ -1,0 +1,226 @@
+//! Why a model, or the address of one of its numbers, is refused: data, sentence, remedy.
+
+use super::suggest::suggest;
+use super::{Dimension, Joint};
+use crate::effects::{Effect, Scope};
+use crate::error::Reason;
+use std::borrow::Cow;
+
+/// What is wrong with the content of a model file whose keys and values are well formed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelReason {
+    /// More joints than links.
+    #[error("[[joint]] {} is one joint too many for {links} link(s)", links + 1)]
+    ExtraJoint {
+        /// Number of links.
+        links: usize,
+    },
+    /// Fewer joints than links.
+    #[error("the file has {links} link(s) but {joints} joint(s)")]
+    MissingJoint {
+        /// Number of links.
+        links: usize,
+        /// Number of joints.
+        joints: usize,
+    },
+    /// Columns for more joints than the model has.
+    #[error("[[log.joint]] {} is one too many for {joints} joint(s)", joints + 1)]
+    ExtraColumns {
+        /// Number of joints.
+        joints: usize,
+    },
+    /// Columns for fewer joints than the model has.
+    #[error("[log] names the columns of {named} joint(s) out of {joints}")]
+    MissingColumns {
+        /// Number of joints whose columns are named.
+        named: usize,
+        /// Number of joints.
+        joints: usize,
+    },
+    /// An effect twice at one joint.
+    #[error("`{id}` is there twice")]
+    EffectTwice {
+        /// The effect.
+        id: &'static str,
+    },
+    /// A joint given for an effect of the whole rig.
+    #[error("`{id}` acts on the whole rig, not on one joint")]
+    WholeRig {
+        /// The effect.
+        id: &'static str,
+    },
+    /// An effect at a joint that it cannot act on.
+    #[error("`{id}` acts on {wanted} joints only, and joint {} is `{drive}`", joint + 1)]
+    UnsuitedJoint {
+        /// The effect.
+        id: &'static str,
+        /// `driven` or `passive`.
+        wanted: &'static str,
+        /// The joint, from 0.
+        joint: usize,
+        /// Its drive.
+        drive: &'static str,
+    },
+    /// A unit that there is not.
+    #[error("unknown unit `{unit}`")]
+    UnknownUnit {
+        /// The unit found.
+        unit: String,
+        /// What the quantity measures.
+        wanted: Dimension,
+    },
+    /// A unit that measures something else.
+    #[error("unit `{unit}` measures {found}, and `{quantity}` is {wanted}")]
+    OtherDimension {
+        /// The unit found.
+        unit: &'static str,
+        /// What it measures.
+        found: Dimension,
+        /// The column's quantity.
+        quantity: &'static str,
+        /// What that measures.
+        wanted: Dimension,
+    },
+    /// An input column for a passive joint.
+    #[error("a passive joint has no input")]
+    PassiveInput,
+    /// No input column for a driven joint.
+    #[error("{table} lacks `input`, and its joint is driven by `{drive}`")]
+    MissingInput {
+        /// The table, as `[[log.joint]] 2`.
+        table: String,
+        /// The joint's drive.
+        drive: &'static str,
+        /// What its input measures.
+        wanted: Dimension,
+    },
+    /// A free parameter that the model does not have.
+    #[error("`{path}` is not in this model")]
+    FreeAbsent {
+        /// Its address.
+        path: String,
+    },
+    /// A free parameter without a finite value.
+    #[error("`{path}` is infinite, so nothing can be fitted")]
+    FreeInfinite {
+        /// Its address.
+        path: String,
+    },
+    /// A free parameter named twice.
+    #[error("`{path}` is named twice")]
+    FreeTwice {
+        /// Its address.
+        path: String,
+    },
+}
+
+use ModelReason::*;
+
+impl ModelReason {
+    /// Why the effect cannot act on this joint, if it cannot.
+    pub fn unsuited(effect: &dyn Effect, index: usize, joint: &Joint) -> Option<ModelReason> {
+        let wanted = match (effect.info().scope, joint.drive.is_driven()) {
+            (Scope::DrivenJoint, false) => "driven",
+            (Scope::PassiveJoint, true) => "passive",
+            _ => return None,
+        };
+        Some(UnsuitedJoint {
+            id: effect.info().id,
+            wanted,
+            joint: index,
+            drive: joint.drive.name(),
+        })
+    }
+}
+
+impl Reason for ModelReason {
+    fn remedy(&self) -> Cow<'_, str> {
+        let units = |wanted: &Dimension| wanted.unit_names().collect::<Vec<_>>().join(", ");
+        Cow::Borrowed(match self {
+            ExtraJoint { .. } => {
+                "every link follows one joint: add a `[[link]]` or remove the joint"
+            }
+            MissingJoint { .. } => "every link follows one joint: add a `[[joint]]` for each",
+            ExtraColumns { .. } => "give one `[[log.joint]]` for each `[[joint]]`, in order",
+            MissingColumns { .. } => "add one `[[log.joint]]` for each `[[joint]]`, in order",
+            EffectTwice { .. } => "keep one of the two, or give it another joint",
+            WholeRig { .. } => "leave the joint out",
+            UnsuitedJoint { wanted, .. } => {
+                return format!("name a {wanted} joint, or another effect").into();
+            }
+            UnknownUnit { wanted, .. } | OtherDimension { wanted, .. } => {
+                return format!("write one of: {}", units(wanted)).into();
+            }
+            PassiveInput => "remove `input`, or say what drives the joint",
+            MissingInput { wanted, .. } => {
+                let unit = wanted.unit_names().next().unwrap_or("1");
+                return format!("add `input = {{ column = \"...\", unit = \"{unit}\" }}`").into();
+            }
+            FreeAbsent { .. } => "add its link, drive or effect, or remove it here",
+            FreeInfinite { .. } => "give it a value to start from",
+            FreeTwice { .. } => "remove one",
+        })
+    }
+}
+
+/// Why a text is no address of a number: see [`ParameterPath`](super::ParameterPath).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PathReason {
+    /// It has no key.
+    #[error("`{text}` names no parameter")]
+    NoParameter {
+        /// The text.
+        text: String,
+    },
+    /// Its owner or key is unknown.
+    #[error("`{text}`: unknown name `{name}`")]
+    UnknownName {
+        /// The text.
+        text: String,
+        /// The part that is unknown.
+        name: String,
+        /// The names known there.
+        known: Vec<&'static str>,
+    },
+    /// What follows the `@` is no count from 1.
+    #[error("`{text}`: `{joint}` is no joint")]
+    NoJoint {
+        /// The text.
+        text: String,
+        /// What follows the `@`.
+        joint: String,
+    },
+    /// It names a joint for an effect of the whole rig.
+    #[error("`{text}`: `{id}` acts on the whole rig, not on one joint")]
+    WholeRig {
+        /// The text.
+        text: String,
+        /// The effect.
+        id: &'static str,
+    },
+    /// It names no joint for an effect of one joint.
+    #[error("`{text}` does not say at which joint")]
+    MissingJoint {
+        /// The text.
+        text: String,
+        /// The effect.
+        id: &'static str,
+    },
+}
+
+impl Reason for PathReason {
+    fn remedy(&self) -> Cow<'_, str> {
+        let key = |text: &'_ String| text.split_once('.').map_or("", |(_, key)| key).to_string();
+        Cow::Owned(match self {
+            PathReason::NoParameter { .. } => {
+                "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`".into()
+            }
+            PathReason::UnknownName { name, known, .. } => suggest(name, known),
+            PathReason::NoJoint { .. } => "joints count from 1".into(),
+            PathReason::WholeRig { text, id } => format!("write `{id}.{}`", key(text)),
+            PathReason::MissingJoint { text, id } => {
+                format!("write `{id}@1.{}` for the first joint", key(text))
+            }
+        })
+    }
+}

@@ -1,0 +1,39 @@
+//! The rigid chain of a model, and the same with the model's body effects applied.
+
+use super::Model;
+use crate::dynamics::{Chain, ChainLink};
+use crate::effects::{Rig, Site};
+
+impl Model {
+    /// The rigid chain of the links alone, without any effect.
+    pub fn chain(&self) -> Chain {
+        let links = self.links.iter().map(|link| ChainLink {
+            length_m: link.length_m,
+            com_m: link.com_m,
+            com_angle_rad: 0.0,
+            mass_kg: link.mass_kg,
+            inertia_kg_m2: link.inertia_kg_m2,
+            armature_kg_m2: 0.0,
+        });
+        Chain {
+            links: links.collect(),
+            gravity_m_s2: self.gravity_m_s2,
+        }
+    }
+
+    /// The chain with the body effects applied; `turned` as in [`Rig::turned`].
+    pub fn rig(&self, turned: bool) -> Rig {
+        let mut rig = Rig {
+            chain: self.chain(),
+            gravity_turn_rad: 0.0,
+            turned,
+        };
+        for instance in &self.effects {
+            if instance.effect.info().site == Site::Body {
+                let joint = instance.joint.unwrap_or(0);
+                instance.effect.body(&instance.values, joint, &mut rig);
+            }
+        }
+        rig
+    }
+}

@@ -1,0 +1,384 @@
+//! The plant about the pose that a controller holds.
+//!
+//! Where the torques are constant between commands (no friction, no drive that follows the speed, at most four
+//! links), dense equations advance it, several runs at once; else the simulation that serves measuring does.
+
+use super::general::{General, GeneralState};
+use crate::dynamics::Dense;
+use crate::error::{Error, Result};
+use crate::model::{Drive, Model};
+use crate::sim::drive::DriveInput;
+use crate::sim::{Plant, bare_motors};
+
+/// An upright robot is faster than the arms that models' own steps are made for, s.
+const LONGEST_STEP_S: f64 = 1e-3;
+
+/// What a controller commands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Commands {
+    /// Torques at standstill and nominal supply, N m: a servo is its bare motor, commanded in duty.
+    Torque,
+    /// What the drives of the model take: N m, duty, rad or rad/s.
+    Own,
+}
+
+/// A plant and the pose about which its state counts.
+#[derive(Debug, Clone)]
+pub struct PosedPlant {
+    pub(super) plant: Plant,
+    pub(super) equations: Equations,
+    pub(super) drives: Vec<DrivenJoint>,
+    /// Constant torque on each joint from outside, N m.
+    pub disturbance_nm: Vec<f64>,
+    /// Longest integration step, s.
+    pub step_s: f64,
+    /// Relative angles, joint 1 from hanging, rad.
+    pose_rad: Vec<f64>,
+}
+
+/// A driven joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct DrivenJoint {
+    /// Which one, from 0.
+    pub joint: usize,
+    /// Drive input per command.
+    input_per_command: f64,
+    /// Largest input that the drive takes.
+    largest_input: f64,
+    /// How late it obeys, s.
+    pub delay_s: f64,
+}
+
+/// What advances the plant.
+#[derive(Debug, Clone)]
+pub(super) enum Equations {
+    One(Dense<1>),
+    Two(Dense<2>),
+    Three(Dense<3>),
+    Four(Dense<4>),
+    General,
+}
+
+impl Equations {
+    fn of(plant: &Plant) -> Equations {
+        let held = |joint: &crate::sim::plant::JointPlan| {
+            !joint.has_joint_effects() && joint.torque_is_held()
+        };
+        if plant.senses || !plant.joints.iter().all(held) {
+            return Equations::General;
+        }
+        let (chain, turn_rad) = (&plant.rig.chain, plant.rig.gravity_turn_rad);
+        match chain.len() {
+            1 => Dense::new(chain, turn_rad).map(Equations::One),
+            2 => Dense::new(chain, turn_rad).map(Equations::Two),
+            3 => Dense::new(chain, turn_rad).map(Equations::Three),
+            4 => Dense::new(chain, turn_rad).map(Equations::Four),
+            _ => None,
+        }
+        .unwrap_or(Equations::General)
+    }
+
+    pub(super) fn one(&self) -> Option<&Dense<1>> {
+        match self {
+            Equations::One(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn two(&self) -> Option<&Dense<2>> {
+        match self {
+            Equations::Two(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn three(&self) -> Option<&Dense<3>> {
+        match self {
+            Equations::Three(dense) => Some(dense),
+            _ => None,
+        }
+    }
+
+    pub(super) fn four(&self) -> Option<&Dense<4>> {
+        match self {
+            Equations::Four(dense) => Some(dense),
+            _ => None,
+        }
+    }
+}
+
+impl PosedPlant {
+    /// The plant of a model, all its effects included, about `pose_rad`: one angle per joint in the model's own
+    /// convention, rad. Steps are 1 ms at most.
+    ///
+    /// # Errors
+    /// A pose of another length, or nothing driven.
+    pub fn new(model: &Model, pose_rad: &[f64], commands: Commands) -> Result<PosedPlant> {
+        if pose_rad.len() != model.link_count() {
+            return Err(Error::design(
+                format!(
+                    "{} angles for {} joints",
+                    pose_rad.len(),
+                    model.link_count()
+                ),
+                "give the pose one angle per joint",
+            ));
+        }
+        let motors;
+        let model = match commands {
+            Commands::Own => model,
+            Commands::Torque => {
+                motors = bare_motors(model);
+                &motors
+            }
+        };
+        let plant = Plant::without_log(model);
+        let drives: Vec<DrivenJoint> = (0..plant.len())
+            .filter(|&joint| plant.joints[joint].drive.is_driven())
+            .map(|joint| {
+                let plan = &plant.joints[joint];
+                let is_duty = matches!(plan.drive, Drive::Duty(_));
+                DrivenJoint {
+                    joint,
+                    input_per_command: match (commands, is_duty) {
+                        (Commands::Torque, true) => 1.0 / plan.full_torque_nm,
+                        _ => 1.0,
+                    },
+                    largest_input: if is_duty { 1.0 } else { f64::INFINITY },
+                    delay_s: plan.delay_s,
+                }
+            })
+            .collect();
+        if drives.is_empty() {
+            return Err(Error::design(
+                "no joint is driven, so nothing can hold the robot up",
+                "give at least one joint a drive, such as `drive = \"torque\"`",
+            ));
+        }
+        Ok(PosedPlant {
+            equations: Equations::of(&plant),
+            drives,
+            disturbance_nm: vec![0.0; plant.len()],
+            step_s: model.step_s.min(LONGEST_STEP_S),
+            pose_rad: plant.pose_rad(pose_rad),
+            plant,
+        })
+    }
+
+    /// The same plant by the general simulation, whatever acts on it.
+    #[must_use]
+    pub fn by_general_simulation(mut self) -> PosedPlant {
+        self.equations = Equations::General;
+        self
+    }
+
+    /// Whether the dense equations advance it.
+    pub fn is_dense(&self) -> bool {
+        !matches!(self.equations, Equations::General)
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.plant.len()
+    }
+
+    /// Number of driven joints.
+    pub fn drives(&self) -> usize {
+        self.drives.len()
+    }
+
+    /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric masses in balance.
+    pub fn balanced_rad(&self) -> Vec<f64> {
+        let chain = &self.plant.rig.chain;
+        let turn = self.plant.base_m_s2[0].atan2(self.plant.base_m_s2[1]);
+        let (mut beyond_kg, mut absolute) = (0.0, vec![0.0; chain.len()]);
+        for (i, link) in chain.links.iter().enumerate().rev() {
+            let (sin, cos) = link.com_angle_rad.sin_cos();
+            let moment = link.mass_kg * link.com_m;
+            let along = moment * cos + link.length_m * beyond_kg;
+            absolute[i] = std::f64::consts::PI - (moment * sin).atan2(along) - turn;
+            beyond_kg += link.mass_kg;
+        }
+        let relative = |i: usize| absolute[i] - if i > 0 { absolute[i - 1] } else { 0.0 };
+        let off = (0..absolute.len()).map(|i| relative(i) - self.pose_rad[i]);
+        // The nearest turn.
+        off.map(|a| a - std::f64::consts::TAU * (a / std::f64::consts::TAU).round())
+            .collect()
+    }
+
+    /// Deviations of the joints, rad, as deviations in the model's convention of angles.
+    pub fn in_convention(&self, angle_rad: &[f64]) -> Vec<f64> {
+        let carry = if self.plant.absolute { 1.0 } else { 0.0 };
+        let sum = |sum: &mut f64, angle: &f64| {
+            *sum = carry * *sum + angle;
+            Some(*sum)
+        };
+        angle_rad.iter().scan(0.0, sum).collect()
+    }
+
+    /// Input of a drive for a command.
+    #[inline]
+    pub(super) fn input(&self, drive: usize, command: f64) -> DriveInput {
+        let driven = &self.drives[drive];
+        let input = driven.input_per_command * command;
+        DriveInput {
+            input: input.clamp(-driven.largest_input, driven.largest_input),
+            disturbance_nm: self.disturbance_nm[driven.joint],
+            ..DriveInput::ZERO
+        }
+    }
+
+    /// Torque of a drive at the state, N m.
+    #[inline]
+    pub(super) fn drive_torque_nm(&self, drive: usize, input: DriveInput, body: &Body) -> f64 {
+        let joint = self.drives[drive].joint;
+        let plan = &self.plant.joints[joint];
+        match &body.general {
+            None => plan.drive_torque_nm(input, 0.0, 0.0),
+            Some(general) => {
+                let reading = self.plant.encoded_rad(joint, general.angle_rad());
+                plan.drive_torque_nm(input, reading, body.speed_rad_s[joint])
+            }
+        }
+    }
+
+    /// Readings of the encoders as deviations from those of the pose, in the model's convention: rad and rad/s.
+    #[inline]
+    pub(super) fn readings(&self, body: &Body, angle_rad: &mut [f64], speed_rad_s: &mut [f64]) {
+        let (mut angle, mut speed) = (0.0, 0.0);
+        for (joint, plan) in self.plant.joints.iter().enumerate() {
+            let carry = if self.plant.absolute { 1.0 } else { 0.0 };
+            angle = carry * angle + body.angle_rad[joint];
+            speed = carry * speed + body.speed_rad_s[joint];
+            let slope = plan.reading_slope();
+            angle_rad[joint] = slope * angle;
+            speed_rad_s[joint] = slope * speed;
+        }
+        if let Some(general) = body.general.as_ref().filter(|_| self.plant.senses) {
+            let readings = general.reading_rad().iter().enumerate();
+            for (joint, reading) in readings {
+                angle_rad[joint] = reading - self.plant.encoded_rad(joint, &self.pose_rad);
+            }
+        }
+    }
+
+    /// Into how many steps of what length a span is cut, s.
+    #[inline]
+    pub(super) fn steps(&self, span_s: f64) -> (usize, f64) {
+        let steps = (span_s / self.step_s - 1e-6).ceil().max(1.0);
+        (steps as usize, span_s / steps)
+    }
+
+    /// Advances by `span_s` under constant inputs.
+    #[inline]
+    pub(super) fn advance(&self, body: &mut Body, inputs: &[DriveInput], span_s: f64) {
+        let (steps, h) = self.steps(span_s);
+        match &self.equations {
+            Equations::One(dense) => self.by_dense(dense, body, h, steps),
+            Equations::Two(dense) => self.by_dense(dense, body, h, steps),
+            Equations::Three(dense) => self.by_dense(dense, body, h, steps),
+            Equations::Four(dense) => self.by_dense(dense, body, h, steps),
+            Equations::General => self.by_general(body, inputs, h, steps),
+        }
+    }
+
+    #[inline]
+    fn by_dense<const N: usize>(&self, dense: &Dense<N>, body: &mut Body, h: f64, steps: usize) {
+        let mut state = self.absolute(body);
+        let load = state.load_nm;
+        dense.advance(
+            &mut state.angle_rad,
+            &mut state.speed_rad_s,
+            &load,
+            h,
+            steps,
+        );
+        self.relative(&state, body);
+    }
+
+    /// The state in absolute angles, with the moment on each link.
+    #[inline]
+    pub(super) fn absolute<const N: usize>(&self, body: &Body) -> Absolute<N> {
+        let mut torque: [f64; N] = std::array::from_fn(|joint| self.disturbance_nm[joint]);
+        for (driven, drive_nm) in self.drives.iter().zip(&body.drive_nm) {
+            torque[driven.joint] += drive_nm;
+        }
+        let mut state = Absolute::default();
+        let (mut angle, mut speed) = (0.0, 0.0);
+        for i in 0..N {
+            angle += self.pose_rad[i] + body.angle_rad[i];
+            speed += body.speed_rad_s[i];
+            (state.angle_rad[i], state.speed_rad_s[i]) = (angle, speed);
+            let beyond = if i + 1 < N { torque[i + 1] } else { 0.0 };
+            state.load_nm[i] = torque[i] - beyond;
+        }
+        state
+    }
+
+    /// Back from absolute angles.
+    #[inline]
+    pub(super) fn relative<const N: usize>(&self, state: &Absolute<N>, body: &mut Body) {
+        let (mut angle, mut speed) = (0.0, 0.0);
+        for i in 0..N {
+            body.angle_rad[i] = (state.angle_rad[i] - angle) - self.pose_rad[i];
+            body.speed_rad_s[i] = state.speed_rad_s[i] - speed;
+            (angle, speed) = (state.angle_rad[i], state.speed_rad_s[i]);
+        }
+    }
+
+    fn by_general(&self, body: &mut Body, inputs: &[DriveInput], h: f64, steps: usize) {
+        let Some(general) = &mut body.general else {
+            return;
+        };
+        general.advance(&self.plant, inputs, h, steps);
+        for (joint, pose) in self.pose_rad.iter().enumerate() {
+            body.angle_rad[joint] = general.angle_rad()[joint] - pose;
+            body.speed_rad_s[joint] = general.speed_rad_s()[joint];
+        }
+    }
+}
+
+/// A state in absolute angles, joint 1's from hanging.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Absolute<const N: usize> {
+    pub(super) angle_rad: [f64; N],
+    pub(super) speed_rad_s: [f64; N],
+    pub(super) load_nm: [f64; N],
+}
+
+impl<const N: usize> Default for Absolute<N> {
+    fn default() -> Self {
+        Absolute {
+            angle_rad: [0.0; N],
+            speed_rad_s: [0.0; N],
+            load_nm: [0.0; N],
+        }
+    }
+}
+
+/// The state as deviations from the pose, joint by joint from the link before.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub(super) angle_rad: Vec<f64>,
+    pub(super) speed_rad_s: Vec<f64>,
+    /// Torques of the drives as they were when the last commands arrived, N m.
+    pub(super) drive_nm: Vec<f64>,
+    general: Option<Box<dyn General>>,
+}
+
+impl Body {
+    /// At these deviations from the pose, rad and rad/s.
+    pub(super) fn new(posed: &PosedPlant, angle_rad: &[f64], speed_rad_s: &[f64]) -> Self {
+        let general = matches!(posed.equations, Equations::General).then(|| {
+            let pose = posed.pose_rad.iter().zip(angle_rad);
+            let angle: Vec<f64> = pose.map(|(pose, off)| pose + off).collect();
+            GeneralState::boxed(&posed.plant, angle, speed_rad_s.to_vec())
+        });
+        Body {
+            angle_rad: angle_rad.to_vec(),
+            speed_rad_s: speed_rad_s.to_vec(),
+            drive_nm: vec![0.0; posed.drives()],
+            general,
+        }
+    }
+}

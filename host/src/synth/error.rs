@@ -1,0 +1,283 @@
+//! Why no design follows from a model, weights and timing that are well formed.
+
+use crate::error::Error;
+use nalgebra::Complex;
+use std::fmt;
+
+/// What stands in the way of a design; joints, states and inputs count from 0.
+///
+/// As [`Error::Design`] it ends a command with exit code 3.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
+pub enum DesignError {
+    #[error("no joint of `{model}` is driven")]
+    NothingDriven { model: String },
+    #[error("the masses and inertias of `{model}` do not make a positive inertia")]
+    NoInertia { model: String },
+    #[error("the drives differ in delay: {first_s} s and {other_s} s")]
+    DelaysDiffer { first_s: f64, other_s: f64 },
+    #[error("the pose has {angles} angles, the model {joints} joints")]
+    PoseSize { angles: usize, joints: usize },
+    #[error("the pose has an angle of {0}")]
+    PoseAngle(f64),
+    #[error(
+        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: the pose is no equilibrium",
+        joint + 1
+    )]
+    NoEquilibrium {
+        joint: usize,
+        torque_nm: f64,
+        angle_rad: f64,
+    },
+    #[error("no equilibrium was found near this pose")]
+    EquilibriumNotFound,
+    #[error("joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give", joint + 1)]
+    DriveTooWeak { joint: usize, torque_nm: f64 },
+
+    #[error("a sampling time of {0} s")]
+    SamplingTime(f64),
+    #[error("a delay of {delay_s} s at a sampling time of {ts_s} s")]
+    Delay {
+        delay_s: f64,
+        ts_s: f64,
+        most_samples: usize,
+    },
+    #[error("the plant grows beyond all numbers within one sample of {0} s")]
+    GrowsWithinSample(f64),
+
+    #[error("{name} has {found} values, but there are {size} {of}")]
+    DiagonalSize {
+        name: &'static str,
+        found: usize,
+        size: usize,
+        of: &'static str,
+    },
+    #[error("{name} has {found} values, but {size} are needed")]
+    ListSize {
+        name: &'static str,
+        found: usize,
+        size: usize,
+    },
+    #[error("{name} is {} x {}, but there are {size} {of}", shape.0, shape.1)]
+    MatrixSize {
+        name: &'static str,
+        shape: (usize, usize),
+        size: usize,
+        of: &'static str,
+    },
+    #[error("{name} has an entry of {value}")]
+    Entry { name: &'static str, value: f64 },
+    #[error(
+        "{name} is not symmetric: entry ({}, {}) is {below}, entry ({}, {}) is {above}",
+        at.0 + 1, at.1 + 1, at.1 + 1, at.0 + 1
+    )]
+    Asymmetric {
+        name: &'static str,
+        at: (usize, usize),
+        below: f64,
+        above: f64,
+    },
+    #[error("{name} is not positive semidefinite: its least eigenvalue is {least:.3e}")]
+    Indefinite { name: &'static str, least: f64 },
+    #[error("{name} is not positive definite: its least eigenvalue is {least:.3e}")]
+    NotDefinite {
+        name: &'static str,
+        least: f64,
+        of: &'static str,
+    },
+    #[error("the innovation's covariance is not positive definite")]
+    Innovation,
+
+    #[error("the eigenvalues of the system matrix cannot be found")]
+    Eigenvalues,
+    #[error("{mode}: {}", role.uncontrollable().0)]
+    Uncontrollable { mode: PlantMode, role: Role },
+    #[error("{mode}: {}", role.unweighted().0)]
+    Unweighted { mode: PlantMode, role: Role },
+    #[error("no stabilising solution was found within double precision{}", nearest(weakest.as_ref()))]
+    NoSolution { weakest: Option<PlantMode> },
+
+    #[error("a word of {0} bits")]
+    WordLength(u32),
+    #[error("{found} values of {of} {what}, but there are {needed} {of}s")]
+    Count {
+        what: &'static str,
+        of: &'static str,
+        found: usize,
+        needed: usize,
+    },
+    #[error("the {what} of {of} {} is {value}", index + 1)]
+    NotPositive {
+        what: &'static str,
+        of: &'static str,
+        index: usize,
+        value: f64,
+    },
+    #[error("{of} {} reaches {steps:.0} steps of {step}, but a word holds {word}", index + 1)]
+    BeyondWord {
+        of: &'static str,
+        index: usize,
+        steps: f64,
+        step: f64,
+        word: f64,
+    },
+    #[error(
+        "the gains of input {} overflow {bits} bits: the sum over the declared ranges is too large for its step of {step}",
+        input + 1
+    )]
+    Overflow { input: usize, bits: u32, step: f64 },
+    #[error(
+        "rounded to {bits} bits the gains no longer stabilise: the spectral radius is {radius:.6}"
+    )]
+    UnstableWhenRounded { bits: u32, radius: f64 },
+
+    #[error("the gain to start from lets one of the plants fall")]
+    UnstableStart,
+    #[error("no gain was found that holds all plants at {share:.2} of the spread")]
+    SpreadTooWide { share: f64 },
+}
+
+/// A mode of a plant that a Riccati equation cannot move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantMode {
+    /// Its eigenvalue, 1/s, or per sample if `sampled`.
+    pub pole: Complex<f64>,
+    /// Whether the plant is sampled.
+    pub sampled: bool,
+    /// The state in which it shows most.
+    pub state: usize,
+    /// Its distance from being uncontrollable, 0 to about 1: see [`Mode`](super::Mode).
+    pub margin: f64,
+}
+
+/// What a Riccati equation is solved for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Gains.
+    Regulator,
+    /// A Kalman filter: the regulator of the transposed plant.
+    Estimator,
+}
+
+impl Role {
+    /// A mode that inputs (outputs) do not reach, and the remedy.
+    fn uncontrollable(self) -> (&'static str, &'static str) {
+        match self {
+            Role::Regulator => (
+                "no input reaches it: the plant cannot be stabilised",
+                "drive a joint that moves this mode",
+            ),
+            Role::Estimator => (
+                "no output shows it: the state cannot be estimated",
+                "measure a state in which this mode shows",
+            ),
+        }
+    }
+
+    /// A mode on the edge of stability without weight (noise), and the remedy.
+    fn unweighted(self) -> (&'static str, &'static str) {
+        match self {
+            Role::Regulator => (
+                "Q does not weigh it, so the best gain leaves it alone",
+                "weigh that state in Q",
+            ),
+            Role::Estimator => (
+                "the process noise W does not excite it, so the best filter ignores it",
+                "give that state process noise in W",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for PlantMode {
+    /// "the mode with pole 1.07+0.2i, strongest in state 3".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the mode with pole {:.6}", self.pole.re)?;
+        if self.pole.im != 0.0 {
+            write!(f, "{:+.6}i", self.pole.im)?;
+        }
+        let unit = if self.sampled { "" } else { " 1/s" };
+        write!(f, "{unit}, strongest in state {}", self.state + 1)
+    }
+}
+
+fn nearest(weakest: Option<&PlantMode>) -> String {
+    weakest.map_or_else(String::new, |mode| {
+        format!(
+            "; {mode} is the hardest to control, {:.1e} from impossible",
+            mode.margin
+        )
+    })
+}
+
+impl DesignError {
+    /// What to change.
+    pub fn remedy(&self) -> String {
+        use DesignError as E;
+        let plain = match self {
+            E::NothingDriven { .. } => "give a [[joint]] another drive than passive",
+            E::NoInertia { .. } => "give every link a mass and an inertia",
+            E::DelaysDiffer { .. } => {
+                "give every driven joint the same delay, or choose one with --delay"
+            }
+            E::PoseSize { .. } => "give one angle per joint, from the base outwards",
+            E::PoseAngle(_) => "give angles in rad",
+            E::NoEquilibrium { .. } => {
+                "choose a pose in which every passive joint balances; --balance finds the nearest"
+            }
+            E::EquilibriumNotFound => "start from a pose nearer to balance",
+            E::DriveTooWeak { .. } => "choose a pose that asks less of it",
+            E::SamplingTime(_) => "give seconds above 0",
+            E::Delay { most_samples, .. } => {
+                return format!("give a delay from 0 to {most_samples} samples");
+            }
+            E::GrowsWithinSample(_) => "sample faster",
+            E::DiagonalSize { .. } | E::ListSize { .. } => {
+                "give one number for all, or one for each"
+            }
+            E::MatrixSize { name, size, .. } => {
+                return format!(
+                    "give {name} as {size} x {size}, as its diagonal, or as one number"
+                );
+            }
+            E::Entry { .. } => "give numbers",
+            E::Asymmetric { name, .. } => {
+                return format!("give its symmetric part, half of {name} plus its transpose");
+            }
+            E::Indefinite { name, .. } => {
+                return format!(
+                    "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
+                );
+            }
+            E::NotDefinite { name, of, .. } => {
+                return format!(
+                    "give every one of the {of} a weight or variance above 0 in {name}"
+                );
+            }
+            E::Innovation => "raise the measurement noise V",
+            E::Eigenvalues => "look for entries that are not numbers or of very different size",
+            E::Uncontrollable { role, .. } => role.uncontrollable().1,
+            E::Unweighted { role, .. } => role.unweighted().1,
+            E::NoSolution { .. } => {
+                "scale the weights to like sizes, sample slower, or drive more joints"
+            }
+            E::WordLength(_) => "choose 8 to 32 bits",
+            E::Count { of, .. } => return format!("give one per {of}, or one for all"),
+            E::NotPositive { .. } => "give a number above 0",
+            E::BeyondWord { .. } => "declare a smaller range, a coarser step, or more bits",
+            E::Overflow { .. } => "declare smaller ranges, take a coarser input step, or more bits",
+            E::UnstableWhenRounded { .. } => {
+                "declare smaller ranges: steps and gains are rounded to what they need"
+            }
+            E::UnstableStart => "start from plants that differ less",
+            E::SpreadTooWide { .. } => "ask for less spread, or for more stages on the way",
+        };
+        plain.to_string()
+    }
+}
+
+impl From<DesignError> for Error {
+    fn from(error: DesignError) -> Error {
+        Error::design(error.to_string(), error.remedy())
+    }
+}

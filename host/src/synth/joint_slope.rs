@@ -1,0 +1,269 @@
+//! One joint at the operating point: what holds it, and the first-order change of its torque.
+
+use super::error::DesignError;
+use super::omitted::OmittedEffect;
+use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
+use crate::model::{Drive, EffectInstance, Model};
+
+/// Most steps of Newton's iteration for the duty that holds a torque.
+const MOST_STEPS: usize = 50;
+
+/// First-order change of the torque at a joint.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct JointSlope {
+    /// Per relative angle, N m/rad.
+    pub per_rad: f64,
+    /// Per angle in the model's convention, N m/rad.
+    pub per_pose_rad: f64,
+    /// Per speed, N m s/rad.
+    pub per_rad_s: f64,
+    /// Per input.
+    pub per_input: f64,
+    /// Reading per angle in the model's convention.
+    pub reading: f64,
+}
+
+/// A joint that is held in its pose.
+pub(super) struct Held {
+    pub slope: JointSlope,
+    /// Input that holds it; none of a passive joint.
+    pub input: Option<f64>,
+    pub omitted: Vec<OmittedEffect>,
+}
+
+/// Torque of springs and the like, with its slopes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct JointTorque {
+    pub torque_nm: f64,
+    pub per_rad: f64,
+    pub per_rad_s: f64,
+}
+
+/// A duty with the torque's slopes per duty and per speed.
+struct Duty {
+    duty: f64,
+    per_duty: f64,
+    per_rad_s: f64,
+}
+
+/// One joint and what acts on it.
+pub(super) struct JointAt<'a> {
+    joint: usize,
+    drive: &'a Drive,
+    effects: Vec<&'a EffectInstance>,
+    angle_rad: f64,
+    pose_rad: f64,
+}
+
+impl<'a> JointAt<'a> {
+    pub fn new(
+        model: &'a Model,
+        joint: usize,
+        relative_rad: &[f64],
+        pose_rad: &[f64],
+    ) -> JointAt<'a> {
+        // Those of one site act in the library's order, however the file lists them.
+        let mut effects = Vec::new();
+        for effect in EFFECTS.iter().chain(CONTROLS) {
+            let here = |e: &&EffectInstance| e.effect == *effect && e.joint == Some(joint);
+            effects.extend(model.effects.iter().filter(here));
+        }
+        effects
+            .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
+        let zero = match joint {
+            0 => model.angle_zero.from_hanging_rad(),
+            _ => 0.0,
+        };
+        JointAt {
+            joint,
+            drive: &model.joints[joint].drive,
+            effects,
+            angle_rad: relative_rad[joint] - zero,
+            pose_rad: pose_rad[joint],
+        }
+    }
+
+    /// Effects of a site with their values and slopes; one without a slope is added to `omitted`.
+    fn slopes(
+        &self,
+        site: Site,
+        at: AtRest,
+        omitted: &mut Vec<OmittedEffect>,
+    ) -> Vec<(&'static dyn Effect, &'a [f64], Slope)> {
+        let mut slopes = Vec::new();
+        for e in self.effects.iter().filter(|e| e.effect.info().site == site) {
+            match e.effect.slope(&e.values, &at) {
+                Some(slope) => slopes.push((e.effect, e.values.as_slice(), slope)),
+                None => omitted.push(OmittedEffect::new(e.effect, self.joint)),
+            }
+        }
+        slopes
+    }
+
+    fn at_rest(&self) -> AtRest {
+        AtRest {
+            angle_rad: self.angle_rad,
+            duty: 0.0,
+            torque_nm: 0.0,
+            full_torque_nm: self.drive.motor().map_or(1.0, |m| m.stall_torque_nm),
+        }
+    }
+
+    /// Torque of the smooth joint effects; those that are not smooth are added to `omitted`.
+    pub fn torque(&self, omitted: &mut Vec<OmittedEffect>) -> JointTorque {
+        let state = JointState::undriven(self.angle_rad, 0.0);
+        let mut sum = JointTorque::default();
+        for (effect, values, slope) in self.slopes(Site::Joint, self.at_rest(), omitted) {
+            sum.torque_nm += effect.torque(values, &state);
+            sum.per_rad += slope.per_rad;
+            sum.per_rad_s += slope.per_rad_s;
+        }
+        sum
+    }
+
+    /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within
+    /// `slack_nm`.
+    pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held, DesignError> {
+        let (at, mut omitted) = (self.at_rest(), Vec::new());
+        for site in [Site::Command, Site::Friction, Site::Sensor] {
+            self.slopes(site, at, &mut omitted);
+        }
+        let own = self.torque(&mut omitted);
+        let mut slope = JointSlope {
+            per_rad: own.per_rad,
+            per_rad_s: own.per_rad_s,
+            reading: 1.0,
+            ..JointSlope::default()
+        };
+        let mut reading_rad = self.pose_rad;
+        for (effect, values, encoder) in self.slopes(Site::Encoder, at, &mut omitted) {
+            slope.reading *= encoder.gain;
+            reading_rad = effect.encode(values, reading_rad);
+        }
+        let needed_nm = gravity_nm - own.torque_nm;
+        let input = if self.drive.is_driven() {
+            let duty = self.duty(needed_nm, &mut omitted)?;
+            slope.per_rad_s += duty.per_rad_s;
+            Some(self.input(&duty, reading_rad, &mut slope))
+        } else if needed_nm.abs() <= slack_nm {
+            None
+        } else {
+            return Err(self.unbalanced(needed_nm));
+        };
+        Ok(Held {
+            slope,
+            input,
+            omitted,
+        })
+    }
+
+    fn unbalanced(&self, needed_nm: f64) -> DesignError {
+        DesignError::NoEquilibrium {
+            joint: self.joint,
+            torque_nm: needed_nm,
+            angle_rad: self.pose_rad,
+        }
+    }
+
+    /// Duty that makes `needed_nm`, by Newton's iteration: one step where the torque is linear in
+    /// the duty.
+    fn duty(&self, needed_nm: f64, omitted: &mut Vec<OmittedEffect>) -> Result<Duty, DesignError> {
+        let mut at = self.at_rest();
+        let (full_torque_nm, motor) = (at.full_torque_nm, self.drive.motor());
+        at.duty = needed_nm / full_torque_nm;
+        for _ in 0..MOST_STEPS {
+            let mut without = Vec::new();
+            let (torque_nm, duty) = self.driven(at, &mut without);
+            let off_nm = needed_nm - torque_nm;
+            if off_nm.abs() <= 1e-12 * full_torque_nm.max(needed_nm.abs()) {
+                if motor.is_some() && at.duty.abs() >= 1.0 {
+                    break;
+                }
+                omitted.extend(without);
+                return Ok(duty);
+            }
+            at.duty += off_nm / duty.per_duty;
+        }
+        Err(DesignError::DriveTooWeak {
+            joint: self.joint,
+            torque_nm: needed_nm,
+        })
+    }
+
+    /// Torque of the drive at a duty, with its slopes. An effect without a slope still limits the
+    /// torque: beyond a limit nothing holds the pose.
+    fn driven(&self, mut at: AtRest, omitted: &mut Vec<OmittedEffect>) -> (f64, Duty) {
+        let state = DriveState {
+            speed_rad_s: 0.0,
+            duty: at.duty,
+            full_torque_nm: at.full_torque_nm,
+            supply_ratio: 1.0,
+        };
+        at.torque_nm = at.full_torque_nm * at.duty;
+        let no_load = self.drive.motor().map(|m| m.no_load_speed_rad_s);
+        let mut duty = Duty {
+            duty: at.duty,
+            per_duty: at.full_torque_nm,
+            per_rad_s: no_load.map_or(0.0, |speed| -at.full_torque_nm / speed),
+        };
+        for e in self
+            .effects
+            .iter()
+            .filter(|e| e.effect.info().site == Site::Drive)
+        {
+            let slope = e.effect.slope(&e.values, &at).unwrap_or_else(|| {
+                omitted.push(OmittedEffect::new(e.effect, self.joint));
+                Slope::NONE
+            });
+            at.torque_nm = e.effect.drive(&e.values, at.torque_nm, &state);
+            duty.per_duty = slope.gain * duty.per_duty + slope.per_duty;
+            duty.per_rad_s = slope.gain * duty.per_rad_s + slope.per_rad_s;
+        }
+        (at.torque_nm, duty)
+    }
+
+    /// The input that makes `duty`; completes the slopes.
+    fn input(&self, duty: &Duty, reading_rad: f64, slope: &mut JointSlope) -> f64 {
+        let Duty { duty, per_duty, .. } = *duty;
+        match self.drive {
+            Drive::Passive => 0.0,
+            Drive::Torque | Drive::Duty(_) => {
+                slope.per_input = per_duty;
+                duty
+            }
+            Drive::Position { gain_per_rad, .. } => {
+                slope.per_input = per_duty * gain_per_rad;
+                slope.per_pose_rad = -per_duty * gain_per_rad * slope.reading;
+                reading_rad + duty / gain_per_rad
+            }
+            Drive::Speed {
+                gain_s_per_rad,
+                motor,
+            } => {
+                let forward = 1.0 / motor.no_load_speed_rad_s;
+                slope.per_input = per_duty * (forward + gain_s_per_rad);
+                slope.per_rad_s -= per_duty * gain_s_per_rad;
+                duty / (forward + gain_s_per_rad)
+            }
+        }
+    }
+}
+
+/// Whether an effect's values are those at which it does nothing.
+fn vanishes(instance: &EffectInstance) -> bool {
+    let mut off = instance
+        .effect
+        .info()
+        .parameters
+        .iter()
+        .zip(&instance.values);
+    let mut any = false;
+    let none = off.all(|(parameter, &value)| match parameter.off {
+        Some(off) => {
+            any = true;
+            value == off
+        }
+        None => true,
+    });
+    any && none
+}

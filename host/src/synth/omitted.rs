@@ -1,0 +1,56 @@
+//! Effects that a linear model leaves out.
+
+use crate::effects::{Effect, Site};
+use std::fmt;
+
+/// An effect without a derivative at the operating point: the linear model does without it, the
+/// robot does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OmittedEffect {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Its joint, counted from 0.
+    pub joint: usize,
+    /// What keeps it from having a derivative.
+    pub why: NonSmooth,
+}
+
+/// What keeps an effect from having a derivative at the operating point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NonSmooth {
+    /// Friction changes its sign with the speed.
+    JumpsAtStandstill,
+    /// Small commands have no effect.
+    DeadAtZero,
+    /// The torque is at its limit.
+    AtLimit,
+    /// The reading depends on the past.
+    Memory,
+    /// The effect states no derivative.
+    Unstated,
+}
+
+impl OmittedEffect {
+    pub(super) fn new(effect: &'static dyn Effect, joint: usize) -> OmittedEffect {
+        let why = match effect.info().site {
+            Site::Friction => NonSmooth::JumpsAtStandstill,
+            Site::Command => NonSmooth::DeadAtZero,
+            Site::Drive => NonSmooth::AtLimit,
+            Site::Sensor => NonSmooth::Memory,
+            Site::Timing | Site::Joint | Site::Body | Site::Encoder => NonSmooth::Unstated,
+        };
+        OmittedEffect { effect, joint, why }
+    }
+}
+
+impl fmt::Display for NonSmooth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            NonSmooth::JumpsAtStandstill => "its torque jumps at standstill",
+            NonSmooth::DeadAtZero => "it has no derivative at small commands",
+            NonSmooth::AtLimit => "the pose takes all of the torque that it leaves",
+            NonSmooth::Memory => "its reading depends on the past",
+            NonSmooth::Unstated => "it states no derivative",
+        })
+    }
+}

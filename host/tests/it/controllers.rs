@@ -1,0 +1,78 @@
+//! `handstand controllers`, `delays` and `robust` seen from outside.
+
+use crate::common::Bench;
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
+    bench
+}
+
+#[test]
+fn the_best_controller_holds_what_the_paper_s_does_not() {
+    let bench = bench();
+    let line = "controllers handstand.toml --condition all --controller dlqr --controller best --robots 100 \
+                --region-robots 20 --csv held.csv --plot held.svg";
+    let ran = bench.run(&format!("{line} --json"));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    let held = |row: usize| data[row]["stabilised"].as_f64().unwrap();
+    assert_eq!(data[0]["controller"], "dlqr");
+    assert!(held(0) < 0.5 && held(1) >= 0.9, "{data}");
+    assert_eq!(data[0]["region_rad"], 0.0);
+    assert!(
+        data[1]["region_rad"].as_f64().unwrap() > 1f64.to_radians(),
+        "{data}"
+    );
+    let (csv, svg) = (bench.get("held.csv"), bench.get("held.svg"));
+    assert_eq!(csv.lines().count(), 3, "{csv}");
+    assert!(
+        svg.starts_with("<svg") && svg.contains("all at once"),
+        "{svg}"
+    );
+
+    let refused = bench.run(line);
+    assert_eq!(refused.code, Some(2), "{refused:?}");
+    // The same bytes whoever does the work.
+    let again = bench.run(&format!("{line} --json --force"));
+    assert_eq!(again.stdout, ran.stdout);
+
+    let none = bench.run("controllers handstand.toml --condition all --controller dlqr --robots 20 --region-robots 0");
+    assert_eq!(none.code, Some(1), "{none:?}");
+}
+
+#[test]
+fn wrong_masses_fell_the_paper_s_gains() {
+    let ran = bench().run("robust handstand.toml --draws 400 --seed 3 --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    let lost: Vec<f64> = (0..3)
+        .map(|row| data[row]["unstable"].as_f64().unwrap())
+        .collect();
+    assert!(
+        (0.18..0.30).contains(&lost[0]) && (0.11..0.23).contains(&lost[1]),
+        "{lost:?}"
+    );
+    assert!(lost[2] <= 0.02, "{lost:?}");
+    assert!(data[2]["largest_error"].as_f64().unwrap() > 0.15, "{data}");
+}
+
+#[test]
+fn one_sample_of_delay_is_too_much_for_the_paper_s_gains() {
+    let ran = bench().run(
+        "delays handstand.toml --controller dlqr --controller lqg --robots 0 --until-ms 40 --json",
+    );
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    let longest = |row: usize, told: &str| data["controllers"][row][told]["delay_s"].as_f64();
+    assert_eq!(longest(0, "uncompensated"), Some(0.0085));
+    assert_eq!(longest(1, "compensated"), Some(0.04));
+    assert!(
+        longest(1, "compensated_one_sample").unwrap() > 0.01,
+        "{data}"
+    );
+    assert_eq!(data["paths"].as_array().unwrap().len(), 18);
+}

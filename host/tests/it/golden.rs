@@ -1,0 +1,167 @@
+//! What the program says, word for word.
+//!
+//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference before keeping it.
+
+use crate::common::Bench;
+use std::path::Path;
+
+/// Says what the command lines say and compares it with `tests/data/NAME.txt`.
+fn golden(bench: &Bench, name: &str, lines: &[&str]) {
+    let mut said = String::new();
+    for line in lines {
+        let ran = bench.run(line);
+        said += &format!("$ handstand {line}\n{}{}", ran.stdout, ran.stderr);
+        said += &format!("(exit code {})\n\n", ran.code.unwrap());
+    }
+    // Windows writes the program's name with its ending.
+    let said = said.replace("handstand.exe", "handstand");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/{name}.txt"));
+    if std::env::var_os("GOLDEN").is_some_and(|what| what == "write") {
+        std::fs::write(&file, &said).unwrap();
+    }
+    let kept = std::fs::read_to_string(&file)
+        .unwrap()
+        .replace("\r\n", "\n");
+    let differs = kept
+        .lines()
+        .zip(said.lines())
+        .find(|(kept, said)| kept != said);
+    assert!(
+        kept == said,
+        "{name}.txt: first difference {differs:#?}\n{said}"
+    );
+}
+
+/// A folder with the fixtures.
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.put("arm.csv", include_str!("../data/arm.csv"));
+    bench.put("arm.toml", include_str!("../data/arm.toml"));
+    bench
+}
+
+#[test]
+fn help() {
+    golden(
+        &bench(),
+        "help",
+        &["--help", "compare --help", "diagnose --help"],
+    );
+}
+
+#[test]
+fn bus() {
+    golden(
+        &bench(),
+        "bus",
+        &[
+            "bus --help",
+            "bus scan --port sim:ids=1-4,dead=2 --ids 1-4",
+            "bus read 3 id return-delay-time present_position --port sim",
+            "bus write 3 led 1 --port sim",
+            "bus setup --port sim:ids=1-2 --ids 1-2",
+            "bus doctor --port sim:ids=1-4,delay=0,dead=2,hot=3 --ids 1-4",
+            "bus doctor --port sim:ids=1-4,delay=0,baud=34 --ids 1-4",
+            "latency --port sim:ids=1-18,delay=0",
+            "latency --port sim-cm5:ids=1-18,delay=0 --stream",
+            "latency --port sim-cm5:ids=1-18",
+        ],
+    );
+}
+
+#[test]
+fn effects() {
+    golden(&bench(), "effects", &["effects", "effects coulomb"]);
+}
+
+#[test]
+fn controllers() {
+    golden(
+        &bench(),
+        "controllers",
+        &[
+            "controllers",
+            "controllers arm.toml --controller pid",
+            "controllers arm.toml --condition rain",
+            "controllers arm.toml --seconds 1",
+            "controllers arm.toml",
+            "robust arm.toml --masses 100",
+        ],
+    );
+}
+
+#[test]
+fn log_check() {
+    golden(
+        &bench(),
+        "log_check",
+        &[
+            "log check arm.toml arm.csv",
+            "log check arm.toml arm.csv:0-40 arm.csv:41-99 --json",
+        ],
+    );
+}
+
+#[test]
+fn compare() {
+    let bench = bench();
+    let calmed = include_str!("../data/arm.toml")
+        .replace("coefficient_nm_s_rad = 0.0", "coefficient_nm_s_rad = 0.001");
+    bench.put("calmed.toml", calmed);
+    golden(
+        &bench,
+        "compare",
+        &[
+            "compare arm.toml arm.csv",
+            "compare arm.toml arm.csv --model calmed.toml",
+        ],
+    );
+}
+
+#[test]
+fn paper() {
+    golden(&bench(), "paper", &["paper"]);
+}
+
+#[test]
+fn refusals() {
+    let bench = bench();
+    let (model, log) = (
+        include_str!("../data/arm.toml"),
+        include_str!("../data/arm.csv"),
+    );
+    bench.put("unknown_key.toml", model.replacen("mass_kg", "mas_kg", 1));
+    bench.put("missing_column.csv", log.replacen("angle_rad", "angle", 1));
+    bench.put("nan.csv", log.replacen("\n0.04,", "\n0.04,nan\n0.05,", 1));
+    bench.put("backwards.csv", log.replacen("\n0.04,", "\n0.01,", 1));
+    golden(
+        &bench,
+        "refusals",
+        &[
+            "compare unknown_key.toml arm.csv",
+            "compare arm.toml missing_column.csv",
+            "compare arm.toml nan.csv",
+            "compare arm.toml backwards.csv",
+            "compare arm.toml arm.csv:9-3",
+            "effects colomb",
+        ],
+    );
+}
+
+#[test]
+fn gains() {
+    let bench = bench();
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
+    golden(
+        &bench,
+        "gains",
+        &[
+            "gains handstand.toml",
+            "gains handstand.toml --continuous --q 1",
+            "gains handstand.toml --delay 0.013 --lqg --limit 2",
+        ],
+    );
+}

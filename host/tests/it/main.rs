@@ -1,0 +1,26 @@
+//! The built program and the library, seen from outside. One test program: each more would link the library again.
+
+mod common;
+
+mod bus;
+mod cli;
+mod controllers;
+mod deploy;
+#[cfg(unix)]
+mod dynamixel_sdk;
+mod examples;
+#[cfg(unix)]
+mod flash;
+mod fuzz;
+mod gains;
+mod golden;
+#[cfg(unix)]
+mod mcap;
+#[cfg(unix)]
+mod recipes;
+mod record;
+mod render;
+mod riccati;
+mod rounds;
+mod study;
+mod sysid;

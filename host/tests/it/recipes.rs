@@ -1,0 +1,152 @@
+//! The recipes of `docs/recipes`, run as they are: a study's shards by Slurm and by GNU parallel.
+//!
+//! Without these programs (Slurm needs root too) they are skipped, and stderr says so even when tests pass.
+
+use crate::common::Bench;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+const STUDY: &str = "
+[runs]
+count = 1000
+length_s = 0.2
+
+[[uncertain]]
+what = \"mass\"
+size = 0.1
+";
+
+/// Longer than any of these takes.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn recipe(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../docs/recipes")
+        .join(name)
+}
+
+fn found(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path)
+        .chain(["/usr/sbin".into(), "/sbin".into()])
+        .any(|folder| folder.join(name).is_file())
+}
+
+/// Past the harness, which keeps the words of tests that pass.
+fn skip(what: &str, why: &str) {
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {what}: {why}");
+}
+
+fn done(mut command: Command) -> Output {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {output:?}");
+    output
+}
+
+/// A bench with a study and the table that its shards must add up to.
+fn bench() -> (Bench, String) {
+    let bench = Bench::new();
+    bench.put("study.toml", STUDY);
+    let ran = bench.run("study monte-carlo study.toml -o whole");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let table = bench.get("whole/runs.csv");
+    (bench, table)
+}
+
+#[test]
+fn gnu_parallel_runs_the_shards() {
+    if !found("parallel") {
+        return skip("the recipe for GNU parallel", "no `parallel` on the path");
+    }
+    let (bench, table) = bench();
+    let mut command = Command::new(recipe("parallel.sh"));
+    command
+        .args(["study.toml", "shards", "3", "--will-cite"])
+        .current_dir(bench.path(""))
+        .env("HANDSTAND", env!("CARGO_BIN_EXE_handstand"));
+    done(command);
+    assert!(bench.path("shards/shard-3-of-3.journal").exists());
+    assert_eq!(bench.get("shards/runs.csv"), table);
+}
+
+/// Slurm's daemons, stopped at the end whatever happens.
+struct Slurm(PathBuf);
+
+impl Slurm {
+    fn start(folder: PathBuf) -> Slurm {
+        let slurm = Slurm(folder);
+        let port = 20_000 + std::process::id() % 20_000;
+        let mut command = slurm.command(recipe("slurm-one-box.sh").to_str().unwrap());
+        command.arg("start").arg(&slurm.0);
+        command.env("SLURM_ONE_BOX_PORT", port.to_string());
+        done(command);
+        slurm
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        let path = std::env::var("PATH").unwrap_or_default();
+        command
+            .env("PATH", format!("{path}:/usr/sbin:/sbin"))
+            .env("SLURM_CONF", self.0.join("slurm.conf"));
+        command
+    }
+}
+
+impl Drop for Slurm {
+    fn drop(&mut self) {
+        let mut command = self.command(recipe("slurm-one-box.sh").to_str().unwrap());
+        let _ = command.arg("stop").arg(&self.0).output();
+    }
+}
+
+#[test]
+fn a_slurm_job_array_runs_the_shards() {
+    let id = done({
+        let mut id = Command::new("id");
+        id.arg("-u");
+        id
+    });
+    if !found("slurmctld") || !found("slurmd") {
+        return skip("the recipe for Slurm", "no `slurmctld` and `slurmd` here");
+    }
+    if id.stdout.trim_ascii() != b"0" {
+        return skip(
+            "the recipe for Slurm",
+            "only root may start Slurm's daemons",
+        );
+    }
+    let (bench, table) = bench();
+    let slurm = Slurm::start(bench.path("slurm"));
+    let mut sbatch = slurm.command("sbatch");
+    sbatch
+        .args(["--parsable", "--array=1-3"])
+        .arg("--export=ALL,STUDY=study.toml,FOLDER=shards")
+        .arg(recipe("study.sbatch"))
+        .current_dir(bench.path(""))
+        .env("HANDSTAND", env!("CARGO_BIN_EXE_handstand"));
+    let said = done(sbatch).stdout;
+    let job = String::from_utf8(said).unwrap().trim().to_string();
+    let begun = Instant::now();
+    loop {
+        let mut squeue = slurm.command("squeue");
+        squeue.args(["--noheader", "--jobs", &job]);
+        if done(squeue).stdout.trim_ascii().is_empty() {
+            break;
+        }
+        assert!(begun.elapsed() < PATIENCE, "job {job} does not end");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    let merged = bench.run("study merge shards -o merged");
+    let logs = || {
+        let files = std::fs::read_dir(bench.path("")).unwrap().flatten();
+        let logs = files.filter(|file| file.file_name().to_string_lossy().starts_with("slurm-"));
+        let texts = logs.filter_map(|file| std::fs::read_to_string(file.path()).ok());
+        texts.collect::<String>()
+    };
+    assert_eq!(merged.code, Some(0), "{merged:?}\n{}", logs());
+    assert!(bench.path("shards/shard-2-of-3.journal").exists());
+    assert_eq!(bench.get("merged/runs.csv"), table);
+}

@@ -1,0 +1,297 @@
+//! `record` and `replay` over simulated servos; a recorder that is killed.
+
+use crate::common::Bench;
+
+/// A motion of two servos: goals to and fro, 2 s at 50 Hz.
+fn motion(largest_rad: f64) -> String {
+    let names = |id: u8| {
+        format!(
+            "q{id}_rad,dq{id}_rad_s,load{id},goal{id}_rad,supply{id}_v,temperature{id}_celsius,error{id}"
+        )
+    };
+    let mut text = format!("time_s,{},{}\n", names(1), names(2));
+    for sample in 0..100 {
+        let time_s = f64::from(sample) * 0.02;
+        let goal = largest_rad * (2.0 * time_s).sin();
+        text += &format!("{time_s:.6},{goal:.6},,,{goal:.6},,,,0,,,{:.6},,,\n", -goal);
+    }
+    text
+}
+
+#[test]
+fn both_formats_hold_the_same_and_turn_into_each_other() {
+    let bench = Bench::new();
+    for line in [
+        "record r1.mcap --seconds 1 --port sim:ids=1-2,delay=0 --ids 1-2",
+        "record r2.csv --from r1.mcap",
+        "record r3.mcap --from r2.csv",
+        "record r4.csv --from r3.mcap",
+    ] {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(0), "{line}: {ran:?}");
+    }
+    assert_eq!(bench.get("r2.csv").lines().count(), 102);
+    assert_eq!(bench.get("r2.csv"), bench.get("r4.csv"));
+    assert_eq!(
+        bench.run("record r2.csv --port sim").code,
+        Some(2),
+        "it exists"
+    );
+    assert_eq!(
+        bench.run("record b.txt --port sim").code,
+        Some(2),
+        "no such format"
+    );
+}
+
+#[test]
+fn a_recording_is_a_log_that_models_are_compared_with() {
+    let bench = Bench::new();
+    bench.run("record a.csv --seconds 2 --port sim:ids=1,delay=0 --ids 1 --force");
+    bench.put(
+        "model.toml",
+        bench.get("model.toml").replace("angle_rad", "q1_rad"),
+    );
+    let check = bench.run("compare model.toml a.csv");
+    assert_eq!(check.code, Some(0), "{check:?}");
+}
+
+/// A run through the firmware, read by `compare` with the model of a servo: what remains is the firmware's slower goals and
+/// the line's varying delay.
+#[test]
+fn a_run_through_the_firmware_is_what_its_model_says() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.4));
+    let line = "replay motion.csv --port sim-cm5:ids=1-2,delay=0 --stream --yes --record run.csv";
+    let ran = bench.run(line);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/bus_servo.toml");
+    let compared = bench.run(&format!("compare {model} run.csv --json"));
+    assert_eq!(compared.code, Some(0), "{compared:?}");
+    let signal = &compared.json()["comparisons"][0]["signals"][0];
+    let rms_rad = signal["rms_rad"].as_f64().unwrap();
+    assert!((0.0005..0.012).contains(&rms_rad), "{signal}");
+    assert!(signal["fit_percent"].as_f64().unwrap() > 90.0, "{signal}");
+}
+
+#[test]
+fn a_motion_is_followed_by_adapter_and_by_stream() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.4));
+    for port in [
+        "--port sim:ids=1-2,delay=0",
+        "--port sim-cm5:ids=1-2,delay=0 --stream",
+    ] {
+        let ran = bench.run(&format!(
+            "replay motion.csv {port} --yes --record out.csv --force --json"
+        ));
+        assert_eq!(ran.code, Some(0), "{port}: {ran:?}");
+        let data = ran.json();
+        assert_eq!(data["stopped"], serde_json::Value::Null);
+        // A servo drags behind its goal by some 50 ms; the motion's fastest is 0.8 rad/s.
+        let error = data["tracking_rms_rad"].as_f64().unwrap();
+        assert!((0.001..0.08).contains(&error), "{port}: {error}");
+        assert!(
+            (1.9..2.1).contains(&data["seconds"].as_f64().unwrap()),
+            "{port}: {data}"
+        );
+        assert!(bench.get("out.csv").lines().count() > 150, "{port}");
+    }
+    let unasked = bench.run("replay motion.csv --port sim");
+    assert_eq!(unasked.code, Some(2), "{unasked:?}");
+    assert!(unasked.stderr.contains("--yes"), "{unasked:?}");
+}
+
+#[test]
+fn a_servo_in_danger_stops_the_robot_with_torque_off() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.4));
+    let ran = bench
+        .run("replay motion.csv --port sim:ids=1-2,hot=2,delay=0 --yes --json --tap bytes.txt");
+    assert_eq!(ran.code, Some(5), "{ran:?}");
+    assert!(
+        ran.json()["stopped"]
+            .as_str()
+            .unwrap()
+            .contains("servo 2 reports: overheat"),
+        "{ran:?}"
+    );
+    // The last words on the bus: WRITE torque enable 0, to all.
+    let bytes = bench.get("bytes.txt");
+    let last = bytes.lines().rfind(|line| line.contains('>')).unwrap();
+    assert!(last.ends_with("> ff ff fe 04 03 18 00 e2"), "{last}");
+}
+
+#[test]
+fn a_low_supply_is_refused_by_the_cm5() {
+    let bench = Bench::new();
+    bench.put("motion.csv", motion(0.2));
+    let ran = bench.run("replay motion.csv --port sim-cm5:ids=1-2,delay=0,supply=8 --stream --yes");
+    assert_eq!(ran.code, Some(4), "{ran:?}");
+    assert!(ran.stderr.contains("the supply is too low"), "{ran:?}");
+}
+
+#[cfg(unix)]
+mod killed {
+    use crate::common::Bench;
+    use std::io::{BufRead as _, BufReader};
+    use std::process::{Child, Command, Stdio};
+    use std::time::Duration;
+
+    fn spawn(bench: &Bench, words: &[&str]) -> Child {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_handstand"));
+        command.args(words).current_dir(bench.path("."));
+        command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
+    fn port_of(child: &mut Child) -> String {
+        let mut port = String::new();
+        BufReader::new(child.stdout.take().unwrap())
+            .read_line(&mut port)
+            .unwrap();
+        port.trim().to_string()
+    }
+
+    /// `kill -9` in the middle: all but the last second is there, in both formats.
+    #[test]
+    fn a_killed_recorder_loses_a_second_at_most() {
+        let bench = Bench::new();
+        let mut robot = spawn(
+            &bench,
+            &["virtual", "--pty", "--seconds", "60", "ids=1-2,delay=0"],
+        );
+        let port = port_of(&mut robot);
+        for file in ["r.csv", "r.mcap"] {
+            let began = std::time::Instant::now();
+            let words = [
+                "record", file, "--port", &port, "--baud", "1000000", "--ids", "1-2", "--hz", "50",
+            ];
+            let mut recorder = spawn(&bench, &words);
+            while !bench.path(file).exists() {
+                std::thread::sleep(Duration::from_millis(5));
+                assert!(
+                    began.elapsed() < Duration::from_secs(20),
+                    "{file} does not appear"
+                );
+            }
+            let begun = std::time::Instant::now();
+            std::thread::sleep(Duration::from_millis(2600));
+            recorder.kill().unwrap();
+            recorder.wait().unwrap();
+            let recorded = begun.elapsed().as_secs_f64();
+            let ran = bench.run(&format!("record {file}.csv --from {file} --json"));
+            assert_eq!(ran.code, Some(0), "{file}: {ran:?}");
+            let kept = ran.json()["seconds"].as_f64().unwrap();
+            // A busy machine may start late by itself; what it wrote is what counts.
+            assert!(kept > recorded - 1.6, "{file}: {kept} of {recorded} s");
+            assert_eq!(ran.json()["torn"], file == "r.mcap", "{file}");
+        }
+        robot.kill().unwrap();
+        robot.wait().unwrap();
+    }
+
+    /// Ctrl-C in the middle of a motion: torque goes off.
+    #[test]
+    fn ctrl_c_leaves_torque_off() {
+        let bench = Bench::new();
+        bench.put("motion.csv", super::motion(0.4));
+        let mut robot = spawn(
+            &bench,
+            &["virtual", "--pty", "--seconds", "60", "ids=1-2,delay=0"],
+        );
+        let port = port_of(&mut robot);
+        let words = [
+            "replay",
+            "motion.csv",
+            "--port",
+            &port,
+            "--baud",
+            "1000000",
+            "--yes",
+            "--record",
+            "out.csv",
+            "--hz",
+            "50",
+        ];
+        let mut replay = spawn(&bench, &words);
+        let torque = |code: u64| {
+            let line = format!("bus read 1 torque-enable --port {port} --baud 1000000 --json");
+            let read = bench.run(&line);
+            assert_eq!(read.json()[0]["code"], code, "{read:?}");
+        };
+        while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        signal("-INT", &replay);
+        assert_eq!(replay.wait().unwrap().code(), Some(5));
+        torque(0);
+        robot.kill().unwrap();
+        robot.wait().unwrap();
+    }
+
+    /// Two Ctrl-C while the servos do not answer: the program ends at once, and torque goes off all the same.
+    #[test]
+    fn a_second_ctrl_c_leaves_torque_off_too() {
+        for (words, options, baud) in [
+            (
+                &["ids=1-2,delay=0"][..],
+                &["--baud", "1000000", "--hz", "50"][..],
+                1_000_000,
+            ),
+            (&["--cm5", "ids=1-2,delay=0"], &["--stream"], 57_600),
+        ] {
+            let bench = Bench::new();
+            bench.put("motion.csv", super::motion(0.4));
+            let serve = ["virtual", "--pty", "--seconds", "60"];
+            let mut robot = spawn(&bench, &[&serve, words].concat());
+            let port = port_of(&mut robot);
+            let follow = [
+                "replay",
+                "motion.csv",
+                "--yes",
+                "--record",
+                "out.csv",
+                "--port",
+                &port,
+            ];
+            let mut replay = spawn(&bench, &[&follow, options].concat());
+            while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
+                let ended = replay.try_wait().unwrap();
+                assert!(ended.is_none(), "{words:?}: it ended early, {ended:?}");
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            signal("-STOP", &robot);
+            std::thread::sleep(Duration::from_millis(30));
+            signal("-INT", &replay);
+            std::thread::sleep(Duration::from_millis(5));
+            signal("-INT", &replay);
+            assert_eq!(replay.wait().unwrap().code(), Some(5), "{words:?}");
+            signal("-CONT", &robot);
+            std::thread::sleep(Duration::from_millis(500));
+            if baud == 57_600 {
+                // It may have found the line silent, and stopped: greeted anew it is an adapter again.
+                let line =
+                    format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");
+                assert_eq!(bench.run(&line).code, Some(0));
+            }
+            for id in 1..=2 {
+                let line =
+                    format!("bus read {id} torque-enable --port {port} --baud {baud} --json");
+                let read = bench.run(&line);
+                assert_eq!(read.json()[0]["code"], 0, "{words:?}: {read:?}");
+            }
+            robot.kill().unwrap();
+            robot.wait().unwrap();
+        }
+    }
+
+    fn signal(name: &str, child: &Child) {
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args([name, &pid]).status().unwrap();
+        assert!(sent.success());
+    }
+}

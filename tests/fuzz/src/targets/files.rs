@@ -1,0 +1,96 @@
+//! Files: logs, recordings, studies and their journals, servo settings, the program for the boot loader.
+
+use super::{text, with_file};
+use handstand::link::Settings;
+use handstand::link::boot_loader::Image;
+use handstand::log::{LogRequest, read};
+use handstand::model::{LogColumns, Model};
+use handstand::record;
+use handstand::study::{Study, merge};
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// Columns of every kind that a log can have.
+const COLUMNS: &str = include_str!("log_columns.toml");
+
+fn log(name: &str, bytes: &[u8]) {
+    static DECLARED: LazyLock<LogColumns> = LazyLock::new(|| {
+        let model = Model::parse(COLUMNS, Path::new("log_columns.toml"));
+        model.expect("the model of this target is sound").log
+    });
+    with_file(name, bytes, |path| {
+        let Ok(motions) = read(&[LogRequest::whole(path)], &DECLARED) else {
+            return;
+        };
+        for motion in motions {
+            let ascending = motion.time_s.windows(2).all(|pair| pair[0] < pair[1]);
+            assert!(ascending, "time does not increase: {:?}", motion.time_s);
+            for position in &motion.position_rad {
+                assert_eq!(position.len(), motion.len());
+            }
+        }
+    });
+}
+
+pub(crate) fn log_csv(bytes: &[u8]) {
+    log("log.csv", bytes);
+}
+
+pub(crate) fn log_json(bytes: &[u8]) {
+    log("log.json", bytes);
+}
+
+fn recording(name: &str, bytes: &[u8]) {
+    with_file(name, bytes, |path| {
+        let Ok(recording) = record::read(path) else {
+            return;
+        };
+        for sample in &recording.samples {
+            assert_eq!(sample.joints.len(), recording.ids.len());
+        }
+    });
+}
+
+pub(crate) fn recording_csv(bytes: &[u8]) {
+    recording("recording.csv", bytes);
+}
+
+pub(crate) fn recording_mcap(bytes: &[u8]) {
+    recording("recording.mcap", bytes);
+}
+
+/// A study file without a model beside it: `robot` can only name what is not there.
+pub(crate) fn study(bytes: &[u8]) {
+    with_file("study.toml", bytes, |path| {
+        let _ = Study::load(path);
+    });
+}
+
+pub(crate) fn journal(bytes: &[u8]) {
+    with_file("shard-1-of-1.journal", bytes, |path| {
+        let _ = merge(&[path.to_path_buf()]);
+    });
+}
+
+pub(crate) fn settings(bytes: &[u8]) {
+    if let Some(text) = text(bytes) {
+        let _ = Settings::parse(text, Path::new("settings.toml"));
+    }
+}
+
+/// The sealed answer of a challenge.
+pub(crate) fn seal(bytes: &[u8]) {
+    if let Some(text) = text(bytes) {
+        let _ = handstand::challenge::unseal(text);
+    }
+}
+
+/// What is accepted is flashed byte for byte.
+pub(crate) fn image(bytes: &[u8]) {
+    with_file("image.bin", bytes, |path| {
+        if let Ok(image) = Image::load(path) {
+            assert_eq!(image.bytes(), bytes);
+            let _ = image.checksum();
+        }
+    });
+}

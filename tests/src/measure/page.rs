@@ -1,0 +1,44 @@
+//! Printing what was measured, and writing it to `docs/measured` when asked.
+
+use handstand_tests::measured::{Measured, Provenance};
+use handstand_xtask::root;
+use serde_json::Value;
+
+/// What is done with the tables.
+#[derive(Debug, clap::Args)]
+pub(super) struct Page {
+    /// Write the tables to the page of docs/measured too
+    #[arg(long)]
+    write: bool,
+}
+
+impl Page {
+    /// Prints the tables, or the JSON where that is asked for, and writes docs/measured/NAME.md if asked; whether that
+    /// could be done.
+    pub(super) fn show(
+        &self,
+        json: Option<Value>,
+        measured: &Measured,
+        name: &str,
+        title: &str,
+    ) -> bool {
+        match json {
+            Some(json) => println!("{json}"),
+            None => println!("{}", measured.text().trim_end()),
+        }
+        if !self.write {
+            return true;
+        }
+        let folder = root().join("docs/measured");
+        match measured.write(&folder, name, title, &Provenance::here()) {
+            Ok(path) => {
+                eprintln!("Written: {}", path.display());
+                true
+            }
+            Err(why) => {
+                eprintln!("{why}");
+                false
+            }
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The very program of the chip, in simavr.
+
+use super::adapter::is_a_plain_adapter;
+use super::balance::{commands_are_the_laws, it_stands};
+use super::condition;
+use super::faults::*;
+use super::safety::lets_down;
+use super::stream::streams;
+use handstand::deploy::plan_file;
+use handstand_shared::gains::GainTable;
+use handstand_shared::law::control;
+use handstand_shared::message::*;
+use handstand_shared::plan::Law;
+use handstand_simavr::{ElfCm5, Law as LawProgram};
+use handstand_tests::bench::*;
+use handstand_tests::firmware::{Built, Toolchain, build, find_built};
+use rand::Rng as _;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+/// The last build of `cargo xtask firmware`, or a word about its absence.
+fn built() -> Option<Built> {
+    let built = find_built();
+    if built.is_none() {
+        eprintln!("SKIPPED: there is no ELF; `cargo xtask firmware` builds it");
+    }
+    built
+}
+
+#[test]
+fn the_elf_streams() {
+    let Some(built) = built() else { return };
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    streams(&mut rig);
+    assert_eq!(rig.seen.direction_faults, 0);
+    assert!(
+        rig.seen.most_waiting <= 2,
+        "the receiver holds two bytes, {}",
+        rig.seen.most_waiting
+    );
+    assert_eq!((rig.core.lost(0), rig.core.lost(1)), (0, 0));
+    assert!(!rig.seen.charged, "the charger must stay off");
+}
+
+#[test]
+fn the_elf_commands_what_the_law_says() {
+    let Some(built) = built() else { return };
+    commands_are_the_laws(&mut ElfCm5::new(&built.elf).unwrap());
+}
+
+#[test]
+fn the_elf_holds_three_links_up() {
+    let Some(built) = built() else { return };
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    it_stands(&mut rig, 5.0);
+    // What is done while servos are awaited costs no byte of their answers.
+    assert!(rig.seen.most_waiting <= 2, "{}", rig.seen.most_waiting);
+    assert_eq!(rig.core.lost(0), 0);
+}
+
+/// Built here: it is quick after the plain one.
+#[test]
+fn the_elf_balances_by_the_plan_compiled_in() {
+    let (Some(_), Ok(toolchain)) = (built(), Toolchain::find()) else {
+        return;
+    };
+    let (_, plan) = plan();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("plan.rs");
+    std::fs::write(&file, plan_file(&plan, "a test")).unwrap();
+    let with_plan = build(&toolchain, Some(&file)).unwrap();
+    let mut rig = ElfCm5::new(&with_plan.elf).unwrap();
+    it_stands(&mut rig, 5.0);
+    // Nothing was uploaded: one byte of EEPROM is written, the counter of starts.
+    let written = rig.core.eeprom().iter().filter(|byte| **byte != 0xff);
+    assert_eq!(written.count(), 1);
+}
+
+#[test]
+fn the_elf_lets_the_robot_down_when_a_servo_gives_up() {
+    let Some(built) = built() else { return };
+    for way in WAYS {
+        a_servo_gives_up_while_streaming(&mut ElfCm5::new(&built.elf).unwrap(), way);
+        a_servo_gives_up_while_balancing(&mut ElfCm5::new(&built.elf).unwrap(), way);
+    }
+}
+
+#[test]
+fn the_elf_bears_two_servos_of_one_id() {
+    let Some(built) = built() else { return };
+    twins_cost_their_own_slot_only(&mut ElfCm5::new(&built.elf).unwrap());
+    twins_do_not_balance(&mut ElfCm5::new(&built.elf).unwrap(), 11);
+    a_twin_ends_balancing(&mut ElfCm5::new(&built.elf).unwrap(), 11);
+    a_twin_ends_balancing(&mut ElfCm5::new(&built.elf).unwrap(), 2);
+}
+
+/// Every shift has its turn in 3200 states.
+#[test]
+fn the_law_is_the_same_at_every_shift() {
+    let Some(built) = built() else { return };
+    let run = law(&built.law, 3200, 9);
+    assert_eq!((run.states, run.different), (3200, 0), "{run:?}");
+    assert!(run.over(0..SHIFTS).is_some(), "{run:?}");
+}
+
+#[test]
+fn the_observer_is_the_same_bit_for_bit() {
+    let Some(built) = built() else { return };
+    let (_, plan) = plan();
+    let Law::Observer(observer) = &plan.law else {
+        panic!("the plan has an observer")
+    };
+    let run = observer_law(&built.law, observer, 3000, 9);
+    assert_eq!(run.different, 0, "{run:?}");
+}
+
+#[test]
+fn the_elf_is_a_plain_adapter() {
+    let Some(built) = built() else { return };
+    is_a_plain_adapter(&mut ElfCm5::new(&built.elf).unwrap());
+}
+
+#[test]
+fn the_elf_lets_the_robot_down() {
+    let Some(built) = built() else { return };
+    lets_down(&mut ElfCm5::new(&built.elf).unwrap(), 5);
+}
+
+#[test]
+fn the_elf_reads_the_gyro() {
+    let Some(built) = built() else { return };
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    rig.run_ms(10.0);
+    rig.send_bytes(&[0]);
+    rig.send(&Command::Hello { version: VERSION });
+    rig.run_ms(20.0);
+    for millivolts in [0, 1250, 2500, 3700, 5000] {
+        rig.core.adc(3, millivolts);
+        rig.run_ms(5.0);
+        rig.clear();
+        rig.send_bytes(&[0]);
+        rig.send(&Command::Ask(Subject::Telemetry));
+        rig.run_ms(30.0);
+        let told = rig
+            .reports()
+            .into_iter()
+            .find_map(|(_, report)| match report {
+                Report::Telemetry(telemetry) => Some(telemetry.gyro),
+                _ => None,
+            });
+        let code = (millivolts * 1023 / 5000) as u16;
+        assert!(
+            told.is_some_and(|told| told.abs_diff(code) <= 1),
+            "{millivolts} mV: {told:?} for {code}"
+        );
+    }
+}
+
+#[test]
+fn the_elf_hears_its_buttons() {
+    let Some(built) = built() else { return };
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    rig.run_ms(10.0);
+    rig.core.pin('D', 0, false);
+    rig.run_ms(50.0);
+    assert_eq!(condition(&mut rig), Some(Condition::Balance), "Start");
+    rig.core.pin('D', 0, true);
+    // Each of the others stops.
+    for pin in 4..8 {
+        arm(&mut rig);
+        assert!(rig.bus.any_torque());
+        rig.core.pin('E', pin, false);
+        for _ in 0..5 {
+            rig.send(&Command::KeepAlive);
+            rig.run_ms(10.0);
+        }
+        assert!(!rig.bus.any_torque(), "PE{pin}");
+        rig.core.pin('E', pin, true);
+        rig.run_ms(50.0);
+    }
+}
+
+#[test]
+fn the_elf_restarts_when_it_hangs() {
+    let Some(built) = built() else { return };
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    let mut worst = Worst::default();
+    (0..10).for_each(|_| worst.add(hang(&mut rig, &mut rng)));
+    assert!(worst.failed == 0 && worst.off_ms <= 150.0, "{worst:?}");
+}
+
+#[test]
+fn the_law_is_the_same_bit_for_bit() {
+    let Some(built) = built() else { return };
+    let mut law = LawProgram::load(&built.law).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    for shift in [16, 8, 13] {
+        let k = [(); 2].map(|()| [(); 6].map(|()| rng.random_range(-10_000..10_000)));
+        let bias = [(); 2].map(|()| rng.random_range(-(1 << 26)..1 << 26));
+        let limits = [[-1023, 1023], [i16::MIN, i16::MAX]];
+        let table = GainTable::new(k, bias, [shift; 2], limits, [(); 6].map(|()| rng.random()));
+        assert!(table.is_safe());
+        law.set(&table);
+        for _ in 0..2000 {
+            let x = [(); 6].map(|()| rng.random());
+            assert_eq!(law.control(&x).0, control(&table, &x), "{x:?} {table:?}");
+        }
+    }
+}

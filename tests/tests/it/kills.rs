@@ -1,0 +1,27 @@
+//! `record` survives `kill -9`: a sample of what `cargo xtask bench-record` does a thousand times.
+
+use handstand_tests::kills::kill_recorders;
+use std::path::PathBuf;
+
+/// The program that the workspace's build left beside the tests.
+fn program() -> PathBuf {
+    let here = std::env::current_exe().unwrap();
+    let program = here.ancestors().nth(2).unwrap().join("handstand");
+    assert!(program.exists(), "build it first: cargo build -p handstand");
+    program
+}
+
+#[test]
+fn a_killed_recorder_leaves_a_file_that_lacks_a_second_at_most() {
+    let tally = kill_recorders(&program(), 32, 4, 7, |_| ()).unwrap();
+    println!("{tally:?}");
+    assert_eq!((tally.kills, tally.unreadable.len()), (32, 0), "{tally:?}");
+    assert!(
+        tally.worst_lost_s <= 1.0 && tally.samples > 500,
+        "{tally:?}"
+    );
+    assert!(
+        tally.torn > 0,
+        "an MCAP file that was killed has no end: {tally:?}"
+    );
+}

@@ -1,0 +1,11 @@
+//! Benchmarks sampled, the firmware run, the guides followed. One test program: each more would link the library again.
+
+mod contributing;
+#[cfg(all(unix, simavr))]
+mod deploy;
+mod firmware;
+mod fuzz;
+mod hidden;
+mod intervals;
+#[cfg(unix)]
+mod kills;
