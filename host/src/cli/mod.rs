@@ -88,7 +88,7 @@ pub enum Command {
     /// Add an effect to a model, its parameters fitted to logs
     Add(add::Args),
     /// Synthesise LQR gains that balance a model, and export them for firmware
-    Gains(Box<deploy::Gains>),
+    Gains(Box<deploy::GainsCommand>),
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::Command),

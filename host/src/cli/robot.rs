@@ -1,7 +1,7 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{Ids, Port, id_list};
-use handstand::record::{Adapter, Source, Stream};
+use handstand::record::{Adapter, SampleSource, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ impl Robot {
     ///
     /// # Errors
     /// No port, no firmware, or a rate that is none.
-    pub fn open(&self) -> Result<Box<dyn Source>> {
+    pub fn open(&self) -> Result<Box<dyn SampleSource>> {
         if self.stream {
             return Ok(Box::new(Stream::new(self.port.open()?, &self.ids.0)?));
         }

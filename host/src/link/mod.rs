@@ -1,8 +1,8 @@
-//! The way to servos and controller: ports, what is said over them, and who speaks it.
+//! Links to servos and controller: serial lines, and the protocols on them.
 //!
-//! A [`Link`] is a line of bytes with a clock. [`Serial`] is a real one, [`InProcess`] the simulated bus in simulated
-//! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
-//! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
+//! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a [`Tap`] recorded; [`Tap`]
+//! and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel packets, [`Session`] in frames with the CM-5.
+//! Read downward: `port` -> ports -> `servos`, `session` -> `doctor`, `boot_loader`.
 
 pub mod boot_loader;
 pub mod doctor;
@@ -21,7 +21,7 @@ mod settings;
 mod tap;
 
 pub use faulty::Faulty;
-pub use port::{LineWriter, Link, read_some};
+pub use port::{LineWriter, SerialLink, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;

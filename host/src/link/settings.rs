@@ -1,6 +1,6 @@
 //! What a servo keeps without power, as a file.
 
-use super::port::Link;
+use super::port::SerialLink;
 use super::servo_error::ServoResult;
 use super::servos::Servos;
 use crate::error::{Error, Place, Result};
@@ -22,7 +22,7 @@ impl Settings {
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn read<L: Link>(servos: &mut Servos<L>, id: u8) -> ServoResult<Settings> {
+    pub fn read<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> ServoResult<Settings> {
         let mut codes = Vec::new();
         for register in REGISTERS.iter().filter(|register| register.is_eeprom()) {
             codes.push((*register, servos.get(id, *register)?));

@@ -3,7 +3,7 @@
 use super::*;
 use crate::virtual_cm5::SimLink;
 
-fn diagnose(words: &str, ids: &[u8]) -> Diagnosis {
+fn diagnose(words: &str, ids: &[u8]) -> BusDiagnosis {
     examine(SimLink::adapter(words).unwrap(), ids, |_| ()).unwrap()
 }
 
