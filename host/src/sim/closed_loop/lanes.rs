@@ -4,7 +4,7 @@
 //! A run comes out the same, bit for bit, whatever runs beside it.
 
 use super::Outcome;
-use super::posed_plant::{Absolute, Equations};
+use super::equations::{Absolute, Equations};
 use super::run::{Next, Run};
 use crate::dynamics::{Dense, Lanes};
 use std::array::from_fn;

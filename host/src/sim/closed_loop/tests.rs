@@ -193,7 +193,7 @@ fn drives_are_as_far_from_ideal_as_their_effects_say() {
         };
         let closed = loop_of(&drives.on(&model(), 0.01));
         let torque = |command: f64| {
-            let body = posed_plant::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
+            let body = body::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
             let input = closed.plant.input(0, command);
             closed.plant.drive_torque_nm(0, input, &body)
         };
