@@ -59,17 +59,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     step(&["compare", &nominal, a, b, c], talk)?;
     talk.say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
     let page = at("report.html");
+    let held_out = ["--holdout", c, "--report", &page];
     let found = missing(
-        &[
-            "diagnose",
-            &nominal,
-            a,
-            b,
-            "--holdout",
-            c,
-            "--report",
-            &page,
-        ],
+        &[&["diagnose", &nominal, a, b], &held_out[..]].concat(),
         talk,
     )?;
     let model = match &found {
