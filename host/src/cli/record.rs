@@ -16,7 +16,7 @@ use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{FileFormat, RecordingTally, RobotRecorder, read};
+use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::PathBuf;

@@ -17,7 +17,7 @@ use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{
+use handstand::link::record::{
     GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource, read,
 };
 use handstand::{Error, Result};

@@ -1,7 +1,7 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{Ids, Port, id_list};
-use handstand::record::{Adapter, SampleSource, Stream};
+use handstand::link::record::{Adapter, SampleSource, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -33,7 +33,7 @@ impl Robot {
         let mut servos = self.port.servos()?;
         let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
         if !present {
-            return Err(handstand::record::no_response());
+            return Err(handstand::link::record::no_response());
         }
         Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
     }

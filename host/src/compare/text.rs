@@ -1,7 +1,7 @@
 //! A comparison as text: models side by side, then where the last of them fails.
 
 use super::result::{Comparison, SignalError};
-use crate::number::mrad_in_column;
+use crate::output::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 

@@ -1,8 +1,10 @@
 //! Links to servos and controller: serial lines, and the protocols on them.
 //!
-//! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a [`Tap`] recorded; [`Tap`]
-//! and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel packets, [`Session`] in frames with the CM-5.
-//! Read downward: `port` -> ports -> `servos`, `session` -> `doctor`, `boot_loader`.
+//! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a
+//! [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel
+//! packets, [`Session`] in frames with the CM-5. Read downward: `port` -> ports -> `servos`,
+//! `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind a port like a
+//! real one, so that `settings`, which open ports, know it.
 
 pub mod boot_loader;
 pub mod doctor;
@@ -10,6 +12,7 @@ mod faulty;
 mod port;
 #[cfg(unix)]
 mod pty;
+pub mod record;
 mod replay;
 mod reply;
 mod serial;
@@ -19,6 +22,8 @@ mod session;
 mod session_error;
 mod settings;
 mod tap;
+#[cfg(feature = "virtual-cm5")]
+pub mod virtual_cm5;
 
 pub use faulty::Faulty;
 pub use port::{LineWriter, SerialLink, read_some};

@@ -164,7 +164,7 @@ impl Text<'_> {
 mod tests {
     use super::super::Servos;
     use super::*;
-    use crate::virtual_cm5::SimLink;
+    use crate::link::virtual_cm5::SimLink;
 
     fn saved() -> Vec<Settings> {
         let mut servos = Servos::new(SimLink::adapter("ids=1+5").unwrap());

@@ -1,7 +1,7 @@
 //! Requests over every kind of line.
 
 use super::*;
-use crate::virtual_cm5::{AdapterPort, SimLink};
+use crate::link::virtual_cm5::{AdapterPort, SimLink};
 use handstand_shared::control_table as table;
 use handstand_shared::dynamixel::ErrorBits;
 use std::sync::{Arc, Mutex};

@@ -8,7 +8,7 @@ use super::servo;
 use crate::error::Result;
 use crate::log::Motion;
 use crate::model::{Drive, Model, Motor};
-use crate::number::short;
+use crate::output::number::short;
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::study::{SIGNAL_PATHS, SignalPath};
 use crate::synth::{linearise, poles, upright, zoh};

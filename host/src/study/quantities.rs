@@ -4,7 +4,7 @@ use super::case::Case;
 use super::quantity::{Levels, Place, Quantity, Spread};
 use crate::effects;
 use crate::model::EffectInstance;
-use crate::number::given;
+use crate::output::number::given;
 use crate::sim::closed_loop::Gyro;
 
 /// Every quantity. A new one is an entry here.

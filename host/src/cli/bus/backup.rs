@@ -54,7 +54,7 @@ pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
         .map(|servo| servo.id)
         .collect();
     if ids.is_empty() {
-        return Err(handstand::record::no_response());
+        return Err(handstand::link::record::no_response());
     }
     let mut saved = Vec::new();
     for id in &ids {

@@ -7,7 +7,7 @@ use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
 use handstand::link::Reading;
-use handstand::record::ServoSample;
+use handstand::link::record::ServoSample;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
 use std::time::Duration;

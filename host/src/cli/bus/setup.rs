@@ -37,7 +37,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let found = scan(&mut servos, &args.ids.0, talk)?;
     let mut ids: Vec<u8> = found.iter().map(|servo| servo.id).collect();
     if ids.is_empty() {
-        return Err(handstand::record::no_response());
+        return Err(handstand::link::record::no_response());
     }
     let mut changes = Vec::new();
     if let Some(new) = args.new_id {

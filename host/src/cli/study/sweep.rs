@@ -9,7 +9,7 @@
 use super::super::show::table;
 use super::super::{Outcome, input, talk::Talk};
 use handstand::controllers::{DESIGNS, design};
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::study::{Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps};
 use handstand::{Error, Result, output};
 use serde_json::json;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::link::Servos;
-use crate::virtual_cm5::SimLink;
+use crate::link::virtual_cm5::SimLink;
 use std::path::Path;
 use std::time::Duration;
 
