@@ -98,7 +98,7 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
             "Temperature, 25-40 C: no visible effect",
             "handstand diagnose",
             there(
-                "A diagnosis can say no: `nominal` where no effect foretells held-out motions better; `cargo xtask \
+                "A diagnosis can say no: `nominal` where no effect predicts held-out motions better; `cargo xtask \
                  hidden` counts its false alarms.",
             ),
         ),
@@ -152,7 +152,7 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
             "handstand controllers",
             there(
                 "Both are among the controllers there: a sliding mode, alone and with an observer, and an LQR whose model has \
-                 the servo's transfer function; each is tried under every trouble, alone and together.",
+                 the servo's transfer function; each is simulated under every non-ideality, alone and together.",
             ),
         ),
     ];
