@@ -1,8 +1,9 @@
-//! The way to servos and controller: ports, what is said over them, and who speaks it.
+//! The link to servos and CM-5: ports, and the protocols on them.
 //!
-//! A [`Link`] is a line of bytes with a clock. [`Serial`] is a real one, [`InProcess`] the simulated bus in simulated
-//! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
-//! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
+//! A [`Link`] is a line of bytes with a clock. [`Serial`] is a real one, `virtual_cm5::SimLink` the simulated bus in
+//! simulated time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top communicate
+//! [`Servos`] (Dynamixel packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`,
+//! `session`.
 
 pub mod boot_loader;
 pub mod doctor;
