@@ -3,12 +3,14 @@
 #
 #   cargo build --release -p handstand && docs/measured/control.sh
 #
-# HANDSTAND names another program. Same version and seed, same tables on any machine.
+# HANDSTAND names another program, ROBOTS and REGION the robots of a trial and of a step of the search for regions.
+# Same version, seed and numbers, same tables on any machine.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 models=$here/../../host/models
 program=${HANDSTAND:-$here/../../target/release/handstand}
 page=$here/control.md
+robots=${ROBOTS:-1000} region=${REGION:-100}
 version=$("$program" --version | cut -d ' ' -f 2)
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo "no commit")
 
@@ -25,8 +27,7 @@ measure() {
         "$(date -u +%Y-%m-%d)" "$version" "$commit" "docs/measured/control.sh"
     printf 'which wrote this page. Do not edit it: run it again. Simulations, seed 1.\n'
     printf '\n## Controllers\n'
-    measure controllers handstand.toml --region-robots 40
-    measure controllers handstand.toml --condition ideal --condition saturation --condition all --controller best
+    measure controllers handstand.toml --robots "$robots" --region-robots "$region"
     printf '\n## Delays\n'
     measure delays handstand.toml
     printf '\n## Wrong masses\n'
