@@ -185,7 +185,7 @@ fn on_the_robot(computed: &Computed, figures: &[Figure]) -> Vec<Row> {
             "handstand controllers",
             there(
                 "Both are among the controllers there: a sliding mode, alone and with an observer, and an LQR whose model has \
-                 the servo's transfer function; each is tried under every trouble, alone and together.",
+                 the servo's transfer function; each is simulated under every non-ideality, alone and together.",
             ),
         ),
     ]

@@ -7,8 +7,8 @@
 //! Step by step: designs; writes the whole plan (`--header`), and of a law on plain states the table (`--rust`, `--c`), as
 //! source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash` builds the
 //! firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
-//! fingerprint; and runs the law the CM-5 has, on the tables it has, over random states beside wide integers:
-//! not a bit may differ.
+//! fingerprint; and runs the CM-5's law, on the tables read back, over random states against wide integers: not a bit
+//! may differ.
 //!
 //! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
 //! slew, where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen.
