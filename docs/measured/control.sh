@@ -24,7 +24,7 @@ measure() {
 
 {
     printf '# Control: measured\n\nMeasured on %s with version %s (%s) by\n\n```sh\n%s\n```\n\n' \
-        "$(date -u +%Y-%m-%d)" "$version" "$commit" "docs/measured/control.sh"
+        "$(date -u +%Y-%m-%d)" "$version" "$commit" "ROBOTS=$robots REGION=$region docs/measured/control.sh"
     printf 'which wrote this page. Do not edit it: run it again. Simulations, seed 1.\n'
     printf '\n## Verification of gains\n'
     measure gains handstand.toml
