@@ -5,7 +5,7 @@ use super::plant::Plant;
 use super::rows::Many;
 use super::stepper::Stepper;
 use crate::error::{Error, Result};
-use crate::model::{Angles, Drive, Model};
+use crate::model::{Drive, Model};
 
 /// A model in motion. Its drives are commanded a duty, whatever they are in the model.
 #[derive(Debug, Clone)]
@@ -123,16 +123,4 @@ pub fn bare_motors(model: &Model) -> Model {
         }
     }
     model
-}
-
-/// All links straight down at rest, rad in the model's convention.
-pub fn hanging(model: &Model) -> Vec<f64> {
-    let down = -model.angle_zero.from_hanging_rad();
-    let later = match model.angles {
-        Angles::Absolute => down,
-        Angles::Relative => 0.0,
-    };
-    (0..model.link_count())
-        .map(|joint| if joint == 0 { down } else { later })
-        .collect()
 }

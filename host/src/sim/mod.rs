@@ -15,7 +15,7 @@ mod run;
 mod sensor_state;
 mod stepper;
 
-pub use live::{Live, bare_motors, hanging};
+pub use live::{Live, bare_motors};
 pub use plant::Plant;
 pub use run::{Start, predict};
 pub use sensor_state::SensorState;

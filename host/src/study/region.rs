@@ -81,6 +81,14 @@ pub fn region(
         };
         Ok(judge(case, uncertain, &judging, done)?.stabilised_share >= STABILISED_SHARE)
     };
+    largest(stabilises)
+}
+
+/// The largest half-width, up to 16 deg, from which a robot is stabilised, by bisection.
+///
+/// # Errors
+/// Those of `stabilises`.
+pub(super) fn largest(mut stabilises: impl FnMut(f64) -> Result<bool>) -> Result<Region> {
     let (mut inside, mut outside) = (0.0, LARGEST_REGION_RAD);
     if stabilises(outside)? {
         return Ok(Region {

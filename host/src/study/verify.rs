@@ -2,6 +2,7 @@
 //! included.
 
 use super::judge::{Figures, STABILISED_SHARE};
+use super::region::largest;
 use crate::effects::{self, Effect};
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
@@ -14,10 +15,6 @@ const RUNS: u64 = 40;
 
 /// Length of a run, s.
 const SECONDS: f64 = 5.0;
-
-/// Largest cube of starts that is searched, rad, and halvings of the interval in which it ends.
-const LARGEST_RAD: f64 = 16.0 * std::f64::consts::PI / 180.0;
-const HALVINGS: usize = 7;
 
 /// Starts of the run whose figures are given, rad: within half a degree.
 const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
@@ -177,23 +174,11 @@ impl Tested<'_> {
     fn region_rad(&self, without: &[LeftOut]) -> Result<f64> {
         let closed = self.closed_loop(without)?;
         let controller = self.controller();
-        let stabilises = |spread_rad: f64| {
+        let region = largest(|spread_rad| {
             let outcomes = closed.run_all(&controller, &self.starts(spread_rad), SECONDS, 1);
-            Figures::of(&outcomes).stabilised_share >= STABILISED_SHARE
-        };
-        let (mut inside, mut outside) = (0.0, LARGEST_RAD);
-        if stabilises(outside) {
-            return Ok(outside);
-        }
-        for _ in 0..HALVINGS {
-            let middle = (inside + outside) / 2.0;
-            if stabilises(middle) {
-                inside = middle;
-            } else {
-                outside = middle;
-            }
-        }
-        Ok(inside)
+            Ok(Figures::of(&outcomes).stabilised_share >= STABILISED_SHARE)
+        })?;
+        Ok(region.spread_rad)
     }
 }
 

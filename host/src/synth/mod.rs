@@ -31,6 +31,7 @@ mod weight;
 mod weights;
 mod zeros;
 
+pub use crate::model::upright;
 pub use controllability::{Controllability, controllability, observability};
 pub use design::{Design, Estimation, Fixed};
 pub use discretise::zoh;
@@ -42,7 +43,7 @@ pub use gains::{Gains, dlqr, lqr};
 pub use linearise::{Linearised, linearise};
 pub use omitted::{NonSmooth, OmittedEffect};
 pub use operating_point::input_delay_s;
-pub use pose::{balanced, upright};
+pub use pose::balanced;
 pub use quantise::{Format, Ranges, quantise};
 pub use request::{Request, Sensors, Time};
 pub use robust::{lost_share, multi_model, multi_model_continuation, spectral_radius};

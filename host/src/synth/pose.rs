@@ -12,18 +12,6 @@ const LONGEST_STEP_RAD: f64 = 0.2;
 /// The step after one so small is lost in rounding.
 const SETTLED_RAD: f64 = 1e-9;
 
-/// All links straight up, in the model's own convention.
-pub fn upright(model: &Model) -> Vec<f64> {
-    let up = std::f64::consts::PI - model.angle_zero.from_hanging_rad();
-    let later = match model.angles {
-        Angles::Absolute => up,
-        Angles::Relative => 0.0,
-    };
-    (0..model.link_count())
-        .map(|joint| if joint == 0 { up } else { later })
-        .collect()
-}
-
 /// The equilibrium next to a pose: driven joints stay as they are, passive ones move to where they
 /// balance.
 ///

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Drive, Model, Motor};
-use crate::sim::{Live, hanging};
-use crate::synth::upright;
+use crate::model::{hanging, upright};
+use crate::sim::Live;
 use handstand_cm5_sim::{Bus, BusSpec, Plant, Robot, RobotSpec, Start};
 
 /// Torque of a joint at full duty cycle, N m, where the model states none: the paper's limit.
