@@ -19,8 +19,8 @@ pub struct RunLength {
 #[derive(Debug, clap::Args)]
 pub struct PlanFile {
     /// Simulate the closed loop with the plan that `gains --state-space` wrote
-    #[arg(long = "plan", value_name = "GAINS.json")]
-    file: Option<PathBuf>,
+    #[arg(long, value_name = "GAINS.json")]
+    plan: Option<PathBuf>,
 }
 
 impl PlanFile {
@@ -30,7 +30,7 @@ impl PlanFile {
     /// As [`StateFeedbackPlan::load`].
     pub fn load(&self, model: &Model) -> Result<Option<StateFeedbackPlan>> {
         let load = |file: &PathBuf| StateFeedbackPlan::load(file, model);
-        self.file.as_ref().map(load).transpose()
+        self.plan.as_ref().map(load).transpose()
     }
 }
 

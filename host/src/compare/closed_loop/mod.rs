@@ -12,7 +12,7 @@ pub use text::closed_loop_text;
 pub(crate) use text::{LEGEND, closed_loop_rows};
 
 use super::sample_features::speed_rad_s;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::log::Motion;
 use crate::model::Model;
 use crate::sim::closed_loop::{
@@ -33,7 +33,7 @@ const CONTINUOUS_S: f64 = 1e-3;
 /// single one, are left out.
 ///
 /// # Errors
-/// A plan of another number of joints than the model's.
+/// A plan of another number of joints or drives than the model's.
 pub fn compare_closed_loop(
     model: &Model,
     plan: &StateFeedbackPlan,
@@ -57,6 +57,12 @@ pub fn compare_closed_loop(
 
 fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Result<ClosedLoop> {
     let plant = PosedPlant::of_motion(model, &plan.pose_rad, motion)?;
+    if plan.u0.len() != plant.drives() {
+        return Err(Error::design(
+            format!("{} inputs for {} drives", plan.u0.len(), plant.drives()),
+            "give the plan that was made for this robot",
+        ));
+    }
     let columns = &model.log.joints;
     let steps = columns.iter().filter_map(|joint| joint.position.resolution);
     let logs_speeds = columns.iter().all(|joint| joint.velocity.is_some());
