@@ -4,9 +4,8 @@
 //! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
 //! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
 //! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
-//! `paper`; `link` -> `record`; `link` + `sim` -> `virtual_cm5`; `cli` sits on top and nothing
-//! depends on it. Every layer may read `error`, `output` and `number`, which writes numbers for
-//! people.
+//! `paper`; `synth` + `controllers` + `link` -> `deploy`; `cli` sits on top and nothing depends on
+//! it. Every layer may read `error`, and `output`, which writes files and numbers.
 
 pub mod challenge;
 pub mod compare;
@@ -20,18 +19,14 @@ pub mod fitting;
 pub mod link;
 pub mod log;
 pub mod model;
-pub mod number;
 pub mod output;
 pub mod paper;
 pub mod plot;
-pub mod record;
 pub mod report;
 pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod sysid;
-#[cfg(feature = "virtual-cm5")]
-pub mod virtual_cm5;
 
 pub use error::{Error, Place, Result};
 pub use model::Model;

@@ -11,6 +11,10 @@ threads. Prints one JSON object:
   mujoco_euler the same with MuJoCo's default integrator, semi-implicit Euler
   final_rad    relative angles after one run from START by each, for comparison:
                joint 1 from upright
+
+With `--effects` the drives at shoulder and hip have Coulomb friction, a dead zone, a limit
+and a delay. MuJoCo has the friction as `frictionloss`; numba's is tanh(speed / 0.01 rad/s),
+which never sticks and needs no search for the moment a joint stops.
 """
 
 import argparse
@@ -38,6 +42,9 @@ GAINS = np.array(
 )
 (L1, C1, M1, I1), (L2, C2, M2, I2), (_, C3, M3, I3) = chain.links(3)
 G = chain.GRAVITY
+# With --effects: friction, N m; dead zone and limit of a command, N m; its delay in steps.
+COULOMB_NM, DEAD_ZONE_NM, LIMIT_NM, DELAY_STEPS = 0.005, 0.02, 2.0, 5
+SMOOTH_RAD_S = 0.01
 
 # Absolute angles from upright. Diagonal of the mass matrix, its couplings, and gravity.
 J1 = I1 + M1 * C1**2 + (M2 + M3) * L1**2
@@ -72,30 +79,54 @@ def accelerate(a, b, c, u, v, w, t2, t3):
     return x, y, z
 
 
+@numba.njit(fastmath=True, inline="always")
+def rubbed(a, b, c, u, v, w, t2, t3, effects):
+    """Accelerations with the friction of shoulder and hip, if there is any."""
+    if effects:
+        t2 -= COULOMB_NM * math.tanh((v - u) / SMOOTH_RAD_S)
+        t3 -= COULOMB_NM * math.tanh((w - v) / SMOOTH_RAD_S)
+    return accelerate(a, b, c, u, v, w, t2, t3)
+
+
+@numba.njit(fastmath=True, inline="always")
+def driven(command):
+    """Torque of a drive with dead zone and limit."""
+    if abs(command) <= DEAD_ZONE_NM:
+        return 0.0
+    return min(max(command, -LIMIT_NM), LIMIT_NM)
+
+
 @numba.njit(fastmath=True)
-def one_run(q1, q2, q3):
+def one_run(q1, q2, q3, effects):
     """The relative angles after one run from rest."""
     a, b, c = q1, q1 + q2, q1 + q2 + q3
     u = v = w = 0.0
     h = STEP_S
+    t2 = t3 = 0.0
     for _ in range(SAMPLES):
         s = (a, b - a, c - b, u, v - u, w - v)
-        t2 = t3 = 0.0
+        c2 = c3 = 0.0
         for k in range(6):
-            t2 -= GAINS[0, k] * s[k]
-            t3 -= GAINS[1, k] * s[k]
-        for _ in range(STEPS_PER_SAMPLE):
-            x1, y1, z1 = accelerate(a, b, c, u, v, w, t2, t3)
+            c2 -= GAINS[0, k] * s[k]
+            c3 -= GAINS[1, k] * s[k]
+        if effects:
+            c2, c3 = driven(c2), driven(c3)
+        for step in range(STEPS_PER_SAMPLE):
+            if step == DELAY_STEPS or not effects:
+                t2, t3 = c2, c3
+            x1, y1, z1 = rubbed(a, b, c, u, v, w, t2, t3, effects)
             u2, v2, w2 = u + h / 2 * x1, v + h / 2 * y1, w + h / 2 * z1
-            x2, y2, z2 = accelerate(
-                a + h / 2 * u, b + h / 2 * v, c + h / 2 * w, u2, v2, w2, t2, t3
+            x2, y2, z2 = rubbed(
+                a + h / 2 * u, b + h / 2 * v, c + h / 2 * w, u2, v2, w2, t2, t3, effects
             )
             u3, v3, w3 = u + h / 2 * x2, v + h / 2 * y2, w + h / 2 * z2
-            x3, y3, z3 = accelerate(
-                a + h / 2 * u2, b + h / 2 * v2, c + h / 2 * w2, u3, v3, w3, t2, t3
+            x3, y3, z3 = rubbed(
+                a + h / 2 * u2, b + h / 2 * v2, c + h / 2 * w2, u3, v3, w3, t2, t3, effects
             )
             u4, v4, w4 = u + h * x3, v + h * y3, w + h * z3
-            x4, y4, z4 = accelerate(a + h * u3, b + h * v3, c + h * w3, u4, v4, w4, t2, t3)
+            x4, y4, z4 = rubbed(
+                a + h * u3, b + h * v3, c + h * w3, u4, v4, w4, t2, t3, effects
+            )
             a += h / 6 * (u + 2 * u2 + 2 * u3 + u4)
             b += h / 6 * (v + 2 * v2 + 2 * v3 + v4)
             c += h / 6 * (w + 2 * w2 + 2 * w3 + w4)
@@ -106,10 +137,10 @@ def one_run(q1, q2, q3):
 
 
 @numba.njit(fastmath=True, parallel=True)
-def many_runs(starts, ends):
+def many_runs(starts, ends, effects):
     """Runs from every start, side by side."""
     for i in numba.prange(len(starts)):
-        x, y, z = one_run(starts[i, 0], starts[i, 1], starts[i, 2])
+        x, y, z = one_run(starts[i, 0], starts[i, 1], starts[i, 2], effects)
         ends[i, 0], ends[i, 1], ends[i, 2] = x, y, z
 
 
@@ -125,7 +156,7 @@ STEP = c_function("mj_step")
 
 
 @numba.njit(nogil=True)
-def mujoco_run(model, data, q, dq, torque, samples):
+def mujoco_run(model, data, q, dq, torque, samples, effects):
     """`samples` periods of the loop; q, dq and torque are MuJoCo's own memory."""
     for _ in range(samples):
         t2 = t3 = 0.0
@@ -133,16 +164,22 @@ def mujoco_run(model, data, q, dq, torque, samples):
             angle = q[k] - math.pi if k == 0 else q[k]
             t2 -= GAINS[0, k] * angle + GAINS[0, 3 + k] * dq[k]
             t3 -= GAINS[1, k] * angle + GAINS[1, 3 + k] * dq[k]
-        torque[1], torque[2] = t2, t3
-        for _ in range(STEPS_PER_SAMPLE):
+        if effects:
+            t2, t3 = driven(t2), driven(t3)
+        for step in range(STEPS_PER_SAMPLE):
+            if step == DELAY_STEPS or not effects:
+                torque[1], torque[2] = t2, t3
             STEP(model, data)
 
 
 class Mujoco:
     """One simulation, ready to be run from START."""
 
-    def __init__(self, integrator):
+    def __init__(self, integrator, effects):
+        self.effects = effects
         self.model = chain.mujoco_model(3)
+        if effects:
+            self.model.dof_frictionloss[1:] = COULOMB_NM
         self.model.opt.timestep = STEP_S
         self.model.opt.integrator = integrator
         self.data = mujoco.MjData(self.model)
@@ -151,15 +188,16 @@ class Mujoco:
 
     def run(self, samples=SAMPLES):
         mujoco.mj_resetData(self.model, self.data)
+        self.data.qfrc_applied[:] = 0.0
         self.data.qpos[:] = START
         self.data.qpos[0] += math.pi
-        mujoco_run(self.model._address, self.data._address, *self.views, samples)
+        mujoco_run(self.model._address, self.data._address, *self.views, samples, self.effects)
         return self.data.qpos - [math.pi, 0.0, 0.0]
 
 
-def mujoco_rate(integrator, threads, runs):
+def mujoco_rate(integrator, threads, runs, effects):
     """Runs per second on that many threads."""
-    simulations = [Mujoco(integrator) for _ in range(threads)]
+    simulations = [Mujoco(integrator, effects) for _ in range(threads)]
     simulations[0].run(1)  # compiles
 
     def work(simulation):
@@ -175,12 +213,12 @@ def mujoco_rate(integrator, threads, runs):
     return threads * runs / (time.perf_counter() - begun)
 
 
-def numba_rate(runs):
+def numba_rate(runs, effects):
     """Runs per second on numba's threads."""
     starts = START + 1e-6 * np.arange(runs)[:, None]
     ends = np.empty_like(starts)
     begun = time.perf_counter()
-    many_runs(starts, ends)
+    many_runs(starts, ends, effects)
     return runs / (time.perf_counter() - begun)
 
 
@@ -190,22 +228,26 @@ def main():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--runs", type=int, default=1000, help="runs of numba in a repeat")
     parser.add_argument("--mujoco-runs", type=int, default=15, help="runs per thread")
+    parser.add_argument("--effects", action="store_true", help="friction, dead zone, limit, delay")
     args = parser.parse_args()
     numba.set_num_threads(args.threads)
-    numba_rate(args.threads)  # compiles
+    numba_rate(args.threads, args.effects)  # compiles
     rk4, euler = mujoco.mjtIntegrator.mjINT_RK4, mujoco.mjtIntegrator.mjINT_EULER
 
     def rate(measure):
         return round(median(measure() for _ in range(args.repeats)), 1)
 
     result = {
-        "numba": rate(lambda: numba_rate(args.runs)),
-        "mujoco_rk4": rate(lambda: mujoco_rate(rk4, args.threads, args.mujoco_runs)),
-        "mujoco_euler": rate(lambda: mujoco_rate(euler, args.threads, args.mujoco_runs)),
+        "numba": rate(lambda: numba_rate(args.runs, args.effects)),
+        "mujoco_rk4": rate(lambda: mujoco_rate(rk4, args.threads, args.mujoco_runs, args.effects)),
+        "mujoco_euler": rate(lambda: mujoco_rate(euler, args.threads, args.mujoco_runs, args.effects)),
         "unit": "5-s runs per second",
-        "final_rad": {"numba": list(one_run(*START)), "mujoco_rk4": Mujoco(rk4).run().tolist()},
+        "final_rad": {
+            "numba": list(one_run(*START, args.effects)),
+            "mujoco_rk4": Mujoco(rk4, args.effects).run().tolist(),
+        },
         # Before the loop forgets where it began.
-        "half_second_rad": {"mujoco_rk4": Mujoco(rk4).run(50).tolist()},
+        "half_second_rad": {"mujoco_rk4": Mujoco(rk4, args.effects).run(50).tolist()},
         "versions": {"mujoco": mujoco.__version__, "numba": numba.__version__},
     }
     print(json.dumps(result))

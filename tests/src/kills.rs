@@ -1,6 +1,6 @@
 //! Recorders killed at any moment: what is left of their files.
 
-use handstand::record::read;
+use handstand::link::record::read;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::io::{BufRead as _, BufReader};

@@ -3,7 +3,7 @@
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can open it.
 
 use super::error::SealError;
-use crate::number::hex;
+use crate::output::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 

@@ -15,7 +15,7 @@ use super::talk::Talk;
 use super::{Outcome, show};
 use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
 use handstand::fitting::effect_named;
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::{Error, Model, Result};
 use serde_json::json;
 use std::path::PathBuf;

@@ -1,4 +1,5 @@
-//! `handstand controllers [MODEL]`: the controllers the library knows, tried on robots under everything the paper found.
+//! `handstand controllers [MODEL]`: the library's controllers, simulated on robots with the non-idealities that the paper
+//! found.
 //!
 //! Without a model, a line for each controller and each condition. With one: from each of `--robots` random starts at
 //! rest, within `--spread-deg` of the pose in each angle, every controller under every condition. A robot is stabilised

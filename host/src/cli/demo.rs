@@ -59,17 +59,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     step(&["compare", &nominal, a, b, c], talk)?;
     talk.say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
     let page = at("report.html");
+    let held_out = ["--holdout", c, "--report", &page];
     let found = missing(
-        &[
-            "diagnose",
-            &nominal,
-            a,
-            b,
-            "--holdout",
-            c,
-            "--report",
-            &page,
-        ],
+        &[&["diagnose", &nominal, a, b], &held_out[..]].concat(),
         talk,
     )?;
     let model = match &found {
@@ -111,7 +103,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 /// A place for a folder that nobody else uses; it stays for the user to look into.
 fn temporary() -> Result<PathBuf> {
     let folder = tempfile::Builder::new().prefix("handstand-demo-").tempdir();
-    let refused = |error| Error::file(&std::env::temp_dir(), "write", error);
+    let refused = |error| Error::file(std::env::temp_dir(), "write", error);
     Ok(folder.map_err(refused)?.keep().join("bench"))
 }
 

@@ -3,7 +3,8 @@
 //! Linearises the chain exactly, samples it with its delay, solves the regulator's Riccati
 //! equation, rounds the gains to fixed point with a proof against overflow. Any model that
 //! `handstand add` writes will do: effects without a derivative (Coulomb friction, dead zones, ..)
-//! are left out of the design, which says so; `--without` takes one out of the model altogether.
+//! are left out of the design, which says so; `--without` leaves out one more, which the simulated
+//! loop keeps.
 //! Weights are one number (times the identity), a diagonal `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
@@ -60,7 +61,7 @@ pub struct Args {
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
     balance: bool,
-    /// Take this effect out of the model altogether
+    /// Design without this effect; the simulated loop keeps it
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// For continuous time: no sampling, no fixed point

@@ -1,4 +1,4 @@
-//! `handstand identify LOG... [--orders bj:1,2,1,2,1]...`: a servo as a black box.
+//! `handstand identify LOG... [--orders bj:1,2,1,2,1]...`: identifies a servo as a black box.
 //!
 //! Discrete-time models from command to measured output, fitted by the prediction-error method. Of
 //! several orders the one with the fewest coefficients is kept that predicts held-out data as well

@@ -12,7 +12,7 @@
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, interrupt::Interrupt};
-use handstand::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
+use handstand::link::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 

@@ -17,7 +17,7 @@ use super::servo_columns::{self, ServoColumns};
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::LogRequest;
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
 use serde_json::{Value, json};

@@ -1,8 +1,8 @@
 //! Commands, one per file; each file's head is the command's manual.
 //!
-//! stdout carries data, stderr messages. Exit codes: 0 done, 1 the answer is no (a log refused, values
-//! that cannot be determined), 2 the request makes no sense, 3 a file or its content is refused, 4
-//! a device failed, 5 a drive was stopped for safety, 101 a bug.
+//! stdout carries data, stderr messages. Exit codes: 0 done, 1 the answer is no (a log refused,
+//! values that cannot be determined, a loop that is not stabilised), 2 the request makes no sense, 3
+//! a file or its content is refused, 4 a device failed, 5 a drive was stopped for safety, 101 a bug.
 
 mod add;
 mod bus;
@@ -88,7 +88,7 @@ pub enum Command {
     /// Add an effect to a model, its parameters fitted to logs
     Add(add::Args),
     /// Synthesise LQR gains that balance a model, and export them for firmware
-    Gains(Box<deploy::Gains>),
+    Gains(Box<deploy::GainsCommand>),
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::Command),

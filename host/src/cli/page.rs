@@ -5,7 +5,7 @@ use super::talk::Talk;
 use handstand::compare::Comparison;
 use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
-use handstand::number::hex;
+use handstand::output::number::hex;
 use handstand::report::{LogFile, ModelFile, Provenance, Report};
 use handstand::{Error, Result, output};
 use sha2::{Digest as _, Sha256};

@@ -1,4 +1,4 @@
-//! `handstand paper [--report FILE.html]`: what the paper prints, beside what follows from its Table 1.
+//! `handstand paper [--report FILE.html]`: the paper's numbers, compared with those recomputed from its Table 1.
 //!
 //! Every number with its place, as printed, as computed, and whether they agree to the last printed digit; misprints
 //! are named. The report also redraws the paper's figures from our own simulation, each with whether its conclusion

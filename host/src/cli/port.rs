@@ -1,7 +1,7 @@
 //! The port of a command: a serial one, or a simulated one.
 
 use super::simulated;
-use handstand::link::{Link, Serial, Servos, Tap, ports};
+use handstand::link::{Serial, SerialLink, Servos, Tap, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ pub struct Port {
 }
 
 /// An open port of any kind.
-pub type AnyLink = Box<dyn Link>;
+pub type AnyLink = Box<dyn SerialLink>;
 
 impl Port {
     /// Opens it.

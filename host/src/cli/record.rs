@@ -16,7 +16,7 @@ use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{Format, Recorder, Tally, read};
+use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -41,19 +41,19 @@ pub struct Args {
 
 /// Samples until told to stop.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    Format::of(&args.file)?;
+    FileFormat::of(&args.file)?;
     input::vacant(&args.file, args.force)?;
     if let Some(from) = &args.from {
         return convert(args, from, talk);
     }
     let interrupt = Interrupt::listen();
     let mut source = args.robot.open()?;
-    let mut recorder = Recorder::create(&args.file, &args.robot.ids.0, args.force)?;
+    let mut recorder = RobotRecorder::create(&args.file, &args.robot.ids.0, args.force)?;
     let bar = talk.bar();
     bar.set_length(args.seconds.map_or(0, |seconds| {
         (seconds / args.robot.period().map_or(0.01, |p| p.as_secs_f64())) as u64
     }));
-    let mut tally = Tally::default();
+    let mut tally = RecordingTally::default();
     let mut silent = 0;
     while !interrupt.has_come()
         && args
@@ -84,8 +84,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> {
     let recording = read(from)?;
-    let mut recorder = Recorder::create(&args.file, &recording.ids, args.force)?;
-    let mut tally = Tally::default();
+    let mut recorder = RobotRecorder::create(&args.file, &recording.ids, args.force)?;
+    let mut tally = RecordingTally::default();
     for sample in &recording.samples {
         recorder.write(sample)?;
         tally.count(sample);
@@ -100,7 +100,7 @@ fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> 
     report(args, &tally, Some(recording.torn), talk)
 }
 
-fn report(args: &Args, tally: &Tally, torn: Option<bool>, talk: &Talk) -> Result<Outcome> {
+fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({
             "file": args.file.display().to_string(),

@@ -17,7 +17,9 @@ use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
 use super::{Outcome, input};
-use handstand::record::{GoalMotion, Recorder, Rms, Sample, Source, Tally, read};
+use handstand::link::record::{
+    GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource, read,
+};
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -44,11 +46,11 @@ pub struct Args {
 const APPROACH_RAD_S: f64 = 0.5;
 
 /// What it needs while it runs.
-struct Run<'a> {
-    source: Box<dyn Source>,
-    recorder: Option<Recorder>,
+struct ReplayRun<'a> {
+    source: Box<dyn SampleSource>,
+    recorder: Option<RobotRecorder>,
     interrupt: Interrupt,
-    tally: Tally,
+    tally: RecordingTally,
     tracking: Rms,
     repeat: Rms,
     talk: &'a Talk,
@@ -75,13 +77,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let recorder = args
         .record
         .as_ref()
-        .map(|file| Recorder::create(file, &recording.ids, args.force))
+        .map(|file| RobotRecorder::create(file, &recording.ids, args.force))
         .transpose()?;
-    let mut run = Run {
+    let mut run = ReplayRun {
         source,
         recorder,
         interrupt,
-        tally: Tally::default(),
+        tally: RecordingTally::default(),
         tracking: Rms::default(),
         repeat: Rms::default(),
         talk,
@@ -99,7 +101,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     run.report(stopped)
 }
 
-impl Run<'_> {
+impl ReplayRun<'_> {
     /// Why it was stopped, if it was.
     fn follow(&mut self, motion: &GoalMotion) -> Result<Option<String>> {
         let first = &motion.goals_rad[0];
@@ -148,7 +150,7 @@ impl Run<'_> {
         Ok(None)
     }
 
-    fn judge(&mut self, sample: &Sample, goals: &[f64], then: &[Option<f64>]) {
+    fn judge(&mut self, sample: &RobotSample, goals: &[f64], then: &[Option<f64>]) {
         for ((joint, goal), then) in sample.joints.iter().zip(goals).zip(then) {
             if let Some(now) = joint.position_rad {
                 self.tracking.add(now - goal);
@@ -158,7 +160,7 @@ impl Run<'_> {
     }
 
     /// One sample; none if the robot must stop.
-    fn step(&mut self, goals: Option<&[f64]>) -> Result<Option<Sample>> {
+    fn step(&mut self, goals: Option<&[f64]>) -> Result<Option<RobotSample>> {
         for _ in 0..5 {
             if self.interrupt.has_come() {
                 return Ok(None);

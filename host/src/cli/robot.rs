@@ -1,7 +1,7 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{Ids, Port, id_list};
-use handstand::record::{Adapter, Source, Stream};
+use handstand::link::record::{Adapter, SampleSource, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -26,14 +26,14 @@ impl Robot {
     ///
     /// # Errors
     /// No port, no firmware, or a rate that is none.
-    pub fn open(&self) -> Result<Box<dyn Source>> {
+    pub fn open(&self) -> Result<Box<dyn SampleSource>> {
         if self.stream {
             return Ok(Box::new(Stream::new(self.port.open()?, &self.ids.0)?));
         }
         let mut servos = self.port.servos()?;
         let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
         if !present {
-            return Err(handstand::record::no_response());
+            return Err(handstand::link::record::no_response());
         }
         Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
     }

@@ -15,7 +15,7 @@
 use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
 use handstand::synth::{dlqr, upright, zoh};
 use handstand::{Error, Model, Result};

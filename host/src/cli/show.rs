@@ -3,7 +3,7 @@
 use super::talk::Talk;
 use comfy_table::{ContentArrangement, Table};
 use handstand::fitting::{Horizon, Refitted, Undetermined};
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::report::plain_table;
 use handstand::synth::{linearise, upright};
 use handstand::{Model, Result};

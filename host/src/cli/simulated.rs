@@ -3,7 +3,7 @@
 use super::port::AnyLink;
 use handstand::Result;
 #[cfg(feature = "virtual-cm5")]
-use handstand::virtual_cm5::{AdapterPort, Bus, Cm5Port, SimLink, set_up, spec};
+use handstand::link::virtual_cm5::{AdapterPort, Bus, Cm5Port, SimLink, set_up, spec};
 
 /// Opens the simulated port that `text` describes, a CM-5's or an adapter's.
 ///

@@ -68,7 +68,7 @@ pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", unix))]
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    use handstand::virtual_cm5::{StateLog, serve, set_up, spec};
+    use handstand::link::virtual_cm5::{StateLog, serve, set_up, spec};
 
     let mut spec = spec(&args.words)?;
     if let Some(model) = &args.robot {

@@ -9,7 +9,7 @@ use super::*;
 use crate::fitting::Horizon;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
-use crate::number::mrad_in_column;
+use crate::output::number::mrad_in_column;
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

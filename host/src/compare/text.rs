@@ -2,7 +2,7 @@
 
 use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
-use crate::number::mrad_in_column;
+use crate::output::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! Transfer a plan to the CM-5 in chunks, and read it back.
 
 use crate::error::{Error, Result};
-use crate::link::{Link, Session};
+use crate::link::{SerialLink, Session};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{Command, PLAN_CHUNK, Report};
 
@@ -9,7 +9,7 @@ use handstand_shared::message::{Command, PLAN_CHUNK, Report};
 ///
 /// # Errors
 /// The CM-5 does not answer or refuses.
-pub fn upload<L: Link>(
+pub fn upload<L: SerialLink>(
     session: &mut Session<L>,
     bytes: &[u8],
     mut progress: impl FnMut(u64),
@@ -35,7 +35,7 @@ pub fn upload<L: Link>(
 }
 
 /// Read the plan that the CM-5 has.
-fn read_back<L: Link>(session: &mut Session<L>) -> Result<Vec<u8>> {
+fn read_back<L: SerialLink>(session: &mut Session<L>) -> Result<Vec<u8>> {
     let mut back = Vec::new();
     loop {
         let wanted = back.len() as u16;
@@ -63,7 +63,11 @@ fn read_back<L: Link>(session: &mut Session<L>) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// The CM-5 does not answer, or has another plan.
-pub fn verify<L: Link>(session: &mut Session<L>, ours: &[u8], fingerprint: u32) -> Result<Vec<u8>> {
+pub fn verify<L: SerialLink>(
+    session: &mut Session<L>,
+    ours: &[u8],
+    fingerprint: u32,
+) -> Result<Vec<u8>> {
     let theirs = read_back(session)?;
     if ours != theirs {
         return Err(Error::device(

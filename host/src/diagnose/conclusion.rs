@@ -7,7 +7,7 @@ use super::hypothesis::Hypothesis;
 use super::verdict::Evidence;
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, fitted_values};
-use crate::number::percent;
+use crate::output::number::percent;
 
 /// Correlation from which two values are hardly told apart.
 const COLLINEAR: f64 = 0.95;

@@ -4,7 +4,7 @@
 
 use super::findings::{Diagnosis, FittedEffect, Verdict};
 
-use crate::number::{measured, percent, short, with_unit};
+use crate::output::number::{measured, percent, short, with_unit};
 
 /// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
 pub const MODEL: &str = "MODEL";

@@ -1,6 +1,6 @@
 //! A line on which things go wrong by chance.
 
-use super::port::{Link, left_to_inner};
+use super::port::{SerialLink, left_to_inner};
 use crate::error::Result;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -14,7 +14,7 @@ pub struct Faulty<L> {
     dice: ChaCha8Rng,
 }
 
-impl<L: Link> Faulty<L> {
+impl<L: SerialLink> Faulty<L> {
     /// Loses a share `drop` of the bytes and inverts a share `flip` of the bits, by chance from `seed`.
     pub fn new(inner: L, drop: f64, flip: f64, seed: u64) -> Self {
         Faulty {
@@ -40,7 +40,7 @@ impl<L: Link> Faulty<L> {
     }
 }
 
-impl<L: Link> Link for Faulty<L> {
+impl<L: SerialLink> SerialLink for Faulty<L> {
     left_to_inner!();
 
     fn send(&mut self, bytes: &[u8]) -> Result<()> {

@@ -1,8 +1,10 @@
-//! The way to servos and controller: ports, what is said over them, and who speaks it.
+//! Links to servos and controller: serial lines, and the protocols on them.
 //!
-//! A [`Link`] is a line of bytes with a clock. [`Serial`] is a real one, [`InProcess`] the simulated bus in simulated
-//! time, [`Replay`] what a [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. On top speak [`Servos`] (Dynamixel
-//! packets) and [`Session`] (frames with the CM-5). Read downward: `port` -> ports -> `servos`, `session`.
+//! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a
+//! [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel
+//! packets, [`Session`] in frames with the CM-5. Read downward: `port` -> ports -> `servos`,
+//! `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind a port like a
+//! real one, so that `settings`, which open ports, know it.
 
 pub mod boot_loader;
 pub mod doctor;
@@ -10,6 +12,7 @@ mod faulty;
 mod port;
 #[cfg(unix)]
 mod pty;
+pub mod record;
 mod replay;
 mod reply;
 mod serial;
@@ -19,9 +22,11 @@ mod session;
 mod session_error;
 mod settings;
 mod tap;
+#[cfg(feature = "virtual-cm5")]
+pub mod virtual_cm5;
 
 pub use faulty::Faulty;
-pub use port::{LineWriter, Link, read_some};
+pub use port::{LineWriter, SerialLink, read_some};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;

@@ -9,7 +9,7 @@ pub type LineWriter = Box<dyn std::io::Write + Send>;
 /// A line of bytes, with the clock it runs by.
 ///
 /// Waiting goes through the line, so that a simulated one needs no real time.
-pub trait Link: Send {
+pub trait SerialLink: Send {
     /// How people know it: `/dev/ttyUSB0`.
     fn name(&self) -> &str;
 
@@ -64,7 +64,7 @@ pub trait Link: Send {
 /// A line behind a pointer is a line.
 macro_rules! passed_on {
     ($pointer:ty $(, $($generic:tt)*)?) => {
-        impl$(<$($generic)*>)? Link for $pointer {
+        impl$(<$($generic)*>)? SerialLink for $pointer {
             fn name(&self) -> &str {
                 (**self).name()
             }
@@ -99,15 +99,15 @@ macro_rules! passed_on {
     };
 }
 
-passed_on!(Box<dyn Link>);
-passed_on!(&mut L, L: Link);
+passed_on!(Box<dyn SerialLink>);
+passed_on!(&mut L, L: SerialLink);
 
 /// Receives until `enough` says so or `deadline` (by the link's clock) has passed; what came.
 ///
 /// # Errors
 /// The device is gone.
 pub fn read_some(
-    link: &mut dyn Link,
+    link: &mut dyn SerialLink,
     deadline: Duration,
     mut enough: impl FnMut(&[u8]) -> bool,
 ) -> Result<Vec<u8>> {

@@ -1,6 +1,6 @@
 //! A device that answers as it once did.
 
-use super::port::Link;
+use super::port::SerialLink;
 use super::tap::{Exchange, Way};
 use crate::error::{Error, Place, Result};
 use std::collections::VecDeque;
@@ -82,7 +82,7 @@ impl Replay {
     }
 }
 
-impl Link for Replay {
+impl SerialLink for Replay {
     fn name(&self) -> &str {
         &self.name
     }

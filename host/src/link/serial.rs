@@ -1,6 +1,6 @@
 //! A serial port of this computer.
 
-use super::port::{LineWriter, Link};
+use super::port::{LineWriter, SerialLink};
 use crate::error::{Error, Result};
 use serialport::{ClearBuffer, ErrorKind as Kind, SerialPort};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -43,7 +43,7 @@ impl Serial {
     }
 }
 
-impl Link for Serial {
+impl SerialLink for Serial {
     fn name(&self) -> &str {
         &self.name
     }

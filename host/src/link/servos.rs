@@ -1,6 +1,6 @@
 //! Communicate with servos: requests, replies in bounded time, retries.
 
-use super::port::{Link, read_some};
+use super::port::{SerialLink, read_some};
 use super::reply::{Reading, is_answer, status};
 use super::servo_error::{ServoError, ServoResult};
 use handstand_shared::control_table::{RETURN_DELAY, Register, TORQUE_ENABLE};
@@ -29,7 +29,7 @@ pub struct Servos<L> {
     echo: Option<bool>,
 }
 
-impl<L: Link> Servos<L> {
+impl<L: SerialLink> Servos<L> {
     /// Over this line, three tries each.
     pub fn new(link: L) -> Self {
         Servos {

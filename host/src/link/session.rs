@@ -1,6 +1,6 @@
 //! A session with the CM-5's firmware: commands and reports in frames.
 
-use super::port::Link;
+use super::port::SerialLink;
 use super::session_error::SessionError;
 use handstand_shared::frame::{Decoder, MAX_FRAME};
 use handstand_shared::message::{
@@ -32,7 +32,7 @@ pub struct Session<L> {
     pub lost: u64,
 }
 
-impl<L: Link> Session<L> {
+impl<L: SerialLink> Session<L> {
     /// Greets the firmware.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What a servo keeps without power, as a file.
 
-use super::port::Link;
+use super::port::SerialLink;
 use super::servo_error::ServoResult;
 use super::servos::Servos;
 use crate::error::{Error, Place, Result};
@@ -22,7 +22,7 @@ impl Settings {
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn read<L: Link>(servos: &mut Servos<L>, id: u8) -> ServoResult<Settings> {
+    pub fn read<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> ServoResult<Settings> {
         let mut codes = Vec::new();
         for register in REGISTERS.iter().filter(|register| register.is_eeprom()) {
             codes.push((*register, servos.get(id, *register)?));
@@ -164,7 +164,7 @@ impl Text<'_> {
 mod tests {
     use super::super::Servos;
     use super::*;
-    use crate::virtual_cm5::SimLink;
+    use crate::link::virtual_cm5::SimLink;
 
     fn saved() -> Vec<Settings> {
         let mut servos = Servos::new(SimLink::adapter("ids=1+5").unwrap());

@@ -1,6 +1,6 @@
 //! Writing down all that passes a line.
 
-use super::port::{Link, left_to_inner};
+use super::port::{SerialLink, left_to_inner};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -66,7 +66,7 @@ pub struct Tap<L> {
     hear: Box<dyn FnMut(&Exchange) + Send>,
 }
 
-impl<L: Link> Tap<L> {
+impl<L: SerialLink> Tap<L> {
     /// Hands everything that passes to `hear`.
     pub fn new(inner: L, hear: impl FnMut(&Exchange) + Send + 'static) -> Self {
         Tap {
@@ -106,7 +106,7 @@ impl<L: Link> Tap<L> {
     }
 }
 
-impl<L: Link> Link for Tap<L> {
+impl<L: SerialLink> SerialLink for Tap<L> {
     left_to_inner!();
 
     fn send(&mut self, bytes: &[u8]) -> Result<()> {

@@ -1,7 +1,7 @@
 //! Requests over every kind of line.
 
 use super::*;
-use crate::virtual_cm5::{AdapterPort, SimLink};
+use crate::link::virtual_cm5::{AdapterPort, SimLink};
 use handstand_shared::control_table as table;
 use handstand_shared::dynamixel::ErrorBits;
 use std::sync::{Arc, Mutex};
@@ -89,7 +89,7 @@ fn what_a_tap_wrote_replays() {
     let tap = Tap::new(sim("ids=1-2,drop=0.2"), move |exchange| {
         hear.lock().unwrap().push(exchange.line())
     });
-    let talk = |link: Box<dyn Link>| {
+    let talk = |link: Box<dyn SerialLink>| {
         let mut servos = Servos::new(link);
         let codes: Vec<_> = (1..=2)
             .cycle()

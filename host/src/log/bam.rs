@@ -9,7 +9,7 @@ use super::reason::LogReason;
 use super::request::LogRequest;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
-use crate::number::hex;
+use crate::output::number::hex;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;

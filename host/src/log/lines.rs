@@ -2,7 +2,7 @@
 
 use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
-use crate::number::hex;
+use crate::output::number::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};

@@ -8,7 +8,7 @@ use super::servo;
 use crate::error::Result;
 use crate::log::Motion;
 use crate::model::{Drive, Model, Motor};
-use crate::number::short;
+use crate::output::number::short;
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::study::{SIGNAL_PATHS, SignalPath};
 use crate::synth::{linearise, poles, upright, zoh};
@@ -53,19 +53,45 @@ impl Finding {
     }
 }
 
+/// What was found or asked, the command, and what comes of it.
+type Row = (&'static str, &'static str, (String, Shown));
+
 /// All sixteen.
 ///
 /// # Errors
 /// None is known.
 pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>> {
-    let figure = |number: &str| {
-        let found = figures.iter().find(|figure| figure.number == number);
-        found.map_or((String::new(), Shown::Not), |figure| {
-            (figure.sentence.clone(), Shown::Here(figure.holds))
+    let rows = on_servos(computed, figures)?
+        .into_iter()
+        .chain(on_the_robot(computed, figures));
+    let numbered = rows.enumerate();
+    Ok(numbered
+        .map(|(index, (found, command, (said, shown)))| Finding {
+            number: index + 1,
+            found,
+            command,
+            said,
+            shown,
         })
-    };
-    let there = |said: &str| (said.to_string(), Shown::There);
-    let rows: [(&str, &str, (String, Shown)); 16] = [
+        .collect())
+}
+
+/// The verdict of a figure.
+fn figure(figures: &[Figure], number: &str) -> (String, Shown) {
+    let found = figures.iter().find(|figure| figure.number == number);
+    found.map_or((String::new(), Shown::Not), |figure| {
+        (figure.sentence.clone(), Shown::Here(figure.holds))
+    })
+}
+
+fn there(said: &str) -> (String, Shown) {
+    (said.to_string(), Shown::There)
+}
+
+/// Timing, signals and servos.
+fn on_servos(computed: &Computed, figures: &[Figure]) -> Result<Vec<Row>> {
+    let figure = |number| figure(figures, number);
+    Ok(vec![
         (
             "Are the delays of serial line, CM-5 and RS485 compatible with the sampling time?",
             "handstand delays",
@@ -98,7 +124,7 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
             "Temperature, 25-40 C: no visible effect",
             "handstand diagnose",
             there(
-                "A diagnosis can say no: `nominal` where no effect foretells held-out motions better; `cargo xtask \
+                "A diagnosis can say no: `nominal` where no effect predicts held-out motions better; `cargo xtask \
                  hidden` counts its false alarms.",
             ),
         ),
@@ -117,6 +143,13 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
             "handstand identify",
             figure("10"),
         ),
+    ])
+}
+
+/// The robot: equations, balance, outlook.
+fn on_the_robot(computed: &Computed, figures: &[Figure]) -> Vec<Row> {
+    let figure = |number| figure(figures, number);
+    vec![
         (
             "n-link equations, linearised upright; poles and zeros: non-minimum phase",
             "handstand paper",
@@ -152,20 +185,10 @@ pub fn findings(computed: &Computed, figures: &[Figure]) -> Result<Vec<Finding>>
             "handstand controllers",
             there(
                 "Both are among the controllers there: a sliding mode, alone and with an observer, and an LQR whose model has \
-                 the servo's transfer function; each is tried under every trouble, alone and together.",
+                 the servo's transfer function; each is simulated under every non-ideality, alone and together.",
             ),
         ),
-    ];
-    let numbered = rows.into_iter().enumerate();
-    Ok(numbered
-        .map(|(index, (found, command, (said, shown)))| Finding {
-            number: index + 1,
-            found,
-            command,
-            said,
-            shown,
-        })
-        .collect())
+    ]
 }
 
 /// The largest delay the sampled loop stands, with gains that do not know of it and with gains that do.

@@ -1,4 +1,4 @@
-//! The paper's numbers, figures and findings beside our own.
+//! The paper's numbers, figures and findings, compared with recomputed values.
 //!
 //! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them side by side;
 //! `case` is a run of the robot, `robot` and `servo` draw what its figures show; `findings` says of each result whether it holds.

@@ -3,7 +3,7 @@
 use super::figure::{Figure, Holds};
 use super::findings::{Finding, Shown};
 use super::{Row, Study, Verdict};
-use crate::number::short;
+use crate::output::number::short;
 use crate::plot::Chart;
 use crate::report::page::{Section, document, table};
 use maud::{Markup, html as markup};

@@ -6,7 +6,7 @@ use super::case::{
 use super::computed::Computed;
 use super::figure::{Figure, Holds};
 use crate::error::Result;
-use crate::number::short;
+use crate::output::number::short;
 use crate::plot::{Chart, Curve, Tone};
 use crate::sim::closed_loop::{Outcome, Velocity};
 

@@ -5,7 +5,7 @@ use super::figure::{Figure, Holds};
 use crate::error::Result;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
-use crate::number::interval;
+use crate::output::number::interval;
 use crate::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};

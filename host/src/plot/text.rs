@@ -3,7 +3,7 @@
 use super::axes::Tone;
 use super::chart::Chart;
 use super::scale::Scale;
-use crate::number::given;
+use crate::output::number::given;
 
 /// Characters across and down.
 const COLUMNS: usize = 60;

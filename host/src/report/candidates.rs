@@ -5,7 +5,7 @@ use super::words::{in_mrad, set_name, sorted, with_interval};
 use super::{AFTER, BEFORE, Report};
 use crate::diagnose::words::{SHOWN, joined};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
-use crate::number::{NONE, mrad, short};
+use crate::output::number::{NONE, mrad, short};
 use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 

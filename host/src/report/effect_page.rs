@@ -5,7 +5,7 @@ use super::plain_table;
 use super::signatures::{chart, title};
 use crate::effects::signature::signature;
 use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
-use crate::number::given;
+use crate::output::number::given;
 use comfy_table::Table;
 
 /// Columns of a page.

@@ -3,7 +3,7 @@
 use super::page::Section;
 use super::{AFTER, BEFORE, Report};
 use crate::compare::{Comparison, Failure};
-use crate::number::percent;
+use crate::output::number::percent;
 use crate::plot::{Bar, Tone};
 use maud::{Markup, html};
 

@@ -5,7 +5,7 @@ use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
-use crate::number::{mrad, short};
+use crate::output::number::{mrad, short};
 use crate::plot::Tone;
 use maud::{Markup, html};
 

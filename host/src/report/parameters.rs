@@ -6,7 +6,7 @@ use crate::diagnose::Diagnosis;
 use crate::diagnose::words::effect_name;
 use crate::effects::named;
 use crate::fitting::FittedValue;
-use crate::number::{interval, short, unit};
+use crate::output::number::{interval, short, unit};
 use crate::plot;
 use maud::{Markup, html};
 

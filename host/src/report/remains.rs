@@ -5,7 +5,7 @@ use super::Report;
 use super::page::{Section, table};
 use crate::compare::{Comparison, HorizonError};
 use crate::diagnose::ResidualStructure;
-use crate::number::{NONE, given, mrad, percent, short};
+use crate::output::number::{NONE, given, mrad, percent, short};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

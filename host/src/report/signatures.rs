@@ -5,7 +5,7 @@ use super::{AFTER, Report};
 use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
 use crate::effects::{Effect, named};
-use crate::number::given;
+use crate::output::number::given;
 use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
 

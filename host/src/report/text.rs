@@ -6,8 +6,8 @@ use super::words::{
 use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
 use crate::fitting::FittedValue;
-use crate::number::unit;
-use crate::number::{NONE, interval, mrad, percent, short};
+use crate::output::number::unit;
+use crate::output::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
 
 /// Columns of a table.

@@ -3,7 +3,7 @@
 use super::page::{Section, table};
 use super::{AFTER, BEFORE, FLOOR, MEASURED, Report};
 use crate::compare::{Comparison, Trace};
-use crate::number::{mrad, short};
+use crate::output::number::{mrad, short};
 use crate::plot::{Axes, Scale, Tone, span};
 use maud::{Markup, html};
 

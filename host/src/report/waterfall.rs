@@ -5,7 +5,7 @@ use super::words::in_mrad;
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::MotionError;
-use crate::number::{mrad, percent};
+use crate::output::number::{mrad, percent};
 use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 

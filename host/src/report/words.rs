@@ -4,7 +4,7 @@ use crate::diagnose::words::{at_joint, headline, listed};
 use crate::diagnose::{Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::{ErrorReduction, FittedValue};
-use crate::number::{given, measured, mrad, percent};
+use crate::output::number::{given, measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {

@@ -15,6 +15,7 @@ mod merge;
 mod monte_carlo;
 mod parse;
 mod plot;
+mod quantities;
 mod quantity;
 mod region;
 mod shard;
@@ -36,9 +37,8 @@ pub use merge::{Merged, Missing, merge};
 pub use monte_carlo::{CHUNK, chunk_rows, chunks, columns};
 pub use parse::Study;
 pub use plot::{monte_carlo_svg, sweep_svg};
-pub use quantity::{
-    Distribution, Levels, Place, QUANTITIES, Quantity, Spread, Uncertain, quantity, sweeps,
-};
+pub use quantities::QUANTITIES;
+pub use quantity::{Distribution, Levels, Place, Quantity, Spread, Uncertain, quantity, sweeps};
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;
 pub use summary::{Summary, share_interval};

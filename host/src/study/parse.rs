@@ -3,7 +3,8 @@
 use super::case::Case;
 use super::conditions::CONDITIONS;
 use super::judge::Judging;
-use super::quantity::{Distribution, Place, QUANTITIES, Uncertain, quantity};
+use super::quantities::QUANTITIES;
+use super::quantity::{Distribution, Place, Uncertain, quantity};
 use crate::controllers::{self, DESIGNS};
 use crate::error::{Error, Result, words};
 use crate::model::Limits;

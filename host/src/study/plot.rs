@@ -5,7 +5,7 @@ use super::quantity::{Levels, Quantity};
 use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
-use crate::number::given;
+use crate::output::number::given;
 use crate::plot::{Chart, Curve, Tone, svg_file};
 use std::path::Path;
 

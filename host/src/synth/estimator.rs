@@ -75,7 +75,7 @@ pub fn kalman(
     let cp = &plant.c * &covariance;
     let innovation = (&cp * &c + measurement)
         .cholesky()
-        .ok_or_else(|| DesignError::Innovation)?;
+        .ok_or(DesignError::Innovation)?;
     let gain = innovation.solve(&cp).transpose();
     let mut poles = poles(&(&plant.a - &plant.a * &gain * &plant.c))?;
     poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));

@@ -154,15 +154,14 @@ impl GainRow {
     /// The longest shift that fits with a given step.
     fn shift_for(&self, step: f64, input: usize) -> Result<(u32, f64), DesignError> {
         let fits = |shift: &u32| self.fits(2f64.powi(*shift as i32) / step, *shift);
-        let shift =
-            (0..2 * self.bits - 1)
-                .rev()
-                .find(fits)
-                .ok_or_else(|| DesignError::Overflow {
-                    input,
-                    bits: self.bits,
-                    step,
-                })?;
+        let shift = (0..2 * self.bits - 1)
+            .rev()
+            .find(fits)
+            .ok_or(DesignError::Overflow {
+                input,
+                bits: self.bits,
+                step,
+            })?;
         Ok((shift, step))
     }
 }

@@ -67,8 +67,7 @@ pub fn multi_model(
 ) -> Result<DMatrix<f64>, DesignError> {
     let (m, n) = start.shape();
     let mut k = start.clone();
-    let (mut cost, gradient) =
-        mean_cost(plants, q, r, &k).ok_or_else(|| DesignError::UnstableStart)?;
+    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or(DesignError::UnstableStart)?;
     let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
     let mut slope = flat(&gradient);
     let mut curvature =

@@ -28,7 +28,7 @@ fn the_comparison_shows_an_error_above_the_resolution() {
 fn the_diagnosis_names_viscous_friction() {
     let diagnosis = diagnose::viscous_friction_missing().unwrap();
     assert_eq!(diagnosis.verdict, Verdict::Named, "{diagnosis:?}");
-    assert_eq!(diagnosis.effects[0].address(), "viscous");
+    assert_eq!(diagnosis.effects[0].kind, "viscous");
 }
 
 #[test]

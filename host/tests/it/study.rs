@@ -118,16 +118,16 @@ fn a_sweep_leaves_a_table_and_a_plot_and_overwrites_nothing() {
     let ran = bench.run(line);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let table = bench.get("plots/delay.csv");
-    let stood: Vec<&str> = table
+    let stabilised: Vec<&str> = table
         .lines()
         .skip(1)
         .map(|row| row.split(',').nth(3).unwrap())
         .collect();
-    assert_eq!(stood, ["12", "12", "0"], "{table}");
+    assert_eq!(stabilised, ["12", "12", "0"], "{table}");
     assert!(bench.get("plots/delay.svg").starts_with("<svg"));
     assert_eq!(bench.run(line).code, Some(2));
     let forced = bench.run(&format!("{line} --force --json"));
-    assert_eq!(forced.json()[0]["levels"][2]["figures"]["stood"], 0);
+    assert_eq!(forced.json()[0]["levels"][2]["figures"]["stabilised"], 0);
     assert_eq!(bench.get("plots/delay.csv"), table);
     assert_eq!(bench.run("study sweep delai").code, Some(2));
     let listed = bench.run("study sweep --json").json();

@@ -4,7 +4,7 @@
 //! simavr is under the GPL and nothing that is shipped contains it; `handstand virtual --pty --cm5` is what is shipped.
 
 use handstand::link::Pty;
-use handstand::virtual_cm5::{set_up, spec};
+use handstand::link::virtual_cm5::{set_up, spec};
 use handstand_tests::bench::{SimulatedCm5, VirtualCm5, serve};
 use std::time::Instant;
 

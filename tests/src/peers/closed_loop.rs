@@ -1,7 +1,11 @@
 //! Closed-loop runs of the paper's robot, as `closed_loop.py` has them.
 
 use handstand::Model;
-use handstand::sim::closed_loop::{ClosedLoop, Commands, InitialState, StateFeedback, stream};
+use handstand::effects::named;
+use handstand::model::EffectInstance;
+use handstand::sim::closed_loop::{
+    ClosedLoop, Commands, Drives, InitialState, StateFeedback, stream,
+};
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,22 +20,48 @@ const GAINS: [[f64; 6]; 2] = [
 ];
 const START_RAD: [f64; 3] = [0.01, -0.02, 0.02];
 const RUN_S: f64 = 5.0;
+const PERIOD_S: f64 = 0.01;
 
-fn task() -> (ClosedLoop, StateFeedback) {
+/// What the robot of a run is like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Robot {
+    /// A rigid chain with ideal drives.
+    Ideal,
+    /// Coulomb friction of 5 mN m at shoulder and hip, a dead zone of 1 %, 2 N m at most, 5 ms of delay.
+    WithEffects,
+}
+
+fn task(robot: Robot) -> (ClosedLoop, StateFeedback) {
     let text = include_str!("../../../host/models/handstand.toml");
-    let model = Model::parse(text, Path::new("handstand.toml")).expect("our own model");
+    let mut model = Model::parse(text, Path::new("handstand.toml")).expect("our own model");
+    if robot == Robot::WithEffects {
+        let coulomb = named("coulomb").expect("an effect of the library");
+        model.effects = [1, 2]
+            .map(|joint| EffectInstance {
+                effect: coulomb,
+                joint: Some(joint),
+                values: vec![0.005],
+            })
+            .to_vec();
+        let drives = Drives {
+            saturates: true,
+            dead_zone: 0.01,
+            delay_periods: 0.5,
+            ..Drives::IDEAL
+        };
+        model = drives.on(&model, PERIOD_S);
+    }
     let pose = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
-    let closed = ClosedLoop::new(&model, &pose, Commands::Torque, 0.01);
-    let closed = closed.expect("three links, two drives");
+    let closed = ClosedLoop::new(&model, &pose, Commands::Torque, PERIOD_S);
     (
-        closed,
+        closed.expect("three links, two drives"),
         StateFeedback::new(3, GAINS.map(|row| row.to_vec()).to_vec()),
     )
 }
 
 /// 5-s runs per second on that many threads.
-pub fn runs_per_second(threads: usize, runs: usize) -> f64 {
-    let (closed, controller) = task();
+pub fn runs_per_second(robot: Robot, threads: usize, runs: usize) -> f64 {
+    let (closed, controller) = task(robot);
     let starts: Vec<InitialState> = (0..runs)
         .map(|i| InitialState::at(START_RAD.map(|angle| angle + 1e-6 * i as f64)))
         .collect();
@@ -46,8 +76,8 @@ pub fn runs_per_second(threads: usize, runs: usize) -> f64 {
 }
 
 /// Relative angles after `seconds` of one run, deviations from upright, rad.
-pub fn angles_after(seconds: f64) -> Vec<f64> {
-    let (closed, controller) = task();
+pub fn angles_after(robot: Robot, seconds: f64) -> Vec<f64> {
+    let (closed, controller) = task(robot);
     let mut last = Vec::new();
     let start = InitialState::at(START_RAD);
     closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {

@@ -6,7 +6,7 @@ mod dynamics;
 mod gains;
 
 pub use arm::{Arm, Starts};
-pub use closed_loop::{angles_after, runs_per_second};
+pub use closed_loop::{Robot, angles_after, runs_per_second};
 pub use dynamics::{farthest_off, forward_seconds};
 pub use gains::{chain_fixture, dlqr_off, dlqr_seconds};
 

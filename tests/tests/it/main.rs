@@ -1,6 +1,7 @@
 //! Benchmarks sampled, the firmware run, the guides followed. One test program: each more would link the library again.
 
 mod contributing;
+mod dependencies;
 #[cfg(all(unix, simavr))]
 mod deploy;
 mod firmware;

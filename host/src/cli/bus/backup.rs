@@ -7,7 +7,7 @@ use super::super::Outcome;
 use super::super::input;
 use super::super::port::{Ids, Port, id_list};
 use super::super::talk::Talk;
-use super::changes::{self, Change};
+use super::changes::{self, RegisterChange};
 use super::scan::scan;
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
@@ -54,7 +54,7 @@ pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
         .map(|servo| servo.id)
         .collect();
     if ids.is_empty() {
-        return Err(handstand::record::no_response());
+        return Err(handstand::link::record::no_response());
     }
     let mut saved = Vec::new();
     for id in &ids {
@@ -88,7 +88,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
         saved.retain(|servo| ids.contains(&servo.id));
     }
     let mut servos = args.port.servos()?;
-    let mut changes: Vec<Change> = Vec::new();
+    let mut changes: Vec<RegisterChange> = Vec::new();
     // All servos are read before any is written: a servo that is missing stops a half restored robot from arising.
     for servo in &saved {
         let now = Settings::read(&mut servos, servo.id)?;
@@ -106,7 +106,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
         let differing = servo
             .restorable()
             .filter(|(register, code)| now.get(*register) != Some(*code));
-        changes.extend(differing.map(|(register, code)| Change {
+        changes.extend(differing.map(|(register, code)| RegisterChange {
             id: servo.id,
             register,
             before: now.get(register).unwrap_or(0),
@@ -123,7 +123,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
     show(args, &changes, talk)
 }
 
-fn show(args: &RestoreArgs, changes: &[Change], talk: &Talk) -> Result<Outcome> {
+fn show(args: &RestoreArgs, changes: &[RegisterChange], talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({ "written": !args.dry_run, "changes": changes::data(changes) }))?;
         return Ok(Outcome::Done);

@@ -7,7 +7,7 @@ use handstand_shared::control_table::Register;
 use serde_json::{Value, json};
 
 /// A register of a servo that gets another code.
-pub struct Change {
+pub struct RegisterChange {
     /// The servo.
     pub id: u8,
     /// The register.
@@ -19,8 +19,8 @@ pub struct Change {
 }
 
 /// Under their keys.
-pub fn data(changes: &[Change]) -> Vec<Value> {
-    let change = |c: &Change| json!({ "id": c.id, "register": c.register.name, "before": c.before, "code": c.code });
+pub fn data(changes: &[RegisterChange]) -> Vec<Value> {
+    let change = |c: &RegisterChange| json!({ "id": c.id, "register": c.register.name, "before": c.before, "code": c.code });
     changes.iter().map(change).collect()
 }
 
@@ -28,7 +28,7 @@ pub fn data(changes: &[Change]) -> Vec<Value> {
 ///
 /// # Errors
 /// Standard output is closed.
-pub fn print(changes: &[Change], after: &str, talk: &Talk) -> Result<()> {
+pub fn print(changes: &[RegisterChange], after: &str, talk: &Talk) -> Result<()> {
     if changes.is_empty() {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use super::super::show::table;
 use super::super::talk::Talk;
 use handstand::Result;
 use handstand::link::Reading;
-use handstand::record::Joint;
+use handstand::link::record::ServoSample;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
 use std::time::Duration;
@@ -89,7 +89,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 impl ServoReading {
     fn of(id: u8, reading: &Reading) -> Self {
-        let joint = Joint::of_reading(reading).unwrap_or_default();
+        let joint = ServoSample::of_reading(reading).unwrap_or_default();
         ServoReading {
             id,
             position_rad: joint.position_rad,

@@ -74,7 +74,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         args.ids.0.len()
     ));
     if found.is_empty() {
-        return Err(handstand::record::no_response());
+        return Err(handstand::link::record::no_response());
     }
     Ok(Outcome::Done)
 }

@@ -6,7 +6,7 @@
 use super::super::Outcome;
 use super::super::port::{Ids, Port, id_list};
 use super::super::talk::Talk;
-use super::changes::{self, Change};
+use super::changes::{self, RegisterChange};
 use super::scan::scan;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
@@ -37,7 +37,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let found = scan(&mut servos, &args.ids.0, talk)?;
     let mut ids: Vec<u8> = found.iter().map(|servo| servo.id).collect();
     if ids.is_empty() {
-        return Err(handstand::record::no_response());
+        return Err(handstand::link::record::no_response());
     }
     let mut changes = Vec::new();
     if let Some(new) = args.new_id {
@@ -55,7 +55,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         if only != new {
             servos.set(only, ID, u16::from(new))?;
-            changes.push(Change {
+            changes.push(RegisterChange {
                 id: new,
                 register: ID,
                 before: u16::from(only),
@@ -74,7 +74,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             let before = servos.get(*id, register)?;
             if before != code {
                 servos.set(*id, register, code)?;
-                changes.push(Change {
+                changes.push(RegisterChange {
                     id: *id,
                     register,
                     before,
@@ -88,7 +88,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     show(&ids, &changes, talk)
 }
 
-fn show(ids: &[u8], changes: &[Change], talk: &Talk) -> Result<Outcome> {
+fn show(ids: &[u8], changes: &[RegisterChange], talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({ "ids": ids, "changes": changes::data(changes) }))?;
         return Ok(Outcome::Done);

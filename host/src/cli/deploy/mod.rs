@@ -7,8 +7,8 @@
 //! Step by step: designs; writes the whole plan (`--header`), and of a law on plain states the table (`--rust`, `--c`), as
 //! source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash` builds the
 //! firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
-//! fingerprint; and runs the law the CM-5 has, on the tables it has, over random states beside wide integers:
-//! not a bit may differ.
+//! fingerprint; and runs the CM-5's law, on the tables read back, over random states against wide integers: not a bit
+//! may differ.
 //!
 //! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
 //! slew, where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen.
@@ -51,8 +51,8 @@ pub struct Args {
     #[command(flatten)]
     port: Port,
     /// The law
-    #[arg(long, value_enum, default_value_t = Law::Observer)]
-    law: Law,
+    #[arg(long, value_enum, default_value_t = LawKind::Observer)]
+    law: LawKind,
     /// Compile the plan into the firmware and write that through the boot loader, instead of uploading it
     #[arg(long)]
     flash: bool,
@@ -77,7 +77,7 @@ pub struct Args {
 
 /// What runs on the board.
 #[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
-enum Law {
+enum LawKind {
     /// On an estimated state
     Observer,
     /// The designed gains on positions and their differences
@@ -87,7 +87,7 @@ enum Law {
 /// Gains for a model, or what is done with them.
 #[derive(Debug, clap::Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct Gains {
+pub struct GainsCommand {
     #[command(subcommand)]
     then: Option<Then>,
     #[command(flatten)]
@@ -101,7 +101,7 @@ enum Then {
 }
 
 /// Designs; deploys if told to.
-pub fn gains(args: &Gains, talk: &Talk) -> Result<Outcome> {
+pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<Outcome> {
     match (&args.then, &args.gains) {
         (Some(Then::Deploy(args)), _) => run(args, talk),
         (None, Some(args)) => gains::run(args, talk),
@@ -113,12 +113,12 @@ pub fn gains(args: &Gains, talk: &Talk) -> Result<Outcome> {
 }
 
 /// What was done so far.
-struct Steps<'a> {
+struct DeploySteps<'a> {
     done: Vec<String>,
     talk: &'a Talk,
 }
 
-impl Steps<'_> {
+impl DeploySteps<'_> {
     fn say(&mut self, step: String) {
         self.talk.say(&format!("{}. {step}", self.done.len() + 1));
         self.done.push(step);
@@ -129,7 +129,7 @@ impl Steps<'_> {
 fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
     let model = Model::load(args.gains.model())?;
     let board = args.board.board()?;
-    if args.law == Law::Observer {
+    if args.law == LawKind::Observer {
         if let Some(option) = args.gains.for_plain_states() {
             return Err(Error::usage(
                 format!(
@@ -151,7 +151,7 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
 
 /// Designs, brings over, reads back, replays.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    let mut steps = Steps {
+    let mut steps = DeploySteps {
         done: Vec::new(),
         talk,
     };
@@ -217,7 +217,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Result<Vec<u8>> {
+fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut DeploySteps) -> Result<Vec<u8>> {
     if args.dry_run {
         return Ok(bytes.to_vec());
     }
@@ -231,7 +231,7 @@ fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut Steps) -> Res
     verified(&mut session, bytes, fingerprint, steps)
 }
 
-fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut Steps) -> Result<Vec<u8>> {
+fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()
         .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
     let file = folder.path().join("plan.rs");
@@ -267,7 +267,7 @@ fn verified(
     session: &mut Session<super::port::AnyLink>,
     bytes: &[u8],
     fingerprint: u32,
-    steps: &mut Steps,
+    steps: &mut DeploySteps,
 ) -> Result<Vec<u8>> {
     let back = deploy::verify(session, bytes, fingerprint)?;
     steps.say(format!(

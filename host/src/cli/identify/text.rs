@@ -2,7 +2,7 @@
 
 use super::super::show;
 use super::Data;
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::sysid::{
     Candidate, Estimate, FittedModel, Interval, Pole, Record, dynamics, transfer_function,
 };

@@ -1,4 +1,4 @@
-//! `handstand study monte-carlo STUDY.toml -o FOLDER [--shard I/N]`: robots that all differ within what is uncertain.
+//! `handstand study monte-carlo STUDY.toml -o FOLDER [--shard I/N]`: simulates robots drawn from the uncertain quantities.
 //!
 //! Every finished chunk of runs is on disk before the next is counted: killed at any time, the same command goes on where
 //! it was. The rows are the same for any number of threads and shards. A whole study ends in `runs.csv`,

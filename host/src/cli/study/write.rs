@@ -2,7 +2,7 @@
 
 use super::super::show::table;
 use super::super::talk::Talk;
-use handstand::number::exact;
+use handstand::output::number::exact;
 use handstand::study::{Merged, Summary, monte_carlo_svg};
 use handstand::{Error, Result, output};
 use serde_json::json;

@@ -2,7 +2,7 @@
 
 use super::result::{ClosedLoopComparison, LoopMotion, LoopSignal};
 use crate::compare::text::aligned;
-use crate::number::{NONE, mrad_in_column, short};
+use crate::output::number::{NONE, mrad_in_column, short};
 
 /// What a closed-loop table tells, below it.
 pub(crate) const LEGEND: &str = "Each loop is simulated from the first sample of each motion. Phase \

@@ -10,7 +10,7 @@ mod image;
 pub use error::{BootLoaderError, ImageError};
 pub use image::{Image, LARGEST};
 
-use super::port::Link;
+use super::port::SerialLink;
 use std::time::Duration;
 
 type Result<T> = std::result::Result<T, BootLoaderError>;
@@ -31,7 +31,7 @@ pub struct BootLoader<L> {
     pace: Duration,
 }
 
-impl<L: Link> BootLoader<L> {
+impl<L: SerialLink> BootLoader<L> {
     /// Knocks until the boot loader answers, at most for `patience`; `keep_on` is asked meanwhile.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use super::ping_test::{PINGS, PingTest};
 use super::{Cause, cause};
 
 /// One way in which an exchange fails.
-struct Kind {
+struct Disturbance {
     count: fn(&PingTest) -> usize,
     /// What is wrong if one servo of several fails so; `{}` is its id.
     of_one: &'static str,
@@ -17,36 +17,36 @@ struct Kind {
 const CABLE: &str =
     "look for loose plugs and a low supply; shorten the cables; keep the ground wire connected";
 
-const KINDS: [Kind; 5] = [
-    Kind {
+const KINDS: [Disturbance; 5] = [
+    Disturbance {
         count: |test| test.silent,
         of_one: "servo {} or its cable is bad: answers are lost",
         of_line: "the line is disturbed: answers are lost",
         seen: "got no answer",
         remedy: CABLE,
     },
-    Kind {
+    Disturbance {
         count: |test| test.garbled,
         of_one: "servo {} or its cable is bad: bits are wrong on the way from it",
         of_line: "the line is disturbed: bits are wrong on the way from the servos",
         seen: "got an answer that is no sound packet",
         remedy: CABLE,
     },
-    Kind {
+    Disturbance {
         count: |test| test.corrupted_requests,
         of_one: "servo {} or its cable is bad: bits are wrong on the way to it",
         of_line: "the line is disturbed: bits are wrong on the way to the servos",
         seen: "got the answer that their checksum was wrong",
         remedy: "change the adapter or its plug; look at the ground wire and the supply",
     },
-    Kind {
+    Disturbance {
         count: |test| test.unexpected_ids,
         of_one: "servo {} answers with another's id",
         of_line: "servos answer with others' ids",
         seen: "got an answer with another id",
         remedy: "a servo is faulty: take servos off one by one until it stops",
     },
-    Kind {
+    Disturbance {
         count: |test| test.late,
         of_one: "servo {} answers later than its return delay allows",
         of_line: "answers come later than the return delay allows: the adapter holds them back",
@@ -73,7 +73,7 @@ fn is_silent(test: &PingTest) -> bool {
     test.silent == PINGS
 }
 
-fn disturbance(kind: &Kind, there: &[&PingTest]) -> Option<Cause> {
+fn disturbance(kind: &Disturbance, there: &[&PingTest]) -> Option<Cause> {
     let poor: Vec<&&PingTest> = there.iter().filter(|test| (kind.count)(test) > 0).collect();
     let failed: usize = poor.iter().map(|test| (kind.count)(test)).sum();
     let what = match poor[..] {

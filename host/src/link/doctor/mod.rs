@@ -7,7 +7,7 @@ mod ping_test;
 
 pub use ping_test::PingTest;
 
-use super::port::Link;
+use super::port::SerialLink;
 use super::servos::Servos;
 use crate::error::Result;
 use no_response::no_response;
@@ -30,7 +30,7 @@ pub struct Cause {
 
 /// What was found; no cause means that all is well.
 #[derive(Debug, Clone, Serialize)]
-pub struct Diagnosis {
+pub struct BusDiagnosis {
     /// Whether the adapter hears itself.
     pub echo: bool,
     /// Each servo asked.
@@ -43,7 +43,11 @@ pub struct Diagnosis {
 ///
 /// # Errors
 /// The port failed.
-pub fn examine<L: Link>(link: L, ids: &[u8], mut step: impl FnMut(&str)) -> Result<Diagnosis> {
+pub fn examine<L: SerialLink>(
+    link: L,
+    ids: &[u8],
+    mut step: impl FnMut(&str),
+) -> Result<BusDiagnosis> {
     let mut servos = Servos::new(link);
     servos.tries = 1;
     step("listening for an echo");
@@ -63,7 +67,7 @@ pub fn examine<L: Link>(link: L, ids: &[u8], mut step: impl FnMut(&str)) -> Resu
         partial_response(&mut servos, &pings, &mut causes)?;
     }
     causes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    Ok(Diagnosis {
+    Ok(BusDiagnosis {
         echo,
         pings,
         causes,

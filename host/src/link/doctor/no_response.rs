@@ -1,6 +1,6 @@
 //! Causes where no servo responds.
 
-use super::super::port::Link;
+use super::super::port::SerialLink;
 use super::super::servos::Servos;
 use super::super::session::Session;
 use super::super::session_error::condition_words;
@@ -13,7 +13,7 @@ use handstand_shared::message::Condition;
 const BAUDS: [u32; 6] = [1_000_000, 57_600, 115_200, 500_000, 200_000, 9_600];
 
 /// No servo responds: another speed, a controller that is no adapter now, no power, or the line is not connected.
-pub(super) fn no_response<L: Link>(
+pub(super) fn no_response<L: SerialLink>(
     servos: &mut Servos<L>,
     ids: &[u8],
     pings: &[PingTest],
@@ -76,7 +76,10 @@ pub(super) fn no_response<L: Link>(
 }
 
 /// Whether a CM-5 with our firmware is there, but in a mode in which it is no adapter.
-fn firmware<L: Link>(servos: &mut Servos<L>, step: &mut impl FnMut(&str)) -> Result<Option<Cause>> {
+fn firmware<L: SerialLink>(
+    servos: &mut Servos<L>,
+    step: &mut impl FnMut(&str),
+) -> Result<Option<Cause>> {
     step("greeting a CM-5");
     let Ok(session) = Session::open(servos.link()) else {
         return Ok(None);

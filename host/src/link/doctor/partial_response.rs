@@ -1,6 +1,6 @@
 //! Causes where some servos respond.
 
-use super::super::port::Link;
+use super::super::port::SerialLink;
 use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
 use super::disturbance::{disturbances, is_twice};
@@ -11,7 +11,7 @@ use handstand_shared::control_table::{PRESENT_SUPPLY, RETURN_DELAY, STATUS_LEVEL
 use handstand_shared::dynamixel::ErrorBits;
 
 /// Some servos respond: causes for the others, and for replies that are not valid.
-pub(super) fn partial_response<L: Link>(
+pub(super) fn partial_response<L: SerialLink>(
     servos: &mut Servos<L>,
     pings: &[PingTest],
     causes: &mut Vec<Cause>,
@@ -94,7 +94,7 @@ fn error_flags(test: &PingTest, supply: Option<u16>) -> Cause {
 }
 
 /// Settings under which a good servo looks silent or slow.
-fn settings<L: Link>(servos: &mut Servos<L>, id: u8, causes: &mut Vec<Cause>) -> Result<()> {
+fn settings<L: SerialLink>(servos: &mut Servos<L>, id: u8, causes: &mut Vec<Cause>) -> Result<()> {
     servos.tries = 3;
     let level = servos.get(id, STATUS_LEVEL);
     let delay = servos.get(id, RETURN_DELAY);

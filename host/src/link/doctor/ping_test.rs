@@ -1,6 +1,6 @@
 //! Twenty pings to each servo.
 
-use super::super::port::Link;
+use super::super::port::SerialLink;
 use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
 use crate::error::Result;
@@ -34,7 +34,7 @@ pub struct PingTest {
     pub error_flags: Vec<&'static str>,
 }
 
-pub(super) fn ping_test<L: Link>(servos: &mut Servos<L>, id: u8) -> Result<PingTest> {
+pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result<PingTest> {
     let mut test = PingTest {
         id,
         ..PingTest::default()

@@ -1,9 +1,9 @@
 //! Each fault that the simulated bus has, and the cause that is named for it.
 
 use super::*;
-use crate::virtual_cm5::SimLink;
+use crate::link::virtual_cm5::SimLink;
 
-fn diagnose(words: &str, ids: &[u8]) -> Diagnosis {
+fn diagnose(words: &str, ids: &[u8]) -> BusDiagnosis {
     examine(SimLink::adapter(words).unwrap(), ids, |_| ()).unwrap()
 }
 

@@ -4,7 +4,7 @@
 //! A run comes out the same, bit for bit, whatever runs beside it.
 
 use super::Outcome;
-use super::posed_plant::{Absolute, Equations};
+use super::equations::{Absolute, Equations};
 use super::run::{Next, Run};
 use crate::dynamics::{Dense, Lanes};
 use std::array::from_fn;
@@ -100,16 +100,7 @@ fn in_lanes<'a, const N: usize>(
                     .map_or(first.dense, |active| active.dense)
             }))
         });
-        let mut states = [Absolute::default(); WIDTH];
-        let mut step_s = [0.0; WIDTH];
-        for ((lane, state), step_s) in lanes.iter_mut().zip(&mut states).zip(&mut step_s) {
-            if let Some(active) = lane {
-                let plant = &active.run.closed.plant;
-                *state = plant.absolute(&active.run.body);
-                *step_s = active.step_s;
-            }
-        }
-        advance(packed, &mut states, step_s, steps);
+        let states = stepped(&lanes, packed, steps);
         for (lane, state) in lanes.iter_mut().zip(&states) {
             let Some(active) = lane.as_mut().filter(|active| active.steps == steps) else {
                 continue;
@@ -126,6 +117,25 @@ fn in_lanes<'a, const N: usize>(
         }
     }
     outcomes.into_iter().flatten().collect()
+}
+
+/// States of all lanes after `steps` steps.
+#[inline]
+fn stepped<const N: usize>(
+    lanes: &[Option<Active<'_, N>>; WIDTH],
+    packed: &Dense<N, Lanes<WIDTH>>,
+    steps: usize,
+) -> [Absolute<N>; WIDTH] {
+    let mut states = [Absolute::default(); WIDTH];
+    let mut step_s = [0.0; WIDTH];
+    for ((lane, state), step_s) in lanes.iter().zip(&mut states).zip(&mut step_s) {
+        if let Some(active) = lane {
+            *state = active.run.closed.plant.absolute(&active.run.body);
+            *step_s = active.step_s;
+        }
+    }
+    advance(packed, &mut states, step_s, steps);
+    states
 }
 
 /// All lanes on by `steps` steps.

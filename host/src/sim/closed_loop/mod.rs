@@ -8,10 +8,12 @@
 //! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay -> drives with their effects -> torque -> plant
 //! ```
 
+mod body;
 mod clock;
 mod closed;
 mod controller;
 mod drives;
+mod equations;
 mod general;
 mod lanes;
 mod outcome;

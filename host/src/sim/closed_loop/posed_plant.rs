@@ -3,7 +3,8 @@
 //! Where the torques are constant between commands (no friction, no drive that follows the speed, at most four
 //! links), dense equations advance it, several runs at once; else the simulation that serves measuring does.
 
-use super::general::{General, GeneralState};
+use super::body::Body;
+use super::equations::{Absolute, Equations};
 use crate::dynamics::Dense;
 use crate::error::{Error, Result};
 use crate::log::Motion;
@@ -34,7 +35,7 @@ pub struct PosedPlant {
     /// Longest integration step, s.
     pub step_s: f64,
     /// Relative angles, joint 1 from hanging, rad.
-    pose_rad: Vec<f64>,
+    pub(super) pose_rad: Vec<f64>,
 }
 
 /// A driven joint.
@@ -48,64 +49,6 @@ pub(super) struct DrivenJoint {
     largest_input: f64,
     /// How late it obeys, s.
     pub delay_s: f64,
-}
-
-/// What advances the plant.
-#[derive(Debug, Clone)]
-pub(super) enum Equations {
-    One(Dense<1>),
-    Two(Dense<2>),
-    Three(Dense<3>),
-    Four(Dense<4>),
-    General,
-}
-
-impl Equations {
-    fn of(plant: &Plant) -> Equations {
-        let held = |joint: &crate::sim::plant::JointPlan| {
-            !joint.has_joint_effects() && joint.torque_is_held()
-        };
-        if plant.senses || !plant.joints.iter().all(held) {
-            return Equations::General;
-        }
-        let (chain, turn_rad) = (&plant.rig.chain, plant.rig.gravity_turn_rad);
-        match chain.len() {
-            1 => Dense::new(chain, turn_rad).map(Equations::One),
-            2 => Dense::new(chain, turn_rad).map(Equations::Two),
-            3 => Dense::new(chain, turn_rad).map(Equations::Three),
-            4 => Dense::new(chain, turn_rad).map(Equations::Four),
-            _ => None,
-        }
-        .unwrap_or(Equations::General)
-    }
-
-    pub(super) fn one(&self) -> Option<&Dense<1>> {
-        match self {
-            Equations::One(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn two(&self) -> Option<&Dense<2>> {
-        match self {
-            Equations::Two(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn three(&self) -> Option<&Dense<3>> {
-        match self {
-            Equations::Three(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn four(&self) -> Option<&Dense<4>> {
-        match self {
-            Equations::Four(dense) => Some(dense),
-            _ => None,
-        }
-    }
 }
 
 impl PosedPlant {
@@ -374,51 +317,6 @@ impl PosedPlant {
         for (joint, pose) in self.pose_rad.iter().enumerate() {
             body.angle_rad[joint] = general.angle_rad()[joint] - pose;
             body.speed_rad_s[joint] = general.speed_rad_s()[joint];
-        }
-    }
-}
-
-/// A state in absolute angles, joint 1's from hanging.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Absolute<const N: usize> {
-    pub(super) angle_rad: [f64; N],
-    pub(super) speed_rad_s: [f64; N],
-    pub(super) load_nm: [f64; N],
-}
-
-impl<const N: usize> Default for Absolute<N> {
-    fn default() -> Self {
-        Absolute {
-            angle_rad: [0.0; N],
-            speed_rad_s: [0.0; N],
-            load_nm: [0.0; N],
-        }
-    }
-}
-
-/// The state as deviations from the pose, joint by joint from the link before.
-#[derive(Debug)]
-pub(super) struct Body {
-    pub(super) angle_rad: Vec<f64>,
-    pub(super) speed_rad_s: Vec<f64>,
-    /// Torques of the drives as they were when the last commands arrived, N m.
-    pub(super) drive_nm: Vec<f64>,
-    general: Option<Box<dyn General>>,
-}
-
-impl Body {
-    /// At these deviations from the pose, rad and rad/s.
-    pub(super) fn new(posed: &PosedPlant, angle_rad: &[f64], speed_rad_s: &[f64]) -> Self {
-        let general = matches!(posed.equations, Equations::General).then(|| {
-            let pose = posed.pose_rad.iter().zip(angle_rad);
-            let angle: Vec<f64> = pose.map(|(pose, off)| pose + off).collect();
-            GeneralState::boxed(&posed.plant, angle, speed_rad_s.to_vec())
-        });
-        Body {
-            angle_rad: angle_rad.to_vec(),
-            speed_rad_s: speed_rad_s.to_vec(),
-            drive_nm: vec![0.0; posed.drives()],
-            general,
         }
     }
 }

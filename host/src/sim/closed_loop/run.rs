@@ -1,8 +1,8 @@
 //! One run of the loop, from event to event.
 
+use super::body::Body;
 use super::outcome::Tally;
 use super::pending::Pending;
-use super::posed_plant::Body;
 use super::{ClosedLoop, Controller, InitialState, Measurement, Outcome};
 use crate::sim::drive::DriveInput;
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! A design for people.
 
 use super::format::{digits, plain, several};
-use crate::number::short;
+use crate::output::number::short;
 use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::{Complex, DMatrix};

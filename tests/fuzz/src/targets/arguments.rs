@@ -1,11 +1,11 @@
 //! Arguments of the command line that are more than one word or number.
 
 use super::text;
+use handstand::link::virtual_cm5::BusSpec;
 use handstand::log::LogRequest;
 use handstand::model::ParameterPath;
 use handstand::study::Shard;
 use handstand::sysid::structures;
-use handstand::virtual_cm5::BusSpec;
 
 /// Logs with rows, parameters, shards, black-box structures, the words of a simulated bus.
 pub(crate) fn run(bytes: &[u8]) {

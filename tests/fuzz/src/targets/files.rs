@@ -3,9 +3,9 @@
 use super::{text, with_file};
 use handstand::link::Settings;
 use handstand::link::boot_loader::Image;
+use handstand::link::record;
 use handstand::log::{LogRequest, read};
 use handstand::model::{LogColumns, Model};
-use handstand::record;
 use handstand::study::{Study, merge};
 use std::path::Path;
 use std::sync::LazyLock;

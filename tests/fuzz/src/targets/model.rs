@@ -35,7 +35,7 @@ pub(crate) fn edit(bytes: &[u8]) {
     let effect = EFFECTS[sum % EFFECTS.len()];
     let instance = EffectInstance {
         effect,
-        joint: (sum % 3 > 0).then_some(0),
+        joint: (!sum.is_multiple_of(3)).then_some(0),
         values: (effect.info().parameters.iter())
             .map(|p| p.starts[0])
             .collect(),

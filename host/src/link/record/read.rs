@@ -1,7 +1,7 @@
 //! Reading recordings back, whole or torn.
 
-use super::recorder::Format;
-use super::sample::Sample;
+use super::recorder::FileFormat;
+use super::sample::RobotSample;
 use super::{csv, mcap};
 use crate::error::{Error, Result};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub struct Recording {
     /// Servos, in the order of each sample's joints.
     pub ids: Vec<u8>,
     /// Samples, in time.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<RobotSample>,
     /// Whether the file ended in the middle of something, which was dropped.
     pub torn: bool,
 }
@@ -23,9 +23,9 @@ pub struct Recording {
 /// [`Error::File`] if it cannot be read, [`Error::Data`] at the place where it is no recording.
 pub fn read(path: &Path) -> Result<Recording> {
     let refused = |error| Error::file(path, "read", error);
-    let (ids, samples, torn) = match Format::of(path)? {
-        Format::Csv => csv::read(&std::fs::read_to_string(path).map_err(refused)?, path)?,
-        Format::Mcap => mcap::read(&std::fs::read(path).map_err(refused)?, path)?,
+    let (ids, samples, torn) = match FileFormat::of(path)? {
+        FileFormat::Csv => csv::read(&std::fs::read_to_string(path).map_err(refused)?, path)?,
+        FileFormat::Mcap => mcap::read(&std::fs::read(path).map_err(refused)?, path)?,
     };
     Ok(Recording { ids, samples, torn })
 }

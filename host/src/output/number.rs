@@ -98,7 +98,7 @@ pub(crate) fn measured(value: f64, low: f64, high: f64, unit: &str) -> String {
 
 /// A number and its unit: "0.5 rad"; a pure number stands alone.
 pub(crate) fn with_unit(number: &str, unit: &str) -> String {
-    match crate::number::unit(unit) {
+    match crate::output::number::unit(unit) {
         "" => number.to_string(),
         unit => format!("{number} {unit}"),
     }

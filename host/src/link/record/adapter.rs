@@ -1,9 +1,9 @@
 //! Servos read one by one, through an adapter.
 
-use super::sample::{Joint, Sample};
-use super::source::{EmergencyOff, Source, send_twice};
+use super::sample::{RobotSample, ServoSample};
+use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::Result;
-use crate::link::{Link, Servos};
+use crate::link::{SerialLink, Servos};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
@@ -12,7 +12,7 @@ use handstand_shared::raw::{Position, TorqueLimit};
 use std::time::Duration;
 
 /// Servos behind an adapter, read one by one.
-pub struct Adapter<L: Link> {
+pub struct Adapter<L: SerialLink> {
     servos: Servos<L>,
     ids: Vec<u8>,
     period: Duration,
@@ -23,7 +23,7 @@ pub struct Adapter<L: Link> {
     danger: Option<String>,
 }
 
-impl<L: Link> Adapter<L> {
+impl<L: SerialLink> Adapter<L> {
     /// These servos, every `period` or as often as the line allows.
     pub fn new(mut servos: Servos<L>, ids: &[u8], period: Duration) -> Self {
         // A second try must not cost the round more than one servo's time.
@@ -41,20 +41,20 @@ impl<L: Link> Adapter<L> {
         }
     }
 
-    fn read(&mut self, place: usize) -> Result<Joint> {
+    fn read(&mut self, place: usize) -> Result<ServoSample> {
         let id = self.ids[place];
         let goal_rad = self.goals[place].map(Position::to_rad);
         let joint = match self.servos.read(id, PRESENT_POSITION.address, 8) {
             Ok(reading) => {
                 self.danger = self.danger.take().or_else(|| danger(id, reading.error));
-                Joint::of_reading(&reading).unwrap_or_default()
+                ServoSample::of_reading(&reading).unwrap_or_default()
             }
             Err(error) => {
                 error.port()?;
-                Joint::default()
+                ServoSample::default()
             }
         };
-        Ok(Joint { goal_rad, ..joint })
+        Ok(ServoSample { goal_rad, ..joint })
     }
 
     fn send_goals(&mut self, goals_rad: &[f64]) -> Result<()> {
@@ -74,8 +74,8 @@ impl<L: Link> Adapter<L> {
     }
 }
 
-impl<L: Link> Source for Adapter<L> {
-    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<Sample>> {
+impl<L: SerialLink> SampleSource for Adapter<L> {
+    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<RobotSample>> {
         let wait = self.next.saturating_sub(self.servos.link().now());
         self.servos.link().pause(wait);
         let now = self.servos.link().now();
@@ -87,7 +87,7 @@ impl<L: Link> Source for Adapter<L> {
         let joints = (0..self.ids.len())
             .map(|place| self.read(place))
             .collect::<Result<_>>()?;
-        Ok(Some(Sample {
+        Ok(Some(RobotSample {
             time_s: (now - self.begun).as_secs_f64(),
             joints,
         }))
@@ -128,7 +128,7 @@ impl<L: Link> Source for Adapter<L> {
     }
 }
 
-impl<L: Link> Drop for Adapter<L> {
+impl<L: SerialLink> Drop for Adapter<L> {
     fn drop(&mut self) {
         if self.armed {
             // Nobody is left who could be told that it failed.

@@ -14,7 +14,7 @@ const HEADER: [u8; 4] = [0, 1, 0, 0];
 
 /// A message's content.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct JointState {
+pub struct JointStateMessage {
     /// Stamp, ns.
     pub stamp_ns: u64,
     /// Joints.
@@ -27,7 +27,7 @@ pub struct JointState {
     pub effort: Vec<f64>,
 }
 
-impl JointState {
+impl JointStateMessage {
     /// The bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = HEADER.to_vec();
@@ -50,14 +50,14 @@ impl JointState {
 
     /// Reads the bytes; none if they are no such message.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let mut reader = Reader { bytes, at: 4 };
+        let mut reader = CdrReader { bytes, at: 4 };
         (bytes.get(..4)? == HEADER).then_some(())?;
         let second = u64::try_from(i32::from_le_bytes(reader.take(4)?)).ok()?;
         let nanosecond = u64::from(reader.length()?);
         reader.text()?;
         let names = reader.length()?;
         let name = (0..names).map(|_| reader.text()).collect::<Option<_>>()?;
-        Some(JointState {
+        Some(JointStateMessage {
             stamp_ns: second * 1_000_000_000 + nanosecond,
             name,
             position: reader.numbers()?,
@@ -83,12 +83,12 @@ fn put_text(out: &mut Vec<u8>, text: &str) {
     out.push(0);
 }
 
-struct Reader<'a> {
+struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl Reader<'_> {
+impl CdrReader<'_> {
     fn take<const N: usize>(&mut self, align: usize) -> Option<[u8; N]> {
         self.at = (self.at - HEADER.len()).next_multiple_of(align) + HEADER.len();
         let bytes = self.bytes.get(self.at..self.at + N)?;
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_message_literally() {
-        let state = JointState {
+        let state = JointStateMessage {
             stamp_ns: 2_000_000_003,
             name: vec!["a".to_string()],
             position: vec![1.0],
@@ -141,7 +141,7 @@ mod tests {
             0, 0, 0, 0, 0, 0, 0, 0xc0,               // -2.0
         ];
         assert_eq!(bytes, expected);
-        assert_eq!(JointState::of(&bytes), Some(state));
-        assert!((0..bytes.len()).all(|length| JointState::of(&bytes[..length]).is_none()));
+        assert_eq!(JointStateMessage::of(&bytes), Some(state));
+        assert!((0..bytes.len()).all(|length| JointStateMessage::of(&bytes[..length]).is_none()));
     }
 }

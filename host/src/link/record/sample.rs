@@ -5,7 +5,7 @@ use handstand_shared::raw::{Position, Signed, Supply};
 
 /// One servo. What it did not say is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Joint {
+pub struct ServoSample {
     /// Angle from the centre, rad, counter-clockwise positive.
     pub position_rad: Option<f64>,
     /// Speed, rad/s.
@@ -22,17 +22,17 @@ pub struct Joint {
     pub error: Option<u8>,
 }
 
-impl Joint {
+impl ServoSample {
     /// From the codes of the registers 38 to 43 and the error flags; position and goal are `None`.
     pub fn measured(speed: u16, load: u16, supply: u8, temperature: u8, flags: u8) -> Self {
         let signed = |code| f64::from(Signed(code).get());
-        Joint {
+        ServoSample {
             speed_rad_s: Some(signed(speed) * Signed::SPEED_LSB_RAD_S),
             load: Some(signed(load) * Signed::OUTPUT_LSB),
             supply_v: Some(Supply(supply).to_v()),
             temperature_celsius: Some(f64::from(temperature)),
             error: Some(flags),
-            ..Joint::default()
+            ..ServoSample::default()
         }
     }
 
@@ -41,9 +41,9 @@ impl Joint {
         let data: [u8; 8] = reading.data[..].try_into().ok()?;
         let [p0, p1, s0, s1, l0, l1, supply, temperature] = data;
         let word = |low, high| u16::from_le_bytes([low, high]);
-        Some(Joint {
+        Some(ServoSample {
             position_rad: Some(Position(word(p0, p1)).to_rad()),
-            ..Joint::measured(
+            ..ServoSample::measured(
                 word(s0, s1),
                 word(l0, l1),
                 supply,
@@ -53,7 +53,7 @@ impl Joint {
         })
     }
 
-    /// Its values in the order of [`Joint::NAMES`].
+    /// Its values in the order of [`ServoSample::NAMES`].
     pub fn values(&self) -> [Option<f64>; 7] {
         [
             self.position_rad,
@@ -66,7 +66,7 @@ impl Joint {
         ]
     }
 
-    /// The inverse of [`Joint::values`].
+    /// The inverse of [`ServoSample::values`].
     pub fn of(values: [Option<f64>; 7]) -> Self {
         let [
             position_rad,
@@ -77,7 +77,7 @@ impl Joint {
             temperature_celsius,
             error,
         ] = values;
-        Joint {
+        ServoSample {
             position_rad,
             speed_rad_s,
             load,
@@ -102,9 +102,9 @@ impl Joint {
 
 /// All servos at one moment.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sample {
+pub struct RobotSample {
     /// Since the recording began, s.
     pub time_s: f64,
     /// In the recording's order of ids.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<ServoSample>,
 }

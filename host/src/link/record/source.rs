@@ -1,6 +1,6 @@
 //! Where samples come from, and where goals go.
 
-use super::sample::Sample;
+use super::sample::RobotSample;
 use crate::error::Result;
 use crate::link::LineWriter;
 use std::time::Duration;
@@ -22,12 +22,12 @@ pub(super) fn send_twice(mut voice: LineWriter, bytes: Vec<u8>) -> EmergencyOff 
 }
 
 /// Servos that can be sampled, and moved.
-pub trait Source {
+pub trait SampleSource {
     /// Sends goals, in the order of ids, if there are any; waits for the next sample. None: it did not come in time.
     ///
     /// # Errors
     /// The device failed.
-    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<Sample>>;
+    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<RobotSample>>;
 
     /// Torque on, every servo's goal where it stands.
     ///

@@ -2,19 +2,19 @@
 
 use super::*;
 use crate::link::Servos;
-use crate::virtual_cm5::SimLink;
+use crate::link::virtual_cm5::SimLink;
 use std::path::Path;
 use std::time::Duration;
 
-fn recorded(path: &Path, samples: usize) -> Vec<Sample> {
+fn recorded(path: &Path, samples: usize) -> Vec<RobotSample> {
     let mut source = Adapter::new(
         Servos::new(SimLink::adapter("ids=1-3,delay=0,dead=2").unwrap()),
         &[1, 2, 3],
         Duration::from_millis(10),
     );
-    let mut recorder = Recorder::create(path, &[1, 2, 3], false).unwrap();
+    let mut recorder = RobotRecorder::create(path, &[1, 2, 3], false).unwrap();
     source.arm().unwrap_err();
-    let samples: Vec<Sample> = (0..samples)
+    let samples: Vec<RobotSample> = (0..samples)
         .map(|_| source.sample(None).unwrap().unwrap())
         .collect();
     samples
@@ -24,7 +24,7 @@ fn recorded(path: &Path, samples: usize) -> Vec<Sample> {
     samples
 }
 
-fn same(a: &Sample, b: &Sample) -> bool {
+fn same(a: &RobotSample, b: &RobotSample) -> bool {
     let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() < 1e-6,
         (a, b) => a.is_none() && b.is_none(),
@@ -63,7 +63,7 @@ fn what_is_written_is_read_back_in_both_formats() {
         );
         assert_eq!(back.samples[0].joints[1].position_rad, None);
         assert!(
-            Recorder::create(&path, &[1], false).is_err(),
+            RobotRecorder::create(&path, &[1], false).is_err(),
             "{name} exists"
         );
     }

@@ -1,11 +1,11 @@
 //! Statistics of a recording.
 
-use super::sample::Sample;
+use super::sample::RobotSample;
 use serde::Serialize;
 
 /// Counts of the samples so far.
 #[derive(Debug, Clone, Default)]
-pub struct Tally {
+pub struct RecordingTally {
     /// Samples.
     pub samples: u64,
     /// Answers that did not come.
@@ -14,10 +14,10 @@ pub struct Tally {
     last_s: f64,
 }
 
-impl Tally {
+impl RecordingTally {
     /// Count a sample.
-    pub fn count(&mut self, sample: &Sample) {
-        let missing = |joint: &&super::Joint| joint.position_rad.is_none();
+    pub fn count(&mut self, sample: &RobotSample) {
+        let missing = |joint: &&super::ServoSample| joint.position_rad.is_none();
         self.samples += 1;
         self.missing += sample.joints.iter().filter(missing).count() as u64;
         self.first_s.get_or_insert(sample.time_s);

@@ -1,4 +1,7 @@
-//! Files this program makes: whole or not at all, and never over another's work unasked.
+//! Files this program makes: whole or not at all, and never over another's work unasked. Numbers
+//! for people: [`number`].
+
+pub mod number;
 
 use crate::error::{Error, Result};
 use std::io::Write as _;

@@ -1,7 +1,7 @@
 //! Simulated serial ports as links.
 
 use crate::error::Result;
-use crate::link::Link;
+use crate::link::SerialLink;
 use handstand_cm5_sim::{AdapterPort, SimulatedPort};
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ impl SimLink<AdapterPort> {
     }
 }
 
-impl<P: SimulatedPort> Link for SimLink<P> {
+impl<P: SimulatedPort> SerialLink for SimLink<P> {
     fn name(&self) -> &str {
         self.0.name()
     }

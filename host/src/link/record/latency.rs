@@ -1,9 +1,9 @@
 //! Latency budget of a robot: round trip of a request, split into its parts, and time of a whole round.
 
-use super::tally::{Quantiles, Tally};
-use super::{Source, Stream};
+use super::tally::{Quantiles, RecordingTally};
+use super::{SampleSource, Stream};
 use crate::error::{Error, Result};
-use crate::link::{Link, Servos};
+use crate::link::{SerialLink, Servos};
 use handstand_shared::control_table::RETURN_DELAY;
 use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS};
 use handstand_shared::frame::wire_length;
@@ -50,7 +50,7 @@ impl RoundTrip {
     ///
     /// # Errors
     /// No servo answers, or the port fails.
-    pub fn of_adapter<L: Link>(servos: &mut Servos<L>, ids: &[u8]) -> Result<RoundTrip> {
+    pub fn of_adapter<L: SerialLink>(servos: &mut Servos<L>, ids: &[u8]) -> Result<RoundTrip> {
         let mut delay_us = 0.0;
         let mut times_us = Vec::new();
         for id in ids.iter().cycle().take(ids.len().max(50)) {
@@ -80,7 +80,7 @@ impl RoundTrip {
     ///
     /// # Errors
     /// The CM-5 does not answer.
-    pub fn of_stream<L: Link>(stream: &mut Stream<L>) -> Result<RoundTrip> {
+    pub fn of_stream<L: SerialLink>(stream: &mut Stream<L>) -> Result<RoundTrip> {
         let (mut times_us, mut ticks_us) = (Vec::new(), Vec::new());
         let session = stream.session();
         for _ in 0..50 {
@@ -108,12 +108,12 @@ impl RoundTrip {
     /// The device fails, or a sample does not come.
     pub fn budget(
         self,
-        source: &mut dyn Source,
+        source: &mut dyn SampleSource,
         rounds: u64,
         period_us: f64,
         mut goes_on: impl FnMut() -> bool,
     ) -> Result<LatencyBudget> {
-        let mut tally = Tally::default();
+        let mut tally = RecordingTally::default();
         let (mut before_s, mut times_us) = (None, Vec::new());
         while tally.samples < rounds && goes_on() {
             let sample = source.sample(None)?.ok_or_else(no_response)?;

@@ -1,9 +1,9 @@
 //! Recordings as MCAP: `/joint_states` and `/joint_goals` (ROS 2 `sensor_msgs/msg/JointState`; `effort` is the load as a
 //! share of full output), and `/servo_health` (JSON: supply, temperature, error bits). What a servo did not say is NaN or null.
 
-use super::cdr::{JointState, NAME, SCHEMA};
+use super::cdr::{JointStateMessage, NAME, SCHEMA};
 use super::recorder::Writer;
-use super::sample::{Joint, Sample};
+use super::sample::{RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, MessageStream, WriteOptions, read::Options};
@@ -95,16 +95,16 @@ impl McapWriter {
 }
 
 impl Writer for McapWriter {
-    fn write(&mut self, sample: &Sample) -> std::io::Result<()> {
+    fn write(&mut self, sample: &RobotSample) -> std::io::Result<()> {
         let time_ns = self.begun_ns + (sample.time_s * 1e9) as u64;
-        let all = |value: fn(&Joint) -> Option<f64>| {
+        let all = |value: fn(&ServoSample) -> Option<f64>| {
             sample
                 .joints
                 .iter()
                 .map(|joint| value(joint).unwrap_or(f64::NAN))
                 .collect()
         };
-        let state = JointState {
+        let state = JointStateMessage {
             stamp_ns: time_ns,
             name: self.names.clone(),
             position: all(|joint| joint.position_rad),
@@ -113,7 +113,7 @@ impl Writer for McapWriter {
         };
         self.put(self.states, time_ns, &state.to_bytes())?;
         if sample.joints.iter().any(|joint| joint.goal_rad.is_some()) {
-            let goals = JointState {
+            let goals = JointStateMessage {
                 position: all(|joint| joint.goal_rad),
                 velocity: Vec::new(),
                 effort: Vec::new(),
@@ -145,7 +145,7 @@ impl Writer for McapWriter {
 }
 
 /// Ids, samples, and whether a torn tail was dropped.
-pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<Sample>, bool)> {
+pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSample>, bool)> {
     let refused = |what: String| {
         Error::data(
             Place::file(path),
@@ -158,7 +158,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<Sample>, b
     }
     let messages = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into());
     let messages = messages.map_err(|error| refused(format!("not an MCAP file: {error}")))?;
-    let (mut ids, mut samples, mut torn) = (Vec::new(), Vec::<Sample>::new(), false);
+    let (mut ids, mut samples, mut torn) = (Vec::new(), Vec::<RobotSample>::new(), false);
     let mut begun_ns = None;
     for message in messages {
         let Ok(message) = message else {
@@ -169,7 +169,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<Sample>, b
         let begun_ns = *begun_ns.get_or_insert(message.log_time);
         match message.channel.topic.as_str() {
             STATES => {
-                let state = JointState::of(&message.data)
+                let state = JointStateMessage::of(&message.data)
                     .ok_or_else(|| refused(format!("{STATES}: no joint states")))?;
                 let servos: Vec<u8> = (state.name.iter())
                     .filter_map(|name| name.strip_prefix("servo")?.parse().ok())
@@ -186,7 +186,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<Sample>, b
                 ));
             }
             GOALS => {
-                let goals = JointState::of(&message.data)
+                let goals = JointStateMessage::of(&message.data)
                     .ok_or_else(|| refused(format!("{GOALS}: no joint states")))?;
                 let joints = samples
                     .last_mut()
@@ -221,15 +221,15 @@ fn said(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn sample(state: &JointState, time_s: f64) -> Sample {
+fn sample(state: &JointStateMessage, time_s: f64) -> RobotSample {
     let at = |values: &[f64], place: usize| values.get(place).copied().and_then(said);
-    let joints = (0..state.name.len()).map(|place| Joint {
+    let joints = (0..state.name.len()).map(|place| ServoSample {
         position_rad: at(&state.position, place),
         speed_rad_s: at(&state.velocity, place),
         load: at(&state.effort, place),
-        ..Joint::default()
+        ..ServoSample::default()
     });
-    Sample {
+    RobotSample {
         time_s,
         joints: joints.collect(),
     }

@@ -2,7 +2,7 @@
 //! `temperature1_celsius`, `error1`. What a servo did not say is an empty field.
 
 use super::recorder::Writer;
-use super::sample::{Joint, Sample};
+use super::sample::{RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -20,7 +20,7 @@ impl CsvWriter {
     pub fn new(mut file: File, ids: &[u8]) -> std::io::Result<Self> {
         let mut header = String::from("time_s");
         for id in ids {
-            for (before, behind) in Joint::NAMES {
+            for (before, behind) in ServoSample::NAMES {
                 // Writing to a string does not fail.
                 let _ = write!(header, ",{before}{id}{behind}");
             }
@@ -35,10 +35,10 @@ impl CsvWriter {
 }
 
 impl Writer for CsvWriter {
-    fn write(&mut self, sample: &Sample) -> std::io::Result<()> {
+    fn write(&mut self, sample: &RobotSample) -> std::io::Result<()> {
         self.row.clear();
         let _ = write!(self.row, "{:.6}", sample.time_s);
-        for value in sample.joints.iter().flat_map(Joint::values) {
+        for value in sample.joints.iter().flat_map(ServoSample::values) {
             self.row.push(',');
             if let Some(value) = value {
                 // Six digits behind the point are 1000 times finer than any register.
@@ -60,7 +60,7 @@ impl Writer for CsvWriter {
 }
 
 /// Ids, samples, and whether a torn last row was dropped.
-pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<Sample>, bool)> {
+pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<RobotSample>, bool)> {
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let mut lines = text[..whole].lines();
     let header: Vec<&str> = lines.next().unwrap_or("").split(',').collect();
@@ -68,7 +68,7 @@ pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<Sample>, boo
         .iter()
         .filter_map(|name| name.strip_prefix('q')?.strip_suffix("_rad")?.parse().ok())
         .collect();
-    let per_joint = Joint::NAMES.len();
+    let per_joint = ServoSample::NAMES.len();
     if header.first() != Some(&"time_s")
         || ids.is_empty()
         || header.len() != 1 + per_joint * ids.len()
@@ -110,8 +110,9 @@ pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<Sample>, boo
                 }
             });
         }
-        let joint = |values: &[Option<f64>]| values.try_into().map(Joint::of).unwrap_or_default();
-        samples.push(Sample {
+        let joint =
+            |values: &[Option<f64>]| values.try_into().map(ServoSample::of).unwrap_or_default();
+        samples.push(RobotSample {
             time_s: values[0].unwrap_or(0.0),
             joints: values[1..].chunks(per_joint).map(joint).collect(),
         });

@@ -1,6 +1,6 @@
 //! Recording servos: samples from a robot into files that survive a crash, and back.
 //!
-//! Read downward: `sample` -> `cdr` -> `csv`, `mcap` -> [`Recorder`], [`read`]; `source` -> `adapter`, `stream` fetch samples over a
+//! Read downward: `sample` -> `cdr` -> `csv`, `mcap` -> [`RobotRecorder`], [`read`]; `source` -> `adapter`, `stream` fetch samples over a
 //! link.
 
 mod adapter;
@@ -20,11 +20,11 @@ pub use adapter::Adapter;
 pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
 pub use read::{Recording, read};
-pub use recorder::{Format, Recorder};
-pub use sample::{Joint, Sample};
-pub use source::{EmergencyOff, Source};
+pub use recorder::{FileFormat, RobotRecorder};
+pub use sample::{RobotSample, ServoSample};
+pub use source::{EmergencyOff, SampleSource};
 pub use stream::Stream;
-pub use tally::{Quantiles, Rms, Tally};
+pub use tally::{Quantiles, RecordingTally, Rms};
 
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]

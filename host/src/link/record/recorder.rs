@@ -2,7 +2,7 @@
 
 use super::csv::CsvWriter;
 use super::mcap::McapWriter;
-use super::sample::Sample;
+use super::sample::RobotSample;
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 
 /// A file's format, by its ending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum FileFormat {
     /// Text, a row per sample.
     Csv,
     /// MCAP with ROS 2 joint states.
     Mcap,
 }
 
-impl Format {
+impl FileFormat {
     /// Of this file.
     ///
     /// # Errors
     /// Another ending.
-    pub fn of(path: &Path) -> Result<Format> {
+    pub fn of(path: &Path) -> Result<FileFormat> {
         match path.extension().and_then(|ending| ending.to_str()) {
-            Some("csv") => Ok(Format::Csv),
-            Some("mcap") => Ok(Format::Mcap),
+            Some("csv") => Ok(FileFormat::Csv),
+            Some("mcap") => Ok(FileFormat::Mcap),
             _ => Err(Error::usage(
                 format!("{}: unknown format", path.display()),
                 "end the name in .csv or .mcap",
@@ -37,7 +37,7 @@ impl Format {
 /// What a format does with samples.
 pub(super) trait Writer: Send {
     /// Adds one.
-    fn write(&mut self, sample: &Sample) -> std::io::Result<()>;
+    fn write(&mut self, sample: &RobotSample) -> std::io::Result<()>;
     /// Hands all of it to the system.
     fn flush(&mut self) -> std::io::Result<()>;
     /// Closes the file's structure.
@@ -48,7 +48,7 @@ pub(super) trait Writer: Send {
 const SYNC_EVERY: Duration = Duration::from_millis(500);
 
 /// A file that grows by samples and is brought to the disk twice a second.
-pub struct Recorder {
+pub struct RobotRecorder {
     path: PathBuf,
     file: File,
     writer: Box<dyn Writer>,
@@ -57,13 +57,13 @@ pub struct Recorder {
     pub samples: u64,
 }
 
-impl Recorder {
+impl RobotRecorder {
     /// A new file for these servos.
     ///
     /// # Errors
     /// [`Error::Usage`] if it exists and `force` is false, or its ending says no format; [`Error::File`] if the system refuses.
-    pub fn create(path: &Path, ids: &[u8], force: bool) -> Result<Recorder> {
-        let format = Format::of(path)?;
+    pub fn create(path: &Path, ids: &[u8], force: bool) -> Result<RobotRecorder> {
+        let format = FileFormat::of(path)?;
         let refused = |error: std::io::Error| match error.kind() {
             std::io::ErrorKind::AlreadyExists => Error::usage(
                 format!("{} exists", path.display()),
@@ -79,10 +79,10 @@ impl Recorder {
         .map_err(refused)?;
         let own = file.try_clone().map_err(refused)?;
         let writer: Box<dyn Writer> = match format {
-            Format::Csv => Box::new(CsvWriter::new(own, ids).map_err(refused)?),
-            Format::Mcap => Box::new(McapWriter::new(own, ids).map_err(refused)?),
+            FileFormat::Csv => Box::new(CsvWriter::new(own, ids).map_err(refused)?),
+            FileFormat::Mcap => Box::new(McapWriter::new(own, ids).map_err(refused)?),
         };
-        Ok(Recorder {
+        Ok(RobotRecorder {
             path: path.to_path_buf(),
             file,
             writer,
@@ -95,7 +95,7 @@ impl Recorder {
     ///
     /// # Errors
     /// [`Error::File`] if the system refuses.
-    pub fn write(&mut self, sample: &Sample) -> Result<()> {
+    pub fn write(&mut self, sample: &RobotSample) -> Result<()> {
         self.writer
             .write(sample)
             .map_err(|error| self.refused(error))?;

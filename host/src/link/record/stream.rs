@@ -1,28 +1,28 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
-use super::sample::{Joint, Sample};
-use super::source::{EmergencyOff, Source, send_twice};
+use super::sample::{RobotSample, ServoSample};
+use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
-use crate::link::{Link, Session, condition_words};
+use crate::link::{SerialLink, Session, condition_words};
 use handstand_shared::message::{Command, Condition, Mode, Report, ServoList};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::Position;
 use std::time::Duration;
 
 /// Servos behind a CM-5 that reads them itself and reports 100 times a second.
-pub struct Stream<L: Link> {
+pub struct Stream<L: SerialLink> {
     session: Session<L>,
     count: usize,
     begun: Duration,
     goals: Option<Vec<Position>>,
     /// Where all stood in the newest report that has them all.
     stood: Option<Vec<Position>>,
-    housekeeping: Vec<Joint>,
+    housekeeping: Vec<ServoSample>,
     armed: bool,
     condition: Condition,
 }
 
-impl<L: Link> Stream<L> {
+impl<L: SerialLink> Stream<L> {
     /// Greets the firmware, names the servos, starts the stream.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl<L: Link> Stream<L> {
             begun,
             goals: None,
             stood: None,
-            housekeeping: vec![Joint::default(); ids.len()],
+            housekeeping: vec![ServoSample::default(); ids.len()],
             armed: false,
             condition: Condition::Stream,
         })
@@ -62,8 +62,8 @@ impl<L: Link> Stream<L> {
     }
 }
 
-impl<L: Link> Source for Stream<L> {
-    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<Sample>> {
+impl<L: SerialLink> SampleSource for Stream<L> {
+    fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<RobotSample>> {
         if let Some(goals) = goals_rad.filter(|_| self.armed) {
             let goals: Vec<Position> = goals.iter().map(|goal| Position::from_rad(*goal)).collect();
             self.session.send(&Command::Goals(Positions::pack(
@@ -89,7 +89,7 @@ impl<L: Link> Source for Stream<L> {
                 }
                 if let Some(joint) = self.housekeeping.get_mut(place) {
                     let (speed, load) = (housekeeping.speed, housekeeping.load);
-                    *joint = Joint::measured(
+                    *joint = ServoSample::measured(
                         u16::from_le_bytes(speed),
                         u16::from_le_bytes(load),
                         housekeeping.supply,
@@ -106,14 +106,14 @@ impl<L: Link> Source for Stream<L> {
                     .and_then(|goals| goals.get(place))
                     .map(|goal| goal.to_rad())
             };
-            let joints = (0..self.count).map(|place| Joint {
+            let joints = (0..self.count).map(|place| ServoSample {
                 position_rad: report.position(place).map(|code| Position(code).to_rad()),
                 goal_rad: goal(place),
                 // Each servo's turn comes every few ticks; between them nothing was measured.
                 ..std::mem::take(&mut self.housekeeping[place])
             });
             let joints = joints.collect();
-            return Ok(Some(Sample {
+            return Ok(Some(RobotSample {
                 time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
                 joints,
             }));
@@ -156,7 +156,7 @@ impl<L: Link> Source for Stream<L> {
     }
 }
 
-impl<L: Link> Drop for Stream<L> {
+impl<L: SerialLink> Drop for Stream<L> {
     fn drop(&mut self) {
         // Nobody is left who could be told that it failed; the firmware switches off by itself when the line is silent.
         if self.armed {

@@ -1,7 +1,7 @@
 //! Serve a simulated device on a pseudo terminal in real time.
 
 use crate::error::Result;
-use crate::link::{Link, Pty};
+use crate::link::{Pty, SerialLink};
 use std::time::{Duration, Instant};
 
 /// The line counts as busy for this long after its last byte.
@@ -13,7 +13,7 @@ const BUSY: Duration = Duration::from_millis(100);
 /// # Errors
 /// The pseudo terminal fails, or those of `goes_on`.
 pub fn serve(
-    device: &mut dyn Link,
+    device: &mut dyn SerialLink,
     pty: &Pty,
     mut goes_on: impl FnMut(Duration) -> Result<bool>,
 ) -> Result<()> {

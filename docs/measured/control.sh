@@ -1,0 +1,43 @@
+#!/bin/sh
+# Measures the tables of the control pages and writes them to control.md beside this file, some minutes.
+#
+#   cargo build --release -p handstand && docs/measured/control.sh
+#
+# HANDSTAND names another program, ROBOTS and REGION the robots of a trial and of a step of the search for regions.
+# Same version, seed and numbers, same tables on any machine.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+models=$here/../../host/models
+program=${HANDSTAND:-$here/../../target/release/handstand}
+page=$here/control.md
+robots=${ROBOTS:-1000} region=${REGION:-100}
+version=$("$program" --version | cut -d ' ' -f 2)
+commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo "no commit")
+
+# The command as typed in host/models, its table, and its exit code.
+measure() {
+    printf '\n```console\n$ handstand %s\n' "$*"
+    code=0
+    (cd "$models" && "$program" --quiet "$@") || code=$?
+    printf '(exit code %s)\n```\n' "$code"
+}
+
+{
+    printf '# Control: measured\n\nMeasured on %s with version %s (%s) by\n\n```sh\n%s\n```\n\n' \
+        "$(date -u +%Y-%m-%d)" "$version" "$commit" "docs/measured/control.sh"
+    printf 'which wrote this page. Do not edit it: run it again. Simulations, seed 1.\n'
+    printf '\n## Controllers\n'
+    measure controllers handstand.toml --robots "$robots" --region-robots "$region"
+    printf '\n## Delays\n'
+    measure delays handstand.toml
+    printf '\n## Wrong masses\n'
+    measure robust handstand.toml
+    measure robust handstand.toml --with-inertia
+    printf '\n## Sweeps\n'
+    measure study sweep dead-zone delay
+    measure study sweep delay --controller best
+    printf '\n## Verification of gains\n'
+    measure gains handstand.toml
+    measure gains robot.toml
+} >"$page.new"
+mv "$page.new" "$page"
