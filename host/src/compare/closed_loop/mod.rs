@@ -1,7 +1,7 @@
 //! The closed loop of a model and a known controller beside the measured one.
 //!
-//! Phase drifts between two unstable loops that are never alike, so that a loop is judged by what it
-//! keeps doing (RMS deviation, limit cycle, falls) before the error sample by sample.
+//! The phases of two such loops drift apart, even with the right model. RMS deviation, limit cycle
+//! and falls therefore say more than the error sample by sample.
 
 mod result;
 mod series;
@@ -27,10 +27,10 @@ const CONTINUOUS_S: f64 = 1e-3;
 /// Simulates the loop of `model`, with all its effects, and the plan's law from the first sample of
 /// each motion, and compares angles at the samples.
 ///
-/// The law is given what the log declares: angles in the coarsest of its resolutions, speeds exactly
+/// The law is given what the log declares: angles in the coarsest of its resolutions, exact speeds
 /// if every joint has a velocity column, else the differences of angles. A model without a delay of
-/// its own gets the one that the plan compensates. Motions without a sample of all joints, or of a
-/// single one, are left out.
+/// its own gets the one that the plan compensates. Motions without a sample of all joints, or with
+/// a single sample, are left out.
 ///
 /// # Errors
 /// A plan of another number of joints or drives than the model's.

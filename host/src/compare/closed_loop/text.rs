@@ -5,8 +5,8 @@ use crate::compare::text::aligned;
 use crate::output::number::{NONE, mrad_in_column, short};
 
 /// What a closed-loop table tells, below it.
-pub(crate) const LEGEND: &str = "Each loop is simulated from the first sample of each motion. Phase \
-    drifts, so judge by rms, limit cycle and falls.";
+pub(crate) const LEGEND: &str = "Each loop is simulated from the first sample of each motion. \
+    Phase drifts, so judge by rms, limit cycle and falls.";
 
 /// One column of the table: the measured loop, or a model's with its name.
 type Column<'a> = (&'a str, Option<&'a ClosedLoopComparison>);
