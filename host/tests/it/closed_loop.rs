@@ -1,5 +1,5 @@
-//! A robot that balances with friction nobody knows of: its log and its plan tell the closed loop of the right model
-//! from that of the wrong one.
+//! A robot that balances with friction that its model lacks: with its log and its plan, the closed
+//! loop of the right model differs from that of the wrong one.
 
 use crate::common::Bench;
 use handstand::Model;
@@ -32,8 +32,9 @@ velocity = { column = "dq1_rad_s", unit = "rad/s" }
 input = { column = "torque1_nm", unit = "N m" }
 "#;
 
-/// With `nominal.toml`, `gains.json` for it, `true.toml` with this Coulomb friction at `joint`, and logs of the true
-/// robot under the gains of the nominal one, from three starts up to twice `lean_rad`: `a.csv`, `b.csv`, `c.csv`.
+/// With `nominal.toml`, `gains.json` for it, `true.toml` with this Coulomb friction at `joint`, and
+/// logs of the true robot under the gains of the nominal one, from three starts up to twice
+/// `lean_rad`: `a.csv`, `b.csv`, `c.csv`.
 fn bench(model: &str, joint: usize, coulomb_nm: f64, lean_rad: f64, seconds: f64) -> Bench {
     let bench = Bench::new();
     let ten_bits = format!("unit = \"rad\", resolution_rad = {} }}", Position::LSB_RAD);
