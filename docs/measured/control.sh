@@ -24,20 +24,20 @@ measure() {
 
 {
     printf '# Control: measured\n\nMeasured on %s with version %s (%s) by\n\n```sh\n%s\n```\n\n' \
-        "$(date -u +%Y-%m-%d)" "$version" "$commit" "docs/measured/control.sh"
+        "$(date -u +%Y-%m-%d)" "$version" "$commit" "ROBOTS=$robots REGION=$region docs/measured/control.sh"
     printf 'which wrote this page. Do not edit it: run it again. Simulations, seed 1.\n'
-    printf '\n## Controllers\n'
-    measure controllers handstand.toml --robots "$robots" --region-robots "$region"
-    printf '\n## Delays\n'
-    measure delays handstand.toml
+    printf '\n## Verification of gains\n'
+    measure gains handstand.toml
+    measure gains robot.toml
     printf '\n## Wrong masses\n'
     measure robust handstand.toml
     measure robust handstand.toml --with-inertia
     printf '\n## Sweeps\n'
     measure study sweep dead-zone delay
     measure study sweep delay --controller best
-    printf '\n## Verification of gains\n'
-    measure gains handstand.toml
-    measure gains robot.toml
+    printf '\n## Controllers\n'
+    measure controllers handstand.toml --robots "$robots" --region-robots "$region"
+    printf '\n## Delays\n'
+    measure delays handstand.toml
 } >"$page.new"
 mv "$page.new" "$page"

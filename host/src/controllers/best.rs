@@ -28,7 +28,7 @@ impl Design for Best {
     }
 }
 
-/// Its settings: found by lot over 150 robots that start within 2.5 deg under everything at once, then rounded.
+/// Its settings: found by random search over 150 robots that start within 2.5 deg under everything at once, then rounded.
 pub(super) fn options() -> Options {
     Options {
         true_speeds: false,

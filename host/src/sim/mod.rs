@@ -1,10 +1,12 @@
 //! The one plant: a model with all its effects, simulated along a log, live behind servos, or in a closed loop.
 //!
-//! `plant` (a model compiled) -> `drive` (input to torque) -> `stepper` (one step, friction that sticks) -> `run` (along a
+//! `plant` (a model compiled) -> `drive` (input to torque) -> `forces` (accelerations)
+//! -> `stepper` (one step, friction that sticks) -> `run` (along a
 //! log), `live` (step by step), [`closed_loop`] (held by a controller).
 
 pub mod closed_loop;
 mod drive;
+mod forces;
 mod input;
 mod live;
 mod plant;

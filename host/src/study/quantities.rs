@@ -166,7 +166,7 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "sampling-time",
         title: "sampling time",
-        meaning: "Period of the controller, which is designed anew for each.",
+        meaning: "Period of the controller, which is designed for each level.",
         levels: Some(Levels {
             unit: "ms",
             values: &[

@@ -1,0 +1,162 @@
+//! Accelerations of a plant at a state: drives, joint torques and friction on the chain.
+
+use super::drive::DriveInput;
+use super::plant::Plant;
+use super::rows::Rows;
+use super::stepper::Contact;
+use crate::dynamics::Workspace;
+use crate::effects::{JointState, Slide};
+use crate::model::Drive;
+
+/// A state: relative angles, rad, and speeds, rad/s, and how friction acts on each joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct At<'a> {
+    pub angle: &'a [f64],
+    pub speed: &'a [f64],
+    pub contact: &'a [Contact],
+}
+
+/// Scratch memory; `R` says how its rows of one number per joint are kept.
+#[derive(Debug, Clone)]
+pub(super) struct Forces<R: Rows> {
+    work: Workspace,
+    held: R::Of<bool>,
+    torque: R::Of<f64>,
+    drive_torque: R::Of<f64>,
+    loads: R::Of<f64>,
+    bearing: R::Of<f64>,
+    zeros: R::Of<f64>,
+}
+
+impl<R: Rows> Forces<R> {
+    /// For `n` joints.
+    pub fn new(n: usize) -> Self {
+        let zeros = || R::filled(0.0, n);
+        Forces {
+            work: Workspace::new(n),
+            held: R::filled(false, n),
+            torque: zeros(),
+            drive_torque: zeros(),
+            loads: zeros(),
+            bearing: zeros(),
+            zeros: zeros(),
+        }
+    }
+
+    /// Accelerations into `out`, rad/s^2; for held joints the torque that holds them, N m.
+    #[inline]
+    pub fn accelerate(
+        &mut self,
+        plant: &Plant,
+        inputs: &[DriveInput],
+        at: At<'_>,
+        out: &mut [f64],
+    ) {
+        let n = self.torque.as_ref().len();
+        for (joint, &input) in inputs[..n].iter().enumerate() {
+            let plan = &plant.joints[joint];
+            let speed = at.speed[joint];
+            self.held[joint] = at.contact[joint] == Contact::Held;
+            let drive = match plan.drive {
+                Drive::Passive => 0.0,
+                Drive::Position { .. } => {
+                    let reading = plant.encoded_rad(joint, at.angle);
+                    plan.drive_torque_nm(input, reading, speed)
+                }
+                _ => plan.drive_torque_nm(input, 0.0, speed),
+            };
+            let state = JointState {
+                angle_rad: at.angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
+                speed_rad_s: speed,
+                drive_nm: drive,
+                shuffled_rad_s: input.shuffled_rad_s,
+            };
+            self.drive_torque[joint] = drive;
+            self.torque[joint] = plan
+                .torque
+                .iter()
+                .fold(drive + input.disturbance_nm, |sum, e| {
+                    sum + e.effect.torque(e.values(), &state)
+                });
+        }
+        if plant.needs_gear_load {
+            self.find_gear_loads(plant, at);
+        }
+        if plant.needs_bearing_load {
+            self.find_bearing_loads(plant, at, out);
+        }
+        for joint in 0..n {
+            if let Contact::Sliding(direction) = at.contact[joint] {
+                let speed = (direction * at.speed[joint]).max(0.0);
+                self.torque[joint] -= direction * self.friction_nm(plant, joint, speed, direction);
+            }
+        }
+        self.solve(plant, at, out);
+    }
+
+    /// Friction of a joint at the loads found last, N m; at speed 0 the breakaway torque.
+    pub fn friction_nm(
+        &self,
+        plant: &Plant,
+        joint: usize,
+        speed_rad_s: f64,
+        direction: f64,
+    ) -> f64 {
+        let slide = Slide {
+            speed_rad_s,
+            direction,
+            gear_load_nm: self.loads[joint],
+            bearing_load_n: self.bearing[joint],
+        };
+        plant.joints[joint]
+            .friction
+            .iter()
+            .map(|e| e.effect.friction(e.values(), &slide))
+            .sum::<f64>()
+            .max(0.0)
+    }
+
+    fn solve(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+        plant.rig.chain.forward(
+            &mut self.work,
+            plant.base_m_s2,
+            at.angle,
+            at.speed,
+            self.torque.as_ref(),
+            self.held.as_ref(),
+            out,
+        );
+    }
+
+    /// Motor torque minus outside torque: gravity and velocity coupling at zero acceleration.
+    fn find_gear_loads(&mut self, plant: &Plant, at: At<'_>) {
+        plant.rig.chain.inverse(
+            plant.rig.gravity_turn_rad,
+            at.angle,
+            at.speed,
+            self.zeros.as_ref(),
+            self.loads.as_mut(),
+        );
+        let drives = self.drive_torque.as_ref();
+        for (load, drive) in self.loads.as_mut().iter_mut().zip(drives) {
+            *load = (*load + drive).abs();
+        }
+    }
+
+    /// Force in the bearings at the accelerations the chain has without friction.
+    fn find_bearing_loads(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+        self.solve(plant, at, out);
+        for (slope, contact) in out.iter_mut().zip(at.contact) {
+            if *contact == Contact::Held {
+                *slope = 0.0;
+            }
+        }
+        plant.rig.chain.bearing_forces(
+            plant.rig.gravity_turn_rad,
+            at.angle,
+            at.speed,
+            out,
+            self.bearing.as_mut(),
+        );
+    }
+}
