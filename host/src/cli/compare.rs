@@ -8,8 +8,16 @@
 //! $ handstand compare arm.toml drop.csv --model better.toml --report report.html
 //! ```
 //!
+//! With the plan of a balancing robot, as `handstand gains --state-space` writes it, the closed loop of each model is
+//! simulated too and set beside the measured one:
+//!
+//! ```console
+//! $ handstand gains robot.toml --state-space gains.json
+//! $ handstand compare robot.toml balanced.csv --plan gains.json --model with_friction.toml
+//! ```
+//!
 //! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`, `failures`,
-//! `traces`) and `provenance`.
+//! `traces`, `closed_loop`) and `provenance`.
 
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;
@@ -34,6 +42,8 @@ pub struct Args {
     #[command(flatten)]
     run: input::RunLength,
     #[command(flatten)]
+    plan: input::PlanFile,
+    #[command(flatten)]
     page: PageFile,
 }
 
@@ -49,7 +59,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         // Each model names columns and zeros its own way.
         split.training = read(&args.logs, &model.log)?;
         let name = page::file_name(file);
-        let comparison = compare::compare(&model, &name, &split.training, horizon);
+        let plan = args.plan.load(&model)?;
+        let mut comparison = compare::compare(&model, &name, &split.training, horizon);
+        comparison.closed_loop = input::closed_loop(&model, plan.as_ref(), &split.training)?;
         horizon = Some(Horizon::from_seconds(comparison.horizon_s));
         comparisons.push(comparison);
     }

@@ -8,19 +8,24 @@
 //! $ handstand diagnose arm.toml a.csv b.csv --holdout c.csv --report report.html
 //! ```
 //!
+//! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`) the closed loop is
+//! simulated too, of the model as it is and with the effects that were found.
+//!
 //! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for `unfit`, 0 for the
 //! others, which are answers. `--json` prints the diagnosis; its keys are in `docs/json.md`.
 
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;
 use super::{Outcome, input, log};
-use handstand::compare::{Comparison, compare};
+use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
 use handstand::fitting::{Horizon, effect_named};
-use handstand::log::{LogFinding, LogRequest, Severity, Split, read, split};
+use handstand::log::{LogFinding, LogRequest, Motion, Severity, Split, read, split};
 use handstand::report::{diagnosis_json, diagnosis_text, html};
+use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Diagnose which physical effect a model lacks, from logs.
@@ -39,6 +44,8 @@ pub struct Args {
     seed: Option<u64>,
     #[command(flatten)]
     judging: input::Judging,
+    #[command(flatten)]
+    plan: input::PlanFile,
     #[command(flatten)]
     page: PageFile,
 }
@@ -66,10 +73,11 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
         effect_named(effect)?;
     }
     let model = Model::load(&args.model)?;
+    let plan = args.plan.load(&model)?;
     let findings = handstand::log::check(&args.all_logs(), &model)?;
     if log::refused(&findings) {
         let diagnosis = Diagnosis::unfit(&findings);
-        print(&diagnosis, talk)?;
+        print(&diagnosis, &[], talk)?;
         return Ok(diagnosis);
     }
     let named = input::motions(&model, &args.logs, &args.judging.holdout)?;
@@ -82,11 +90,12 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     for line in &mut diagnosis.next {
         *line = with_names(line, args);
     }
-    print(&diagnosis, talk)?;
+    let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
+    print(&diagnosis, &compared.named_loops(), talk)?;
     let page = || {
         let page = Page {
             title: format!("What {} is missing", model.name),
-            comparisons: comparisons(&model, &diagnosis, args)?,
+            comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
             models: &[&args.model],
             split: &split,
@@ -142,30 +151,70 @@ fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis 
     diagnosis
 }
 
-fn print(diagnosis: &Diagnosis, talk: &Talk) -> Result<()> {
+/// Prints the diagnosis, and the closed loops before and after it where there are any.
+fn print(diagnosis: &Diagnosis, loops: &[NamedLoop], talk: &Talk) -> Result<()> {
     if talk.json {
-        talk.data(&diagnosis_json(diagnosis))
-    } else {
-        talk.print(&diagnosis_text(diagnosis))
+        let mut value = diagnosis_json(diagnosis);
+        let after = loops.get(1).map(|(_, after)| after);
+        value["closed_loop"] = loops.first().map_or(
+            json!(null),
+            |(_, before)| json!({ "before": before, "after": after }),
+        );
+        return talk.data(&value);
     }
+    talk.print(&(diagnosis_text(diagnosis) + &closed_loop_text(loops)))
 }
 
-/// The model as it is, and with the effects that were found.
-fn comparisons(model: &Model, diagnosis: &Diagnosis, args: &Args) -> Result<Vec<Comparison>> {
-    let motions = read(&args.all_logs(), &model.log)?;
-    let judged_over = diagnosis.horizon_s.map(Horizon::Seconds);
-    let horizon = args.judging.run.horizon.or(judged_over);
-    let before = compare(model, "the model as it is", &motions, horizon);
-    if diagnosis.effects.is_empty() {
-        return Ok(vec![before]);
+/// A model's name and its closed loop.
+type NamedLoop<'a> = (&'a str, &'a ClosedLoopComparison);
+
+/// The model as it is and with the effects that were found, against all motions.
+struct Compared {
+    motions: Vec<Motion>,
+    /// Each with its name, and its closed loop if there is a plan.
+    models: Vec<(String, Model, Option<ClosedLoopComparison>)>,
+}
+
+impl Compared {
+    fn new(
+        model: &Model,
+        diagnosis: &Diagnosis,
+        plan: Option<&StateFeedbackPlan>,
+        args: &Args,
+    ) -> Result<Compared> {
+        let motions = read(&args.all_logs(), &model.log)?;
+        let mut named = vec![("the model as it is".to_string(), model.clone())];
+        if !diagnosis.effects.is_empty() {
+            let effects = diagnosis.effects.iter().map(FittedEffect::address);
+            let effects = effects.collect::<Vec<String>>().join(", ");
+            named.push((format!("with {effects}"), diagnosis.applied_to(model)));
+        }
+        let mut models = Vec::new();
+        for (name, model) in named {
+            let closed_loop = input::closed_loop(&model, plan, &motions)?;
+            models.push((name, model, closed_loop));
+        }
+        Ok(Compared { motions, models })
     }
-    let horizon = Some(Horizon::from_seconds(before.horizon_s));
-    let names: Vec<String> = diagnosis
-        .effects
-        .iter()
-        .map(FittedEffect::address)
-        .collect();
-    let name = format!("with {}", names.join(", "));
-    let after = compare(&diagnosis.applied_to(model), &name, &motions, horizon);
-    Ok(vec![before, after])
+
+    fn named_loops(&self) -> Vec<NamedLoop<'_>> {
+        let models = self.models.iter();
+        models
+            .filter_map(|(name, _, closed_loop)| Some((name.as_str(), closed_loop.as_ref()?)))
+            .collect()
+    }
+
+    /// The comparisons of the page, all over the first one's horizon.
+    fn comparisons(&self, judged_over_s: Option<f64>, args: &Args) -> Vec<Comparison> {
+        let judged_over = judged_over_s.map(Horizon::Seconds);
+        let mut horizon = args.judging.run.horizon.or(judged_over);
+        let mut comparisons = Vec::new();
+        for (name, model, closed_loop) in &self.models {
+            let mut comparison = compare(model, name, &self.motions, horizon);
+            horizon = Some(Horizon::from_seconds(comparison.horizon_s));
+            comparison.closed_loop = closed_loop.clone();
+            comparisons.push(comparison);
+        }
+        comparisons
+    }
 }

@@ -1,7 +1,9 @@
 //! Arguments that several commands take.
 
+use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, Split, read};
+use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +13,38 @@ pub struct RunLength {
     /// Seconds a model runs without correction, or `whole`; as long as the first model is stable without it
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
+}
+
+/// The controller of a robot that balances.
+#[derive(Debug, clap::Args)]
+pub struct PlanFile {
+    /// Simulate the closed loop with the plan that `gains --state-space` wrote
+    #[arg(long, value_name = "GAINS.json")]
+    plan: Option<PathBuf>,
+}
+
+impl PlanFile {
+    /// The plan, if one is given, for a robot like `model`.
+    ///
+    /// # Errors
+    /// As [`StateFeedbackPlan::load`].
+    pub fn load(&self, model: &Model) -> Result<Option<StateFeedbackPlan>> {
+        let load = |file: &PathBuf| StateFeedbackPlan::load(file, model);
+        self.plan.as_ref().map(load).transpose()
+    }
+}
+
+/// The model's closed loop against the measured one, if there is a plan.
+///
+/// # Errors
+/// As [`compare_closed_loop`].
+pub fn closed_loop(
+    model: &Model,
+    plan: Option<&StateFeedbackPlan>,
+    motions: &[Motion],
+) -> Result<Option<ClosedLoopComparison>> {
+    plan.map(|plan| compare_closed_loop(model, plan, motions))
+        .transpose()
 }
 
 /// How models are judged.

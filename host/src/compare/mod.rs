@@ -1,5 +1,6 @@
 //! A model against measured motions: how far apart they are, and under which conditions.
 
+mod closed_loop;
 mod conditions;
 mod failure;
 mod order;
@@ -13,6 +14,10 @@ mod text;
 #[cfg(test)]
 mod tests;
 
+pub use closed_loop::{
+    ClosedLoopComparison, LoopMotion, LoopSignal, closed_loop_text, compare_closed_loop,
+};
+pub(crate) use closed_loop::{LEGEND as CLOSED_LOOP_LEGEND, closed_loop_rows};
 pub(crate) use residual_tests::{independence, whiteness};
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 pub use run::compare;

@@ -1,5 +1,6 @@
 //! What a comparison found, as plain values for every writer.
 
+use super::closed_loop::ClosedLoopComparison;
 use serde::Serialize;
 
 /// One model against a set of motions.
@@ -17,6 +18,8 @@ pub struct Comparison {
     pub failures: Vec<Failure>,
     /// Measured and predicted signals, thinned for drawing.
     pub traces: Vec<Trace>,
+    /// The closed loop against the measured one, where the controller is known.
+    pub closed_loop: Option<ClosedLoopComparison>,
 }
 
 /// Error of one joint's position.
@@ -92,4 +95,11 @@ pub struct Trace {
     pub measured_rad: Vec<f64>,
     /// Predicted, rad.
     pub predicted_rad: Vec<f64>,
+}
+
+impl Comparison {
+    /// The model's name and its closed loop, where the controller is known.
+    pub(crate) fn named_loop(&self) -> Option<(&str, &ClosedLoopComparison)> {
+        Some((self.model.as_str(), self.closed_loop.as_ref()?))
+    }
 }

@@ -43,6 +43,7 @@ pub fn compare(
         horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
         failures: failures(model, &data.motions, &residuals, &signals),
         traces: traces(&data, &predicted),
+        closed_loop: None,
         signals,
     }
 }

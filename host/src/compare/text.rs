@@ -1,5 +1,6 @@
 //! A comparison as text: models side by side, then where the last of them fails.
 
+use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
 use crate::output::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -21,6 +22,11 @@ pub fn text(comparisons: &[Comparison]) -> String {
             waterfall(comparisons)
         );
     }
+    let loops: Vec<_> = comparisons
+        .iter()
+        .filter_map(Comparison::named_loop)
+        .collect();
+    text += &closed_loop_text(&loops);
     for other in others {
         let worst = other.failures.first();
         let where_ = worst.map_or(NOWHERE, |failure| failure.sentence.as_str());
@@ -80,11 +86,31 @@ fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
     }
 }
 
-fn table(comparisons: &[Comparison]) -> Table {
+/// A table whose columns but the first hold numbers.
+pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> Table {
+    let mut table = empty_table();
+    table.set_header(header).add_rows(rows);
+    align(&mut table);
+    table
+}
+
+fn empty_table() -> Table {
     let mut table = Table::new();
     table
         .load_preset(presets::ASCII_MARKDOWN)
         .set_content_arrangement(ContentArrangement::Disabled);
+    table
+}
+
+/// Numbers under each other.
+fn align(table: &mut Table) {
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+}
+
+fn table(comparisons: &[Comparison]) -> Table {
+    let mut table = empty_table();
     let names = comparisons.iter().map(|c| c.model.clone());
     table.set_header(std::iter::once(String::new()).chain(names));
     row(
@@ -120,9 +146,7 @@ fn table(comparisons: &[Comparison]) -> Table {
             found.map_or("-".to_string(), |h| mrad_in_column(h.rms_rad))
         });
     }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
+    align(&mut table);
     table
 }
 

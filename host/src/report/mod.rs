@@ -1,6 +1,7 @@
 //! What was found, for people and programs: a page, a text and a JSON of the same values.
 
 mod candidates;
+mod closed_loop;
 pub mod effect_page;
 mod failures;
 mod headline;

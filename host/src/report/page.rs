@@ -1,8 +1,8 @@
 //! The page: one document that needs nothing but itself.
 
 use super::{
-    Report, candidates, failures, headline, parameters, provenance, remains, signatures, traces,
-    waterfall,
+    Report, candidates, closed_loop, failures, headline, parameters, provenance, remains,
+    signatures, traces, waterfall,
 };
 use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -24,8 +24,9 @@ pub(crate) struct Section {
 
 /// A self-contained page: no scripts, no fonts, no pictures from elsewhere.
 pub fn html(report: &Report) -> String {
-    let parts: [fn(&Report) -> Option<Section>; 9] = [
+    let parts: [fn(&Report) -> Option<Section>; 10] = [
         traces::section,
+        closed_loop::section,
         failures::section,
         waterfall::section,
         candidates::section,

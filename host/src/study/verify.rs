@@ -3,10 +3,12 @@
 
 use super::judge::{Figures, STABILISED_SHARE};
 use super::region::largest;
-use crate::effects::{self, Effect};
+use crate::effects::Effect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
-use crate::sim::closed_loop::{ClosedLoop, Commands, InitialState, StateFeedback, stream};
+use crate::sim::closed_loop::{
+    ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
+};
 use crate::synth::{Design, Request, Time};
 use serde::Serialize;
 
@@ -179,22 +181,5 @@ impl Tested<'_> {
             Ok(Figures::of(&outcomes).stabilised_share >= STABILISED_SHARE)
         })?;
         Ok(region.spread_rad)
-    }
-}
-
-/// Gives every drive this delay, s, in place of its own.
-fn set_delay(model: &mut Model, delay_s: f64) {
-    let Some(effect) = effects::named("delay") else {
-        return;
-    };
-    model.effects.retain(|e| e.effect != effect);
-    for joint in 0..model.joints.len() {
-        if model.joints[joint].drive.is_driven() && delay_s > 0.0 {
-            model.effects.push(EffectInstance {
-                effect,
-                joint: Some(joint),
-                values: vec![delay_s],
-            });
-        }
     }
 }

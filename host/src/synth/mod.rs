@@ -2,7 +2,7 @@
 //!
 //! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` ->
 //! `controllability`, `zeros` look at plants; `quantise` -> `fixed_law` is what
-//! ships; `design` is all of it as one value, `export` writes that;
+//! ships; `design` is all of it as one value, `export` writes that, `plan` reads its law back;
 //! `robust` makes one gain for many plants.
 
 mod controllability;
@@ -18,6 +18,7 @@ mod joint_slope;
 mod linearise;
 mod omitted;
 mod operating_point;
+mod plan;
 mod pose;
 mod qr;
 mod quantise;
@@ -43,6 +44,7 @@ pub use gains::{Gains, dlqr, lqr};
 pub use linearise::{Linearised, linearise};
 pub use omitted::{NonSmooth, OmittedEffect};
 pub use operating_point::input_delay_s;
+pub use plan::{PlanReason, StateFeedbackPlan};
 pub use pose::balanced;
 pub use quantise::{Format, Ranges, quantise};
 pub use request::{Request, Sensors, Time};

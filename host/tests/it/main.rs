@@ -4,6 +4,7 @@ mod common;
 
 mod bus;
 mod cli;
+mod closed_loop;
 mod controllers;
 mod deploy;
 #[cfg(unix)]

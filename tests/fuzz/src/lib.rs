@@ -24,6 +24,7 @@ pub const TARGETS: &[Target] = &[
     target("exchange", targets::wire::exchange),
     target("frame", targets::wire::frame),
     target("gain_table", targets::wire::gain_table),
+    target("gains", targets::files::gains),
     target("image", targets::files::image),
     target("journal", targets::files::journal),
     target("log_csv", targets::files::log_csv),

@@ -50,6 +50,17 @@ fn sections_are_there_when_their_data_are() {
         "traces failures fall remains provenance terms"
     );
 
+    let mut looped = compared.clone();
+    looped.comparisons[1].closed_loop = Some(sample::closed_loop(8.0));
+    assert_eq!(
+        sections(&looped).join(" "),
+        "traces closed-loop failures fall remains provenance terms"
+    );
+    let page = html(&looped);
+    for part in ["joint 1: limit cycle, mrad", "1 of 1, after 1.50 s"] {
+        assert!(page.contains(part), "the page lacks {part}");
+    }
+
     let mut bare = full.clone();
     bare.comparisons.clear();
     let diagnosis = bare.diagnosis.as_mut().unwrap();

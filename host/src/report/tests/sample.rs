@@ -1,6 +1,9 @@
 //! A report made by hand, for tests and for looking at.
 
-use crate::compare::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
+use crate::compare::{
+    ClosedLoopComparison, Comparison, Failure, HorizonError, LoopMotion, LoopSignal, ResidualTest,
+    SignalError, Trace,
+};
 use crate::diagnose::{
     Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
 };
@@ -48,6 +51,29 @@ pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison 
             .into(),
         failures: failures(error_mrad),
         traces: vec![trace("swing", error_mrad), trace("sines", error_mrad)],
+        closed_loop: None,
+    }
+}
+
+/// A loop of a model that falls.
+pub(in crate::report) fn closed_loop(error_mrad: f64) -> ClosedLoopComparison {
+    let signals = vec![LoopSignal {
+        joint: 1,
+        rms_error_rad: 1e-3 * error_mrad,
+        measured_rms_rad: 12e-3,
+        simulated_rms_rad: 8e-3,
+        measured_limit_cycle_rad: Some(40e-3),
+        simulated_limit_cycle_rad: None,
+    }];
+    ClosedLoopComparison {
+        motions: vec![LoopMotion {
+            motion: "swing".into(),
+            duration_s: 5.0,
+            measured_fell_s: None,
+            simulated_fell_s: Some(1.5),
+            signals: signals.clone(),
+        }],
+        signals,
     }
 }
 

@@ -79,3 +79,20 @@ impl Drives {
         model
     }
 }
+
+/// Gives every drive this delay, s, in place of its own.
+pub(crate) fn set_delay(model: &mut Model, delay_s: f64) {
+    let Some(effect) = effects::named("delay") else {
+        return;
+    };
+    model.effects.retain(|e| e.effect != effect);
+    for joint in 0..model.joints.len() {
+        if model.joints[joint].drive.is_driven() && delay_s > 0.0 {
+            model.effects.push(EffectInstance {
+                effect,
+                joint: Some(joint),
+                values: vec![delay_s],
+            });
+        }
+    }
+}

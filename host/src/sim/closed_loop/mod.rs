@@ -31,6 +31,7 @@ pub use clock::Clock;
 pub use closed::{ClosedLoop, InitialState, Job, run_jobs};
 pub use controller::{Controller, Measurement};
 pub use drives::Drives;
+pub(crate) use drives::set_delay;
 pub use outcome::{Limits, Outcome};
 pub use posed_plant::{Commands, PosedPlant};
 pub use random::{normal, stream};

@@ -29,7 +29,7 @@ impl Default for Limits {
 impl Limits {
     /// Whether a link leans too far, or the numbers have run away.
     #[inline]
-    pub(super) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
+    pub(crate) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
         let mut lean = 0.0;
         let upright = angle_rad.iter().all(|angle| {
             lean += angle;

@@ -7,6 +7,7 @@ use super::body::Body;
 use super::equations::{Absolute, Equations};
 use crate::dynamics::Dense;
 use crate::error::{Error, Result};
+use crate::log::Motion;
 use crate::model::{Drive, Model};
 use crate::sim::drive::DriveInput;
 use crate::sim::{Plant, bare_motors};
@@ -57,16 +58,6 @@ impl PosedPlant {
     /// # Errors
     /// A pose of another length, or nothing driven.
     pub fn new(model: &Model, pose_rad: &[f64], commands: Commands) -> Result<PosedPlant> {
-        if pose_rad.len() != model.link_count() {
-            return Err(Error::design(
-                format!(
-                    "{} angles for {} joints",
-                    pose_rad.len(),
-                    model.link_count()
-                ),
-                "give the pose one angle per joint",
-            ));
-        }
         let motors;
         let model = match commands {
             Commands::Own => model,
@@ -76,6 +67,31 @@ impl PosedPlant {
             }
         };
         let plant = Plant::without_log(model);
+        PosedPlant::around(plant, pose_rad, commands, model.step_s)
+    }
+
+    /// The plant of a model under the conditions of a motion (payload, attitude), commanded as its
+    /// own drives are.
+    ///
+    /// # Errors
+    /// As [`PosedPlant::new`].
+    pub fn of_motion(model: &Model, pose_rad: &[f64], motion: &Motion) -> Result<PosedPlant> {
+        let plant = Plant::new(model, motion);
+        PosedPlant::around(plant, pose_rad, Commands::Own, model.step_s)
+    }
+
+    fn around(
+        plant: Plant,
+        pose_rad: &[f64],
+        commands: Commands,
+        step_s: f64,
+    ) -> Result<PosedPlant> {
+        if pose_rad.len() != plant.len() {
+            return Err(Error::design(
+                format!("{} angles for {} joints", pose_rad.len(), plant.len()),
+                "give the pose one angle per joint",
+            ));
+        }
         let drives: Vec<DrivenJoint> = (0..plant.len())
             .filter(|&joint| plant.joints[joint].drive.is_driven())
             .map(|joint| {
@@ -102,7 +118,7 @@ impl PosedPlant {
             equations: Equations::of(&plant),
             drives,
             disturbance_nm: vec![0.0; plant.len()],
-            step_s: model.step_s.min(LONGEST_STEP_S),
+            step_s: step_s.min(LONGEST_STEP_S),
             pose_rad: plant.pose_rad(pose_rad),
             plant,
         })
@@ -128,6 +144,11 @@ impl PosedPlant {
     /// Number of driven joints.
     pub fn drives(&self) -> usize {
         self.drives.len()
+    }
+
+    /// The driven joints from the base outwards, counted from 0.
+    pub fn driven_joints(&self) -> impl Iterator<Item = usize> {
+        self.drives.iter().map(|drive| drive.joint)
     }
 
     /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric masses in balance.
@@ -157,6 +178,25 @@ impl PosedPlant {
             Some(*sum)
         };
         angle_rad.iter().scan(0.0, sum).collect()
+    }
+
+    /// Angles and speeds of the joints as deviations from the pose, each relative to the link
+    /// before, rad and rad/s, where the encoders read `reading_rad`, rad in the model's
+    /// convention, and their readings change by `rate_rad_s`.
+    pub fn deviations(&self, reading_rad: &[f64], rate_rad_s: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut angle_rad = self.plant.decode_rad(reading_rad);
+        for (angle, pose) in angle_rad.iter_mut().zip(&self.pose_rad) {
+            *angle -= pose;
+        }
+        (angle_rad, self.plant.decode_rad_s(rate_rad_s))
+    }
+
+    /// What the encoders read at the pose, rad in the model's convention.
+    pub fn pose_reading_rad(&self) -> Vec<f64> {
+        let joints = 0..self.joints();
+        joints
+            .map(|joint| self.plant.encoded_rad(joint, &self.pose_rad))
+            .collect()
     }
 
     /// Input of a drive for a command.

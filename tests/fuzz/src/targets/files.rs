@@ -7,6 +7,7 @@ use handstand::link::record;
 use handstand::log::{LogRequest, read};
 use handstand::model::{LogColumns, Model};
 use handstand::study::{Study, merge};
+use handstand::synth::StateFeedbackPlan;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -57,6 +58,25 @@ pub(crate) fn recording_csv(bytes: &[u8]) {
 
 pub(crate) fn recording_mcap(bytes: &[u8]) {
     recording("recording.mcap", bytes);
+}
+
+/// The plan of a robot of three links, two of them driven.
+pub(crate) fn gains(bytes: &[u8]) {
+    static ROBOT: LazyLock<Model> = LazyLock::new(|| {
+        let text = include_str!("../../../../host/models/handstand.toml");
+        Model::parse(text, Path::new("handstand.toml")).expect("the model of this target is sound")
+    });
+    let Ok(plan) = StateFeedbackPlan::parse(bytes, Path::new("gains.json"), &ROBOT) else {
+        return;
+    };
+    assert_eq!((plan.pose_rad.len(), plan.u0.len()), (3, 2));
+    for row in &plan.k {
+        assert!(
+            row.len() >= 6 && row.len().is_multiple_of(2),
+            "{} gains",
+            row.len()
+        );
+    }
 }
 
 /// A study file without a model beside it: `robot` can only name what is not there.
