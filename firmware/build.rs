@@ -1,4 +1,5 @@
-//! Hands the plan that `HANDSTAND_PLAN` names, a file as `handstand gains deploy --header` writes it, to the firmware; none without it.
+//! Hands the plan that `HANDSTAND_PLAN` names, a file as `handstand gains deploy --header` writes
+//! it, to the firmware; none without it.
 
 use std::path::Path;
 use std::{env, fs};

@@ -46,7 +46,8 @@ pub struct App {
     obeyed: u8,
     /// What arming must bring; none before a greeting and after every fault.
     token: Option<u16>,
-    /// Number of this start, and of the greetings in it from a number of chance on: what tokens are made of.
+    /// Number of this start, and of the greetings in it from a number of chance on: what tokens are
+    /// made of.
     boot_count: u8,
     greetings: Option<u8>,
     ticks: u32,
@@ -157,7 +158,8 @@ impl App {
     }
 
     /// Everything that happens once per period.
-    // One function of everything would be too long for the AVR's relative jumps: its parts stay apart.
+    // One function of everything would be too long for the AVR's relative jumps: its parts stay
+    // apart.
     #[inline(never)]
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();

@@ -26,7 +26,8 @@ pub struct Balance {
     velocities: [velocity::Memory; 2],
     estimate: observer::Memory,
     applied: [AppliedInput; 2],
-    /// Angles at which the robot balances beside the operating point: the first link's in its steps, the joints' as readings.
+    /// Angles at which the robot balances beside the operating point: the first link's in its
+    /// steps, the joints' as readings.
     compensation: [i16; 3],
     /// The first link's angle, in 1/10 of its step: a rate step lasts 1/10 angle step per tick.
     angle: i32,
@@ -84,7 +85,8 @@ impl Balance {
         self.angle = i32::from(angle) * 10;
     }
 
-    /// Takes the first link's attitude: the host's, if the plan wants it, or the gyro's rate and its sum.
+    /// Takes the first link's attitude: the host's, if the plan wants it, or the gyro's rate and
+    /// its sum.
     pub fn sense(&mut self, host: Attitude, gyro: u16) {
         if self.plan.gyro.from_host {
             self.rate = host.rate;
@@ -228,11 +230,13 @@ fn coarse([e1, e2, e3]: [i16; 3]) -> [i16; 3] {
     [e1, whole(e2), whole(e3)]
 }
 
-/// The angles at which the links' masses balance, beside upright: every link's resultant centre of mass above its joint.
+/// The angles at which the links' masses balance, beside upright: every link's resultant centre of
+/// mass above its joint.
 ///
-/// The paper, section IV.D: "finding and compensating the system with the angle of the resultant center of gravity". Gravity's torques
-/// vanish where the moments p_j e^{i t_j} of all links point up, so at absolute angles t_j = -arg p_j. micromath's arc is off by up to
-/// 0.003 rad; an observer finds the rest.
+/// The paper, section IV.D: "finding and compensating the system with the angle of the resultant
+/// center of gravity". Gravity's torques vanish where the moments p_j e^{i t_j} of all links point
+/// up, so at absolute angles t_j = -arg p_j. micromath's arc is off by up to 0.003 rad; an observer
+/// finds the rest.
 #[inline(never)]
 fn compensation(moments: &[Moment; 3]) -> [i16; 3] {
     const STEPS: [f32; 3] = [
@@ -258,7 +262,8 @@ fn compensation(moments: &[Moment; 3]) -> [i16; 3] {
 mod tests {
     use super::*;
 
-    /// A millimetre aside at 30: 33 mrad; a straight link between tilted ones turns both its joints.
+    /// A millimetre aside at 30: 33 mrad; a straight link between tilted ones turns both its
+    /// joints.
     #[test]
     fn resultant_masses_come_to_lie_above_their_joints() {
         let tilted = Moment {

@@ -4,7 +4,8 @@ use handstand_shared::message::ResetCause;
 
 /// A CM-5, real, simulated or made of queues.
 pub trait Board {
-    /// Free-running clock, [`crate::design::CLOCK_PER_US`] counts per microsecond; wraps after 32.8 ms.
+    /// Free-running clock, [`crate::design::CLOCK_PER_US`] counts per microsecond; wraps after 32.8
+    /// ms.
     fn clock(&self) -> u16;
 
     /// True once per tick.
@@ -13,8 +14,8 @@ pub trait Board {
     /// Puts the watchdog off for another 30 ms.
     fn feed_watchdog(&mut self);
 
-    /// Sends bytes to the servos, and turns the bus to listening after the last stop bit. They may go out while the
-    /// program goes on.
+    /// Sends bytes to the servos, and turns the bus to listening after the last stop bit. They may
+    /// go out while the program goes on.
     fn bus_send(&mut self, bytes: &[u8]);
 
     /// Sends the first bytes of a packet, whose last ones [`Board::bus_send`] will send.
@@ -25,8 +26,8 @@ pub trait Board {
     /// The next byte from the servos, waiting at most this long for it, us, once all is sent.
     fn bus_receive(&mut self, within_us: u16) -> Option<u8>;
 
-    /// Bytes from the servos, until `out` is full or nothing comes for so long; how many came. The first may take
-    /// another time than the others, us.
+    /// Bytes from the servos, until `out` is full or nothing comes for so long; how many came. The
+    /// first may take another time than the others, us.
     fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
         let mut within_us = first_us;
         let mut used = 0;

@@ -1,8 +1,9 @@
 //! How often the controller has started, kept in EEPROM so that no start greets like one before it.
 //!
-//! 64 cells of a byte, of which each start writes one, in turn: the next cell takes the first one's value, and when all are
-//! the same the first one goes on by one. So a cell is written every 64th time, and 100,000 writes last for six
-//! million starts. A cell torn by a power cut is not the same as the first and is written again.
+//! 64 cells of a byte, of which each start writes one, in turn: the next cell takes the first one's
+//! value, and when all are the same the first one goes on by one. So a cell is written every 64th
+//! time, and 100,000 writes last for six million starts. A cell torn by a power cut is not the same
+//! as the first and is written again.
 
 use crate::board::Board;
 

@@ -1,6 +1,7 @@
 //! Requests to the servos, and their answers in bounded time.
 //!
-//! A request goes out while the program does something else, such as looking at the answer before it.
+//! A request goes out while the program does something else, such as looking at the answer before
+//! it.
 
 use crate::board::Board;
 use crate::design::{BETWEEN_BYTES_US, FIRST_BYTE_US};
@@ -42,7 +43,8 @@ pub fn ask<B: Board>(board: &mut B, request: &ReadPacket) {
     board.bus_send(request);
 }
 
-/// The bytes of the answer to a READ of `count`. Waits for as long as return delay and length say, and no longer.
+/// The bytes of the answer to a READ of `count`. Waits for as long as return delay and length say,
+/// and no longer.
 #[inline(always)]
 pub fn hear<B: Board>(board: &mut B, count: u8, delay: ReturnDelay, answer: &mut Answer) {
     let first_us = delay.to_us().saturating_add(FIRST_BYTE_US);
@@ -106,7 +108,8 @@ pub fn torque_off<B: Board>(board: &mut B) {
     write_all(board, TORQUE_ENABLE, 0);
 }
 
-/// Writes a value of its own to a register of each of `servos` servos, in one packet, which goes out while it is made.
+/// Writes a value of its own to a register of each of `servos` servos, in one packet, which goes
+/// out while it is made.
 pub fn write_each<B: Board>(
     board: &mut B,
     register: Register,

@@ -1,7 +1,8 @@
 //! Telling our frames from servo packets while the CM-5 is a plain adapter.
 //!
-//! A servo packet begins with `FF`, a frame of ours with the zero that ends the one before. Between packets a zero
-//! begins a frame, which ends at the next zero and goes to no servo; inside a packet every byte goes to the servos.
+//! A servo packet begins with `FF`, a frame of ours with the zero that ends the one before. Between
+//! packets a zero begins a frame, which ends at the next zero and goes to no servo; inside a packet
+//! every byte goes to the servos.
 
 use crate::design::TICK_US;
 
@@ -30,7 +31,8 @@ enum Inside {
     Frame,
 }
 
-/// Ticks of silence after which a packet or frame that was begun is given up: 50 ms, more than a USB adapter pauses.
+/// Ticks of silence after which a packet or frame that was begun is given up: 50 ms, more than a
+/// USB adapter pauses.
 const GIVEN_UP: u8 = (50_000 / TICK_US as u32) as u8;
 
 /// Sorts the bytes from the PC.

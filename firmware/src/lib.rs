@@ -1,7 +1,9 @@
-//! The CM-5's firmware: a bridge between the PC line and the servo bus, and a controller of its own.
+//! The CM-5's firmware: a bridge between the PC line and the servo bus, and a controller of its
+//! own.
 //!
-//! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the host board of `handstand-cm5-sim`. Read downward only:
-//! `design` -> `board` -> `bus` -> `servos`; `link`, `filter`, `plan_store`, `boot_counter`, `panel`, `balance` -> `app`.
+//! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the host
+//! board of `handstand-cm5-sim`. Read downward only: `design` -> `board` -> `bus` -> `servos`;
+//! `link`, `filter`, `plan_store`, `boot_counter`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
 #![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt, asm_experimental_arch))]

@@ -58,7 +58,8 @@ impl Buttons {
     }
 }
 
-/// The LEDs for a state: lit for what it is, blinking slowly when torque is off, Aux counting out the cause of a fault.
+/// The LEDs for a state: lit for what it is, blinking slowly when torque is off, Aux counting out
+/// the cause of a fault.
 pub fn leds(condition: Condition, ticks: u32, heard: bool, all_answer: bool) -> u8 {
     let slow = ticks & 0x20 == 0;
     let when = |on: bool, led: u8| if on { led } else { 0 };

@@ -1,8 +1,8 @@
 //! The gain table in EEPROM: two slots, of which the newer sound one counts.
 //!
-//! A new table goes into the other slot, byte by byte, and its header last; the header's CRC-32 covers everything, so that
-//! a power cut at any byte leaves the old table. One byte per tick is written (a byte takes 8.5 ms). The boot
-//! loader's bytes, 0xFF6 to 0xFFF, are far away.
+//! A new table goes into the other slot, byte by byte, and its header last; the header's CRC-32
+//! covers everything, so that a power cut at any byte leaves the old table. One byte per tick is
+//! written (a byte takes 8.5 ms). The boot loader's bytes, 0xFF6 to 0xFFF, are far away.
 
 use crate::board::Board;
 use handstand_shared::crc::extend32;
@@ -146,7 +146,8 @@ impl Writer {
         true
     }
 
-    /// Begins to make the table count; false if it is not what its sender says, or nothing was written.
+    /// Begins to make the table count; false if it is not what its sender says, or nothing was
+    /// written.
     pub fn store(&mut self, board: &mut impl Board, length: u16, check: u32, answer: u8) -> bool {
         if self.busy || !(1..=MAX_TABLE).contains(&length) {
             return false;
@@ -186,8 +187,8 @@ impl Writer {
         self.busy = true;
     }
 
-    /// Once per tick: writes a byte. When the last one is written, the command to answer, and whether another table
-    /// counts from now on.
+    /// Once per tick: writes a byte. When the last one is written, the command to answer, and
+    /// whether another table counts from now on.
     pub fn tick(&mut self, board: &mut impl Board) -> Option<(u8, bool)> {
         if !self.busy || !board.eeprom_ready() {
             return None;

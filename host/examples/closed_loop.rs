@@ -1,4 +1,5 @@
-//! Close the loop in simulation: gains from a linear design, on a robot with friction that the design leaves out.
+//! Close the loop in simulation: gains from a linear design, on a robot with friction that the
+//! design leaves out.
 //!
 //! ```sh
 //! cargo run --release --example closed_loop
@@ -41,7 +42,8 @@ fn main() -> Result<()> {
 pub fn held_from(degrees: f64) -> Result<Outcome> {
     let robot = Model::parse(&format!("{ROBOT}{FRICTION}"), Path::new("robot.toml"))?;
     let design = Design::of(&robot, &request(&robot))?;
-    // Coulomb friction jumps, so that no linear design can hold it: it is listed, and stays in the simulation.
+    // Coulomb friction jumps, so that no linear design can hold it: it is listed, and stays in the
+    // simulation.
     assert_eq!(design.omitted.len(), 2);
 
     let rows = design.gains.k.row_iter();

@@ -18,7 +18,8 @@ fn main() -> Result<()> {
 
 /// A bench arm with backlash against its model, which has none.
 pub fn backlash_missing() -> Result<Comparison> {
-    // A simulated bench stands in for yours: it writes the logs and the model its owner believes in.
+    // A simulated bench stands in for yours: it writes the logs and the model its owner believes
+    // in.
     let bench = generate(1, Hidden::Effect("backlash"));
     let folder =
         tempfile::tempdir().map_err(|error| Error::file(Path::new("/tmp"), "create", error))?;
@@ -30,7 +31,7 @@ pub fn backlash_missing() -> Result<Comparison> {
     let model = Model::parse(&bench.model_toml, Path::new("model.toml"))?;
     let motions = read(&[LogRequest::whole(log)], &model.log)?;
 
-    // Nothing is fitted but the state in which each run starts. Without a horizon the model runs freely over
-    // whole motions where a small start error does not swamp it.
+    // Nothing is fitted but the state in which each run starts. Without a horizon the model runs
+    // freely over whole motions where a small start error does not swamp it.
     Ok(compare(&model, "model.toml", &motions, None))
 }

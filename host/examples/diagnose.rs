@@ -16,13 +16,15 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Diagnoses a bench arm whose model lacks viscous friction; it names the effect, with its value and interval.
+/// Diagnoses a bench arm whose model lacks viscous friction; it names the effect, with its value
+/// and interval.
 pub fn viscous_friction_missing() -> Result<Diagnosis> {
     let bench = generate(2, Hidden::Effect("viscous"));
     let model = Model::parse(&bench.model_toml, Path::new("model.toml"))?;
     let mut motions = motions(&bench.logs, &model)?;
 
-    // An effect counts only if it predicts motions that took no part in its fit: the last one is held out.
+    // An effect counts only if it predicts motions that took no part in its fit: the last one is
+    // held out.
     let held_out = motions.split_off(2);
     let options = DiagnoseOptions::default();
     Ok(diagnose(&model, motions, held_out, &options, &|_| {}))

@@ -1,4 +1,5 @@
-//! The command line: `handstand help` lists the commands, each one's file under `cli/` is its manual.
+//! The command line: `handstand help` lists the commands, each one's file under `cli/` is its
+//! manual.
 
 mod cli;
 

@@ -1,8 +1,10 @@
-//! Checks of the PC line: CRC-16 0xA2EB on every frame, CRC-32 (IEEE 802.3) on what must never be mistaken.
+//! Checks of the PC line: CRC-16 0xA2EB on every frame, CRC-32 (IEEE 802.3) on what must never be
+//! mistaken.
 //!
-//! 0xA2EB keeps Hamming distance 6 up to 13 bytes and 4 up to 64 (Koopman & Chakravarty 2004, "Cyclic redundancy code
-//! polynomial selection for embedded networks"). The AVR looks up half bytes, for its constants live in its 4096 bytes of
-//! RAM: 96 bytes of tables instead of 1536. The PC looks up bytes; both are the same function, and tested to be.
+//! 0xA2EB keeps Hamming distance 6 up to 13 bytes and 4 up to 64 (Koopman & Chakravarty 2004,
+//! "Cyclic redundancy code polynomial selection for embedded networks"). The AVR looks up half
+//! bytes, for its constants live in its 4096 bytes of RAM: 96 bytes of tables instead of 1536. The
+//! PC looks up bytes; both are the same function, and tested to be.
 
 /// Check value before the first byte.
 pub const START_16: u16 = 0xffff;

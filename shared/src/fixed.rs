@@ -1,9 +1,9 @@
 //! Fixed-point arithmetic that costs an 8-bit machine little: one rounding, one saturation.
 //!
-//! A raw value stands for itself times a step (LSB) that its owner knows. Products of 16-bit values are summed in
-//! 32 bits; whoever makes the factors proves that the sum cannot overflow (see [`crate::gains`]), so the arithmetic
-//! wraps. Checked and saturating products of 32 bits are avoided throughout: the AVR's compiler calls a routine for
-//! them that spoils a register.
+//! A raw value stands for itself times a step (LSB) that its owner knows. Products of 16-bit values
+//! are summed in 32 bits; whoever makes the factors proves that the sum cannot overflow (see
+//! [`crate::gains`]), so the arithmetic wraps. Checked and saturating products of 32 bits are
+//! avoided throughout: the AVR's compiler calls a routine for them that spoils a register.
 
 /// The half that turns the floor of [`shift_right`] into rounding to the nearest, halves upwards.
 pub const fn half(shift: u8) -> i32 {

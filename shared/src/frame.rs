@@ -1,13 +1,15 @@
 //! Frames of the PC line: `COBS(body)`, three check bytes, `00`.
 //!
-//! COBS (Cheshire & Baker 1999) leaves no zero inside, so a zero always ends a frame and one frame's damage stays in it.
-//! The CRC-16 runs over the *stuffed* bytes as they lie on the line: over the body alone, one flipped COBS byte would
-//! move bytes about and the code's Hamming distance would be lost. Its 16 bits are sent as `1ccccccc 1ccccccc 100000cc`,
-//! which are never zero; the fixed bits are checked too.
+//! COBS (Cheshire & Baker 1999) leaves no zero inside, so a zero always ends a frame and one
+//! frame's damage stays in it. The CRC-16 runs over the *stuffed* bytes as they lie on the line:
+//! over the body alone, one flipped COBS byte would move bytes about and the code's Hamming
+//! distance would be lost. Its 16 bits are sent as `1ccccccc 1ccccccc 100000cc`, which are never
+//! zero; the fixed bits are checked too.
 
 use crate::crc::{START_16, crc16};
 
-/// Longest body, bytes. With stuffing and check it stays below 64, where the CRC keeps Hamming distance 4.
+/// Longest body, bytes. With stuffing and check it stays below 64, where the CRC keeps Hamming
+/// distance 4.
 pub const MAX_BODY: usize = 59;
 /// Longest frame, the final zero included.
 pub const MAX_FRAME: usize = wire_length(MAX_BODY);
@@ -113,7 +115,8 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes the next byte; the body, or what is wrong, when it ends a frame. Repeated zeros are idle line.
+    /// Takes the next byte; the body, or what is wrong, when it ends a frame. Repeated zeros are
+    /// idle line.
     pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], FrameError>> {
         if byte != 0 {
             if let Some(slot) = self.bytes.get_mut(usize::from(self.used)) {

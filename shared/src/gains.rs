@@ -88,8 +88,8 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
     /// Number of canonical bytes.
     pub const LENGTH: usize = 3 + M * (2 * N + 9) + 2 * N;
 
-    /// Hands the canonical bytes to `sink`: version, M, N, then each row (gains, bias, shift, limits), then x0;
-    /// little-endian.
+    /// Hands the canonical bytes to `sink`: version, M, N, then each row (gains, bias, shift,
+    /// limits), then x0; little-endian.
     pub fn bytes(&self, mut sink: impl FnMut(u8)) {
         let mut put = |bytes: &[u8]| bytes.iter().for_each(|byte| sink(*byte));
         put(&[VERSION, M as u8, N as u8]);
@@ -106,8 +106,8 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
     /// A table of zeros.
     pub const ZERO: Self = GainTable::new([[0; N]; M], [0; M], [0; M], [[0; 2]; M], [0; N]);
 
-    /// A table from its canonical bytes; `None` if they are of another version or size. Ask [`GainTable::is_safe`]
-    /// before using what came over a line.
+    /// A table from its canonical bytes; `None` if they are of another version or size. Ask
+    /// [`GainTable::is_safe`] before using what came over a line.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut bytes = bytes.iter().copied();
         let mut table = Self::ZERO;
@@ -115,8 +115,8 @@ impl<const M: usize, const N: usize> GainTable<M, N> {
         bytes.next().is_none().then_some(table)
     }
 
-    /// Overwrites the table by the next canonical bytes, without room for a second one; `None` if they end early or are of
-    /// another version or size, and the table is then spoilt.
+    /// Overwrites the table by the next canonical bytes, without room for a second one; `None` if
+    /// they end early or are of another version or size, and the table is then spoilt.
     // Many bytes of code each: inlined, they outgrow the AVR's short jumps.
     #[inline(never)]
     pub fn fill(&mut self, from: &mut impl Iterator<Item = u8>) -> Option<()> {

@@ -1,5 +1,5 @@
-//! Observer-based state feedback for three links of which two are driven: the law for servos that measure neither speed
-//! nor attitude, and act late.
+//! Observer-based state feedback for three links of which two are driven: the law for servos that
+//! measure neither speed nor attitude, and act late.
 //!
 //! A Kalman filter with LQR gains behind it, on known past inputs:
 //!
@@ -9,10 +9,11 @@
 //! next        = update [estimate, past inputs, innovation, applied]  nine states
 //! ```
 //!
-//! `applied` is the input that went out after dead zone, slew and limits. All three are [`GainTable`]s: 16-bit words,
-//! 32-bit sums that no states overflow, one rounding and one saturation per row. Multiplied out to two tables on the
-//! readings themselves it would be shorter, but rounded gains that should cancel would not, and the slowest mode would
-//! grow. Delayed inputs are kept exactly. The estimate is [angles, speeds, equilibrium angles] of the three joints.
+//! `applied` is the input that went out after dead zone, slew and limits. All three are
+//! [`GainTable`]s: 16-bit words, 32-bit sums that no states overflow, one rounding and one
+//! saturation per row. Multiplied out to two tables on the readings themselves it would be shorter,
+//! but rounded gains that should cancel would not, and the slowest mode would grow. Delayed inputs
+//! are kept exactly. The estimate is [angles, speeds, equilibrium angles] of the three joints.
 
 use crate::gains::{GainTable, take};
 use crate::law::{control, departure, input};
@@ -57,8 +58,8 @@ pub struct Observer {
 /// Steps of an update: the departures, then one per estimated state.
 const STEPS: u8 = 1 + ESTIMATED as u8;
 
-/// State of the observer: estimate, past inputs, innovation and applied inputs, and the next estimate while it is
-/// computed.
+/// State of the observer: estimate, past inputs, innovation and applied inputs, and the next
+/// estimate while it is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
     all: [i16; WIDTH],
@@ -129,7 +130,8 @@ impl Observer {
         self.predict.is_safe() && self.feedback.is_safe() && self.update.is_safe()
     }
 
-    /// At rest at these readings; `balance` are the angles at which the robot is expected to balance, in the readings' steps.
+    /// At rest at these readings; `balance` are the angles at which the robot is expected to
+    /// balance, in the readings' steps.
     pub fn start(&self, memory: &mut Memory, readings: &[i16; READINGS], balance: [i16; JOINTS]) {
         *memory = Memory::ZERO;
         let (angles, rest) = memory.all.split_at_mut(JOINTS);
@@ -168,15 +170,16 @@ impl Observer {
         self.finish(memory);
     }
 
-    /// Begin an update under the applied inputs: [`Observer::step_update`] does the work in steps, between which the
-    /// caller may wait for something else.
+    /// Begin an update under the applied inputs: [`Observer::step_update`] does the work in steps,
+    /// between which the caller may wait for something else.
     pub fn begin_update(&self, memory: &mut Memory, applied: [i16; INPUTS]) {
         let place = memory.all.iter_mut().skip(SEEN);
         place.zip(applied).for_each(|(to, from)| *to = from);
         memory.left = STEPS;
     }
 
-    /// A step of the pending update; false if there is none. After the last one the next estimate is valid.
+    /// A step of the pending update; false if there is none. After the last one the next estimate
+    /// is valid.
     #[inline(never)]
     pub fn step_update(&self, memory: &mut Memory) -> bool {
         let left = memory.left;
@@ -226,8 +229,9 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Readings are predicted as estimated, but for the rate; the estimate stays but for 256 times the innovation and the
-    /// first applied input; inputs are minus the driven joints' angles and inputs two samples old.
+    /// Readings are predicted as estimated, but for the rate; the estimate stays but for 256 times
+    /// the innovation and the first applied input; inputs are minus the driven joints' angles and
+    /// inputs two samples old.
     fn observer() -> Observer {
         let mut observer = Observer::ZERO;
         for (i, row) in observer.predict.rows.iter_mut().enumerate() {

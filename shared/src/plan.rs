@@ -1,8 +1,10 @@
-//! Everything the firmware needs to balance on board: the law, and how its states and inputs meet the servos.
+//! Everything the firmware needs to balance on board: the law, and how its states and inputs meet
+//! the servos.
 //!
-//! Readings: the first link's angle from upright in [`Attitude::ANGLE_LSB_RAD`], both driven joints' angles in position codes
-//! from their centres (an observer's with [`FINE`] more places), the first link's rate in [`Attitude::RATE_LSB_RAD_S`]. A law on
-//! plain states has both joints' velocities behind them, as [`Velocity`] estimates them.
+//! Readings: the first link's angle from upright in [`Attitude::ANGLE_LSB_RAD`], both driven
+//! joints' angles in position codes from their centres (an observer's with [`FINE`] more places),
+//! the first link's rate in [`Attitude::RATE_LSB_RAD_S`]. A law on plain states has both joints'
+//! velocities behind them, as [`Velocity`] estimates them.
 //!
 //! [`Attitude::ANGLE_LSB_RAD`]: crate::message::Attitude::ANGLE_LSB_RAD
 //! [`Attitude::RATE_LSB_RAD_S`]: crate::message::Attitude::RATE_LSB_RAD_S
@@ -33,7 +35,8 @@ pub struct Plan {
     pub gyro: Gyro,
     /// What the links' centres of mass ask of the angles: the paper's angle compensation.
     pub moments: [Moment; 3],
-    /// Largest departure of the first link from the operating point before it counts as fallen, in its angle's steps.
+    /// Largest departure of the first link from the operating point before it counts as fallen, in
+    /// its angle's steps.
     pub range: u16,
 }
 
@@ -42,7 +45,8 @@ pub struct Plan {
 // The larger one is what ships; a box there is not.
 #[allow(clippy::large_enum_variant)]
 pub enum Law {
-    /// On an estimated state. Comes first: a plan of zeros is then all zeros, which take no constant from the AVR's RAM.
+    /// On an estimated state. Comes first: a plan of zeros is then all zeros, which take no
+    /// constant from the AVR's RAM.
     Observer(Observer),
     /// u = sat(u0 - K (x - x0)) of angles and differenced speeds: the paper's regulator.
     State {
@@ -137,8 +141,8 @@ impl Plan {
         plan.fill(&mut bytes.iter().copied()).then_some(plan)
     }
 
-    /// Overwrites the plan by all these bytes; whether they are of this version, end with the plan and are safe to use. If
-    /// not, the plan is spoilt.
+    /// Overwrites the plan by all these bytes; whether they are of this version, end with the plan
+    /// and are safe to use. If not, the plan is spoilt.
     pub fn fill(&mut self, from: &mut impl Iterator<Item = u8>) -> bool {
         self.filled(from).is_some() && from.next().is_none() && self.is_sound()
     }

@@ -1,10 +1,12 @@
 //! Register codes of the AX-12, each with the SI value of its least significant bit.
 //!
-//! Everything in SI goes through here once, at the edge. Source: ROBOTIS AX-12 e-manual, control table.
+//! Everything in SI goes through here once, at the edge. Source: ROBOTIS AX-12 e-manual, control
+//! table.
 
 use core::f64::consts::PI;
 
-/// A goal or present position: 0..=1023 over 300 degrees, 512 in the middle, counted counter-clockwise.
+/// A goal or present position: 0..=1023 over 300 degrees, 512 in the middle, counted
+/// counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Position(pub u16);
 
@@ -28,7 +30,8 @@ impl Position {
     }
 }
 
-/// Speed limit of a movement in joint mode (register 32); code 0 means "as fast as possible", not standstill.
+/// Speed limit of a movement in joint mode (register 32); code 0 means "as fast as possible", not
+/// standstill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MovingSpeed(pub u16);
 
@@ -52,7 +55,8 @@ impl MovingSpeed {
     }
 }
 
-/// A magnitude of 10 bits with its direction in bit 10 (set = clockwise): present speed and load, and the command in wheel mode.
+/// A magnitude of 10 bits with its direction in bit 10 (set = clockwise): present speed and load,
+/// and the command in wheel mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Signed(pub u16);
 
@@ -136,7 +140,8 @@ impl TorqueLimit {
 }
 
 fn nearest(code: f64) -> u16 {
-    // Codes are not negative here, so adding a half and cutting rounds to the nearest; no_std has no `round`.
+    // Codes are not negative here, so adding a half and cutting rounds to the nearest; no_std has
+    // no `round`.
     (code + 0.5) as u16
 }
 

@@ -104,7 +104,8 @@ mod tests {
                 let plain = (scale * (f64::from(position) - before)).clamp(-32_768.0, 32_767.0);
                 before = f64::from(position);
                 smooth += f64::from(share) / 256.0 * (plain - smooth);
-                // Each step rounds by half of 2^-6 at most; the pole lets 256 / share of them add up.
+                // Each step rounds by half of 2^-6 at most; the pole lets 256 / share of them add
+                // up.
                 let slack = 0.5 + 0.5 / 64.0 * 256.0 / f64::from(share);
                 prop_assert!((found - smooth).abs() <= slack + 1e-6, "{found} {smooth}");
             }

@@ -1,4 +1,5 @@
-//! Builds the shim over libsimavr where its headers are installed; elsewhere the crate is empty and says so.
+//! Builds the shim over libsimavr where its headers are installed; elsewhere the crate is empty and
+//! says so.
 
 use std::path::Path;
 

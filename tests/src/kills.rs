@@ -24,7 +24,8 @@ pub struct Tally {
     pub samples: usize,
 }
 
-/// Kills `kills` recorders, CSV and MCAP in turns, `at_once` at a time, each at a random moment of its first 3 s.
+/// Kills `kills` recorders, CSV and MCAP in turns, `at_once` at a time, each at a random moment of
+/// its first 3 s.
 ///
 /// # Errors
 /// The program cannot be run.
@@ -141,7 +142,8 @@ fn one(
         }))
 }
 
-/// A recorder that has begun. On a busy machine a servo may not answer in time, and it gives up before: then another one.
+/// A recorder that has begun. On a busy machine a servo may not answer in time, and it gives up
+/// before: then another one.
 fn started(program: &Path, words: &[&str], file: &Path) -> Result<Owned, String> {
     const TRIES: usize = 10;
     for _ in 0..TRIES {
@@ -159,7 +161,8 @@ fn started(program: &Path, words: &[&str], file: &Path) -> Result<Owned, String>
     Err(format!("{TRIES} recordings did not begin"))
 }
 
-/// Time that the samples span which were taken and are not in the file: the tap writes down each exchange at once.
+/// Time that the samples span which were taken and are not in the file: the tap writes down each
+/// exchange at once.
 fn lost_s(tapped: &str, kept: usize) -> f64 {
     // READ of 8 bytes from 36, a round of one servo, which counts once it is answered.
     const ROUND: &str = "> ff ff 01 04 02 24 08";

@@ -130,7 +130,8 @@ fn version() -> String {
 
 /// The day so many days after 1970-01-01 (Gregorian), as 1970-01-01.
 fn date(days: u64) -> String {
-    // 400 years have 146,097 days. They are counted from a March, so that the leap day is a year's last.
+    // 400 years have 146,097 days. They are counted from a March, so that the leap day is a year's
+    // last.
     const FROM_MARCH_0000: u64 = 719_468;
     let days = days + FROM_MARCH_0000;
     let (era, day) = (days / 146_097, days % 146_097);

@@ -24,7 +24,8 @@ impl App {
         board.set_leds(lit);
     }
 
-    /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the host arms.
+    /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the
+    /// host arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
             State::Stream(Torque::On | Torque::Fading { .. }) => {

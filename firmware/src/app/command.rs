@@ -112,8 +112,9 @@ impl App {
         Outcome::Quiet
     }
 
-    /// Another one than in the last 255 greetings and the last 255 starts. The first of a start is chance, for when a host
-    /// greets is: should the EEPROM be erased, an old frame still fits with 1 in 256 only.
+    /// Another one than in the last 255 greetings and the last 255 starts. The first of a start is
+    /// chance, for when a host greets is: should the EEPROM be erased, an old frame still fits with
+    /// 1 in 256 only.
     fn new_token<B: Board>(&mut self, board: &B) -> u16 {
         let before = self.greetings.unwrap_or(board.clock() as u8);
         let greeting = before.wrapping_add(1);
@@ -154,7 +155,8 @@ impl App {
         }
     }
 
-    /// Goals count only while streaming with torque on; before that they keep the link alive and no more.
+    /// Goals count only while streaming with torque on; before that they keep the link alive and no
+    /// more.
     fn set_goal(&mut self, sequence: u8, goal: Goal) -> Outcome {
         if self.state == State::Stream(Torque::On) {
             self.goal = goal;

@@ -14,7 +14,8 @@ impl App {
         self.report(board);
     }
 
-    /// Reads the servos. The estimate goes on while they are waited for: after the commands it would lengthen the tick.
+    /// Reads the servos. The estimate goes on while they are waited for: after the commands it
+    /// would lengthen the tick.
     #[inline(never)]
     fn read<B: Board>(&mut self, board: &mut B, started: u16) {
         let balance = &mut self.balance;

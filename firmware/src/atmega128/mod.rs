@@ -1,8 +1,9 @@
 //! The CM-5's ATmega128: the only unsafe code of the project, and every register it writes.
 //!
-//! A module per peripheral. Pins are embedded-hal's and the PC line is embedded-io's; for ADC, EEPROM and watchdog embedded-hal 1.0 has
-//! no traits, and nothing here waits for a time, so there is no delay. Registers are written by their bits, for the generated names of
-//! the USART's frame format are wrong in avr-device 0.9.
+//! A module per peripheral. Pins are embedded-hal's and the PC line is embedded-io's; for ADC,
+//! EEPROM and watchdog embedded-hal 1.0 has no traits, and nothing here waits for a time, so there
+//! is no delay. Registers are written by their bits, for the generated names of the USART's frame
+//! format are wrong in avr-device 0.9.
 #![allow(unsafe_code)]
 
 mod adc;

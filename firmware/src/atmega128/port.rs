@@ -1,4 +1,5 @@
-//! Pins of the CM-5: charger, bus direction, link choice, buttons and LEDs, each one of embedded-hal's digital pins.
+//! Pins of the CM-5: charger, bus direction, link choice, buttons and LEDs, each one of
+//! embedded-hal's digital pins.
 
 mod pin;
 

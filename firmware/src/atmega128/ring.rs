@@ -3,8 +3,9 @@
 use core::cell::UnsafeCell;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// A byte that an interrupt and the program share, and only one of them changes. The AVR reads and writes a byte in one
-/// instruction; `AtomicU8` would switch interrupts off and on around it, which costs more than the access.
+/// A byte that an interrupt and the program share, and only one of them changes. The AVR reads and
+/// writes a byte in one instruction; `AtomicU8` would switch interrupts off and on around it, which
+/// costs more than the access.
 pub struct SharedByte(UnsafeCell<u8>);
 
 // SAFETY: single bytes, accessed in one instruction each, on one core.
@@ -42,7 +43,8 @@ pub struct Ring<const N: usize> {
     lost: SharedByte,
 }
 
-// SAFETY: one producer writes `head` and the slots outside tail..head, one consumer writes `tail`; both are single bytes.
+// SAFETY: one producer writes `head` and the slots outside tail..head, one consumer writes `tail`;
+// both are single bytes.
 unsafe impl<const N: usize> Sync for Ring<N> {}
 
 impl<const N: usize> Ring<N> {

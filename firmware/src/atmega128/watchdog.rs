@@ -11,7 +11,8 @@ const AFTER_30_MS: u8 = 0b001;
 /// From now on a tick must be completed every 30 ms. It may be on already, after a reset by it.
 pub fn start(r: &Peripherals) {
     avr_device::asm::wdr();
-    // SAFETY: the data sheet's sequence; the second write must follow within four cycles, and interrupts are off.
+    // SAFETY: the data sheet's sequence; the second write must follow within four cycles, and
+    // interrupts are off.
     unsafe {
         r.WDT.wdtcr().write(|w| w.bits(CHANGE | ENABLE));
         r.WDT.wdtcr().write(|w| w.bits(ENABLE | AFTER_30_MS));

@@ -20,7 +20,8 @@ mod program {
         asked: u8,
         /// The program copies `asked` when it has answered.
         answered: u8,
-        /// What is asked: 0 the law of 2 x 6 at `x`, 1 to take its table, 2 a tick of the observer, 3 to take it.
+        /// What is asked: 0 the law of 2 x 6 at `x`, 1 to take its table, 2 a tick of the observer,
+        /// 3 to take it.
         kind: u8,
         x: [i16; 6],
         u: [i16; 2],
@@ -50,13 +51,14 @@ mod program {
         port.porta().write(|w| unsafe { w.bits(value) });
     }
 
-    /// The law between its marks, in a frame of its own: in that of `main`, which holds both laws, every spilt register
-    /// would cost ten cycles more.
+    /// The law between its marks, in a frame of its own: in that of `main`, which holds both laws,
+    /// every spilt register would cost ten cycles more.
     #[inline(never)]
     fn timed(port: &PORTA, law: &GainTable<2, 6>, state: &[i16; 6]) -> [i16; 2] {
         mark(port, 1);
         let [first, second] = control(law, state);
-        // SAFETY: does nothing; both inputs are in registers before the mark, where a caller finds them.
+        // SAFETY: does nothing; both inputs are in registers before the mark, where a caller finds
+        // them.
         unsafe {
             asm!("/* {0} {1} */", in(reg_pair) first, in(reg_pair) second, options(nomem, nostack))
         };
@@ -71,7 +73,8 @@ mod program {
         let port = unsafe { Peripherals::steal() }.PORTA;
         let mut table = GainTable::<2, 6>::ZERO;
         let mut observer = Observer::ZERO;
-        // SAFETY: one static, one user; the bench changes it between instructions, hence the volatile accesses.
+        // SAFETY: one static, one user; the bench changes it between instructions, hence the
+        // volatile accesses.
         unsafe {
             let bytes = (&raw const (*mailbox).bytes).cast::<u8>();
             let byte = |at| bytes.add(at).read_volatile();

@@ -33,7 +33,8 @@ impl Servos {
         }
     }
 
-    /// Torque off where none is commanded, as in servos that gave up: else the limits written to all would wake them.
+    /// Torque off where none is commanded, as in servos that gave up: else the limits written to
+    /// all would wake them.
     pub fn release<B: Board>(&self, board: &mut B) {
         let released = self.all().iter().filter(|servo| !servo.armed);
         let count = self.count.saturating_sub(self.armed());

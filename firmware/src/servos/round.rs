@@ -27,11 +27,12 @@ pub(super) const SILENT: Housekeeping = Housekeeping {
 };
 
 impl Servos {
-    /// Reads all positions, and the housekeeping of two servos in turn; whoever answered in the last tick and does not
-    /// now is asked once more at the end, if there is time. A silent servo costs its own time only.
+    /// Reads all positions, and the housekeeping of two servos in turn; whoever answered in the
+    /// last tick and does not now is asked once more at the end, if there is time. A silent servo
+    /// costs its own time only.
     ///
-    /// `meanwhile` is called once per servo, while its answer is awaited: bytes that come before it returns wait in the
-    /// interrupt's queue, which holds a whole answer.
+    /// `meanwhile` is called once per servo, while its answer is awaited: bytes that come before it
+    /// returns wait in the interrupt's queue, which holds a whole answer.
     #[inline(never)]
     pub fn read<B: Board>(
         &mut self,
@@ -46,7 +47,8 @@ impl Servos {
         let first = self.request(0);
         bus::ask(board, &first);
         for place in 0..self.count {
-            // Made while this answer is awaited, sent as soon as it is there: it is looked at while that goes out.
+            // Made while this answer is awaited, sent as soon as it is there: it is looked at while
+            // that goes out.
             let next = self.request(place + 1);
             meanwhile();
             self.hear(board, place, &mut answer);

@@ -26,8 +26,8 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// Factory-new servos with these ids, except that they reply at once (return delay 0). An id may come twice, as two
-    /// servos fresh from the factory have it.
+    /// Factory-new servos with these ids, except that they reply at once (return delay 0). An id
+    /// may come twice, as two servos fresh from the factory have it.
     pub fn new(ids: impl IntoIterator<Item = u8>) -> Self {
         let mut servos: Vec<Servo> = Vec::new();
         for id in ids {
@@ -219,8 +219,8 @@ fn sent(reply: &Reply, from_ns: u64, free_ns: u64) -> Vec<Sent> {
     starts.collect()
 }
 
-/// How much later a servo replies than another one of its id: no two clocks are the same. Scattered by a hash, below a
-/// byte's time.
+/// How much later a servo replies than another one of its id: no two clocks are the same. Scattered
+/// by a hash, below a byte's time.
 fn late_ns(serial: u64) -> u64 {
     match serial / 256 {
         0 => 0,

@@ -1,4 +1,5 @@
-//! A simulated CM-5 with servos and a PC: one interface for the logic in process and for the ELF in simavr.
+//! A simulated CM-5 with servos and a PC: one interface for the logic in process and for the ELF in
+//! simavr.
 
 use super::bus::Bus;
 use super::host_board::HostBoard;

@@ -5,7 +5,8 @@ use handstand_shared::dynamixel::timing::{BIT_NS, BYTE_NS};
 /// A transmitted byte: start of its start bit, ns, and its value.
 pub(super) type Sent = (u64, u8);
 
-/// Bytes that a UART receives from overlapping transmissions, each with the end of its stop bit, ns.
+/// Bytes that a UART receives from overlapping transmissions, each with the end of its stop bit,
+/// ns.
 pub(super) fn received(sent: &[Sent]) -> Vec<(u64, u8)> {
     /// How finely the listener looks for a start bit, ns.
     const LOOK_NS: u64 = BIT_NS / 4;

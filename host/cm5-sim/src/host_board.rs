@@ -1,6 +1,7 @@
 //! A CM-5 board in process: queues, simulated servos and a simulated clock.
 //!
-//! Time passes on the lines alone: the logic itself takes none here, as it does on the chip, so tick times are those of the bus.
+//! Time passes on the lines alone: the logic itself takes none here, as it does on the chip, so
+//! tick times are those of the bus.
 
 use super::bus::Bus;
 use handstand_firmware::app::App;

@@ -1,9 +1,10 @@
 //! Simulated CM-5: AX-12 servos, their half-duplex bus, and the firmware's logic on a host board.
 //!
-//! Simulated time only, in nanoseconds since power-on: nothing here reads a clock. [`Bus`] takes the controller's bytes
-//! with the end of their stop bits and returns the servos' bytes the same way. [`VirtualCm5`] runs the firmware's
-//! logic on a [`HostBoard`] in front of it; [`SimulatedCm5`] is the interface that the ELF in simavr implements
-//! too. [`AdapterPort`] and [`Cm5Port`] are serial ports of both kinds. The robot behind the servos is a [`Plant`], which
+//! Simulated time only, in nanoseconds since power-on: nothing here reads a clock. [`Bus`] takes
+//! the controller's bytes with the end of their stop bits and returns the servos' bytes the same
+//! way. [`VirtualCm5`] runs the firmware's logic on a [`HostBoard`] in front of it;
+//! [`SimulatedCm5`] is the interface that the ELF in simavr implements too. [`AdapterPort`] and
+//! [`Cm5Port`] are serial ports of both kinds. The robot behind the servos is a [`Plant`], which
 //! the caller provides.
 
 mod adapter;

@@ -2,9 +2,11 @@
 
 use std::fmt::Debug;
 
-/// A chain of links whose driven joints are moved by servo motors: duty cycle in, angle and speed out.
+/// A chain of links whose driven joints are moved by servo motors: duty cycle in, angle and speed
+/// out.
 ///
-/// Joints count from the base, 0 the first. Angles are in the model's own convention, rad and rad/s.
+/// Joints count from the base, 0 the first. Angles are in the model's own convention, rad and
+/// rad/s.
 pub trait Plant: Debug + Send {
     /// Number of joints.
     fn joint_count(&self) -> usize;

@@ -1,4 +1,5 @@
-//! Serial ports of simulated devices, in simulated time: nothing waits, the same requests get the same replies.
+//! Serial ports of simulated devices, in simulated time: nothing waits, the same requests get the
+//! same replies.
 
 use super::bus::Bus;
 use super::cm5::VirtualCm5;

@@ -1,7 +1,8 @@
 //! Overload protection of a servo.
 //!
-//! The e-manual: when the load can't be held, error bit 5 is set, and if the shutdown register has that bit, the torque
-//! limit falls to 0 until it is written again. Duty and time are not published; those here are assumed.
+//! The e-manual: when the load can't be held, error bit 5 is set, and if the shutdown register has
+//! that bit, the torque limit falls to 0 until it is written again. Duty and time are not
+//! published; those here are assumed.
 
 use super::servo::Servo;
 use handstand_shared::control_table::{SHUTDOWN, TORQUE_ENABLE, TORQUE_LIMIT};

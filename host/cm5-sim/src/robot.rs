@@ -1,7 +1,7 @@
 //! A robot on simulated servos: a plant whose driven joints are the servos' shafts.
 //!
-//! The servos regulate (goal, compliance, wheel mode, torque limit) and set the duty cycle; motor, gear, friction and
-//! links are the plant's.
+//! The servos regulate (goal, compliance, wheel mode, torque limit) and set the duty cycle; motor,
+//! gear, friction and links are the plant's.
 
 use super::plant::Plant;
 use super::regulator::Regulator;
@@ -62,7 +62,8 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// `servos` are the driven joints of the plant with their servos' ids; a servo after the first faces the other way.
+    /// `servos` are the driven joints of the plant with their servos' ids; a servo after the first
+    /// faces the other way.
     pub fn new(plant: Box<dyn Plant>, servos: impl IntoIterator<Item = (usize, Vec<u8>)>) -> Self {
         let driven = servos.into_iter().map(|(joint, ids)| JointServos {
             joint,

@@ -27,7 +27,8 @@ pub struct Servo {
     pub free: bool,
     /// Whether something blocks the shaft.
     pub jammed: bool,
-    /// Load to report, as a share of full output, counter-clockwise positive; of a free shaft its own.
+    /// Load to report, as a share of full output, counter-clockwise positive; of a free shaft its
+    /// own.
     pub load: f64,
     /// Supply, V.
     pub supply_v: f64,
@@ -38,7 +39,8 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// Factory settings but for the id and a return delay of 0; on its back, torque off, 9.6 V, 30 degrees.
+    /// Factory settings but for the id and a return delay of 0; on its back, torque off, 9.6 V, 30
+    /// degrees.
     pub fn new(id: u8) -> Self {
         let mut servo = Servo {
             table: [0; TABLE],

@@ -1,4 +1,5 @@
-//! A simulated bus as text: `ids=1-18,delay=0,dead=3,robot=MODEL.toml,joints=1+2/11+12,start=hanging`.
+//! A simulated bus as text:
+//! `ids=1-18,delay=0,dead=3,robot=MODEL.toml,joints=1+2/11+12,start=hanging`.
 
 use super::bus::Bus;
 use super::fault::Faults;
@@ -8,7 +9,8 @@ use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with factory settings.
+/// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with
+/// factory settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BusSpec {
     /// Ids of the servos.
@@ -35,8 +37,8 @@ pub struct BusSpec {
 pub struct RobotSpec {
     /// Its model file.
     pub model: PathBuf,
-    /// Servos of each driven joint, from the base outwards; without it those of the Bioloid's shoulders and hips, or
-    /// servo 1 where only one joint is driven.
+    /// Servos of each driven joint, from the base outwards; without it those of the Bioloid's
+    /// shoulders and hips, or servo 1 where only one joint is driven.
     pub joints: Option<Vec<Vec<u8>>>,
     /// Initial pose.
     pub start: Start,

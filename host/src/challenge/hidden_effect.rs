@@ -115,7 +115,8 @@ pub fn kind_named(name: &str) -> Option<&'static str> {
 }
 
 impl HiddenEffect {
-    /// Draws which effect is hidden; `None` if none is, or if `hidden` names no effect of [`KINDS`].
+    /// Draws which effect is hidden; `None` if none is, or if `hidden` names no effect of
+    /// [`KINDS`].
     pub fn kind(rng: &mut ChaCha8Rng, hidden: Hidden) -> Option<&'static str> {
         match hidden {
             Hidden::Nothing => None,

@@ -1,7 +1,7 @@
 //! Rigs with a hidden effect, to find out whether it is found.
 //!
-//! The truth has its own equations and its own integrator and calls nothing of the library: a mistake in the
-//! library's laws shows up as an effect that isn't found, instead of cancelling out.
+//! The truth has its own equations and its own integrator and calls nothing of the library: a
+//! mistake in the library's laws shows up as an effect that isn't found, instead of cancelling out.
 
 mod bench_arm;
 mod error;
@@ -100,8 +100,8 @@ fn stage(seed: u64, hidden: Hidden) -> (BenchArm, Option<HiddenEffect>, [ArmReco
     }
 }
 
-/// What this seed hides. Each kind draws its values from a stream of its own: at one seed they lie at different
-/// places of their ranges.
+/// What this seed hides. Each kind draws its values from a stream of its own: at one seed they lie
+/// at different places of their ranges.
 fn secret(seed: u64, hidden: Hidden) -> Option<HiddenEffect> {
     let kind = HiddenEffect::kind(&mut stream(seed, 0), hidden)?;
     let place = KINDS.iter().position(|known| *known == kind)?;
@@ -111,7 +111,8 @@ fn secret(seed: u64, hidden: Hidden) -> Option<HiddenEffect> {
     ))
 }
 
-/// First of the streams from which the values of hidden effects are drawn; those of the rig lie below.
+/// First of the streams from which the values of hidden effects are drawn; those of the rig lie
+/// below.
 const SECRETS: u64 = 100;
 
 fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [ArmRecording; 3] {

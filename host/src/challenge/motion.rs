@@ -1,4 +1,5 @@
-//! A motion as a bench would log it: a host-side controller reads the rounded angle at 100 Hz and sends duty.
+//! A motion as a bench would log it: a host-side controller reads the rounded angle at 100 Hz and
+//! sends duty.
 
 use super::bench_arm::NOMINAL_SUPPLY_V;
 use super::physics::{Mount, Physics};
@@ -230,8 +231,8 @@ fn quantised(angle: f64) -> f64 {
     (angle / Position::LSB_RAD).round().clamp(-512.0, 511.0) * Position::LSB_RAD + 0.0
 }
 
-/// A draw from the standard normal distribution (Box and Muller): another method, as in the crate `rand_distr`, would
-/// change every bench and with it the figures of the benchmark.
+/// A draw from the standard normal distribution (Box and Muller): another method, as in the crate
+/// `rand_distr`, would change every bench and with it the figures of the benchmark.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()

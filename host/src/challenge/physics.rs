@@ -1,5 +1,5 @@
-//! The laws of the bench arm, written down a second time on purpose: the truth owes nothing to the code that is
-//! to find it out.
+//! The laws of the bench arm, written down a second time on purpose: the truth owes nothing to the
+//! code that is to find it out.
 
 /// Gravity, m/s^2.
 pub const GRAVITY_M_S2: f64 = 9.81;
@@ -96,8 +96,8 @@ impl Physics {
         }
     }
 
-    /// Switches on the effect `kind` with `values` in the order of its parameters; false if there is no such effect
-    /// or it has another number of values.
+    /// Switches on the effect `kind` with `values` in the order of its parameters; false if there
+    /// is no such effect or it has another number of values.
     pub fn switch_on(&mut self, kind: &str, values: &[f64]) -> bool {
         match (kind, values) {
             ("viscous", &[b]) => self.viscous += b,

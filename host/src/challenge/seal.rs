@@ -1,6 +1,7 @@
 //! The answer, sealed: unreadable at a glance and tamper-evident.
 //!
-//! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can open it.
+//! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can
+//! open it.
 
 use super::error::SealError;
 use crate::output::number::hex;

@@ -1,8 +1,9 @@
 //! The arm that is measured: its state, carried forward at 20 kHz.
 //!
-//! The midpoint rule, drift-kick-drift: an Euler step is early or late by half of itself, and 25 us are more than
-//! the error to which three logs tell a delay. Dry friction is an impulse that can stop the arm but never reverse
-//! it, so that an arm at rest stays there until it is pushed harder than the breakaway torque.
+//! The midpoint rule, drift-kick-drift: an Euler step is early or late by half of itself, and 25 us
+//! are more than the error to which three logs tell a delay. Dry friction is an impulse that can
+//! stop the arm but never reverse it, so that an arm at rest stays there until it is pushed harder
+//! than the breakaway torque.
 
 use super::physics::{DriveCommand, Mount, Physics};
 
@@ -50,7 +51,8 @@ impl<'a> Arm<'a> {
         Arm::at_rest(physics, mount, arm.angle)
     }
 
-    /// Goes on for `span_s`; `push` tells the drive's state, given the seconds since the beginning of the span.
+    /// Goes on for `span_s`; `push` tells the drive's state, given the seconds since the beginning
+    /// of the span.
     pub fn advance(&mut self, span_s: f64, push: impl Fn(f64) -> DriveCommand) {
         let steps = (span_s / STEP_S).ceil().max(1.0);
         let h = span_s / steps;
@@ -68,7 +70,8 @@ impl<'a> Arm<'a> {
         self.sense(h);
     }
 
-    /// Speed after all torques have acted for `h` seconds, as they are at this angle and `at_speed`.
+    /// Speed after all torques have acted for `h` seconds, as they are at this angle and
+    /// `at_speed`.
     fn kicked(&self, h: f64, push: DriveCommand, at_speed: f64) -> f64 {
         let holding = self.physics.holding(self.mount, self.angle);
         let drive = self.physics.drive(push, at_speed);
@@ -99,7 +102,8 @@ impl<'a> Arm<'a> {
         self.lagged
     }
 
-    /// Kinetic and potential energy in gravity, J, of an arm without tilt; tests only look at its change.
+    /// Kinetic and potential energy in gravity, J, of an arm without tilt; tests only look at its
+    /// change.
     #[cfg(test)]
     pub fn energy_j(&self) -> f64 {
         let height = |angle: f64| {
@@ -124,7 +128,8 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// Duty that arrives at `time_s` by a wire that delays by `delay_s`; 0 before the first command.
+    /// Duty that arrives at `time_s` by a wire that delays by `delay_s`; 0 before the first
+    /// command.
     fn arriving(&self, time_s: f64, delay_s: f64, last: usize) -> f64 {
         let sent_s = time_s - delay_s;
         // Sought from the end: a delay spans few commands.
@@ -150,7 +155,8 @@ impl Commands {
         });
     }
 
-    /// Encoder values before noise and rounding, rad, at every command, when these commands drive the settled arm.
+    /// Encoder values before noise and rounding, rad, at every command, when these commands drive
+    /// the settled arm.
     #[cfg(test)]
     pub fn replay(&self, physics: &Physics, mount: Mount) -> Vec<f64> {
         let mut arm = Arm::settled(physics, mount);

@@ -1,17 +1,18 @@
 //! `handstand add MODEL EFFECT[@JOINT] --fit LOG... -o NEW.toml`: a model with one more effect.
 //!
-//! The effect's values are fitted along with the model's free ones, from each of the effect's start values; the best
-//! is kept. The new file is the old one with the refitted values and, at its end, the effect with its intervals,
-//! the logs it was fitted to, and the error without and with it. The error without it is that of the model
-//! refitted without it, so that the reduction is the effect's alone; `handstand compare` sets models side by side as
-//! they are, where the reduction is also the refit's.
+//! The effect's values are fitted along with the model's free ones, from each of the effect's start
+//! values; the best is kept. The new file is the old one with the refitted values and, at its end,
+//! the effect with its intervals, the logs it was fitted to, and the error without and with it. The
+//! error without it is that of the model refitted without it, so that the reduction is the effect's
+//! alone; `handstand compare` sets models side by side as they are, where the reduction is also the
+//! refit's.
 //!
 //! ```console
 //! $ handstand add arm.toml delay --fit a.csv b.csv --holdout c.csv -o better.toml
 //! ```
 //!
-//! Exit code 1, and no file, when the logs do not determine the values. `--json` prints what `handstand fit`
-//! prints, and `effect`, as `delay@1`.
+//! Exit code 1, and no file, when the logs do not determine the values. `--json` prints what
+//! `handstand fit` prints, and `effect`, as `delay@1`.
 
 use super::talk::Talk;
 use super::{Outcome, fit, input};

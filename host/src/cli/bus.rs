@@ -8,8 +8,9 @@
 //! $ handstand bus doctor --port /dev/ttyUSB0
 //! ```
 //!
-//! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus (`--baud 1000000`), or
-//! simulated servos (`--port sim`). Registers are named as in the AX-12's manual; codes are the register's own.
+//! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus
+//! (`--baud 1000000`), or simulated servos (`--port sim`). Registers are named as in the AX-12's
+//! manual; codes are the register's own.
 
 mod backup;
 mod changes;

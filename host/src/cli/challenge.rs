@@ -1,15 +1,17 @@
-//! `handstand challenge`: a virtual bench arm with a hidden effect, to try oneself or the program on.
+//! `handstand challenge`: a virtual bench arm with a hidden effect, to try oneself or the program
+//! on.
 //!
-//! `new` writes a folder with `nominal.toml` (what the arm's owner believes), logs `a.csv`, `b.csv`, `c.csv`,
-//! and the sealed answer. `score` opens the answer and scores a model by it.
+//! `new` writes a folder with `nominal.toml` (what the arm's owner believes), logs `a.csv`,
+//! `b.csv`, `c.csv`, and the sealed answer. `score` opens the answer and scores a model by it.
 //!
 //! ```console
 //! $ handstand challenge new --seed 7 -o riddle
 //! $ handstand challenge score riddle riddle/model.toml
 //! ```
 //!
-//! `score` exits with 1 when the model does not name what was hidden. `--json` prints `hidden`, `added`,
-//! `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`, `true_error_rad`.
+//! `score` exits with 1 when the model does not name what was hidden. `--json` prints `hidden`,
+//! `added`, `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`,
+//! `true_error_rad`.
 
 use super::talk::Talk;
 use super::{Outcome, show};

@@ -1,23 +1,25 @@
-//! `handstand compare MODEL LOG... [--model OTHER]...`: how far models are from what was measured, and where.
+//! `handstand compare MODEL LOG... [--model OTHER]...`: how far models are from what was measured,
+//! and where.
 //!
-//! The models run along the logs' inputs, each as its file says; nothing is fitted but where each run starts.
-//! (`handstand add` gives another reduction of the error: there the model before is refitted without the effect.)
-//! Several stand side by side, over the same horizon: the first one's, unless one is given.
+//! The models run along the logs' inputs, each as its file says; nothing is fitted but where each
+//! run starts. (`handstand add` gives another reduction of the error: there the model before is
+//! refitted without the effect.) Several stand side by side, over the same horizon: the first
+//! one's, unless one is given.
 //!
 //! ```console
 //! $ handstand compare arm.toml drop.csv --model better.toml --report report.html
 //! ```
 //!
-//! With the plan of a balancing robot, as `handstand gains --state-space` writes it, the closed loop of each model is
-//! simulated too and set beside the measured one:
+//! With the plan of a balancing robot, as `handstand gains --state-space` writes it, the closed
+//! loop of each model is simulated too and set beside the measured one:
 //!
 //! ```console
 //! $ handstand gains robot.toml --state-space gains.json
 //! $ handstand compare robot.toml balanced.csv --plan gains.json --model with_friction.toml
 //! ```
 //!
-//! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`, `failures`,
-//! `traces`, `closed_loop`) and `provenance`.
+//! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`,
+//! `failures`, `traces`, `closed_loop`) and `provenance`.
 
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;

@@ -1,22 +1,25 @@
-//! `handstand controllers [MODEL]`: the library's controllers, simulated on robots with the non-idealities that the paper
-//! found.
+//! `handstand controllers [MODEL]`: the library's controllers, simulated on robots with the
+//! non-idealities that the paper found.
 //!
-//! Without a model, a line for each controller and each condition. With one: from each of `--robots` random starts at
-//! rest, within `--spread-deg` of the pose in each angle, every controller under every condition. A robot is stabilised
-//! if no link leans more than 45 deg and every joint stays within 10 deg of the pose over the last two seconds. The
-//! region is the largest spread of starts of which 95 % are stabilised. Every effect of the model acts in the simulation;
+//! Without a model, a line for each controller and each condition. With one: from each of
+//! `--robots` random starts at rest, within `--spread-deg` of the pose in each angle, every
+//! controller under every condition. A robot is stabilised if no link leans more than 45 deg and
+//! every joint stays within 10 deg of the pose over the last two seconds. The region is the largest
+//! spread of starts of which 95 % are stabilised. Every effect of the model acts in the simulation;
 //! the designs leave out those without a derivative.
 //!
-//! A controller knows the nominal model and what can be measured beforehand (sampling time, delay, nominal dead zone,
-//! limit, resolutions); it does not know a robot's own dead zone (within a fifth of 10 %), where its masses lie beside
-//! their lines (within 2 mm), or what they weigh (within 10 %), unless its description says so.
+//! A controller knows the nominal model and what can be measured beforehand (sampling time, delay,
+//! nominal dead zone, limit, resolutions); it does not know a robot's own dead zone (within a fifth
+//! of 10 %), where its masses lie beside their lines (within 2 mm), or what they weigh (within 10
+//! %), unless its description says so.
 //!
 //! ```console
 //! $ handstand controllers handstand.toml --robots 200 --condition all
 //! ```
 //!
-//! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of `controller`,
-//! `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
+//! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of
+//! `controller`, `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
+//! `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::talk::Talk;
 use super::{Outcome, input, show};

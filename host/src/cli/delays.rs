@@ -1,20 +1,25 @@
-//! `handstand delays MODEL`: the longest delay each controller tolerates, and whether the robot's is shorter.
+//! `handstand delays MODEL`: the longest delay each controller tolerates, and whether the robot's
+//! is shorter.
 //!
-//! Four figures for each controller, in ms. In the linear loop with the nominal plant: uncompensated, designed for a delay
-//! of one sample, and designed for each delay as it comes (compensated). In simulation: compensated, up to which delay 95 %
-//! of the robots are stabilised under `--condition` (all non-idealities at once). Every shorter delay of the search is
-//! tolerated too, except where a shortest one is given: designed for one sample, a controller may need that delay.
+//! Four figures for each controller, in ms. In the linear loop with the nominal plant:
+//! uncompensated, designed for a delay of one sample, and designed for each delay as it comes
+//! (compensated). In simulation: compensated, up to which delay 95 % of the robots are stabilised
+//! under `--condition` (all non-idealities at once). Every shorter delay of the search is tolerated
+//! too, except where a shortest one is given: designed for one sample, a controller may need that
+//! delay.
 //!
-//! Then the latency budget: the ways from sample to torque, what each takes with and without the servo's own dead time
-//! (17 to 50 ms), how many controllers are stable with that, and which stabilise the robots.
+//! Then the latency budget: the ways from sample to torque, what each takes with and without the
+//! servo's own dead time (17 to 50 ms), how many controllers are stable with that, and which
+//! stabilise the robots.
 //!
 //! ```console
 //! $ handstand delays handstand.toml --controller dlqr --controller best
 //! ```
 //!
-//! `--json` prints `controllers` (`controller`, `uncompensated`, `compensated_one_sample`, `compensated`, `stabilised`,
-//! each with `shortest_s`, `delay_s` and `open`) and `paths` (`path`, `bus_s`, `line_s`, `servo_s`, `total_s`, `stable`,
-//! `stabilised`: the compensated controllers that tolerate the total).
+//! `--json` prints `controllers` (`controller`, `uncompensated`, `compensated_one_sample`,
+//! `compensated`, `stabilised`, each with `shortest_s`, `delay_s` and `open`) and `paths` (`path`,
+//! `bus_s`, `line_s`, `servo_s`, `total_s`, `stable`, `stabilised`: the compensated controllers
+//! that tolerate the total).
 
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::talk::Talk;

@@ -1,14 +1,15 @@
 //! `handstand demo [-o DIR]`: the whole loop on a virtual bench, in under a minute.
 //!
-//! Hides an effect in a bench arm, judges its logs, compares, diagnoses, adds what was named, and opens the
-//! answer. Every step is a command line that could be typed; they go to stderr with what they say, the last
-//! table to stdout.
+//! Hides an effect in a bench arm, judges its logs, compares, diagnoses, adds what was named, and
+//! opens the answer. Every step is a command line that could be typed; they go to stderr with what
+//! they say, the last table to stdout.
 //!
 //! ```console
 //! $ handstand demo -o bench
 //! ```
 //!
-//! Without `-o` the folder is a new one among the system's temporary files; its place is said first.
+//! Without `-o` the folder is a new one among the system's temporary files; its place is said
+//! first.
 //!
 //! `--json` prints what `handstand challenge score --json` prints.
 

@@ -1,18 +1,21 @@
-//! `handstand diagnose MODEL LOG... [--holdout LOG]...`: which physical effect is missing from the model?
+//! `handstand diagnose MODEL LOG... [--holdout LOG]...`: which physical effect is missing from the
+//! model?
 //!
-//! Judges the logs first. Then every effect of the library that could act and be seen is tried, and what it
-//! gains on motions that took no part in the fit decides. Without `--holdout` the last third of the motions is
-//! held out; where there is but one motion, nothing can be said of new ones.
+//! Judges the logs first. Then every effect of the library that could act and be seen is tried, and
+//! what it gains on motions that took no part in the fit decides. Without `--holdout` the last
+//! third of the motions is held out; where there is but one motion, nothing can be said of new
+//! ones.
 //!
 //! ```console
 //! $ handstand diagnose arm.toml a.csv b.csv --holdout c.csv --report report.html
 //! ```
 //!
-//! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`) the closed loop is
-//! simulated too, of the model as it is and with the effects that were found.
+//! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
+//! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
-//! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for `unfit`, 0 for the
-//! others, which are answers. `--json` prints the diagnosis; its keys are in `docs/json.md`.
+//! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for
+//! `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
+//! `docs/json.md`.
 
 use super::page::{self, Page, PageFile};
 use super::talk::Talk;

@@ -1,15 +1,16 @@
 //! `handstand fit MODEL LOG... -o NEW.toml`: a model's free values, fitted to logs.
 //!
-//! Free are the values the model's `[fit]` names, or those that `--free` names instead. The new file is the old
-//! one with new values; comments and layout stay.
+//! Free are the values the model's `[fit]` names, or those that `--free` names instead. The new
+//! file is the old one with new values; comments and layout stay.
 //!
 //! ```console
 //! $ handstand fit arm.toml swing.csv --free coulomb@1.torque_nm -o fitted.toml
 //! ```
 //!
-//! Exit code 1, and no file, when the logs do not determine the values. `--json` prints `model` (the new file),
-//! `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error` (`before_rad`, `after_rad`,
-//! `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or `refused` and `blind`.
+//! Exit code 1, and no file, when the logs do not determine the values. `--json` prints `model`
+//! (the new file), `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error`
+//! (`before_rad`, `after_rad`, `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or
+//! `refused` and `blind`.
 
 use super::talk::Talk;
 use super::{Outcome, input, show};

@@ -5,14 +5,17 @@
 //! $ handstand flash handstand-firmware.bin --port /dev/ttyUSB0
 //! ```
 //!
-//! Press the CM-5's MODE button (reset) when asked. Size and checksum are compared with the boot loader's, what
-//! it says to `verify` is shown, and the application starts at every power-on from then on (`--no-app` leaves that out). The boot loader
-//! itself is never written. `--pace-us` slows the line down, `--dry-run` only checks the file.
+//! Press the CM-5's MODE button (reset) when asked. Size and checksum are compared with the boot
+//! loader's, what it says to `verify` is shown, and the application starts at every power-on from
+//! then on (`--no-app` leaves that out). The boot loader itself is never written. `--pace-us` slows
+//! the line down, `--dry-run` only checks the file.
 //!
-//! `--isp PROGRAMMER` goes through avrdude and the board's ISP pads instead. That erases the whole chip, the boot loader
-//! included: afterwards only a programmer can write it. It asks before, unless `--yes`.
+//! `--isp PROGRAMMER` goes through avrdude and the board's ISP pads instead. That erases the whole
+//! chip, the boot loader included: afterwards only a programmer can write it. It asks before,
+//! unless `--yes`.
 //!
-//! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with `--dry-run` or `--isp` `command` or less.
+//! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with
+//! `--dry-run` or `--isp` `command` or less.
 
 use super::Outcome;
 use super::interrupt::Interrupt;
@@ -84,7 +87,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     report(&image, Some(&said), !args.loader.no_app, talk)
 }
 
-/// Writes an image through the boot loader, and starts it now if `go`; what the loader says to `verify`.
+/// Writes an image through the boot loader, and starts it now if `go`; what the loader says to
+/// `verify`.
 ///
 /// # Errors
 /// It does not answer, or received something else.

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 /// How long models run.
 #[derive(Debug, clap::Args)]
 pub struct RunLength {
-    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable without it
+    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable
+    /// without it
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
 }
@@ -73,7 +74,8 @@ pub struct FitArgs {
 }
 
 impl FitArgs {
-    /// Reads the motions to fit and those to judge by; the new model's name is checked before that work.
+    /// Reads the motions to fit and those to judge by; the new model's name is checked before that
+    /// work.
     ///
     /// # Errors
     /// As [`vacant`] and [`motions`].
@@ -113,7 +115,8 @@ pub fn said(error: Error) -> String {
     }
 }
 
-/// Motions to learn from and motions to be judged by; none in `held_out` means that all are learned from.
+/// Motions to learn from and motions to be judged by; none in `held_out` means that all are learned
+/// from.
 ///
 /// # Errors
 /// Logs that cannot be read, or a motion in both.

@@ -1,5 +1,6 @@
-//! Ctrl-C: the first is asked for, not obeyed at once, so that servos can be let go in order. A second one ends the program
-//! at once; if servos may hold torque by then, the last thing on the line is that they let go.
+//! Ctrl-C: the first is asked for, not obeyed at once, so that servos can be let go in order. A
+//! second one ends the program at once; if servos may hold torque by then, the last thing on the
+//! line is that they let go.
 
 use handstand::link::record::EmergencyOff;
 use std::sync::atomic::{AtomicBool, Ordering};

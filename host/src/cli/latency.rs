@@ -1,13 +1,16 @@
-//! `handstand latency`: where the time between PC and servos goes, and whether it fits the sampling time.
+//! `handstand latency`: where the time between PC and servos goes, and whether it fits the sampling
+//! time.
 //!
-//! Without `--stream` it pings the servos, reads whole rounds, and splits a round trip into the PC's line, the servos' bus
-//! (return delay included), and the rest: adapter, USB, drivers. With `--stream` a CM-5 reads the servos itself: it
-//! splits the time from asking to answer into line and controller, and takes the controller's tick from its telemetry.
+//! Without `--stream` it pings the servos, reads whole rounds, and splits a round trip into the
+//! PC's line, the servos' bus (return delay included), and the rest: adapter, USB, drivers. With
+//! `--stream` a CM-5 reads the servos itself: it splits the time from asking to answer into line
+//! and controller, and takes the controller's tick from its telemetry.
 //!
-//! The verdict compares the slowest of 99 % of the rounds with `--period-ms`. Exit code 0: it fits, 1: it does not.
+//! The verdict compares the slowest of 99 % of the rounds with `--period-ms`. Exit code 0: it fits,
+//! 1: it does not.
 //!
-//! `--json` prints `round_trip_us`, `line_us`, `bus_us`, `rest_us`, `round_us`, `period_us`, `fits`, `missing`; each
-//! measured time with `min`, `median`, `p99`, `max`.
+//! `--json` prints `round_trip_us`, `line_us`, `bus_us`, `rest_us`, `round_us`, `period_us`,
+//! `fits`, `missing`; each measured time with `min`, `median`, `p99`, `max`.
 
 use super::robot::Robot;
 use super::talk::Talk;

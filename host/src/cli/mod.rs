@@ -1,8 +1,9 @@
 //! Commands, one per file; each file's head is the command's manual.
 //!
 //! stdout carries data, stderr messages. Exit codes: 0 done, 1 the answer is no (a log refused,
-//! values that cannot be determined, a loop that is not stabilised), 2 the request makes no sense, 3
-//! a file or its content is refused, 4 a device failed, 5 a drive was stopped for safety, 101 a bug.
+//! values that cannot be determined, a loop that is not stabilised), 2 the request makes no sense,
+//! 3 a file or its content is refused, 4 a device failed, 5 a drive was stopped for safety, 101 a
+//! bug.
 
 mod add;
 mod bus;

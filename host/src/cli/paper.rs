@@ -1,15 +1,17 @@
-//! `handstand paper [--report FILE.html]`: the paper's numbers, compared with those recomputed from its Table 1.
+//! `handstand paper [--report FILE.html]`: the paper's numbers, compared with those recomputed from
+//! its Table 1.
 //!
-//! Every number with its place, as printed, as computed, and whether they agree to the last printed digit; misprints
-//! are named. The report also redraws the paper's figures from our own simulation, each with whether its conclusion
-//! holds, and lists what the paper found with the command that shows it.
+//! Every number with its place, as printed, as computed, and whether they agree to the last printed
+//! digit; misprints are named. The report also redraws the paper's figures from our own simulation,
+//! each with whether its conclusion holds, and lists what the paper found with the command that
+//! shows it.
 //!
 //! ```console
 //! $ handstand paper --report paper.html
 //! ```
 //!
-//! Exit code 1 if a number neither agrees nor is a misprint. `--json` prints `rows` and `follows`; with `--findings` or
-//! `--report` also `figures` and `findings` (`docs/json.md`).
+//! Exit code 1 if a number neither agrees nor is a misprint. `--json` prints `rows` and `follows`;
+//! with `--findings` or `--report` also `figures` and `findings` (`docs/json.md`).
 
 use super::page::PageFile;
 use super::talk::Talk;

@@ -9,10 +9,12 @@ use std::path::PathBuf;
 /// Where the servos are.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Port {
-    /// Serial port, or `sim` for simulated servos, `sim-cm5` for a CM-5 before them; `sim:ids=1-3,drop=0.01` and the like
+    /// Serial port, or `sim` for simulated servos, `sim-cm5` for a CM-5 before them;
+    /// `sim:ids=1-3,drop=0.01` and the like
     #[arg(long)]
     port: Option<String>,
-    /// Speed: 57600 through a CM-5, 1000000 through an adapter on the servos' bus; simulated ports have their own
+    /// Speed: 57600 through a CM-5, 1000000 through an adapter on the servos' bus; simulated ports
+    /// have their own
     #[arg(long, value_name = "BAUD")]
     baud: Option<u32>,
     /// Write down all bytes that pass

@@ -5,12 +5,13 @@
 //! $ handstand record swing.csv --from swing.mcap
 //! ```
 //!
-//! Nothing is written to the servos. The file is brought to the disk twice a second: a crash, `kill -9` or a power cut costs
-//! at most the last second, and what was being written then is dropped when it is read. `--from` takes the samples from
-//! another recording: it turns one format into the other, and a torn file into a whole one. docs/record.md lists columns
-//! and topics.
+//! Nothing is written to the servos. The file is brought to the disk twice a second: a crash, `kill
+//! -9` or a power cut costs at most the last second, and what was being written then is dropped
+//! when it is read. `--from` takes the samples from another recording: it turns one format into the
+//! other, and a torn file into a whole one. docs/record.md lists columns and topics.
 //!
-//! `--json` prints `file`, `samples`, `seconds`, `rate_hz`, `missing` (answers that did not come), `torn` (with `--from`).
+//! `--json` prints `file`, `samples`, `seconds`, `rate_hz`, `missing` (answers that did not come),
+//! `torn` (with `--from`).
 
 use super::interrupt::Interrupt;
 use super::robot::Robot;

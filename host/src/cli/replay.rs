@@ -1,16 +1,17 @@
 //! `handstand replay MOTION.csv|MOTION.mcap`: the servos do again what a recording says.
 //!
-//! The recording's goals are followed, or its positions where it has no goals (a motion shown by hand). Torque goes on,
-//! the servos go to the first pose at 0.5 rad/s, then the motion runs at its own speed, and torque goes off; also after
-//! Ctrl-C and any error. It is stopped, with exit code 5, if a servo reports overload, overheating or a wrong supply, or
-//! if the CM-5 lets the robot down. It asks before it moves anything, unless `--yes`.
+//! The recording's goals are followed, or its positions where it has no goals (a motion shown by
+//! hand). Torque goes on, the servos go to the first pose at 0.5 rad/s, then the motion runs at its
+//! own speed, and torque goes off; also after Ctrl-C and any error. It is stopped, with exit code
+//! 5, if a servo reports overload, overheating or a wrong supply, or if the CM-5 lets the robot
+//! down. It asks before it moves anything, unless `--yes`.
 //!
 //! ```console
 //! $ handstand replay swing.mcap --record again.mcap --port /dev/ttyUSB0
 //! ```
 //!
-//! `--json` prints `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions
-//! recorded), `stopped` (why, or null).
+//! `--json` prints `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad`
+//! (to the positions recorded), `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;

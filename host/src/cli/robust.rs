@@ -1,16 +1,18 @@
 //! `handstand robust MODEL`: robustness of gains against wrong masses.
 //!
-//! Draws `--draws` robots, each mass evenly within `--masses` percent of the model's, each by itself; samples each and
-//! closes the loop with a gain made for the model: the paper's (Q = 100 I and Q = I, R = I), and one made for the
-//! model and the corners of its mass errors at once. Unstable is a robot whose loop has a spectral radius not below 1.
-//! The design sees no draw, so every seed is fresh.
+//! Draws `--draws` robots, each mass evenly within `--masses` percent of the model's, each by
+//! itself; samples each and closes the loop with a gain made for the model: the paper's (Q = 100 I
+//! and Q = I, R = I), and one made for the model and the corners of its mass errors at once.
+//! Unstable is a robot whose loop has a spectral radius not below 1. The design sees no draw, so
+//! every seed is fresh.
 //!
 //! ```console
 //! $ handstand robust handstand.toml
 //! ```
 //!
-//! Exit code 1 when the multi-model gain leaves more than 2 % unstable. `--json` prints a list of `gain`, `unstable`,
-//! `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable) and `k`, by rows.
+//! Exit code 1 when the multi-model gain leaves more than 2 % unstable. `--json` prints a list of
+//! `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable)
+//! and `k`, by rows.
 
 use super::talk::Talk;
 use super::{Outcome, input, show};

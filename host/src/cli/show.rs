@@ -25,7 +25,8 @@ pub fn wide_table() -> Table {
     table
 }
 
-/// A refitted model for people: its values, then its errors; `before` says which model left the error before.
+/// A refitted model for people: its values, then its errors; `before` says which model left the
+/// error before.
 pub fn refitted(refitted: &Refitted, before: &str) -> String {
     let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
     for value in &refitted.values {

@@ -1,8 +1,10 @@
-//! `handstand virtual --pty [WORDS]`: a serial port with simulated servos behind it, for any program.
+//! `handstand virtual --pty [WORDS]`: a serial port with simulated servos behind it, for any
+//! program.
 //!
-//! Without `--cm5` the port is an adapter on the servos' bus, as a USB2Dynamixel is; programs open it at the servos'
-//! speed, 1000000. With `--cm5` the firmware's own logic stands between: an adapter at 57600 at first, and all its
-//! modes when spoken to in frames. WORDS say which servos and what goes wrong: `ids=1-18,delay=0,drop=0.01,dead=3`.
+//! Without `--cm5` the port is an adapter on the servos' bus, as a USB2Dynamixel is; programs open
+//! it at the servos' speed, 1000000. With `--cm5` the firmware's own logic stands between: an
+//! adapter at 57600 at first, and all its modes when spoken to in frames. WORDS say which servos
+//! and what goes wrong: `ids=1-18,delay=0,drop=0.01,dead=3`.
 //!
 //! ```console
 //! $ handstand virtual --pty ids=1-3 &
@@ -10,10 +12,11 @@
 //! $ handstand bus scan --port /dev/pts/5 --baud 1000000
 //! ```
 //!
-//! `--robot MODEL.toml` hangs a robot on the servos: a chain of links whose driven joints are their shafts. It begins
-//! hanging at rest (`start=upright` among the words: standing); two driven joints hang on the servos 1 and 2, 11 and 12
-//! (`joints=1+2/11+12`). `--log FILE.csv` writes its true state a hundred times a second: `time_s`, each joint's
-//! `q1_rad`, `dq1_rad_s`, and where one is driven `goal2_rad`, `duty2`, `torque_on2`; `supply_v`.
+//! `--robot MODEL.toml` hangs a robot on the servos: a chain of links whose driven joints are their
+//! shafts. It begins hanging at rest (`start=upright` among the words: standing); two driven joints
+//! hang on the servos 1 and 2, 11 and 12 (`joints=1+2/11+12`). `--log FILE.csv` writes its true
+//! state a hundred times a second: `time_s`, each joint's `q1_rad`, `dq1_rad_s`, and where one is
+//! driven `goal2_rad`, `duty2`, `torque_on2`; `supply_v`.
 //!
 //! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`, `robot`.
 

@@ -1,6 +1,7 @@
 //! Conditions under which a model may fail, each in words and as a question to a sample's features.
 //!
-//! Adding one is an entry in [`CONDITIONS`]. A condition that always holds, or never, is never a finding.
+//! Adding one is an entry in [`CONDITIONS`]. A condition that always holds, or never, is never a
+//! finding.
 
 use super::sample_features::{STILL_SHARE, SampleFeatures};
 

@@ -20,8 +20,9 @@ const LEAST_ABOVE_FLOOR: f64 = 0.1;
 
 /// Conditions of all joints, those that hold most of the error beyond their share first.
 ///
-/// It says where the error shows. In a long run an error shows after its cause, where angles move fast or late in
-/// the motion; the shorter the horizon, the nearer the two are. `residuals` is `[joint][motion][sample]`, rad.
+/// It says where the error shows. In a long run an error shows after its cause, where angles move
+/// fast or late in the motion; the shorter the horizon, the nearer the two are. `residuals` is
+/// `[joint][motion][sample]`, rad.
 pub(super) fn failures(
     model: &Model,
     motions: &[Motion],

@@ -1,6 +1,7 @@
 //! Where a value stands among all.
 
-/// Value below which this share of the magnitudes lies; not a number without values or where it is zero.
+/// Value below which this share of the magnitudes lies; not a number without values or where it is
+/// zero.
 pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sizes: Vec<f64> = values
         .iter()
@@ -16,7 +17,8 @@ pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// Each value's place in the order of all, 0 to 1, equals sharing the middle; not a number where all are equal.
+/// Each value's place in the order of all, 0 to 1, equals sharing the middle; not a number where
+/// all are equal.
 pub(super) fn ranks(values: &[f64], magnitude: bool) -> Vec<f64> {
     let key = |i: &usize| {
         if magnitude {

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 /// Predicted angles, rad, `[motion][joint][sample]`, every window started from its node.
 ///
-/// Unlike the fit's residuals these are not capped, so an error counts in full however small the noise is. From
-/// where a prediction runs away to infinity its last finite value stands.
+/// Unlike the fit's residuals these are not capped, so an error counts in full however small the
+/// noise is. From where a prediction runs away to infinity its last finite value stands.
 pub(super) fn predicted(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Vec<Vec<f64>>> {
     (0..data.motions.len())
         .into_par_iter()

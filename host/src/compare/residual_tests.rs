@@ -1,6 +1,7 @@
 //! Whether what a model leaves is chance, or still follows from something: three tests at 99 %.
 //!
-//! Samples are counted, not timed. Motions stand end to end, but no product reaches across their borders.
+//! Samples are counted, not timed. Motions stand end to end, but no product reaches across their
+//! borders.
 
 use super::result::ResidualTest;
 use crate::log::Motion;
@@ -67,8 +68,9 @@ pub(crate) fn whiteness(residual: &[Vec<f64>]) -> ResidualTest {
 }
 
 /// Whether the residual is free of the input, now or up to 25 samples away: Ljung (1999), System
-/// Identification, 16.6. The band is for the largest correlation of all lags and allows for both signals' memory.
-/// None where the band admits any correlation: motions so slow that their samples hardly tell more than one.
+/// Identification, 16.6. The band is for the largest correlation of all lags and allows for both
+/// signals' memory. None where the band admits any correlation: motions so slow that their samples
+/// hardly tell more than one.
 pub(crate) fn independence(
     residual: &[Vec<f64>],
     cause: &[Vec<f64>],
@@ -86,8 +88,8 @@ pub(crate) fn independence(
     ))
 }
 
-/// Whether the residual's size is free of the input's: Billings & Voon (1986), Int. J. Control 44, 235-244.
-/// None as above.
+/// Whether the residual's size is free of the input's: Billings & Voon (1986), Int. J. Control 44,
+/// 235-244. None as above.
 pub(super) fn linearity(
     residual: &[Vec<f64>],
     cause: &[Vec<f64>],

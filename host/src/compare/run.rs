@@ -10,15 +10,16 @@ use crate::model::Model;
 
 /// Times without correction at which the error is told, s.
 const LADDER_S: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
-/// A window's start state is fitted to it; with fewer samples than this it would explain most of them.
+/// A window's start state is fitted to it; with fewer samples than this it would explain most of
+/// them.
 const LEAST_SAMPLES: f64 = 10.0;
 /// Most points of a drawn trace.
 const DRAWN: usize = 800;
 
 /// Compares a model as it is with measured motions; `name` stands for it in reports.
 ///
-/// Without a horizon the model runs freely over whole motions where a small start error does not swamp it, else
-/// over the longest windows that can bear it.
+/// Without a horizon the model runs freely over whole motions where a small start error does not
+/// swamp it, else over the longest windows that can bear it.
 pub fn compare(
     model: &Model,
     name: &str,
@@ -82,7 +83,8 @@ fn signal(data: &FitData, joint: usize, residual: &[Vec<f64>]) -> SignalError {
     }
 }
 
-/// Share of the mean squared error that the floor does not explain; 0 for a residual that is all noise.
+/// Share of the mean squared error that the floor does not explain; 0 for a residual that is all
+/// noise.
 fn share_above(rms: f64, floor: f64) -> f64 {
     if rms > floor {
         1.0 - (floor / rms).powi(2)
@@ -91,7 +93,8 @@ fn share_above(rms: f64, floor: f64) -> f64 {
     }
 }
 
-/// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; 0 where nothing moves and the model is wrong.
+/// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; 0 where nothing moves and the
+/// model is wrong.
 pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
     let values = || measured.iter().copied().flatten().filter(|y| y.is_finite());
     let mean = values().sum::<f64>() / values().count().max(1) as f64;

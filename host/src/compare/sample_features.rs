@@ -1,4 +1,5 @@
-//! Features of each sample of a joint's motion, on scales that need no units; conditions are made of them.
+//! Features of each sample of a joint's motion, on scales that need no units; conditions are made
+//! of them.
 
 use super::order::{quantile, ranks};
 use crate::log::Motion;
@@ -167,8 +168,8 @@ fn demand(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
     }
 }
 
-/// Change of the input from one sample to the next that counts as a jump: a tenth of its range, and three times
-/// what all but a tenth of the changes stay below, so that a fast sine has none.
+/// Change of the input from one sample to the next that counts as a jump: a tenth of its range, and
+/// three times what all but a tenth of the changes stay below, so that a fast sine has none.
 fn jump_size(motions: &[Motion], joint: usize) -> f64 {
     let inputs = || motions.iter().filter_map(|m| m.input[joint].as_ref());
     let steps: Vec<f64> = inputs()
@@ -188,7 +189,8 @@ fn jumps(motion: &Motion, joint: usize, size: f64) -> Vec<usize> {
         .collect()
 }
 
-/// Samples at which the speed passes zero on the way from one direction of real motion to the other.
+/// Samples at which the speed passes zero on the way from one direction of real motion to the
+/// other.
 fn reversals(speed: &[f64]) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut direction, mut crossed) = (0.0, 0);

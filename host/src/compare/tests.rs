@@ -58,7 +58,8 @@ fn motion(time_s: Vec<f64>, position_rad: Vec<f64>) -> Motion {
     }
 }
 
-/// The pendulum of the model file with this Coulomb friction, released at rest; semi-implicit Euler at 20 us.
+/// The pendulum of the model file with this Coulomb friction, released at rest; semi-implicit Euler
+/// at 20 us.
 fn swing(release_rad: f64, coulomb_nm: f64, samples: usize) -> Motion {
     let (mut angle, mut speed): (f64, f64) = (release_rad, 0.0);
     let inertia = 1e-3 + 0.5 * 0.2 * 0.2;
@@ -143,7 +144,8 @@ fn a_residual_with_the_square_of_the_input_is_nonlinear_not_dependent() {
 
 #[test]
 fn no_product_reaches_across_motions() {
-    // Each motion has one value at its end and one at its start: neighbours only if motions were joined.
+    // Each motion has one value at its end and one at its start: neighbours only if motions were
+    // joined.
     let one = |_| vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0];
     let many: Vec<Vec<f64>> = (0..30).map(one).collect();
     let joined = vec![many.concat()];

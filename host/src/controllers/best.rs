@@ -5,7 +5,8 @@ use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::Controller;
 
-/// LQG from angles and gyro, balance estimated, delay in the model, commands through the dead zone's inverse.
+/// LQG from angles and gyro, balance estimated, delay in the model, commands through the dead
+/// zone's inverse.
 #[derive(Debug)]
 pub struct Best;
 
@@ -28,7 +29,8 @@ impl Design for Best {
     }
 }
 
-/// Its settings: found by random search over 150 robots that start within 2.5 deg under everything at once, then rounded.
+/// Its settings: found by random search over 150 robots that start within 2.5 deg under everything
+/// at once, then rounded.
 pub(super) fn options() -> Options {
     Options {
         true_speeds: false,

@@ -1,15 +1,17 @@
 //! The inverse of a dead zone.
 //!
-//! Commands within the zone do nothing, so none is sent: a raw command below half of the least one that passes in every
-//! robot becomes 0, one above becomes that least command, and the difference is carried to the next sample. On average over a few samples the torque is the raw command: a first-order sigma-delta
-//! modulator, whose error lies at frequencies the robot's inertia swallows.
+//! Commands within the zone do nothing, so none is sent: a raw command below half of the least one
+//! that passes in every robot becomes 0, one above becomes that least command, and the difference
+//! is carried to the next sample. On average over a few samples the torque is the raw command: a
+//! first-order sigma-delta modulator, whose error lies at frequencies the robot's inertia swallows.
 
 use super::paper;
 use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
 
-/// Commands this much beyond the nominal zone pass every robot's own zone, which may differ by a fifth.
+/// Commands this much beyond the nominal zone pass every robot's own zone, which may differ by a
+/// fifth.
 const SURELY: f64 = 1.21;
 
 /// The drive as a controller believes it.
@@ -30,7 +32,8 @@ impl Drive {
         }
     }
 
-    /// The applied command for a raw one; the torque it gives is the same number. `carry` is the difference so far.
+    /// The applied command for a raw one; the torque it gives is the same number. `carry` is the
+    /// difference so far.
     #[inline]
     pub fn command(&self, raw_nm: f64, carry_nm: &mut f64) -> f64 {
         if self.least_nm == 0.0 {

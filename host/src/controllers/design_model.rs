@@ -1,4 +1,5 @@
-//! What a designer knows of the robot: its nominal model and what was measured beforehand, never the truth of a run.
+//! What a designer knows of the robot: its nominal model and what was measured beforehand, never
+//! the truth of a run.
 
 use super::ServoLag;
 use crate::error::Result;
@@ -15,7 +16,8 @@ pub struct DesignModel {
     pub model: Model,
     /// The pose that is held, in the model's own convention, rad.
     pub pose_rad: Vec<f64>,
-    /// The nominal plant, linear at the pose; its state is [angles, speeds], its inputs are torques, N m.
+    /// The nominal plant, linear at the pose; its state is [angles, speeds], its inputs are
+    /// torques, N m.
     pub plant: Continuous,
     /// Effects that the linear plant leaves out.
     pub omitted: Vec<OmittedEffect>,
@@ -44,8 +46,8 @@ pub struct DesignModel {
 }
 
 impl DesignModel {
-    /// What a designer knows from a model, its servos commanded in torque: masses and lengths, smooth effects
-    /// linearised, dead zone, delay and torque limit of its drives.
+    /// What a designer knows from a model, its servos commanded in torque: masses and lengths,
+    /// smooth effects linearised, dead zone, delay and torque limit of its drives.
     ///
     /// # Errors
     /// A pose that is no equilibrium, or nothing driven.

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::sim::closed_loop::Controller;
 use std::fmt;
 
-/// Where a controller has the speeds of the driven joints from. The arms' speed comes from the gyro.
+/// Where a controller has the speeds of the driven joints from. The arms' speed comes from the
+/// gyro.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Speeds {
     /// It is given the true ones, as in the paper's simulations. No servo measures them.
@@ -27,7 +28,8 @@ pub struct ControllerInfo {
     pub law: &'static str,
     /// Speeds of the driven joints.
     pub speeds: Speeds,
-    /// Whether it knows the angles at which the robot balances: the paper's angle compensation, known exactly.
+    /// Whether it knows the angles at which the robot balances: the paper's angle compensation,
+    /// known exactly.
     pub known_equilibrium: bool,
     /// Where the law comes from.
     pub reference: &'static str,

@@ -1,9 +1,9 @@
 //! The regulator with integrals of the driven joints' angles.
 //!
-//! With an unknown balance the arms must be free to lean; the driven joints are brought back to the pose by the sums
-//! of their angles, which stand still while a drive is at its limit. (An integral of all angles, or a washout of the
-//! offset, would have nothing to tell an offset from a fall: a plant with an odd number of unstable poles isn't
-//! stabilised through a stable washout.)
+//! With an unknown balance the arms must be free to lean; the driven joints are brought back to the
+//! pose by the sums of their angles, which stand still while a drive is at its limit. (An integral
+//! of all angles, or a washout of the offset, would have nothing to tell an offset from a fall: a
+//! plant with an odd number of unstable poles isn't stabilised through a stable washout.)
 
 use super::paper;
 use super::{ControllerInfo, Design, DesignModel, Speeds};

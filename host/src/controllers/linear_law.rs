@@ -1,7 +1,7 @@
 //! Any controller as a linear law about rest.
 //!
-//! Every controller here is linear about rest once its filter is stationary and nothing saturates. Its matrices are read
-//! off it by small deviations, so that what is judged is the code that runs.
+//! Every controller here is linear about rest once its filter is stationary and nothing saturates.
+//! Its matrices are read off it by small deviations, so that what is judged is the code that runs.
 
 use super::DesignModel;
 use crate::error::Result;

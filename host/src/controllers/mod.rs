@@ -1,7 +1,8 @@
 //! Control laws for the handstand, one file each, designed with what a designer can know.
 //!
-//! `design_model` (what is known) -> designs ([`DESIGNS`]) -> [`Controller`](crate::sim::closed_loop::Controller). The
-//! studies try them. Adding a controller is one file and one line in [`DESIGNS`].
+//! `design_model` (what is known) -> designs ([`DESIGNS`]) ->
+//! [`Controller`](crate::sim::closed_loop::Controller). The studies try them. Adding a controller
+//! is one file and one line in [`DESIGNS`].
 
 mod best;
 mod dead_zone;

@@ -1,7 +1,9 @@
-//! A law on an estimated state: a Kalman filter that starts from nothing, and what its owner knows of the drives.
+//! A law on an estimated state: a Kalman filter that starts from nothing, and what its owner knows
+//! of the drives.
 //!
-//! The filter's gains are computed beforehand, sample by sample from the first reading on, until they stand still.
-//! Rounding to a step counts as noise of step / sqrt(12) (Widrow, Kollar, Quantization Noise (2008)).
+//! The filter's gains are computed beforehand, sample by sample from the first reading on, until
+//! they stand still. Rounding to a step counts as noise of step / sqrt(12) (Widrow, Kollar,
+//! Quantization Noise (2008)).
 
 use super::DesignModel;
 use super::dead_zone::Drive;
@@ -15,11 +17,13 @@ use nalgebra::DMatrix;
 /// Samples after which the filter's gains stand still at the latest.
 const LONGEST_START: usize = 1000;
 
-/// Noise that is assumed of an exact angle, rad, and of an exact speed, rad/s: the model isn't exact.
+/// Noise that is assumed of an exact angle, rad, and of an exact speed, rad/s: the model isn't
+/// exact.
 const EXACT_RAD: f64 = 3e-4;
 const EXACT_RAD_S: f64 = 3e-3;
 
-/// What is assumed of the start: spread of angles, rad, of speeds, rad/s, and of the angles of balance, rad.
+/// What is assumed of the start: spread of angles, rad, of speeds, rad/s, and of the angles of
+/// balance, rad.
 const START_RAD: f64 = 0.05;
 const START_RAD_S: f64 = 0.05;
 const START_OFFSET_RAD: f64 = 0.03;
@@ -37,12 +41,13 @@ pub(super) struct Options {
     pub servo: bool,
     /// Whether commands pass the dead zone's inverse.
     pub inverse: bool,
-    /// Weights of the angles and of the speeds from the first joint on; joints beyond have the last one's. Torques
-    /// weigh 1.
+    /// Weights of the angles and of the speeds from the first joint on; joints beyond have the last
+    /// one's. Torques weigh 1.
     pub weights: [&'static [f64]; 2],
     /// Standard deviation of unknown torques, N m, from sample to sample.
     pub torque_noise_nm: f64,
-    /// Standard deviation of unknown changes of every speed, rad/s, from sample to sample: the model is not exact.
+    /// Standard deviation of unknown changes of every speed, rad/s, from sample to sample: the
+    /// model is not exact.
     pub speed_noise_rad_s: f64,
     /// Wander of the angles of balance in a sample, rad.
     pub offset_walk_rad: f64,
@@ -131,7 +136,8 @@ impl Observed {
     }
 }
 
-/// The law on the state without offsets, spread over the whole state: the offsets act as the angles' negatives.
+/// The law on the state without offsets, spread over the whole state: the offsets act as the
+/// angles' negatives.
 fn law(known: &DesignModel, options: &Options, parts: Parts) -> Result<Surface> {
     let without = plant(
         known,

@@ -5,7 +5,8 @@ use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::Controller;
 
-/// The paper's regulator about the angles of balance as they are observed; angles and true speeds are read.
+/// The paper's regulator about the angles of balance as they are observed; angles and true speeds
+/// are read.
 #[derive(Debug)]
 pub struct OffsetObserver;
 

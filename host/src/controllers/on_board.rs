@@ -1,9 +1,10 @@
-//! [`best`](super::best) as the CM-5 can run it: every reading with its own age, and one linear machine that updates an
-//! estimate from readings and the inputs that really went out.
+//! [`best`](super::best) as the CM-5 can run it: every reading with its own age, and one linear
+//! machine that updates an estimate from readings and the inputs that really went out.
 //!
-//! The CM-5 reads one servo after the other and computes at the end, so a reading is older than the moment of the law by what
-//! the others took. The filter is told: its output equation is that of the state `age` ago, x(t - age), which the state
-//! and the inputs since determine exactly. With s = [x, offsets, past inputs],
+//! The CM-5 reads one servo after the other and computes at the end, so a reading is older than the
+//! moment of the law by what the others took. The filter is told: its output equation is that of
+//! the state `age` ago, x(t - age), which the state and the inputs since determine exactly. With s
+//! = [x, offsets, past inputs],
 //!
 //! ```text
 //! innovation = y - C s        raw_command = -K (s + L innovation)        next = A (s + L innovation) + B applied
@@ -32,8 +33,8 @@ pub struct Timing {
     pub deviation: [f64; READINGS],
 }
 
-/// Deviation that stands for a reading that there is not, rad: without any, nothing would tell the first link's angle from its
-/// angle of balance, of which only the difference matters.
+/// Deviation that stands for a reading that there is not, rad: without any, nothing would tell the
+/// first link's angle from its angle of balance, of which only the difference matters.
 const NONE: f64 = 0.1;
 
 /// Deviation assumed of an exact angle, rad: that of its step and more, for the model is not exact.
@@ -44,17 +45,19 @@ const POSITION_RAD: f64 = Position::LSB_RAD * 0.288_675_134_594_812_9;
 const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
 
 impl Timing {
-    /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the last answer; measured by
-    /// `cargo xtask bench-firmware --only "age of readings"`. What is read first is oldest.
-    /// The host says the first link's attitude every period, as it hears a report. Its rate counts no more than a gyro's of
-    /// 10 deg/s: trusted more, what the linear model makes of one so old fells the robot from 2 deg.
+    /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the
+    /// last answer; measured by `cargo xtask bench-firmware --only "age of readings"`. What is read
+    /// first is oldest. The host says the first link's attitude every period, as it hears a report.
+    /// Its rate counts no more than a gyro's of 10 deg/s: trusted more, what the linear model makes
+    /// of one so old fells the robot from 2 deg.
     pub const HOST_ATTITUDE: Timing = Timing {
         effect_s: 0.8e-3,
         age_s: [8.7e-3, 4.1e-3, 1.8e-3, 8.7e-3],
         deviation: [EXACT_RAD, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
     };
 
-    /// The same with a gyro on the CM-5, read at the law's moment; nothing tells the first link's angle.
+    /// The same with a gyro on the CM-5, read at the law's moment; nothing tells the first link's
+    /// angle.
     pub const GYRO: Timing = Timing {
         age_s: [0.0, 4.1e-3, 1.8e-3, 0.1e-3],
         deviation: [f64::INFINITY, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
@@ -77,8 +80,8 @@ impl OnBoard {
     /// Designs filter and gains with the settings of `best`.
     ///
     /// # Errors
-    /// Robots of other than three joints, two of them driven; effects or readings later than three periods; plants that
-    /// cannot be held or are not seen.
+    /// Robots of other than three joints, two of them driven; effects or readings later than three
+    /// periods; plants that cannot be held or are not seen.
     pub fn new(known: &DesignModel, timing: &Timing) -> Result<OnBoard> {
         if (known.joints(), known.drives()) != (JOINTS, INPUTS) {
             return Err(Error::design(

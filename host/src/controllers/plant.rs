@@ -1,4 +1,5 @@
-//! The plant as the observers believe it: sampled, with late inputs, servos and the angles at which it balances.
+//! The plant as the observers believe it: sampled, with late inputs, servos and the angles at which
+//! it balances.
 
 use super::{DesignModel, ServoLag};
 use crate::error::Result;
@@ -8,7 +9,8 @@ use nalgebra::DMatrix;
 /// What of the robot is in the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Parts {
-    /// Unknown angles of balance, constant: eccentric masses shift the equilibrium, x' = A (x - [e, 0]) + B u.
+    /// Unknown angles of balance, constant: eccentric masses shift the equilibrium, x' = A (x - [e,
+    /// 0]) + B u.
     pub offsets: bool,
     /// The inputs' delay.
     pub delay: bool,

@@ -52,7 +52,8 @@ impl MultiModel {
         multi_model_continuation(spread, STAGES, &q, &DMatrix::identity(m, m))
     }
 
-    /// The model itself, then every combination of lightest and heaviest links, at `part` of the errors.
+    /// The model itself, then every combination of lightest and heaviest links, at `part` of the
+    /// errors.
     fn corners(&self, model: &DesignModel, part: f64) -> Result<Vec<Discrete>> {
         let n = model.model.link_count();
         // All corners would be too many for long chains: links ten apart err alike.

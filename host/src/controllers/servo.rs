@@ -5,7 +5,8 @@ use super::{ControllerInfo, Design, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement};
 
-/// A servo's answer to a command, sampled: y(k) = sum b_i u(k-i) - sum a_i y(k-i), of gain 1 at rest.
+/// A servo's answer to a command, sampled: y(k) = sum b_i u(k-i) - sum a_i y(k-i), of gain 1 at
+/// rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoLag {
     /// b_1.
@@ -15,8 +16,9 @@ pub struct ServoLag {
 }
 
 impl ServoLag {
-    /// The paper's equation 2, 0.06217 z / (z^2 - 1.469 z + 0.5544) at 10 ms, scaled to gain 1: from commanded to
-    /// effective torque as from commanded to actual speed. Its pole pair lies at 34 ms.
+    /// The paper's equation 2, 0.06217 z / (z^2 - 1.469 z + 0.5544) at 10 ms, scaled to gain 1:
+    /// from commanded to effective torque as from commanded to actual speed. Its pole pair lies at
+    /// 34 ms.
     pub const PAPER: ServoLag = ServoLag {
         b: 1.0 - 1.469 + 0.5544,
         a: [-1.469, 0.5544],

@@ -46,7 +46,8 @@ pub struct Board {
 }
 
 impl Board {
-    /// The Bioloid humanoid: shoulders 1 and 2, hips 11 and 12, 2 N m, 8 % dead zone, attitude from the host.
+    /// The Bioloid humanoid: shoulders 1 and 2, hips 11 and 12, 2 N m, 8 % dead zone, attitude from
+    /// the host.
     pub const BIOLOID: Board = Board {
         period_s: 0.01,
         servos: [
@@ -112,7 +113,8 @@ impl Board {
         let servo = self.servos[place];
         let steps = |torque_nm: f64| (torque_nm / input_step_nm).round().min(WORD) as i16;
         let codes = (self.dead_zone * 1023.0).round() as u16;
-        // Behind the dead zone the rest of the range makes the whole torque, or torque is proportional to the command.
+        // Behind the dead zone the rest of the range makes the whole torque, or torque is
+        // proportional to the command.
         let (dead, least, span) = match self.starts_at_zero {
             true => (codes, 0, 1023 - codes),
             false => (0, steps(MARGIN * self.dead_zone * self.full_nm), 1023),
@@ -141,7 +143,8 @@ impl Board {
     }
 }
 
-/// A command this many times the nominal dead zone passes every robot's own, which may differ by a fifth.
+/// A command this many times the nominal dead zone passes every robot's own, which may differ by a
+/// fifth.
 const MARGIN: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.

@@ -1,7 +1,8 @@
 //! Deploy a designed law to the CM-5: make its plan, upload it, read it back, verify it.
 //!
-//! [`plan`] makes the board's plan from a design: gains on the measured state ([`state_design`]), or the observer-based law.
-//! [`upload`] and [`verify`] transfer it, [`replay`] compares the firmware's law with wide integers.
+//! [`plan`] makes the board's plan from a design: gains on the measured state ([`state_design`]),
+//! or the observer-based law. [`upload`] and [`verify`] transfer it, [`replay`] compares the
+//! firmware's law with wide integers.
 
 mod board;
 mod observer;

@@ -1,7 +1,8 @@
 //! Quantise the observer-based law to the board's fixed point.
 //!
-//! Steps are such that rounding lies far below what the sensors round: estimated angles in 1/128 of a position code or half a
-//! step of attitude, speeds in 5e-4 rad/s, equilibrium angles four times as fine as angles, torques in 2^-13 N m.
+//! Steps are such that rounding lies far below what the sensors round: estimated angles in 1/128 of
+//! a position code or half a step of attitude, speeds in 5e-4 rad/s, equilibrium angles four times
+//! as fine as angles, torques in 2^-13 N m.
 
 use crate::controllers::OnBoard;
 use crate::error::{Error, Result};
@@ -19,7 +20,8 @@ pub(super) const INPUT_STEP_NM: f64 = 1.0 / 8192.0;
 /// See [`Observer`].
 const READING_PLACES: [u8; READINGS] = [1, 2, 2, 1];
 const BALANCE_PLACES: [u8; JOINTS] = [3, 4, 4];
-/// Largest estimate or reading in steps: a little below 16 bits, that rounding a range does not exceed them.
+/// Largest estimate or reading in steps: a little below 16 bits, that rounding a range does not
+/// exceed them.
 pub(super) const WORD: f64 = 32_766.0;
 
 /// SI value of one step of each word of the observer's state.

@@ -7,7 +7,8 @@ use handstand_shared::plan::Law;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-/// Compute every table of the law at `states` random states drawn from `seed`; `progress` gets the number so far.
+/// Compute every table of the law at `states` random states drawn from `seed`; `progress` gets the
+/// number so far.
 ///
 /// # Errors
 /// A bit differs.
@@ -44,7 +45,8 @@ fn same<const M: usize, const N: usize>(
     ))
 }
 
-/// u = sat((bias - K (x - x0)) / 2^shift), rounded down: the bias has the half that makes that rounding.
+/// u = sat((bias - K (x - x0)) / 2^shift), rounded down: the bias has the half that makes that
+/// rounding.
 fn wide<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i64; M] {
     std::array::from_fn(|i| {
         let row = &table.rows[i];

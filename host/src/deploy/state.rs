@@ -20,12 +20,14 @@ const VELOCITY: Velocity = Velocity {
     share: 128,
 };
 
-/// Design as `request` asks, in the firmware's steps and with the operating point relative to upright.
+/// Design as `request` asks, in the firmware's steps and with the operating point relative to
+/// upright.
 ///
 /// Input steps that are too coarse for a plan are made finer.
 ///
 /// # Errors
-/// As [`Design::of`]; state steps in `request`, which the firmware sets; continuous time; absolute angles.
+/// As [`Design::of`]; state steps in `request`, which the firmware sets; continuous time; absolute
+/// angles.
 pub fn state_design(model: &Model, mut request: Request, board: &Board) -> Result<Design> {
     if request.format.state_step.is_some() {
         return Err(Error::usage(
@@ -81,7 +83,8 @@ fn measured_steps(period_s: f64) -> Vec<f64> {
     vec![angle, position, position, rate, speed, speed]
 }
 
-/// A step of the inputs that a plan can convert to commands, N m, if those of this design are too coarse.
+/// A step of the inputs that a plan can convert to commands, N m, if those of this design are too
+/// coarse.
 fn finer_step_nm(design: &Design, board: &Board) -> Option<f64> {
     let law = &design.fixed.as_ref()?.law;
     // A plan holds commands per step in 16 bits behind the point.

@@ -5,7 +5,8 @@ use crate::link::{SerialLink, Session};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{Command, PLAN_CHUNK, Report};
 
-/// Upload a plan's bytes; returns when the CM-5 has them in EEPROM. `progress` gets the number of bytes sent so far.
+/// Upload a plan's bytes; returns when the CM-5 has them in EEPROM. `progress` gets the number of
+/// bytes sent so far.
 ///
 /// # Errors
 /// The CM-5 does not answer or refuses.

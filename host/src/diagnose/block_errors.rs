@@ -1,4 +1,5 @@
-//! Errors summed in blocks of time, so that their uncertainty can be estimated by resampling the blocks.
+//! Errors summed in blocks of time, so that their uncertainty can be estimated by resampling the
+//! blocks.
 
 use crate::fitting::{FitData, Residuals};
 use rand::{Rng, SeedableRng};
@@ -91,7 +92,8 @@ impl BlockErrors {
     }
 }
 
-/// 95 % interval of a statistic of paired blocks by bootstrap: `statistic` gets the two sums of a resample.
+/// 95 % interval of a statistic of paired blocks by bootstrap: `statistic` gets the two sums of a
+/// resample.
 pub(super) fn bootstrap(
     a: &BlockErrors,
     b: &BlockErrors,
@@ -125,7 +127,8 @@ pub(super) fn reduction(before: &BlockErrors, after: &BlockErrors, seed: u64) ->
     })
 }
 
-/// Whether `worse` is significantly worse than `better`: the lower 95 % limit of the difference is above zero.
+/// Whether `worse` is significantly worse than `better`: the lower 95 % limit of the difference is
+/// above zero.
 pub(super) fn significantly_worse(worse: &BlockErrors, better: &BlockErrors, seed: u64) -> bool {
     bootstrap(worse, better, seed, |worse, better| worse - better)[0] > 0.0
 }

@@ -5,8 +5,8 @@ use crate::fitting::Candidate;
 use crate::log::Motion;
 use crate::model::{Drive, Model};
 
-/// Every effect at every place where it can act on this model and be seen in these motions, except those the
-/// model holds and those named in `without`.
+/// Every effect at every place where it can act on this model and be seen in these motions, except
+/// those the model holds and those named in `without`.
 pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for &effect in EFFECTS
@@ -29,8 +29,8 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
     found
 }
 
-/// Whether an effect of this scope may act at a joint: on a driven joint only if its drive does something in these
-/// motions.
+/// Whether an effect of this scope may act at a joint: on a driven joint only if its drive does
+/// something in these motions.
 fn suits(scope: Scope, model: &Model, motions: &[Motion], joint: usize) -> bool {
     let drive = &model.joints[joint].drive;
     let varies = |input: &Vec<f64>| input.iter().any(|x| *x != input[0]);

@@ -1,8 +1,9 @@
 //! Whether the values an explanation needs are the same in every motion.
 //!
-//! An effect that stands in for another often fits each motion by itself, and only with another value each time:
-//! a wrong torque for a wrong mass, until a payload is bolted on. A law holds in all motions at once (Chow 1960,
-//! Econometrica 28, 591; invariance across conditions: Peters, Buehlmann & Meinshausen 2016, JRSS B 78, 947).
+//! An effect that stands in for another often fits each motion by itself, and only with another
+//! value each time: a wrong torque for a wrong mass, until a payload is bolted on. A law holds in
+//! all motions at once (Chow 1960, Econometrica 28, 591; invariance across conditions: Peters,
+//! Buehlmann & Meinshausen 2016, JRSS B 78, 947).
 
 use super::block_errors::AT_NOISE_FLOOR;
 use super::hypothesis::Hypothesis;
@@ -12,8 +13,9 @@ use rayon::prelude::*;
 /// Iterations of a motion's own fit, from the values found for all.
 const ITERATIONS: usize = 8;
 
-/// Share of the squared error above the noise, on the training motions, that goes when every motion has values of
-/// its own; `None` with fewer than two motions, and where nothing is left above the noise.
+/// Share of the squared error above the noise, on the training motions, that goes when every motion
+/// has values of its own; `None` with fewer than two motions, and where nothing is left above the
+/// noise.
 pub(super) fn per_motion_reduction(hypothesis: &Hypothesis, training: &FitData) -> Option<f64> {
     let evaluation = hypothesis.evaluation.as_ref()?;
     if training.motions.len() < 2 || evaluation.training.rms() < AT_NOISE_FLOOR {

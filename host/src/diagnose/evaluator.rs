@@ -1,5 +1,5 @@
-//! What every hypothesis is fitted to and judged by: the motions cut for the search and for the evaluation, the base
-//! model fitted, the candidates.
+//! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
+//! evaluation, the base model fitted, the candidates.
 
 use super::block_errors::AT_NOISE_FLOOR;
 use super::budget::{FEW_SAMPLES, FINISH, planned_steps};
@@ -100,11 +100,11 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// What a hypothesis leaves to explain: in short windows or over the evaluation horizon, whichever shows more with
-    /// certainty.
+    /// What a hypothesis leaves to explain: in short windows or over the evaluation horizon,
+    /// whichever shows more with certainty.
     ///
-    /// A large structure is best seen in windows, over which the simulation can be taken for linear; a small one
-    /// shows only over the longer horizon.
+    /// A large structure is best seen in windows, over which the simulation can be taken for
+    /// linear; a small one shows only over the longer horizon.
     pub fn residual_structure(&self, hypothesis: &Hypothesis) -> Option<ResidualStructure> {
         let held_out = self.held_out.as_ref()?;
         let unseen = held_out.recut(self.search_horizon);
@@ -122,9 +122,10 @@ impl<'a> Evaluator<'a> {
         evaluation.is_some_and(Evaluation::is_noise)
     }
 
-    /// Shortens the evaluation horizon while the best hypothesis, which explains every short window of the training
-    /// motions, does not follow them over the whole horizon: an arm that sticks a sample sooner or later takes another
-    /// way, and no model predicts that from the start of the run.
+    /// Shortens the evaluation horizon while the best hypothesis, which explains every short window
+    /// of the training motions, does not follow them over the whole horizon: an arm that sticks a
+    /// sample sooner or later takes another way, and no model predicts that from the start of the
+    /// run.
     pub fn shorten(&mut self, best: &mut Hypothesis) {
         if !best.follows_windows() {
             return;
@@ -170,7 +171,8 @@ impl<'a> Evaluator<'a> {
         hypothesis.evaluate(&self.training, self.held_out.as_ref(), EVALUATE);
     }
 
-    /// Few samples and nothing held out: simulations are cheap, and a single motion has more false valleys.
+    /// Few samples and nothing held out: simulations are cheap, and a single motion has more false
+    /// valleys.
     pub fn small(&self) -> bool {
         self.held_out.is_none() && self.search.samples() < FEW_SAMPLES
     }

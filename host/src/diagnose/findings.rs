@@ -53,7 +53,8 @@ pub struct RuledOut {
     pub training_error_rad: f64,
     /// Error it leaves on held-out motions, rad, where it came that far.
     pub held_out_error_rad: Option<f64>,
-    /// PredictionChange of the Bayesian information criterion against the base model; negative is better.
+    /// PredictionChange of the Bayesian information criterion against the base model; negative is
+    /// better.
     pub bic_change: f64,
     /// Why it was not chosen, in words.
     pub why: String,
@@ -88,7 +89,8 @@ pub struct MotionError {
 pub struct Diagnosis {
     /// The verdict.
     pub verdict: Verdict,
-    /// Effects that are missing: all of them when named, the best set when ambiguous, a partial set when unexplained.
+    /// Effects that are missing: all of them when named, the best set when ambiguous, a partial set
+    /// when unexplained.
     pub effects: Vec<FittedEffect>,
     /// Error of the refitted base model, with the effects added, and of a perfect model.
     pub error: ErrorReduction,

@@ -7,8 +7,8 @@ use crate::model::Model;
 /// Windows to search on, s.
 const SEARCH_S: f64 = 1.0;
 
-/// Short windows to search on: a second, or what holds forty samples; never longer than the plant is stable.
-/// Few samples are searched from many starts instead, over the horizon that counts.
+/// Short windows to search on: a second, or what holds forty samples; never longer than the plant
+/// is stable. Few samples are searched from many starts instead, over the horizon that counts.
 pub(super) fn search_horizon(whole: &FitData, longest: Horizon, few: bool) -> Horizon {
     let samples: usize = whole.motions.iter().map(Motion::len).sum();
     let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
@@ -23,8 +23,9 @@ pub(super) fn search_horizon(whole: &FitData, longest: Horizon, few: bool) -> Ho
     )
 }
 
-/// The longest windows over which the base model, as fitted on short ones, still follows the measurement: longer
-/// ones show more of a small effect, but where the simulation has lost the motion altogether they show nothing.
+/// The longest windows over which the base model, as fitted on short ones, still follows the
+/// measurement: longer ones show more of a small effect, but where the simulation has lost the
+/// motion altogether they show nothing.
 pub(super) fn longest_useful(
     model: &Model,
     whole: &FitData,

@@ -6,8 +6,8 @@ use std::cmp::Ordering;
 
 /// A fitted set of effects.
 ///
-/// It is searched on short windows, where the squared error has few false valleys, and evaluated over the longest
-/// useful horizon, where small effects show most.
+/// It is searched on short windows, where the squared error has few false valleys, and evaluated
+/// over the longest useful horizon, where small effects show most.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
     /// The effects added to the base, in the order they were added.
@@ -81,7 +81,8 @@ impl Hypothesis {
         set
     }
 
-    /// Adds an effect at these values and refits everything on short windows, for at most `iterations`.
+    /// Adds an effect at these values and refits everything on short windows, for at most
+    /// `iterations`.
     pub fn with(
         &self,
         candidate: Candidate,
@@ -163,7 +164,8 @@ impl Hypothesis {
         self.deciding().map_or(f64::INFINITY, BlockErrors::rms_rad)
     }
 
-    /// Root-mean-square error on the training motions, rad: over the evaluation horizon where it came that far.
+    /// Root-mean-square error on the training motions, rad: over the evaluation horizon where it
+    /// came that far.
     pub fn training_rms_rad(&self, search: &FitData) -> f64 {
         match &self.evaluation {
             Some(evaluation) => evaluation.training.rms_rad(),
@@ -184,7 +186,8 @@ impl Hypothesis {
         self.evaluation.as_ref().map_or(&self.search, |e| &e.fit)
     }
 
-    /// Whether an added effect has a value at the edge of the possible: it vanishes there, or stands in for another.
+    /// Whether an added effect has a value at the edge of the possible: it vanishes there, or
+    /// stands in for another.
     pub fn rests_on_bound(&self) -> bool {
         let on_bound = self.fit().on_bound();
         let added = on_bound.len() - self.added_values();
@@ -192,7 +195,8 @@ impl Hypothesis {
     }
 }
 
-/// Whether every effect of the set, the last ones freed, has a value whose interval leaves out where it vanishes.
+/// Whether every effect of the set, the last ones freed, has a value whose interval leaves out
+/// where it vanishes.
 fn significant(set: &[Candidate], fit: &Fit, data: &FitData) -> bool {
     let Some((intervals, _)) = intervals(fit, data) else {
         return set.is_empty();

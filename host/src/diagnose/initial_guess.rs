@@ -1,4 +1,5 @@
-//! Where to start the fit of a candidate: the values that promise most, found by one simulation each.
+//! Where to start the fit of a candidate: the values that promise most, found by one simulation
+//! each.
 
 use crate::fitting::{Candidate, Fit, FitData, Node, Projector, residuals};
 use crate::model::Model;
@@ -65,7 +66,8 @@ fn simulated(
         .collect()
 }
 
-/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have smaller effects.
+/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have
+/// smaller effects.
 fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
     let parameters = candidate.parameters().iter().zip(start);
     let small = parameters.map(|(parameter, value)| match parameter.off {
@@ -75,7 +77,8 @@ fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
     small.collect()
 }
 
-/// A fitted model's residual without what its own values can imitate: what candidates are to explain.
+/// A fitted model's residual without what its own values can imitate: what candidates are to
+/// explain.
 pub(super) struct ProjectedResidual<'a> {
     projector: Projector<'a>,
     residual: Vec<Vec<f64>>,
@@ -92,8 +95,8 @@ impl<'a> ProjectedResidual<'a> {
 
     /// The best starts of a candidate, best first, one for each shape.
     ///
-    /// What each changes in the prediction is projected off what the fitted values could imitate; the rest is scaled
-    /// to fit the residual, and the squared error it would remove is its gain.
+    /// What each changes in the prediction is projected off what the fitted values could imitate;
+    /// the rest is scaled to fit the residual, and the squared error it would remove is its gain.
     pub fn guesses<'c>(
         &self,
         changes: impl IntoIterator<Item = &'c PredictionChange>,
@@ -161,7 +164,8 @@ fn signed_shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
     shape(candidate, values).into_iter().chain(sides).collect()
 }
 
-/// How the prediction changes, weighted, when an effect is added: residual before minus residual after.
+/// How the prediction changes, weighted, when an effect is added: residual before minus residual
+/// after.
 pub(super) fn change(
     model: &Model,
     candidate: Candidate,

@@ -1,4 +1,5 @@
-//! Which physical effect is missing: which candidates mend the model, what may be claimed, and in which words.
+//! Which physical effect is missing: which candidates mend the model, what may be claimed, and in
+//! which words.
 
 mod block_errors;
 mod budget;

@@ -20,7 +20,8 @@ pub(super) fn base_fit(model: &Model, data: &FitData, few: bool, seed: u64) -> F
     best.unwrap_or_else(|| fitted(model))
 }
 
-/// The model with every free value that can't be negative multiplied by a random factor up to about three either way.
+/// The model with every free value that can't be negative multiplied by a random factor up to about
+/// three either way.
 pub(super) fn scattered(model: &Model, free: &[ParameterPath], random: &mut ChaCha8Rng) -> Model {
     let mut scattered = model.clone();
     for path in free {

@@ -1,8 +1,10 @@
-//! How much a right term, still unknown, could gain after the best explanation: the structure of the residual.
+//! How much a right term, still unknown, could gain after the best explanation: the structure of
+//! the residual.
 //!
-//! A sum of free-form probes (bumps of torque in speed, in angle, in drive torque; shifts in time; bumps of the
-//! reading ...) is fitted to what is left of the training motions by ridge regression on the linearised
-//! simulation, and judged on the held-out ones. What it gains there is structure, not noise.
+//! A sum of free-form probes (bumps of torque in speed, in angle, in drive torque; shifts in time;
+//! bumps of the reading ...) is fitted to what is left of the training motions by ridge regression
+//! on the linearised simulation, and judged on the held-out ones. What it gains there is structure,
+//! not noise.
 
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors, bootstrap};
 use super::findings::ResidualStructure;
@@ -87,8 +89,8 @@ fn keep<T>(items: &mut Vec<T>, kept: &[bool]) {
     items.retain(|_| *at.next().unwrap_or(&false));
 }
 
-/// Which terms act on the training motions about as much as on the others of their kind and on the held-out
-/// motions: what training hardly shows can't be carried over.
+/// Which terms act on the training motions about as much as on the others of their kind and on the
+/// held-out motions: what training hardly shows can't be carried over.
 fn comparable(terms: &[Term], seen: &[DVector<f64>], unseen: &[DVector<f64>]) -> Vec<bool> {
     let strength = |column: &DVector<f64>| column.norm() / (column.len().max(1) as f64).sqrt();
     let is_comparable = |(i, term): (usize, &Term)| {

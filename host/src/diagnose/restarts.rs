@@ -1,4 +1,5 @@
-//! Fits of candidates from other starts, where false valleys are many: few samples, or a law that jumps.
+//! Fits of candidates from other starts, where false valleys are many: few samples, or a law that
+//! jumps.
 
 use super::budget::{FINISH, START_ITERATIONS, STARTS};
 use super::evaluator::Evaluator;
@@ -32,8 +33,9 @@ impl Evaluator<'_> {
         fits.collect()
     }
 
-    /// Fits candidates whose law jumps from the values the model came with, and from each of the effect's start values:
-    /// what is missing has bent the base values, and a fit that starts from them may end in a false valley.
+    /// Fits candidates whose law jumps from the values the model came with, and from each of the
+    /// effect's start values: what is missing has bent the base values, and a fit that starts from
+    /// them may end in a false valley.
     pub fn restart_jumping(&self, hypotheses: &mut [Hypothesis]) {
         let alone = |h: &&mut Hypothesis| h.set.len() == 1 && h.set[0].jumps();
         let jumping: Vec<&mut Hypothesis> = hypotheses.iter_mut().filter(alone).collect();

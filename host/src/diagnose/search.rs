@@ -1,8 +1,10 @@
-//! The search: every candidate alone, then pairs and swaps around the best, then larger sets while they pay.
+//! The search: every candidate alone, then pairs and swaps around the best, then larger sets while
+//! they pay.
 //!
-//! A forward-greedy search stops where no single effect helps although two together would; so sets grow from
-//! a beam of several, not from one, and members of the best set are swapped. Within a size, successive halving
-//! spends the iterations: all get a look, many a second, few are fitted to the end.
+//! A forward-greedy search stops where no single effect helps although two together would; so sets
+//! grow from a beam of several, not from one, and members of the best set are swapped. Within a
+//! size, successive halving spends the iterations: all get a look, many a second, few are fitted to
+//! the end.
 
 use super::budget::{
     BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, PARTNERS, SECOND_LOOKS,
@@ -28,8 +30,8 @@ const WORTH: f64 = 0.05;
 
 /// Searches for the effects a model is missing.
 ///
-/// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training motions
-/// decide, and the diagnosis says so.
+/// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training
+/// motions decide, and the diagnosis says so.
 pub fn diagnose(
     model: &Model,
     training: Vec<Motion>,
@@ -94,7 +96,8 @@ impl Evaluator<'_> {
             sizes.push(larger);
             match better {
                 Some(better) => best = Some(better),
-                // Nothing gained by one more: two more may still, but only from a start without any.
+                // Nothing gained by one more: two more may still, but only from a start without
+                // any.
                 None if best.is_some() || size > 2 => break,
                 None => {}
             }
@@ -116,8 +119,8 @@ impl Evaluator<'_> {
         self.evaluated(hypotheses)
     }
 
-    /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most `starts`; the
-    /// better one counts. `changes` are those of each candidate.
+    /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most
+    /// `starts`; the better one counts. `changes` are those of each candidate.
     fn first_look(
         &self,
         from: &Hypothesis,
@@ -151,7 +154,8 @@ impl Evaluator<'_> {
         from.with(guess.candidate, &guess.values, &self.search, LOOK)
     }
 
-    /// Sorts hypotheses by training error and fits the best to the end: many get a second look, few go on.
+    /// Sorts hypotheses by training error and fits the best to the end: many get a second look, few
+    /// go on.
     fn successive_halving(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
         let rounds = [
             (SECOND_LOOKS, FitOptions::iterations(LOOK).rough()),
@@ -179,7 +183,8 @@ impl Evaluator<'_> {
         hypotheses
     }
 
-    /// Larger sets: partners for each set of the beam, chosen by what they would gain, then swaps in the best.
+    /// Larger sets: partners for each set of the beam, chosen by what they would gain, then swaps
+    /// in the best.
     fn grow(&self, beam: &[Hypothesis]) -> Vec<Hypothesis> {
         let mut tried: Vec<Hypothesis> = Vec::new();
         for from in beam.iter().take(BEAM) {
@@ -197,8 +202,8 @@ impl Evaluator<'_> {
 
     /// The most promising guesses on top of a hypothesis that make a set not yet tried.
     ///
-    /// Which candidates promise most shows in what they change in the base model's prediction; only those are
-    /// simulated on top of the hypothesis.
+    /// Which candidates promise most shows in what they change in the base model's prediction; only
+    /// those are simulated on top of the hypothesis.
     fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
         let residual = ProjectedResidual::new(&from.search);
         let is_new = |changes: &&Vec<PredictionChange>| {

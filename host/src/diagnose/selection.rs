@@ -6,7 +6,8 @@ use super::hypothesis::Hypothesis;
 use crate::fitting::Fit;
 
 impl Evaluator<'_> {
-    /// The best hypothesis that is significantly and usefully better than `reference` where it counts.
+    /// The best hypothesis that is significantly and usefully better than `reference` where it
+    /// counts.
     ///
     /// Among hypotheses that nothing tells apart, the one with the fewest values.
     pub fn accepted<'a>(
@@ -43,11 +44,12 @@ impl Evaluator<'_> {
             && self.bic_change(reference, hypothesis) < -10.0
     }
 
-    /// Whether the data tell that `hypothesis` is worse than `best`; `reference` is what both improve on.
+    /// Whether the data tell that `hypothesis` is worse than `best`; `reference` is what both
+    /// improve on.
     ///
-    /// At the noise floor a significant difference counts however small. Above it, something else is missing too and
-    /// bends every candidate, so a difference decides nothing that is smaller than what remains unexplained and
-    /// than a tenth of what was gained.
+    /// At the noise floor a significant difference counts however small. Above it, something else
+    /// is missing too and bends every candidate, so a difference decides nothing that is smaller
+    /// than what remains unexplained and than a tenth of what was gained.
     pub fn clearly_worse(
         &self,
         hypothesis: &Hypothesis,
@@ -68,7 +70,8 @@ impl Evaluator<'_> {
         significant && worse.mean() - better.mean() > unexplained.min(0.1 * gained)
     }
 
-    /// Change of the Bayesian information criterion on the training motions; correlated residuals count fewer.
+    /// Change of the Bayesian information criterion on the training motions; correlated residuals
+    /// count fewer.
     pub fn bic_change(&self, reference: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
         let values = hypothesis.search.free.len() as f64 - reference.search.free.len() as f64;
         let (n, ratio) = match (&reference.evaluation, &hypothesis.evaluation) {

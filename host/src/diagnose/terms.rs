@@ -1,4 +1,5 @@
-//! The probes of which a free form is made: bumps, sines and shifts, each scaled to what the motions cover.
+//! The probes of which a free form is made: bumps, sines and shifts, each scaled to what the
+//! motions cover.
 
 use crate::effects::ProbeVariable;
 use crate::fitting::Candidate;

@@ -17,13 +17,16 @@ pub(super) struct Evidence<'a> {
     pub seed: u64,
 }
 
-/// Share of what is left that a free form must significantly gain before the explanation counts as incomplete.
+/// Share of what is left that a free form must significantly gain before the explanation counts as
+/// incomplete.
 const UNEXPLAINED_LOW: f64 = 0.2;
 /// The same for the estimate itself.
 const UNEXPLAINED_SHARE: f64 = 0.35;
-/// An explanation that leaves more than this share of the squared error above the noise is not the whole of it.
+/// An explanation that leaves more than this share of the squared error above the noise is not the
+/// whole of it.
 const MOST_LEFT: f64 = 0.125;
-/// Where more than this share of what is left goes as every motion gets values of its own, they are no constants.
+/// Where more than this share of what is left goes as every motion gets values of its own, they are
+/// no constants.
 const MOST_VARYING: f64 = 0.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
 const FAR_OFF: f64 = 2.0;
@@ -71,8 +74,8 @@ impl Evidence<'_> {
         self.best.is_some() && share > MOST_VARYING
     }
 
-    /// Whether the best explanation leaves a good part of the squared error above the noise, or the base model, with
-    /// no explanation found, is far off.
+    /// Whether the best explanation leaves a good part of the squared error above the noise, or the
+    /// base model, with no explanation found, is far off.
     fn leaves_much(&self) -> bool {
         let left = self.chosen().deciding_mean();
         let before = self.evaluator.base.deciding_mean();
@@ -88,7 +91,8 @@ impl Evidence<'_> {
         hypothesis.deciding_mean().sqrt() > FAR_OFF * FAR_OFF
     }
 
-    /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the error.
+    /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the
+    /// error.
     pub fn placebo_ranks(&self) -> bool {
         let base = &self.evaluator.base;
         let gain = |t: &Hypothesis| (base.deciding_mean() / t.deciding_mean()).ln();

@@ -1,6 +1,7 @@
 //! A diagnosis in sentences that a student understands.
 //!
-//! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for the files.
+//! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for
+//! the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict};
 

@@ -2,7 +2,8 @@
 
 use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
-/// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap / 2 behind.
+/// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
+/// 2 behind.
 #[derive(Debug)]
 pub struct Backlash;
 

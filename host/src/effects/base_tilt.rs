@@ -2,8 +2,8 @@
 
 use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
-/// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands turned by 180 degrees
-/// about the vertical.
+/// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands
+/// turned by 180 degrees about the vertical.
 #[derive(Debug)]
 pub struct BaseTilt;
 

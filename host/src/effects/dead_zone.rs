@@ -2,7 +2,8 @@
 
 use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
-/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full range.
+/// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full
+/// range.
 #[derive(Debug)]
 pub struct DeadZone;
 

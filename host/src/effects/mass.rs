@@ -4,7 +4,8 @@ use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
-/// At least 1 % of the mass is left, however much is taken away; a link without mass gains no inertia of its own.
+/// At least 1 % of the mass is left, however much is taken away; a link without mass gains no
+/// inertia of its own.
 #[derive(Debug)]
 pub struct Mass;
 

@@ -1,7 +1,7 @@
 //! A placebo regressor, which can't be the cause: the measured speed of another moment.
 //!
-//! Placebos run along with the real candidates. Whatever a placebo gains, chance gains: if one ranks, nothing is
-//! named (permutation control).
+//! Placebos run along with the real candidates. Whatever a placebo gains, chance gains: if one
+//! ranks, nothing is named (permutation control).
 
 use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
 

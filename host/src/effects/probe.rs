@@ -1,7 +1,7 @@
 //! Free-form terms: bumps of torque, reading or timing that belong to no physical law.
 //!
-//! What a sum of them gains on held-out motions is what a right term, still unknown, could gain: the measure of
-//! how much is left to explain.
+//! What a sum of them gains on held-out motions is what a right term, still unknown, could gain:
+//! the measure of how much is left to explain.
 
 use super::{DriveState, Effect, EffectInfo, JointState, Needs, Parameter, Rig, Scope, Site};
 

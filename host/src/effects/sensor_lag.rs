@@ -2,8 +2,8 @@
 
 use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
-/// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a straight line over the
-/// step.
+/// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
+/// straight line over the step.
 #[derive(Debug)]
 pub struct SensorLag;
 

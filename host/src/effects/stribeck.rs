@@ -4,8 +4,8 @@ use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide}
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
-/// Bo and Pavelescu measured exponents of |w| / w_s between 0.5 and 1; here it is fixed at 1, since motion this
-/// slow is too rare in a log to tell them apart.
+/// Bo and Pavelescu measured exponents of |w| / w_s between 0.5 and 1; here it is fixed at 1, since
+/// motion this slow is too rare in a log to tell them apart.
 #[derive(Debug)]
 pub struct Stribeck;
 

@@ -1,7 +1,9 @@
-//! Derivatives corrected by a step's residual, instead of differences that cost one simulation per unknown.
+//! Derivatives corrected by a step's residual, instead of differences that cost one simulation per
+//! unknown.
 //!
-//! The least change that makes them explain the step (Broyden 1965, Mathematics of Computation 19, 577), window by
-//! window: a window's residual depends on the shared values and on its own start state alone (Schubert 1970).
+//! The least change that makes them explain the step (Broyden 1965, Mathematics of Computation 19,
+//! 577), window by window: a window's residual depends on the shared values and on its own start
+//! state alone (Schubert 1970).
 
 use super::normal::WindowJacobian;
 use nalgebra::{DMatrix, DVector};
@@ -15,8 +17,8 @@ impl WindowJacobian {
         residual
     }
 
-    /// Corrects the derivatives by a step that led to `residual`. How much each unknown gets of the correction goes
-    /// by how much of the step it was to make.
+    /// Corrects the derivatives by a step that led to `residual`. How much each unknown gets of the
+    /// correction goes by how much of the step it was to make.
     pub fn correct(&mut self, values: &DVector<f64>, node: &DVector<f64>, residual: &[f64]) {
         let missed = self.linear_residual(values, node) - DVector::from_column_slice(residual);
         let (of_values, of_node) = (weights(&self.parameters, values), weights(&self.node, node));

@@ -33,8 +33,8 @@ impl From<&EffectInstance> for Candidate {
 }
 
 impl Candidate {
-    /// The effect at the joint that `name` says (`coulomb`, `coulomb@2`), if the model has room for it. Where there is
-    /// only one joint it need not be named.
+    /// The effect at the joint that `name` says (`coulomb`, `coulomb@2`), if the model has room for
+    /// it. Where there is only one joint it need not be named.
     ///
     /// # Errors
     /// As [`CandidateError`] says.
@@ -57,7 +57,8 @@ impl Candidate {
         model.has_effect(self.effect.info().id, self.joint)
     }
 
-    /// Whether its law jumps, so that the squared error over its values is full of steps and false valleys.
+    /// Whether its law jumps, so that the squared error over its values is full of steps and false
+    /// valleys.
     pub fn jumps(&self) -> bool {
         self.effect.difference() > SMOOTH_DIFFERENCE
     }

@@ -1,5 +1,5 @@
-//! Stretches of time within which residuals may be correlated as they like, while those of different stretches
-//! are taken for independent.
+//! Stretches of time within which residuals may be correlated as they like, while those of
+//! different stretches are taken for independent.
 
 use super::data::FitData;
 use super::fit::Fit;

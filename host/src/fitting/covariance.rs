@@ -17,18 +17,19 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Share of a cluster's information that is taken out with it: a value that rests on one cluster alone still gets
-/// an interval, some twenty times as wide as its own score says.
+/// Share of a cluster's information that is taken out with it: a value that rests on one cluster
+/// alone still gets an interval, some twenty times as wide as its own score says.
 const TAKEN_OUT: f64 = 0.95;
 
 /// Intervals of the fitted values, and their correlation matrix.
 ///
-/// An encoder at rest misreads by the same amount until it moves on, so neighbouring residuals tell little more
-/// than one of them. The standard error is that of a jackknife over clusters of time, which may be correlated
-/// inside as they like (CV3 in MacKinnon, Nielsen & Webb 2023; one linear step for each cluster left out), or the
-/// classical one (residual variance times inverse normal matrix) where that is larger. A value may rest on few
-/// clusters: the interval is Student's with as many degrees of freedom as clusters really carry it (Bell &
-/// McCaffrey 2002). Start states count as unknowns. `None` where the data do not determine the values at all.
+/// An encoder at rest misreads by the same amount until it moves on, so neighbouring residuals tell
+/// little more than one of them. The standard error is that of a jackknife over clusters of time,
+/// which may be correlated inside as they like (CV3 in MacKinnon, Nielsen & Webb 2023; one linear
+/// step for each cluster left out), or the classical one (residual variance times inverse normal
+/// matrix) where that is larger. A value may rest on few clusters: the interval is Student's with
+/// as many degrees of freedom as clusters really carry it (Bell & McCaffrey 2002). Start states
+/// count as unknowns. `None` where the data do not determine the values at all.
 pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let count = fit.free.len();
     let clusters = clusters(fit, data);
@@ -69,7 +70,8 @@ fn residual_variance(fit: &Fit) -> f64 {
     fit.residuals.cost() / freedom as f64
 }
 
-/// Inverse of a normal matrix, scaled to a unit diagonal on the way; none where a value changes nothing.
+/// Inverse of a normal matrix, scaled to a unit diagonal on the way; none where a value changes
+/// nothing.
 pub(super) fn inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = normal.nrows();
     let scale: Vec<f64> = (0..count).map(|i| normal[(i, i)].sqrt()).collect();
@@ -98,8 +100,8 @@ fn jackknife(clusters: &[Cluster], normal: &DMatrix<f64>) -> Vec<f64> {
     sum.iter().map(|sum| sum * (count - 1.0) / count).collect()
 }
 
-/// Degrees of freedom of value `i`'s variance: the number of clusters, fewer where some tell more of it than others
-/// (Satterthwaite's, for errors of equal variance).
+/// Degrees of freedom of value `i`'s variance: the number of clusters, fewer where some tell more
+/// of it than others (Satterthwaite's, for errors of equal variance).
 fn freedom(clusters: &[Cluster], inverse: &DMatrix<f64>, i: usize) -> f64 {
     let row = inverse.row(i);
     let (mut sum, mut squares) = (0.0, 1e-300);

@@ -50,7 +50,8 @@ pub struct FitData {
 }
 
 impl FitData {
-    /// Cuts motions into windows; the noise is estimated from the motions and the declared resolution.
+    /// Cuts motions into windows; the noise is estimated from the motions and the declared
+    /// resolution.
     pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
         let resolution = |joint: usize| model.log.joints[joint].position.resolution;
         let sigma_rad = (0..model.link_count())

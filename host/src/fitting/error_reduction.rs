@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// How far a change of the model reduces its error: root-mean-square, all joints and motions together.
+/// How far a change of the model reduces its error: root-mean-square, all joints and motions
+/// together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ErrorReduction {
     /// Error before, rad.
@@ -13,7 +14,8 @@ pub struct ErrorReduction {
     pub floor_rad: f64,
     /// Whether the figures are of motions that took no part in the fit.
     pub held_out: bool,
-    /// 95 % interval of the relative reduction, 1 - after / before, by block bootstrap; absent where it was not asked.
+    /// 95 % interval of the relative reduction, 1 - after / before, by block bootstrap; absent
+    /// where it was not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduction: Option<[f64; 2]>,
 }

@@ -13,7 +13,8 @@ pub struct FitOptions {
     pub iterations: usize,
     /// Stop when the cost is reduced by less than this share.
     pub tolerance: f64,
-    /// Whether to leave out the derivatives at the end: for a fit that is only compared, or [resumed](Fit::resume).
+    /// Whether to leave out the derivatives at the end: for a fit that is only compared, or
+    /// [resumed](Fit::resume).
     pub rough: bool,
 }
 
@@ -83,8 +84,8 @@ impl Fit {
         .collect()
     }
 
-    /// Root-mean-square position error, rad, over all joints and every sample of `data` that was measured; `data` are
-    /// those of the fit.
+    /// Root-mean-square position error, rad, over all joints and every sample of `data` that was
+    /// measured; `data` are those of the fit.
     pub fn rms_rad(&self, data: &FitData) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {

@@ -26,8 +26,8 @@ pub struct FittedValue {
     pub on_bound: bool,
 }
 
-/// The fitted values with intervals by profile likelihood, and their correlation matrix. Where the data do not
-/// determine the values there is no matrix, and the bounds stand for the intervals.
+/// The fitted values with intervals by profile likelihood, and their correlation matrix. Where the
+/// data do not determine the values there is no matrix, and the bounds stand for the intervals.
 pub fn fitted_values(fit: &Fit, data: &FitData) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
     let (intervals, correlation) = match intervals(fit, data) {
         Some((local, correlation)) => (profile_intervals(fit, data, &local), Some(correlation)),

@@ -8,8 +8,8 @@ use crate::model::Model;
 /// Growth of a small start error beyond which a free run says nothing about the model.
 const MOST_GROWTH: f64 = 30.0;
 
-/// The longest horizon at which start errors grow by less than thirty times: a whole run for a stable plant,
-/// windows for an unstable or chaotic one.
+/// The longest horizon at which start errors grow by less than thirty times: a whole run for a
+/// stable plant, windows for an unstable or chaotic one.
 pub fn longest_stable(model: &Model, data: &FitData) -> Horizon {
     let mut horizon = Horizon::Whole;
     let mut seconds = data.longest_s();

@@ -1,5 +1,5 @@
-//! Derivatives of the residual by finite differences: one simulation per parameter and one per unknown of the
-//! windows' start states, all in parallel.
+//! Derivatives of the residual by finite differences: one simulation per parameter and one per
+//! unknown of the windows' start states, all in parallel.
 
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::normal::WindowJacobian;
@@ -36,7 +36,8 @@ impl LevenbergMarquardt<'_> {
                 let Some((delta, shifted)) = columns.get(column * motions + window.motion) else {
                     return 0.0;
                 };
-                // Residual is measured minus predicted, so the prediction's derivative has the other sign.
+                // Residual is measured minus predicted, so the prediction's derivative has the
+                // other sign.
                 (base[row] - shifted[at][row]) / delta
             };
             let (guess, node) = (&self.guesses[w], &self.fit.nodes[w]);
@@ -82,8 +83,8 @@ impl LevenbergMarquardt<'_> {
     }
 }
 
-/// Steps of the differences in a start's angle, speed and acceleration, in standard deviations of a reading (per
-/// second, per second squared).
+/// Steps of the differences in a start's angle, speed and acceleration, in standard deviations of a
+/// reading (per second, per second squared).
 const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 
 /// A value's natural size, for the step of a finite difference where the value itself is zero.

@@ -1,5 +1,5 @@
-//! Bounded least squares by Levenberg-Marquardt on the multiple-shooting residual: Levenberg (1944), Marquardt
-//! (1963).
+//! Bounded least squares by Levenberg-Marquardt on the multiple-shooting residual: Levenberg
+//! (1944), Marquardt (1963).
 
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
@@ -63,7 +63,8 @@ impl<'a> LevenbergMarquardt<'a> {
             let least = options.tolerance * before;
             let small = step.reduction < least;
             small_steps = if small { small_steps + 1 } else { 0 };
-            // Only fresh derivatives tell that there is no way down; after so small a step they still hold.
+            // Only fresh derivatives tell that there is no way down; after so small a step they
+            // still hold.
             if was_fresh && small && (small_steps >= 2 || step.predicted < least) {
                 self.correct(&step);
                 self.fit.fresh = true;
@@ -87,7 +88,8 @@ impl<'a> LevenbergMarquardt<'a> {
         self.fit
     }
 
-    /// Whether fresh derivatives cost next to nothing: few unknowns, or few samples, whose valleys are many and narrow.
+    /// Whether fresh derivatives cost next to nothing: few unknowns, or few samples, whose valleys
+    /// are many and narrow.
     fn is_cheap(&self) -> bool {
         let node = self.fit.nodes.first();
         self.fit.free.len() + node.map_or(0, |node| node.unknowns.len()) <= CHEAP

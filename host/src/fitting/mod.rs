@@ -1,9 +1,10 @@
 //! Fitting a model's free parameters to measured motions by multiple shooting.
 //!
-//! The solver is our own. With n joints, W windows and P free parameters there are P + 3 n W unknowns, and a general
-//! least-squares solver (the crate `levenberg-marquardt`) asks for the derivatives of each. A start state touches its own
-//! window alone: all windows are moved at once, so that P + 3 n simulations make the whole Jacobian, and eliminating the
-//! start states leaves a system of P unknowns (`normal`).
+//! The solver is our own. With n joints, W windows and P free parameters there are P + 3 n W
+//! unknowns, and a general least-squares solver (the crate `levenberg-marquardt`) asks for the
+//! derivatives of each. A start state touches its own window alone: all windows are moved at once,
+//! so that P + 3 n simulations make the whole Jacobian, and eliminating the start states leaves a
+//! system of P unknowns (`normal`).
 
 mod broyden;
 mod candidate;

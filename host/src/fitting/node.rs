@@ -1,15 +1,16 @@
-//! Shooting nodes: the state a window starts from, guessed from the measurement, then fitted close to the guess.
+//! Shooting nodes: the state a window starts from, guessed from the measurement, then fitted close
+//! to the guess.
 
 use super::data::{FitData, Window};
 use crate::sim::{Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};
 
-/// Start state of a window with n joints: 3 n unknowns. Where a sensor trails, the angle follows from the readings'
-/// speed and the joint's speed from their acceleration.
+/// Start state of a window with n joints: 3 n unknowns. Where a sensor trails, the angle follows
+/// from the readings' speed and the joint's speed from their acceleration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// What the n encoders read, rad in the log's convention; then how the log's angles change, rad/s; then how
-    /// these speeds change, rad/s^2, which says nothing where no sensor trails.
+    /// What the n encoders read, rad in the log's convention; then how the log's angles change,
+    /// rad/s; then how these speeds change, rad/s^2, which says nothing where no sensor trails.
     pub unknowns: DVector<f64>,
 }
 
@@ -23,8 +24,8 @@ pub(super) struct Guess {
 
 /// How many standard deviations a start state may lie from the guess.
 const REACH_DEVIATIONS: f64 = 6.0;
-/// No start angle, rad, speed, rad/s, and acceleration, rad/s^2, is known better than this, however smooth the log:
-/// smoothing and rounding leave slow errors that neighbouring samples share.
+/// No start angle, rad, speed, rad/s, and acceleration, rad/s^2, is known better than this, however
+/// smooth the log: smoothing and rounding leave slow errors that neighbouring samples share.
 const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// Half the span of the samples that determine a window's start.
 const REACH_S: f64 = 0.06;
@@ -62,7 +63,8 @@ impl Guess {
         }
     }
 
-    /// Which unknowns lie on the edge of what the samples allow, and on which side: -1, +1, or 0 inside.
+    /// Which unknowns lie on the edge of what the samples allow, and on which side: -1, +1, or 0
+    /// inside.
     pub fn edges(&self, node: &Node) -> Vec<f64> {
         let off = &node.unknowns - &self.node.unknowns;
         let edge = |(off, deviation): (&f64, &f64)| {
@@ -106,8 +108,8 @@ impl Node {
     }
 }
 
-/// Value, slope and second derivative of a local parabola, and their standard deviations per unit of measurement
-/// noise.
+/// Value, slope and second derivative of a local parabola, and their standard deviations per unit
+/// of measurement noise.
 struct LocalParabola {
     derivatives: [f64; 3],
     gains: [f64; 3],

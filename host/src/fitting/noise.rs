@@ -4,9 +4,9 @@ use crate::log::Motion;
 
 /// Standard deviation of a joint's position measurement, rad.
 ///
-/// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth differences. Motion
-/// leaks into them where sampling is slow; then neighbours agree, while those of noise alternate (correlation
-/// -6/7), and the resolution alone counts.
+/// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
+/// differences. Motion leaks into them where sampling is slow; then neighbours agree, while those
+/// of noise alternate (correlation -6/7), and the resolution alone counts.
 pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Option<f64>) -> f64 {
     let resolution = declared_resolution_rad.or_else(|| estimated_resolution_rad(motions, joint));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
@@ -76,7 +76,8 @@ fn difference_noise_rad(differences: &[Vec<f64>]) -> f64 {
     }
     let middle = magnitudes.len() / 2;
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
-    // The variance of the order-k difference of white noise is the central binomial coefficient (2k over k).
+    // The variance of the order-k difference of white noise is the central binomial coefficient (2k
+    // over k).
     let gain: f64 = (1..=ORDER).map(|i| (ORDER + i) as f64 / i as f64).product();
     1.4826 * *median / gain.sqrt()
 }

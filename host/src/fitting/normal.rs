@@ -1,8 +1,8 @@
 //! Normal equations of a multiple-shooting fit, with every window's own unknowns eliminated.
 //!
-//! The Jacobian is an arrow: parameters shared by all windows, and a start state per window. Eliminating the
-//! start states window by window (Schur complement) leaves a system of the parameters' size, however many
-//! windows there are.
+//! The Jacobian is an arrow: parameters shared by all windows, and a start state per window.
+//! Eliminating the start states window by window (Schur complement) leaves a system of the
+//! parameters' size, however many windows there are.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 

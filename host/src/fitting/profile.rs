@@ -1,9 +1,9 @@
 //! Intervals where the error is no smooth function of a value.
 //!
-//! A dead zone swallows one command more or not, an arm breaks away at one sample or the next: the squared error
-//! goes up and down in steps, and its slope at the least tells too little. So it is looked up along the way:
-//! farther values that fit as well as the interval's ends should belong to the interval (profile likelihood:
-//! Bates & Watts 1988, Nonlinear Regression Analysis, ch. 6).
+//! A dead zone swallows one command more or not, an arm breaks away at one sample or the next: the
+//! squared error goes up and down in steps, and its slope at the least tells too little. So it is
+//! looked up along the way: farther values that fit as well as the interval's ends should belong to
+//! the interval (profile likelihood: Bates & Watts 1988, Nonlinear Regression Analysis, ch. 6).
 
 use super::cluster::clusters;
 use super::covariance::{Interval, inverse};
@@ -17,8 +17,9 @@ use rayon::prelude::*;
 /// Where the squared error is looked up, in reaches of the interval.
 const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
 
-/// The intervals, each end moved out to the farthest value at which the squared error is no larger than a smooth
-/// one would be at the end. The other values and the start states go along as they would if all were straight.
+/// The intervals, each end moved out to the farthest value at which the squared error is no larger
+/// than a smooth one would be at the end. The other values and the start states go along as they
+/// would if all were straight.
 pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> Vec<Interval> {
     let count = fit.free.len();
     let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;

@@ -44,8 +44,8 @@ impl<'a> Projector<'a> {
         }
     }
 
-    /// How the prediction changes with each free parameter, less what start states could make of it: one column
-    /// per parameter, windows joined.
+    /// How the prediction changes with each free parameter, less what start states could make of
+    /// it: one column per parameter, windows joined.
     pub fn parameter_columns(&self) -> Vec<DVector<f64>> {
         let parameters = self.reduced.first().map_or(0, DMatrix::ncols);
         (0..parameters)

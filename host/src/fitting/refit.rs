@@ -1,5 +1,5 @@
-//! A model refitted, alone or with one more effect: its values, how well they are known, and how far the error is
-//! reduced.
+//! A model refitted, alone or with one more effect: its values, how well they are known, and how
+//! far the error is reduced.
 
 #[cfg(test)]
 mod tests;
@@ -45,7 +45,8 @@ pub struct Refitted {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", undetermined(.blind))]
 pub struct Undetermined {
-    /// Parameters that change nothing in these motions; none when only a mixture of several is undetermined.
+    /// Parameters that change nothing in these motions; none when only a mixture of several is
+    /// undetermined.
     pub blind: Vec<String>,
 }
 
@@ -65,8 +66,8 @@ impl Refitted {
         all.filter(|(path, _)| path.get(model).is_some()).collect()
     }
 
-    /// The effect that was added, at its fitted values, and how they came about; `logs` are name and SHA-256 of every
-    /// file it was fitted to.
+    /// The effect that was added, at its fitted values, and how they came about; `logs` are name
+    /// and SHA-256 of every file it was fitted to.
     pub fn added(
         &self,
         candidate: Candidate,
@@ -113,8 +114,9 @@ pub fn refit(
     finish(model, found, &data, split, horizon)
 }
 
-/// Adds the candidate and fits its values along with the model's free ones, from every start value of the effect.
-/// The error before is that of the model refitted without it. `progress` hears of starts done and starts in all.
+/// Adds the candidate and fits its values along with the model's free ones, from every start value
+/// of the effect. The error before is that of the model refitted without it. `progress` hears of
+/// starts done and starts in all.
 ///
 /// # Errors
 /// The motions do not determine the values.

@@ -44,8 +44,8 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
     }
 }
 
-/// Readings that a model predicts for one motion's windows, rad, in order, joint after joint; every window starts
-/// from its node, and the sensors' memory runs on from window to window.
+/// Readings that a model predicts for one motion's windows, rad, in order, joint after joint; every
+/// window starts from its node, and the sensors' memory runs on from window to window.
 pub fn predicted_rad(
     model: &Model,
     data: &FitData,

@@ -8,7 +8,8 @@ use super::residual::residuals;
 use crate::model::{Model, ParameterPath};
 
 impl Fit {
-    /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it lacks.
+    /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it
+    /// lacks.
     pub fn resume(&self, data: &FitData, options: FitOptions) -> Fit {
         if self.converged && (self.fresh || options.rough) {
             return self.clone();

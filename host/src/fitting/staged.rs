@@ -1,8 +1,8 @@
 //! Fits from values that are far off: short windows first, then longer ones.
 //!
-//! Over a short window no wrong value leads far astray, so the cost has few false valleys; over a long one the
-//! values are known best. Each stage starts where the one before ended (Bock 1981, multiple shooting; homotopy
-//! in the length of the windows).
+//! Over a short window no wrong value leads far astray, so the cost has few false valleys; over a
+//! long one the values are known best. Each stage starts where the one before ended (Bock 1981,
+//! multiple shooting; homotopy in the length of the windows).
 
 use super::data::{FitData, Horizon};
 use super::fit::{Fit, FitOptions};
@@ -22,7 +22,8 @@ const STAGE: FitOptions = FitOptions {
 /// Root-mean-square weighted residual that leaves nothing to look for.
 const AT_FLOOR: f64 = 1.15;
 
-/// The model after the stages of short windows: near enough for [`super::longest_stable`] and a last fit.
+/// The model after the stages of short windows: near enough for [`super::longest_stable`] and a
+/// last fit.
 pub fn initial_guess(model: &Model, free: &[ParameterPath], data: &FitData) -> Model {
     stages(model, free, data).0
 }
@@ -45,8 +46,8 @@ fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> (Model, usiz
 
 /// Fits the free parameters from values that may be several times off; windows as in `data`.
 ///
-/// A plain fit that leaves nothing but noise is taken as it is. Otherwise the better one counts of the plain fit
-/// and one that starts where [`initial_guess`] ends.
+/// A plain fit that leaves nothing but noise is taken as it is. Otherwise the better one counts of
+/// the plain fit and one that starts where [`initial_guess`] ends.
 pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
     let plain = fit(model, free, data, None, FitOptions::default());
     let mean = plain.residuals.cost() / plain.residuals.count().max(1) as f64;

@@ -1,5 +1,5 @@
-//! One step of a fit, kept inside the bounds: a parameter on its bound whose descent points outward takes no part,
-//! and one that hits its bound stops there while the others are solved again.
+//! One step of a fit, kept inside the bounds: a parameter on its bound whose descent points outward
+//! takes no part, and one that hits its bound stops there while the others are solved again.
 
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::normal::NormalEquations;
@@ -51,7 +51,8 @@ impl LevenbergMarquardt<'_> {
     }
 }
 
-/// Solves (H + damping diag H) step = gradient over the unfixed parameters, given the fixed ones' steps.
+/// Solves (H + damping diag H) step = gradient over the unfixed parameters, given the fixed ones'
+/// steps.
 fn solve_damped(
     normal: &NormalEquations,
     fixed: &[bool],

@@ -5,7 +5,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// With more degrees of freedom the quantile is that of the normal distribution to 2e-4.
 const MOST_FREEDOM: f64 = 1e4;
 
-/// The value that 97.5 % of draws stay below: half the width of a 95 % interval, in standard errors.
+/// The value that 97.5 % of draws stay below: half the width of a 95 % interval, in standard
+/// errors.
 ///
 /// For `freedom` >= 1, not only whole numbers.
 pub(crate) fn quantile_975(freedom: f64) -> f64 {

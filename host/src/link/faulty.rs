@@ -15,7 +15,8 @@ pub struct Faulty<L> {
 }
 
 impl<L: SerialLink> Faulty<L> {
-    /// Loses a share `drop` of the bytes and inverts a share `flip` of the bits, by chance from `seed`.
+    /// Loses a share `drop` of the bytes and inverts a share `flip` of the bits, by chance from
+    /// `seed`.
     pub fn new(inner: L, drop: f64, flip: f64, seed: u64) -> Self {
         Faulty {
             inner,

@@ -46,11 +46,12 @@ pub trait SerialLink: Send {
     /// Lets time pass.
     fn pause(&mut self, time: Duration);
 
-    /// The longest a byte may lie about on its way beside the line's own time: drivers, USB, other programs.
+    /// The longest a byte may lie about on its way beside the line's own time: drivers, USB, other
+    /// programs.
     fn latency(&self) -> Duration;
 
-    /// Another way to speak on this line, for a thread that must not wait for this one; none on a line that ends with the
-    /// program.
+    /// Another way to speak on this line, for a thread that must not wait for this one; none on a
+    /// line that ends with the program.
     fn second_writer(&self) -> Option<LineWriter> {
         None
     }

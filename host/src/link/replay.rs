@@ -7,7 +7,8 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::time::Duration;
 
-/// What a [`super::Tap`] wrote down, as a port: whoever sends the same bytes gets the same answers at the same times.
+/// What a [`super::Tap`] wrote down, as a port: whoever sends the same bytes gets the same answers
+/// at the same times.
 #[derive(Debug)]
 pub struct Replay {
     name: String,

@@ -9,8 +9,8 @@ use handstand_shared::raw::ReturnDelay;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// From the end of a request to an answer's first byte beside the return delay, and stalls inside it (measured: 22 us
-/// and a motor interrupt of 130 us).
+/// From the end of a request to an answer's first byte beside the return delay, and stalls inside
+/// it (measured: 22 us and a motor interrupt of 130 us).
 const PROCESSING: Duration = Duration::from_micros(600);
 /// How late an answer may be that was given up.
 const LATE: Duration = Duration::from_millis(2);
@@ -81,7 +81,8 @@ impl<L: SerialLink> Servos<L> {
         Ok(code)
     }
 
-    /// Sets a register and reads it back, whatever the status level says; waits while EEPROM is written.
+    /// Sets a register and reads it back, whatever the status level says; waits while EEPROM is
+    /// written.
     ///
     /// # Errors
     /// Why there is no good answer, or [`ServoError::Refused`] if the register kept another code.
@@ -201,8 +202,9 @@ impl<L: SerialLink> Servos<L> {
         Ok(out[..length].to_vec())
     }
 
-    /// Whether the adapter sends back what it is sent. A PING and the answer of a servo with a supply error are the same
-    /// bytes, so this must be known first: two bytes that no servo and no controller heeds tell.
+    /// Whether the adapter sends back what it is sent. A PING and the answer of a servo with a
+    /// supply error are the same bytes, so this must be known first: two bytes that no servo and no
+    /// controller heeds tell.
     ///
     /// # Errors
     /// [`ServoError::Port`] only.
@@ -227,7 +229,8 @@ impl<L: SerialLink> Servos<L> {
         Ok(read_some(&mut self.link, deadline, |_| false)?.len())
     }
 
-    /// One request and its answer: waits as long as line, return delay and lengths say, and no longer.
+    /// One request and its answer: waits as long as line, return delay and lengths say, and no
+    /// longer.
     fn once(&mut self, id: u8, request: &Request, count: u8) -> ServoResult<Reading> {
         let echoes = self.echoes()?;
         self.link.clear()?;

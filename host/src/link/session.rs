@@ -9,7 +9,8 @@ use handstand_shared::message::{
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The firmware's main loop answers within a tick; this is what it may take beside line and latency.
+/// The firmware's main loop answers within a tick; this is what it may take beside line and
+/// latency.
 const TURN: Duration = Duration::from_millis(30);
 const TRIES: u32 = 3;
 
@@ -94,7 +95,8 @@ impl<L: SerialLink> Session<L> {
     pub fn bytes(&self, command: &Command) -> Vec<u8> {
         let mut frame = [0; MAX_FRAME];
         let length = encode(self.next_out, command, &mut frame).unwrap_or(0);
-        // The zero in front ends whatever noise there was, and tells an adapter that this is no servo packet.
+        // The zero in front ends whatever noise there was, and tells an adapter that this is no
+        // servo packet.
         [&[0], &frame[..length]].concat()
     }
 
@@ -221,7 +223,8 @@ impl<L: SerialLink> Session<L> {
         self.link.name().to_string()
     }
 
-    /// Longest time from command to answer: both lines, the stream's frames before it, the firmware's turn.
+    /// Longest time from command to answer: both lines, the stream's frames before it, the
+    /// firmware's turn.
     fn turn(&self) -> Duration {
         self.link.line_time(4 * MAX_FRAME) + self.link.latency() + TURN
     }

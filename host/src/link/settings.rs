@@ -67,7 +67,8 @@ impl Settings {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read; at its place, a key that is no register, a code out of its range, a register missing.
+    /// A file that cannot be read; at its place, a key that is no register, a code out of its
+    /// range, a register missing.
     pub fn load(path: &Path) -> Result<Vec<Settings>> {
         let text =
             std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))?;

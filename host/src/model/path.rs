@@ -90,7 +90,8 @@ impl ParameterPath {
         place.map(|place| *place = value).is_some()
     }
 
-    /// Lowest and highest possible value: the bounds of an effect's parameter, else what is physical.
+    /// Lowest and highest possible value: the bounds of an effect's parameter, else what is
+    /// physical.
     pub fn bounds(&self, _model: &Model) -> (f64, f64) {
         match *self {
             ParameterPath::Link { field, .. } => field.bounds(),

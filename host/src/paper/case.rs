@@ -1,4 +1,5 @@
-//! The robot's closed loop under the paper's circumstances: what a run is made of, and what is seen of it.
+//! The robot's closed loop under the paper's circumstances: what a run is made of, and what is seen
+//! of it.
 
 use super::computed::Computed;
 use crate::effects;
@@ -17,7 +18,8 @@ pub const TS_S: f64 = 0.01;
 pub(super) const SECONDS: f64 = 10.0;
 /// Random starts behind a share.
 pub(super) const STARTS: u64 = 100;
-/// How far each link's centre of mass lies off its line, rad: forward, as the robot's servos and batteries do.
+/// How far each link's centre of mass lies off its line, rad: forward, as the robot's servos and
+/// batteries do.
 pub(super) const ECCENTRIC_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
 /// The paper's robot: the model file with its Table 1.

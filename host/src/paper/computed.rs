@@ -1,4 +1,5 @@
-//! The same numbers from Table 1: linearised, sampled, solved; and the servo's model found again in data made with it.
+//! The same numbers from Table 1: linearised, sampled, solved; and the servo's model found again in
+//! data made with it.
 
 use super::case::{TS_S, handstand};
 use super::printed::Quantity;
@@ -87,7 +88,8 @@ impl Computed {
         })
     }
 
-    /// The value of a printed quantity in the print's unit; with its interval where it was estimated.
+    /// The value of a printed quantity in the print's unit; with its interval where it was
+    /// estimated.
     pub fn value(&self, quantity: Quantity) -> Interval {
         let exact = |value: f64| Interval::around(value, 0.0);
         match quantity {

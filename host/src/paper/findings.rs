@@ -1,4 +1,5 @@
-//! The sixteen things the paper measured, simulated or left open: our command for each, and what it says.
+//! The sixteen things the paper measured, simulated or left open: our command for each, and what it
+//! says.
 
 use super::case::{Case, TS_S, sampled};
 use super::computed::Computed;
@@ -191,7 +192,8 @@ fn on_the_robot(computed: &Computed, figures: &[Figure]) -> Vec<Row> {
     ]
 }
 
-/// The largest delay the sampled loop stands, with gains that do not know of it and with gains that do.
+/// The largest delay the sampled loop stands, with gains that do not know of it and with gains that
+/// do.
 fn delays(computed: &Computed) -> Result<(String, Shown)> {
     let falls = |delay_s: f64, case: &Case| {
         let mut case = case.clone();
@@ -284,7 +286,8 @@ fn duty(speed_rad_s: &[f64]) -> Vec<f64> {
 fn shift_rad(base: &Model, drive: Drive, input: &[f64]) -> f64 {
     let mut model = base.clone();
     model.joints[0].drive = drive;
-    // The lever's weight pulls the same way at every angle that is reached: gravity's moment about the level.
+    // The lever's weight pulls the same way at every angle that is reached: gravity's moment about
+    // the level.
     model.angle_zero = crate::model::AngleZero::Horizontal;
     let with = |payload_kg: f64| Motion {
         payload_kg,
@@ -317,7 +320,8 @@ fn shift_rad(base: &Model, drive: Drive, input: &[f64]) -> f64 {
     shifts.fold(0.0, f64::max)
 }
 
-/// How little 0.5 mm of each centre of mass matter: the spectral radius of the sampled loop at the corners.
+/// How little 0.5 mm of each centre of mass matter: the spectral radius of the sampled loop at the
+/// corners.
 fn centroids(computed: &Computed) -> Result<(String, Shown)> {
     let mut worst: f64 = 0.0;
     for corner in 0..8 {

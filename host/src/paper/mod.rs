@@ -1,7 +1,8 @@
 //! The paper's numbers, figures and findings, compared with recomputed values.
 //!
-//! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them side by side;
-//! `case` is a run of the robot, `robot` and `servo` draw what its figures show; `findings` says of each result whether it holds.
+//! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them
+//! side by side; `case` is a run of the robot, `robot` and `servo` draw what its figures show;
+//! `findings` says of each result whether it holds.
 
 mod case;
 mod checked;
@@ -39,7 +40,8 @@ pub struct Study {
     pub findings: Vec<Finding>,
 }
 
-/// Checks the numbers, draws the figures, judges the findings. `done` is called after each of [`STEPS`] steps.
+/// Checks the numbers, draws the figures, judges the findings. `done` is called after each of
+/// [`STEPS`] steps.
 ///
 /// # Errors
 /// None is known: the models are the project's own.

@@ -3,7 +3,8 @@
 /// Which number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// A value of the model file: link from 0, and 0 length, 1 centre of mass, 2 mass, 3 inertia, in the print's units.
+    /// A value of the model file: link from 0, and 0 length, 1 centre of mass, 2 mass, 3 inertia,
+    /// in the print's units.
     Link(usize, usize),
     /// Entry of A, row and column from 0.
     A(usize, usize),

@@ -97,8 +97,8 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
     })
 }
 
-/// Where `fails` turns true between `low` (false) and `high` (true), to a thousandth of the span; `high` if it never
-/// does.
+/// Where `fails` turns true between `low` (false) and `high` (true), to a thousandth of the span;
+/// `high` if it never does.
 pub(super) fn edge(
     fails: impl Fn(f64) -> Result<bool>,
     mut low: f64,

@@ -1,4 +1,5 @@
-//! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq. (2).
+//! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq.
+//! (2).
 
 use super::computed::servo_estimate;
 use super::figure::{Figure, Holds};
@@ -58,7 +59,8 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
     }
 }
 
-/// What the servo does under `command`, read by its encoder, with a little noise before the rounding.
+/// What the servo does under `command`, read by its encoder, with a little noise before the
+/// rounding.
 pub(super) fn simulated(
     model: &Model,
     command: Vec<f64>,

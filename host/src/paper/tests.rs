@@ -69,7 +69,8 @@ fn chain(n: usize) -> Chain {
     }
 }
 
-/// Lagrange's equations with every derivative by differences of kinetic and potential energy, n = 1 to 6.
+/// Lagrange's equations with every derivative by differences of kinetic and potential energy, n = 1
+/// to 6.
 #[test]
 fn inverse_dynamics_are_lagrange_s_for_any_n() {
     for n in 1..=6 {

@@ -1,4 +1,5 @@
-//! Drive torque at a joint, from the drive's input, its regulator, its motor and the effects on them.
+//! Drive torque at a joint, from the drive's input, its regulator, its motor and the effects on
+//! them.
 
 use super::plant::{Active, JointPlan};
 use crate::effects::{AtRest, DriveState};

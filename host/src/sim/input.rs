@@ -2,8 +2,9 @@
 
 /// Mean over `[from_s, to_s]` of an input held from each sample to the next.
 ///
-/// The mean, rather than the value, makes the result continuous in the delay, which a fit needs. `cursor` is
-/// the index of a sample at or before `from_s` from an earlier call; it only moves forward.
+/// The mean, rather than the value, makes the result continuous in the delay, which a fit needs.
+/// `cursor` is the index of a sample at or before `from_s` from an earlier call; it only moves
+/// forward.
 pub(super) fn held_mean(
     time_s: &[f64],
     input: &[f64],

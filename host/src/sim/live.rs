@@ -1,4 +1,5 @@
-//! A model simulated step by step, its drives commanded from outside: a robot behind simulated servos.
+//! A model simulated step by step, its drives commanded from outside: a robot behind simulated
+//! servos.
 
 use super::drive::DriveInput;
 use super::plant::Plant;
@@ -19,8 +20,8 @@ pub struct Live {
 impl Live {
     /// At rest at these angles, rad in the model's convention.
     ///
-    /// A position or speed servo becomes its bare motor: who tells the duty is the regulator. A torque drive must have
-    /// become a motor before, for it has no full duty.
+    /// A position or speed servo becomes its bare motor: who tells the duty is the regulator. A
+    /// torque drive must have become a motor before, for it has no full duty.
     ///
     /// # Errors
     /// Another number of angles, or a torque drive.
@@ -105,7 +106,8 @@ impl Live {
         self.plant.encoded_rad_s(joint, &self.stepper.speed)
     }
 
-    /// Angle and speed of the shaft in a joint: from the link before it, whatever the model's convention, rad and rad/s.
+    /// Angle and speed of the shaft in a joint: from the link before it, whatever the model's
+    /// convention, rad and rad/s.
     pub fn shaft(&self, joint: usize) -> (f64, f64) {
         match self.plant.is_absolute() && joint > 0 {
             true => (self.stepper.angle[joint], self.stepper.speed[joint]),

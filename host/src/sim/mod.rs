@@ -1,4 +1,5 @@
-//! The one plant: a model with all its effects, simulated along a log, live behind servos, or in a closed loop.
+//! The one plant: a model with all its effects, simulated along a log, live behind servos, or in a
+//! closed loop.
 //!
 //! `plant` (a model compiled) -> `drive` (input to torque) -> `forces` (accelerations)
 //! -> `stepper` (one step, friction that sticks) -> `run` (along a

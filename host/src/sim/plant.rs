@@ -129,8 +129,8 @@ impl Plant {
         self.joints.is_empty()
     }
 
-    /// What the encoders read at these relative angles (joint 1 from hanging), rad in the log's convention,
-    /// before any effect with memory.
+    /// What the encoders read at these relative angles (joint 1 from hanging), rad in the log's
+    /// convention, before any effect with memory.
     pub(super) fn encoded_rad(&self, joint: usize, angle_rad: &[f64]) -> f64 {
         let true_angle = if self.absolute {
             angle_rad[..=joint].iter().sum::<f64>() - self.zero_rad
@@ -154,8 +154,8 @@ impl Plant {
         self.joints[joint].reading_slope() * true_speed
     }
 
-    /// What the encoders would read without the sensors that trail, where these read `reading_rad` and the readings
-    /// change by `speed_rad_s`.
+    /// What the encoders would read without the sensors that trail, where these read `reading_rad`
+    /// and the readings change by `speed_rad_s`.
     pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
         let joints = self.joints.iter().zip(reading_rad).zip(speed_rad_s);
         joints
@@ -193,7 +193,8 @@ impl Plant {
         pose
     }
 
-    /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes `encoded_rad`.
+    /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes
+    /// `encoded_rad`.
     pub fn decode_rad(&self, reading_rad: &[f64]) -> Vec<f64> {
         let mut angles = Vec::with_capacity(reading_rad.len());
         let mut before = self.zero_rad;

@@ -1,7 +1,7 @@
 //! One number per joint: in place for a few joints, else on the heap.
 //!
-//! The equations are written once; where the number of joints is known when they are compiled, their loops are
-//! unrolled.
+//! The equations are written once; where the number of joints is known when they are compiled,
+//! their loops are unrolled.
 
 use std::fmt::Debug;
 use std::ops::IndexMut;

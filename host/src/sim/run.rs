@@ -10,25 +10,28 @@ use crate::log::Motion;
 use crate::model::Drive;
 use std::ops::Range;
 
-/// State at the first sample of a stretch: relative angles (joint 1 from hanging), rad, and speeds, rad/s.
+/// State at the first sample of a stretch: relative angles (joint 1 from hanging), rad, and speeds,
+/// rad/s.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Start {
     /// Per joint, rad.
     pub angle_rad: Vec<f64>,
     /// Per joint, rad/s.
     pub speed_rad_s: Vec<f64>,
-    /// How fast the readings change, rad/s in the log's convention, where sensors trail; as fast as the joints without.
+    /// How fast the readings change, rad/s in the log's convention, where sensors trail; as fast as
+    /// the joints without.
     pub reading_rad_s: Option<Vec<f64>>,
 }
 
-/// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out over the period.
+/// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out
+/// over the period.
 const SPARED: f64 = 0.1;
 
 /// Predicted readings, rad in the log's convention, at samples `stretch` of the motion.
 ///
-/// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are the recorded
-/// ones, each held until the next sample. Returns the state at the last sample of the stretch. A state that
-/// grows beyond all bounds leaves not-a-number in the rest.
+/// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are
+/// the recorded ones, each held until the next sample. Returns the state at the last sample of the
+/// stretch. A state that grows beyond all bounds leaves not-a-number in the rest.
 pub fn predict(
     plant: &Plant,
     motion: &Motion,

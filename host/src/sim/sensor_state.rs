@@ -13,8 +13,8 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// Prepares for a stretch that begins at `start`: sensors that trail begin as far behind as the speed of their
-    /// readings says, for a stretch may begin at speed.
+    /// Prepares for a stretch that begins at `start`: sensors that trail begin as far behind as the
+    /// speed of their readings says, for a stretch may begin at speed.
     pub(super) fn begin(&mut self, plant: &Plant, start: &Start) {
         let cells = plant.joints.iter().map(|j| j.sense.len()).sum();
         if self.cells.len() != cells {

@@ -1,8 +1,9 @@
 //! One integration step with friction that truly sticks.
 //!
-//! Between events every joint is free, sliding in a known direction, or held; the equations are then smooth
-//! and classical Runge-Kutta of fourth order integrates them. A sliding joint whose speed crosses zero ends
-//! the step there; a held joint is released when the torque that holds it exceeds the breakaway torque.
+//! Between events every joint is free, sliding in a known direction, or held; the equations are
+//! then smooth and classical Runge-Kutta of fourth order integrates them. A sliding joint whose
+//! speed crosses zero ends the step there; a held joint is released when the torque that holds it
+//! exceeds the breakaway torque.
 
 use super::drive::DriveInput;
 use super::forces::{At, Forces};
@@ -71,7 +72,8 @@ impl<R: Rows> Stepper<R> {
     /// Advances by `step_s` under constant inputs.
     pub fn advance(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
-        // Chatter between contacts can't go on for ever: after this many events the step is taken as it comes.
+        // Chatter between contacts can't go on for ever: after this many events the step is taken
+        // as it comes.
         for _ in 0..8 {
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);

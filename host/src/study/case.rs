@@ -134,7 +134,8 @@ impl Case {
         Ok(closed)
     }
 
-    /// The controller as it acts on this loop: with the equilibrium that it may know, behind the servos' lag.
+    /// The controller as it acts on this loop: with the equilibrium that it may know, behind the
+    /// servos' lag.
     pub fn controller<'a>(
         &self,
         designed: &'a Designed,
@@ -160,8 +161,8 @@ impl Case {
         controller
     }
 
-    /// Largest magnitude of a pole of the true robot, linearised at its balance, under this controller: below 1 it is
-    /// stable in the small. None where it has no such balance.
+    /// Largest magnitude of a pole of the true robot, linearised at its balance, under this
+    /// controller: below 1 it is stable in the small. None where it has no such balance.
     pub fn spectral_radius(&self, designed: &Designed, closed: &ClosedLoop) -> Option<f64> {
         let mut pose_rad = synth::upright(&self.robot);
         let mut turned = 0.0;

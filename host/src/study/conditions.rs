@@ -11,8 +11,8 @@ const DEAD_ZONE_ERROR: f64 = 0.2;
 /// Largest error of a link's mass, a share of it.
 const MASS_ERROR: f64 = 0.1;
 
-/// Largest distance of a link's centre of mass from its line, m: four times what the paper gives as the error of its
-/// drawings.
+/// Largest distance of a link's centre of mass from its line, m: four times what the paper gives as
+/// the error of its drawings.
 const ECCENTRIC_M: f64 = 2e-3;
 
 /// A set of non-idealities.
@@ -132,8 +132,8 @@ pub fn condition(id: &str) -> Option<&'static Condition> {
 }
 
 impl Condition {
-    /// Puts the case under the condition; the designer knows the nominal values. What is drawn for every robot comes
-    /// back.
+    /// Puts the case under the condition; the designer knows the nominal values. What is drawn for
+    /// every robot comes back.
     pub fn apply(&self, case: &mut Case) -> Vec<Uncertain> {
         let drives = Drives {
             saturates: self.saturation,

@@ -1,8 +1,8 @@
 //! Finished chunks on disk, so that a killed study goes on where it was.
 //!
-//! A line of JSON that says which study it is, then chunks: a line with the chunk's number, the length of its rows in
-//! bytes and their SHA-256, then the rows. Each is appended and synced whole; what does not match its sum at the end
-//! was torn by a crash and is cut off.
+//! A line of JSON that says which study it is, then chunks: a line with the chunk's number, the
+//! length of its rows in bytes and their SHA-256, then the rows. Each is appended and synced whole;
+//! what does not match its sum at the end was torn by a crash and is cut off.
 
 use crate::error::{Error, Place, Result};
 use fs4::fs_std::FileExt as _;
@@ -31,7 +31,8 @@ pub struct Header {
 
 /// Version of the format.
 pub const FORMAT: u32 = 1;
-/// Most chunks of a study: some thousand million runs. A damaged header may say any number, and the missing ones are listed.
+/// Most chunks of a study: some thousand million runs. A damaged header may say any number, and the
+/// missing ones are listed.
 const MOST_CHUNKS: usize = 10_000_000;
 
 impl Header {

@@ -22,7 +22,8 @@ pub struct Judging {
     pub seed: u64,
 }
 
-/// Share of the robots that have to be stabilised for a region, a delay or an error to count as stabilised.
+/// Share of the robots that have to be stabilised for a region, a delay or an error to count as
+/// stabilised.
 pub const STABILISED_SHARE: f64 = 0.95;
 
 /// Runs handed to a thread at a time.

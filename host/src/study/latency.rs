@@ -1,8 +1,10 @@
-//! The latency budget: how long a sample takes to become a torque, over the servo bus and the PC's serial line.
+//! The latency budget: how long a sample takes to become a torque, over the servo bus and the PC's
+//! serial line.
 //!
-//! Every servo is read over the bus, the angles go up the line in a report, the goals come down again, and one SYNC_WRITE
-//! takes them to the servos. Frames are the project's own, packets the servos'. What computes takes under 1 ms wherever
-//! it is done and is left out; the servo's own dead time, from command to movement, comes on top.
+//! Every servo is read over the bus, the angles go up the line in a report, the goals come down
+//! again, and one SYNC_WRITE takes them to the servos. Frames are the project's own, packets the
+//! servos'. What computes takes under 1 ms wherever it is done and is left out; the servo's own
+//! dead time, from command to movement, comes on top.
 
 use handstand_shared::control_table::{GOAL_POSITION, PRESENT_POSITION};
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Request};

@@ -10,7 +10,8 @@ use serde::Serialize;
 /// The delays around one that a controller tolerates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Longest {
-    /// The shortest one up to which nothing fails on the way down, s; none if it fails where the search begins.
+    /// The shortest one up to which nothing fails on the way down, s; none if it fails where the
+    /// search begins.
     pub shortest_s: Option<f64>,
     /// The longest one up to which nothing fails on the way up, s.
     pub delay_s: Option<f64>,
@@ -60,8 +61,9 @@ impl Longest {
     }
 }
 
-/// The delays, up to `until_s` in steps of `step_s`, under which the linear loop with the nominal plant is stable: of
-/// a controller designed for the delay `known_s` (the search begins there), or for each delay.
+/// The delays, up to `until_s` in steps of `step_s`, under which the linear loop with the nominal
+/// plant is stable: of a controller designed for the delay `known_s` (the search begins there), or
+/// for each delay.
 ///
 /// # Errors
 /// A controller that cannot be made.
@@ -83,7 +85,8 @@ pub fn longest_linear(
     Longest::search(known_s.unwrap_or(0.0), step_s, until_s, |delay_s| {
         let radius = match &fixed {
             Some(law) => law.spectral_radius(model, delay_s)?,
-            // For a delay at which nothing stabilises the plant a design may fail: then it does not tolerate it.
+            // For a delay at which nothing stabilises the plant a design may fail: then it does not
+            // tolerate it.
             None => match build(delay_s) {
                 Ok(law) => law.spectral_radius(model, delay_s)?,
                 Err(_) => f64::INFINITY,
@@ -93,7 +96,8 @@ pub fn longest_linear(
     })
 }
 
-/// The longest delay, as above, under which a controller designed for each delay stabilises 95 % of the robots.
+/// The longest delay, as above, under which a controller designed for each delay stabilises 95 % of
+/// the robots.
 ///
 /// # Errors
 /// Robots that cannot be simulated.

@@ -42,8 +42,8 @@ impl MassErrors<'_> {
             .collect()
     }
 
-    /// Largest error of the masses, a share, at which no more than `share` of the robots are unstable under u = -K x;
-    /// to a quarter of a percent, up to 64 %.
+    /// Largest error of the masses, a share, at which no more than `share` of the robots are
+    /// unstable under u = -K x; to a quarter of a percent, up to 64 %.
     ///
     /// # Errors
     /// As [`MassErrors::plants`].

@@ -28,8 +28,8 @@ pub struct Missing {
 /// Puts journals together; the inner error lists what is missing.
 ///
 /// # Errors
-/// Files that are no journals or cannot be read, journals of different studies, chunks that differ though they should
-/// not.
+/// Files that are no journals or cannot be read, journals of different studies, chunks that differ
+/// though they should not.
 pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
     let mut found: Option<(Header, PathBuf)> = None;
     let mut rows: BTreeMap<usize, (String, PathBuf)> = BTreeMap::new();

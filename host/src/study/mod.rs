@@ -1,8 +1,11 @@
-//! The one study engine: any controller, any non-ideality, one thing varied or all that is uncertain at once.
+//! The one study engine: any controller, any non-ideality, one thing varied or all that is
+//! uncertain at once.
 //!
-//! `parse` (a file) or `conditions` (a named set) -> `case` (one robot, one controller) -> `judge` (robots drawn around it, in
-//! figures). On top of that: `sweep` (a [`quantity`] at every level), `region` (of starts), `longest_delay`, `mass_errors`
-//! (in the linear loop), `verify` (a design, with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk) -> `merge` -> `summary`.
+//! `parse` (a file) or `conditions` (a named set) -> `case` (one robot, one controller) -> `judge`
+//! (robots drawn around it, in figures). On top of that: `sweep` (a [`quantity`] at every level),
+//! `region` (of starts), `longest_delay`, `mass_errors` (in the linear loop), `verify` (a design,
+//! with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk)
+//! -> `merge` -> `summary`.
 
 mod case;
 mod conditions;

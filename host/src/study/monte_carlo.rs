@@ -1,6 +1,7 @@
 //! Runs of robots that are all a little different, chunk by chunk.
 //!
-//! Run `i` depends on the study and on `i` alone: not on the thread, the chunk's neighbours or the shard.
+//! Run `i` depends on the study and on `i` alone: not on the thread, the chunk's neighbours or the
+//! shard.
 
 use super::case::Designed;
 use super::judge::{Drawn, run_drawn};
@@ -33,8 +34,8 @@ pub fn columns(study: &Study) -> Vec<String> {
         .collect()
 }
 
-/// Rows of a chunk, lines of comma-separated values; `designed` is [`Case::designed`](super::Case::designed) of the
-/// study's case.
+/// Rows of a chunk, lines of comma-separated values; `designed` is
+/// [`Case::designed`](super::Case::designed) of the study's case.
 ///
 /// # Errors
 /// Robots that cannot be simulated.

@@ -30,8 +30,8 @@ pub struct Study {
 const HANDSTAND: &str = include_str!("../../models/handstand.toml");
 
 impl Study {
-    /// The paper's robot with its regulator (Q = 100 I, R = I, 10 ms) under ideal circumstances: 200 runs of 5 s from
-    /// starts within 1 deg.
+    /// The paper's robot with its regulator (Q = 100 I, R = I, 10 ms) under ideal circumstances:
+    /// 200 runs of 5 s from starts within 1 deg.
     ///
     /// # Errors
     /// None that are not bugs.
@@ -154,8 +154,8 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
     set(table, "period_s", Limits::within(1e-4, 1.0), period_s)
 }
 
-/// Sets the conditions; what they draw for every robot comes back. The design counts on them, but for their delay,
-/// which it counts on only where they are those of a named set.
+/// Sets the conditions; what they draw for every robot comes back. The design counts on them, but
+/// for their delay, which it counts on only where they are those of a named set.
 fn conditions(table: &Table<'_>, case: &mut Case) -> Result<Vec<Uncertain>> {
     table.only(&[
         "base",

@@ -60,7 +60,8 @@ fn curve(ran: &Sweep, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f6
 /// Parts into which an uncertain value's range is cut.
 const PARTS: usize = 6;
 
-/// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain value.
+/// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain
+/// value.
 ///
 /// # Errors
 /// As [`Merged::values`].

@@ -121,8 +121,8 @@ impl Uncertain {
         }
     }
 
-    /// The value of run `run`. It depends on the column alone, so that runs of other studies with the same seed meet
-    /// the same value.
+    /// The value of run `run`. It depends on the column alone, so that runs of other studies with
+    /// the same seed meet the same value.
     pub fn draw(&self, seed: u64, run: u64) -> f64 {
         // FNV-1a of the column tells the streams apart.
         let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);

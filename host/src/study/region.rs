@@ -20,9 +20,9 @@ const HALVINGS: usize = 6;
 /// How many judgements [`region`] takes at most.
 pub const REGION_JUDGEMENTS: usize = HALVINGS + 1;
 
-/// The largest tilt such that from every smaller one, to either side in steps of 0.1 deg up to 20 deg, all joints else
-/// straight and everything at rest, the robot is stabilised: where the region of attraction ends along joint 1. 0 if
-/// even 0.1 deg is too much.
+/// The largest tilt such that from every smaller one, to either side in steps of 0.1 deg up to 20
+/// deg, all joints else straight and everything at rest, the robot is stabilised: where the region
+/// of attraction ends along joint 1. 0 if even 0.1 deg is too much.
 pub fn tilt_border_rad(
     closed: &ClosedLoop,
     controller: &dyn Controller,
@@ -64,7 +64,8 @@ pub struct Region {
     pub open: bool,
 }
 
-/// Searches the largest cube of starts from which 95 % are stabilised; `done` is called after each run.
+/// Searches the largest cube of starts from which 95 % are stabilised; `done` is called after each
+/// run.
 ///
 /// # Errors
 /// As [`judge`].

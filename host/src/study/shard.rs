@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// Shard `index` of `of`, counted from 1: every chunk whose number leaves `index - 1` when divided by `of`.
+/// Shard `index` of `of`, counted from 1: every chunk whose number leaves `index - 1` when divided
+/// by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Which, from 1.

@@ -58,7 +58,8 @@ pub struct Influence {
     pub value: String,
     /// Of the value with being stabilised, -1 to 1.
     pub correlation: f64,
-    /// Of its distance from its mean with being stabilised: an error that is bad to either side shows here.
+    /// Of its distance from its mean with being stabilised: an error that is bad to either side
+    /// shows here.
     pub correlation_of_size: f64,
 }
 

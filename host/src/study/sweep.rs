@@ -16,7 +16,8 @@ pub struct Level {
     pub label: String,
     /// Figures; none if there is no controller for this level.
     pub figures: Option<Figures>,
-    /// Border of the region of attraction along a tilt of the whole robot, rad: see [`tilt_border_rad`].
+    /// Border of the region of attraction along a tilt of the whole robot, rad: see
+    /// [`tilt_border_rad`].
     pub tilt_border_rad: Option<f64>,
     /// Why there is no controller.
     pub refused: Option<String>,
@@ -36,7 +37,8 @@ pub struct Sweep {
 /// Judges `case` at every level; `done` is called after each.
 ///
 /// # Errors
-/// Levels out of bounds; robots that cannot be simulated. A level without a controller is no error but a finding.
+/// Levels out of bounds; robots that cannot be simulated. A level without a controller is no error
+/// but a finding.
 pub fn sweep(
     (quantity, levels): (&'static Quantity, &'static Levels),
     values: &[f64],

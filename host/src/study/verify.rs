@@ -1,5 +1,5 @@
-//! Verification of a design: the loop simulated with every effect of the model, those that the design leaves out
-//! included.
+//! Verification of a design: the loop simulated with every effect of the model, those that the
+//! design leaves out included.
 
 use super::judge::{Figures, STABILISED_SHARE};
 use super::region::largest;
@@ -9,7 +9,7 @@ use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
 };
-use crate::synth::{Design, Request, Time};
+use crate::synth::{Design, Request, Time, continuous_period_s};
 use serde::Serialize;
 
 /// Runs from random starts behind each figure.
@@ -21,9 +21,6 @@ const SECONDS: f64 = 5.0;
 /// Starts of the run whose figures are given, rad: within half a degree.
 const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
-/// Sampling time that stands for continuous gains, s.
-const CONTINUOUS_S: f64 = 1e-3;
-
 /// What the simulated loop does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verification {
@@ -31,7 +28,8 @@ pub struct Verification {
     pub stabilised: bool,
     /// Figures of those starts.
     pub near: Figures,
-    /// Half-width of the largest cube of starting angles of which 95 % are stabilised, rad; 0 if there is none.
+    /// Half-width of the largest cube of starting angles of which 95 % are stabilised, rad; 0 if
+    /// there is none.
     pub region_rad: f64,
     /// The same without the effects that the design leaves out.
     pub region_as_designed_rad: f64,
@@ -86,8 +84,8 @@ pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<Lef
     left_out
 }
 
-/// Simulates the loop of a design from random starts around its pose, the same every time. The plant is `model` with
-/// all its effects.
+/// Simulates the loop of a design from random starts around its pose, the same every time. The
+/// plant is `model` with all its effects.
 ///
 /// # Errors
 /// Models that cannot be simulated.
@@ -146,7 +144,7 @@ impl Tested<'_> {
             .effects
             .retain(|e| !without.iter().any(|one| is(e, one)));
         let period_s = match self.request.time {
-            Time::Continuous => CONTINUOUS_S,
+            Time::Continuous => continuous_period_s(&self.design.gains.poles),
             Time::Sampled { ts_s, delay_s } => {
                 if let Some(delay_s) = delay_s {
                     set_delay(&mut model, delay_s);

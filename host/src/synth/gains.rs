@@ -62,6 +62,13 @@ pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gain
     })
 }
 
+/// Longest sampling time, s, that stands for continuous time in a loop with these poles, 1/s: a
+/// fifth of the fastest mode's time constant, 1 ms at most and 10 us at least.
+pub fn continuous_period_s(poles: &[Complex<f64>]) -> f64 {
+    let fastest_1_s = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
+    (0.2 / fastest_1_s).clamp(1e-5, 1e-3)
+}
+
 impl Gains {
     fn of(problem: &Problem<'_>) -> Result<Gains, DesignError> {
         let refused = || problem.unsolvable(Role::Regulator);

@@ -40,7 +40,7 @@ pub use eigen::{Mode, poles};
 pub use error::{DesignError, PlantMode, Role};
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 pub use fixed_law::{FixedLaw, Loss};
-pub use gains::{Gains, dlqr, lqr};
+pub use gains::{Gains, continuous_period_s, dlqr, lqr};
 pub use linearise::{Linearised, linearise};
 pub use omitted::{NonSmooth, OmittedEffect};
 pub use operating_point::input_delay_s;

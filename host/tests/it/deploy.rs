@@ -85,7 +85,8 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     assert_eq!(small.code, Some(3), "{small:?}");
 }
 
-/// The build with the plan compiled in, and the boot loader: what runs afterwards is not there, and missed.
+/// The build with the plan compiled in, and the boot loader: what runs afterwards is not there, and
+/// missed.
 #[cfg(unix)]
 #[test]
 fn a_plan_is_compiled_in_and_flashed() {
@@ -100,7 +101,8 @@ fn a_plan_is_compiled_in_and_flashed() {
         none.stderr.contains("no source of the firmware"),
         "{none:?}"
     );
-    // A cargo that notes the plan it is given, and "builds" a program of a jump and the plan's text.
+    // A cargo that notes the plan it is given, and "builds" a program of a jump and the plan's
+    // text.
     std::fs::create_dir(bench.path("firmware")).unwrap();
     std::fs::create_dir(bench.path("tools")).unwrap();
     bench.put("firmware/Cargo.toml", "");

@@ -1,4 +1,5 @@
-//! ROBOTIS's own SDK (PyPI `dynamixel-sdk`) speaks with the simulated servos through `virtual --pty`.
+//! ROBOTIS's own SDK (PyPI `dynamixel-sdk`) speaks with the simulated servos through `virtual
+//! --pty`.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! `handstand gains` seen from outside: its files compile and compute what the shared law computes, and what cannot
-//! be designed is refused.
+//! `handstand gains` seen from outside: its files compile and compute what the shared law computes,
+//! and what cannot be designed is refused.
 
 use crate::common::Bench;
 use handstand_shared::gains::GainTable;
@@ -187,7 +187,8 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
         ),
         ("passive.toml", "no joint of `handstand` is driven"),
         ("nowhere.toml", "nowhere.toml"),
-        // Without gravity the whole robot turns freely on the bar, and torques inside it cannot stop that.
+        // Without gravity the whole robot turns freely on the bar, and torques inside it cannot
+        // stop that.
         (
             "weightless.toml",
             "no input reaches it: the plant cannot be stabilised",
@@ -331,4 +332,12 @@ fn the_model_s_own_delay_and_eccentric_masses_are_designed_for() {
     // The hips' torque holds the legs; the whole leans the other way.
     assert!((-0.05..-0.005).contains(&q1), "{q1}");
     assert!(balanced["u0"][1].as_f64().unwrap().abs() > 0.01);
+}
+
+#[test]
+fn gains_for_continuous_time_are_verified_fast_enough_for_their_poles() {
+    let bench = bench();
+    let ran = bench.run("gains handstand.toml --continuous --json");
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert_eq!(ran.json()["verification"]["stabilised"], true);
 }

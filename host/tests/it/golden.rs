@@ -1,6 +1,7 @@
 //! What the program says, word for word.
 //!
-//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference before keeping it.
+//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference
+//! before keeping it.
 
 use crate::common::Bench;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! The built program and the library, seen from outside. One test program: each more would link the library again.
+//! The built program and the library, seen from outside. One test program: each more would link the
+//! library again.
 
 mod common;
 

@@ -1,6 +1,7 @@
 //! The recipes of `docs/recipes`, run as they are: a study's shards by Slurm and by GNU parallel.
 //!
-//! Without these programs (Slurm needs root too) they are skipped, and stderr says so even when tests pass.
+//! Without these programs (Slurm needs root too) they are skipped, and stderr says so even when
+//! tests pass.
 
 use crate::common::Bench;
 use std::io::Write as _;

@@ -56,8 +56,8 @@ fn a_recording_is_a_log_that_models_are_compared_with() {
     assert_eq!(check.code, Some(0), "{check:?}");
 }
 
-/// A run through the firmware, read by `compare` with the model of a servo: what remains is the firmware's slower goals and
-/// the line's varying delay.
+/// A run through the firmware, read by `compare` with the model of a servo: what remains is the
+/// firmware's slower goals and the line's varying delay.
 #[test]
 fn a_run_through_the_firmware_is_what_its_model_says() {
     let bench = Bench::new();
@@ -233,7 +233,8 @@ mod killed {
         robot.wait().unwrap();
     }
 
-    /// Two Ctrl-C while the servos do not answer: the program ends at once, and torque goes off all the same.
+    /// Two Ctrl-C while the servos do not answer: the program ends at once, and torque goes off all
+    /// the same.
     #[test]
     fn a_second_ctrl_c_leaves_torque_off_too() {
         for (words, options, baud) in [
@@ -273,7 +274,8 @@ mod killed {
             signal("-CONT", &robot);
             std::thread::sleep(Duration::from_millis(500));
             if baud == 57_600 {
-                // It may have found the line silent, and stopped: greeted anew it is an adapter again.
+                // It may have found the line silent, and stopped: greeted anew it is an adapter
+                // again.
                 let line =
                     format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");
                 assert_eq!(bench.run(&line).code, Some(0));

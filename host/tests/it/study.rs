@@ -21,7 +21,8 @@ fn bench() -> Bench {
     bench
 }
 
-/// Waits until the journal is longer than `bytes`, then kills the program outright; whether it got that far.
+/// Waits until the journal is longer than `bytes`, then kills the program outright; whether it got
+/// that far.
 fn killed_beyond(bench: &Bench, bytes: u64) -> bool {
     let mut child = Command::new(env!("CARGO_BIN_EXE_handstand"))
         .args(["study", "monte-carlo", "study.toml", "-o", "killed"])

@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 const COLUMNS: &str = "--time t=s --input goal=rad/s --output angle=rad";
 
-/// Angles of the paper's servo, told plus and minus `size` rad/s by lot, and stepped by `resolution_rad`.
+/// Angles of the paper's servo, told plus and minus `size` rad/s by lot, and stepped by
+/// `resolution_rad`.
 fn log(samples: usize, size: f64, resolution_rad: f64, seed: u64) -> String {
     let goal: Vec<f64> = pseudo_random(samples, 12, seed)
         .iter()

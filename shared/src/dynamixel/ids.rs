@@ -5,7 +5,8 @@ use core::ops::RangeInclusive;
 /// How to write a list of ids, for error messages.
 pub const ID_LIST_SYNTAX: &str = "write 1-18 or 1-4+9, each 0 to 253";
 
-/// Parse a list of servo ids such as `1-4+9` or `1-4,9`: the ids in order, `None` where a part names none.
+/// Parse a list of servo ids such as `1-4+9` or `1-4,9`: the ids in order, `None` where a part
+/// names none.
 pub fn ids(text: &str) -> impl Iterator<Item = Option<u8>> + '_ {
     text.split(['+', ',']).flat_map(|part| {
         let range = range(part);

@@ -1,7 +1,9 @@
-//! Dynamixel Protocol 1.0, as the AX-12 speaks it, from both ends. Source: ROBOTIS e-manual, "DYNAMIXEL Protocol 1.0".
+//! Dynamixel Protocol 1.0, as the AX-12 speaks it, from both ends. Source: ROBOTIS e-manual,
+//! "DYNAMIXEL Protocol 1.0".
 //!
-//! `FF FF ID LENGTH CODE PARAMETERS.. CHECKSUM`; LENGTH counts what follows it, the checksum is the inverted sum of all
-//! from ID on. CODE is an instruction on the way to a servo and its error bits on the way back.
+//! `FF FF ID LENGTH CODE PARAMETERS.. CHECKSUM`; LENGTH counts what follows it, the checksum is the
+//! inverted sum of all from ID on. CODE is an instruction on the way to a servo and its error bits
+//! on the way back.
 
 mod ids;
 mod packet;

@@ -64,7 +64,8 @@ impl<'a> Packet<'a> {
     }
 }
 
-/// Writes a packet into `out`; its length, or nothing if `out` or the packet's length byte is too small.
+/// Writes a packet into `out`; its length, or nothing if `out` or the packet's length byte is too
+/// small.
 pub(super) fn emit(out: &mut [u8], id: u8, code: u8, head: &[u8], data: &[u8]) -> Option<usize> {
     let count = head.len() + data.len();
     let length = u8::try_from(count + 2).ok()?;

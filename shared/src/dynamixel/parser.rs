@@ -2,7 +2,8 @@
 
 use super::{Packet, PacketError};
 
-/// Collects bytes until they are a packet of at most `N` bytes; searches on within what turned out to be none.
+/// Collects bytes until they are a packet of at most `N` bytes; searches on within what turned out
+/// to be none.
 #[derive(Debug, Clone)]
 pub struct Parser<const N: usize> {
     bytes: [u8; N],

@@ -113,7 +113,8 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Writes it as a packet for servo `id` into `out`; the packet's length, or nothing if it does not fit.
+    /// Writes it as a packet for servo `id` into `out`; the packet's length, or nothing if it does
+    /// not fit.
     pub fn emit(&self, id: u8, out: &mut [u8]) -> Option<usize> {
         let (head, data): ([u8; 2], &[u8]) = match *self {
             Request::Ping | Request::Action | Request::Reset => ([0, 0], &[]),
@@ -156,7 +157,8 @@ pub const fn read_packet(id: u8, address: u8, count: u8) -> [u8; 8] {
     ]
 }
 
-/// The first bytes of a SYNC_WRITE to at most 50 `servos`: a block of id and `width` bytes for each, and [`check_byte`], follow.
+/// The first bytes of a SYNC_WRITE to at most 50 `servos`: a block of id and `width` bytes for
+/// each, and [`check_byte`], follow.
 pub const fn sync_write_head(address: u8, width: u8, servos: u8) -> [u8; 7] {
     let blocks = servos.wrapping_mul(width.wrapping_add(1));
     [
@@ -175,7 +177,8 @@ pub const fn check_byte(sum: u8) -> u8 {
     WHOLE_SUM.wrapping_sub(sum)
 }
 
-/// Whether the blocks of a SYNC_WRITE are all of id and `width` bytes. Counted, for the AVR divides slowly.
+/// Whether the blocks of a SYNC_WRITE are all of id and `width` bytes. Counted, for the AVR divides
+/// slowly.
 fn is_whole(blocks: &[u8], width: u8) -> bool {
     let block = usize::from(width) + 1;
     let mut left = blocks.len();

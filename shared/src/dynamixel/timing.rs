@@ -1,4 +1,5 @@
-//! Timing of the AX-12 on a bus at 1 Mbaud, from published measurements: when each byte of a reply starts.
+//! Timing of the AX-12 on a bus at 1 Mbaud, from published measurements: when each byte of a reply
+//! starts.
 
 /// A bit at 1 Mbaud, ns.
 pub const BIT_NS: u64 = 1000;
@@ -16,10 +17,11 @@ const INTERRUPT_PERIOD_NS: u64 = 1_000_000;
 /// The motor interrupt takes this long, ns; a byte that would start in it starts at its end.
 const INTERRUPT_NS: u64 = 130_000;
 
-/// The earliest start of a byte, ns, that is ready at `ready_ns` in the servo with this serial number.
+/// The earliest start of a byte, ns, that is ready at `ready_ns` in the servo with this serial
+/// number.
 ///
-/// Each servo's motor interrupt has a phase of its own, scattered by a hash of `serial`: servos started together would
-/// otherwise all stall a periodic reader alike.
+/// Each servo's motor interrupt has a phase of its own, scattered by a hash of `serial`: servos
+/// started together would otherwise all stall a periodic reader alike.
 pub fn byte_start_ns(ready_ns: u64, serial: u64) -> u64 {
     let phase_ns = ((serial * 2_654_435_761) >> 8) % INTERRUPT_PERIOD_NS;
     let into_ns = (ready_ns + INTERRUPT_PERIOD_NS - phase_ns) % INTERRUPT_PERIOD_NS;

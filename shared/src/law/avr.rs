@@ -1,15 +1,16 @@
 //! The law in the AVR's own words.
 //!
-//! The compiler's product of two 16-bit values takes 110 cycles. Here it takes 31 in a row of any length, and 25 in the law of two
-//! inputs and six states, which is unrolled: four 8-bit products and their sum. A shift by bits is a product with a power of two.
+//! The compiler's product of two 16-bit values takes 110 cycles. Here it takes 31 in a row of any
+//! length, and 25 in the law of two inputs and six states, which is unrolled: four 8-bit products
+//! and their sum. A shift by bits is a product with a power of two.
 #![allow(unsafe_code)]
 
 use crate::gains::{GainTable, Row};
 use core::arch::asm;
 use core::mem::{MaybeUninit, offset_of, size_of};
 
-/// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four registers; r11 is zero, r24 and r25
-/// are spoilt.
+/// The assembler's macro `handstand_mac`: subtracts the product of r20-21 and r22-23 from four
+/// registers; r11 is zero, r24 and r25 are spoilt.
 macro_rules! mac {
     () => {
         concat!(
@@ -36,10 +37,12 @@ macro_rules! mac {
     };
 }
 
-/// The assembler's macro `handstand_finish`: the sum in a0 to a3 shifted and within its limits, in u0 and u1; a2 and a3 are among
-/// r16 to r23, shift and limits lie at Z, r11 is zero, r20, r24 and r25 and the sum are spoilt.
+/// The assembler's macro `handstand_finish`: the sum in a0 to a3 shifted and within its limits, in
+/// u0 and u1; a2 and a3 are among r16 to r23, shift and limits lie at Z, r11 is zero, r20, r24 and
+/// r25 and the sum are spoilt.
 ///
-/// Three bytes times 2^(8 - n), without the lowest byte of the product, are those bytes shifted by n: 2^(7 - (shift - 1) % 8).
+/// Three bytes times 2^(8 - n), without the lowest byte of the product, are those bytes shifted by
+/// n: 2^(7 - (shift - 1) % 8).
 macro_rules! finish {
     () => {
         concat!(
@@ -240,13 +243,14 @@ fn two_by_six(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i16; 2] {
     [first, second]
 }
 
-/// How far the states `x` are from the operating point `x0`, saturating: 19 cycles each, where the compiler takes 45.
+/// How far the states `x` are from the operating point `x0`, saturating: 19 cycles each, where the
+/// compiler takes 45.
 #[inline(always)]
 pub fn departure<const N: usize>(x0: &[i16; N], x: &[i16; N]) -> [i16; N] {
     const { assert!(N > 0 && N < 256) };
     let mut departure = MaybeUninit::<[i16; N]>::uninit();
-    // SAFETY: reads N words from X and from Z and writes N at Y, which have them; Y is the compiler's own, and as it was at the
-    // end.
+    // SAFETY: reads N words from X and from Z and writes N at Y, which have them; Y is the
+    // compiler's own, and as it was at the end.
     unsafe {
         asm!(
             "movw r24, r28",

@@ -37,7 +37,8 @@ pub enum Command {
     },
     /// Torque on. Critical.
     Arm {
-        /// The token of the last [`super::Hello`]: a new one after every boot and every fault, so that an old frame arms nothing.
+        /// The token of the last [`super::Hello`]: a new one after every boot and every fault, so
+        /// that an old frame arms nothing.
         token: u16,
     },
     /// A piece of a new gain table. Critical; refused while armed.

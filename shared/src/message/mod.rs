@@ -1,8 +1,9 @@
 //! What host and firmware say to each other: postcard messages in [`crate::frame`]s.
 //!
-//! A body is `sequence, message` and, behind messages that move torque or gains, a CRC-32 of both: noise that slips
-//! through the frame's CRC-16 must never arm a robot. Sequence numbers count frames per direction, so that the other
-//! side can count what was lost. [`VERSION`] is compared in `Hello` before anything else is accepted.
+//! A body is `sequence, message` and, behind messages that move torque or gains, a CRC-32 of both:
+//! noise that slips through the frame's CRC-16 must never arm a robot. Sequence numbers count
+//! frames per direction, so that the other side can count what was lost. [`VERSION`] is compared in
+//! `Hello` before anything else is accepted.
 
 mod command;
 mod report;

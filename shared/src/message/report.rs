@@ -125,7 +125,8 @@ pub struct StreamReport {
     pub positions: Positions,
     /// Who did not answer in this tick: a bit each, the lowest first.
     pub missing: [u8; 3],
-    /// Place in the servo list of the first of `housekeeping`; the second follows it, around the end.
+    /// Place in the servo list of the first of `housekeeping`; the second follows it, around the
+    /// end.
     pub housekeeping_from: u8,
     /// Slower channels of two servos in turn.
     pub housekeeping: [Housekeeping; 2],

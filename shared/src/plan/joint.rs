@@ -1,4 +1,5 @@
-//! One driven joint: from its servo's position to the law's reading, from the law's raw_command to the servo's command.
+//! One driven joint: from its servo's position to the law's reading, from the law's raw_command to
+//! the servo's command.
 
 use crate::raw::{Position, Signed};
 
@@ -17,8 +18,9 @@ pub struct Joint {
     pub dead: u16,
     /// Command codes per step of the law's input, times 65536.
     pub gain: u16,
-    /// Least input that surely passes, in steps, where a servo obeys whole what it obeys at all: less is saved up until it
-    /// is worth giving. 0 for servos whose torque begins at nothing behind the dead zone.
+    /// Least input that surely passes, in steps, where a servo obeys whole what it obeys at all:
+    /// less is saved up until it is worth giving. 0 for servos whose torque begins at nothing
+    /// behind the dead zone.
     pub least: i16,
     /// Largest input, in steps: the torque limit.
     pub most: i16,
@@ -60,8 +62,8 @@ impl Joint {
         if self.reversed { -angle } else { angle }
     }
 
-    /// The input that is applied for one that is commanded: within the limits of size and change, and never one that would
-    /// vanish in the dead zone. What falls short of `least` is owed.
+    /// The input that is applied for one that is commanded: within the limits of size and change,
+    /// and never one that would vanish in the dead zone. What falls short of `least` is owed.
     pub fn apply(&self, applied: &mut AppliedInput, raw_command: i16) -> i16 {
         let owed = raw_command.saturating_add(applied.owed);
         let half = self.least / 2;
@@ -77,7 +79,8 @@ impl Joint {
         );
         let mut input = whole.max(-self.most).min(self.most).max(low).min(high);
         if input != 0 && input.unsigned_abs() < self.least.unsigned_abs() {
-            // The slew's limit lies in the dead zone: nothing, or as little as passes on the side it comes from.
+            // The slew's limit lies in the dead zone: nothing, or as little as passes on the side
+            // it comes from.
             input = match (low..=high).contains(&0) {
                 true => 0,
                 false => self.beyond_least(last.signum()),

@@ -34,8 +34,9 @@ impl Gyro {
     }
 }
 
-/// The moment of a link and of all that hangs on its end about its joint, p_j = m_j c_j e^{i d_j} + l_j (m_{j+1} + ..): the
-/// direction in which its resultant centre of mass lies. The unit is free, but the same for both parts.
+/// The moment of a link and of all that hangs on its end about its joint, p_j = m_j c_j e^{i d_j} +
+/// l_j (m_{j+1} + ..): the direction in which its resultant centre of mass lies. The unit is free,
+/// but the same for both parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Moment {
     /// Along the link's line.

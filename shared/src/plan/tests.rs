@@ -131,7 +131,8 @@ fn the_mean_of_what_is_given_is_what_was_wished_for() {
 }
 
 proptest! {
-    /// Whatever is commanded: within the limits, never a change beyond the slew, never lost in the dead zone.
+    /// Whatever is commanded: within the limits, never a change beyond the slew, never lost in the
+    /// dead zone.
     #[test]
     fn limits_hold(
         least in 0i16..300,

@@ -1,8 +1,9 @@
 //! Fuzz targets: one function per parser, which takes arbitrary bytes and must return.
 //!
-//! A target fails by panicking: the parser itself, or an assertion about what it returned (what is written and read
-//! again must be the same). `cargo xtask fuzz` mutates the files of `corpus/` for minutes, guided by coverage; the tests
-//! replay them. A new target is a function and a line in [`TARGETS`], and a folder of its name under `corpus/`.
+//! A target fails by panicking: the parser itself, or an assertion about what it returned (what is
+//! written and read again must be the same). `cargo xtask fuzz` mutates the files of `corpus/` for
+//! minutes, guided by coverage; the tests replay them. A new target is a function and a line in
+//! [`TARGETS`], and a folder of its name under `corpus/`.
 
 mod targets;
 

@@ -1,4 +1,5 @@
-//! The targets with libFuzzer around them: `HANDSTAND_FUZZ_TARGET` names the one to run, the arguments are libFuzzer's.
+//! The targets with libFuzzer around them: `HANDSTAND_FUZZ_TARGET` names the one to run, the
+//! arguments are libFuzzer's.
 //!
 //! libFuzzer brings `main`. One program for all targets, for each would link the library again.
 #![no_main]

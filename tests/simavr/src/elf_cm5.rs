@@ -27,7 +27,8 @@ const RECEIVE: u8 = 1 << 3;
 pub struct Observed {
     /// Cycles in which the controller was reset.
     pub resets: Vec<u64>,
-    /// Direction changes before the last stop bit, and bytes sent while not transmitting: always a fault.
+    /// Direction changes before the last stop bit, and bytes sent while not transmitting: always a
+    /// fault.
     pub direction_faults: usize,
     /// The most bytes that ever waited unread at the bus's receiver; the hardware holds two.
     pub most_waiting: usize,
@@ -41,11 +42,13 @@ pub struct ElfCm5 {
     pub core: Core,
     /// The servos.
     pub bus: Bus,
-    /// By how much the servos' clock is ahead of the controller's, ns: it decides when their motor interrupts come.
+    /// By how much the servos' clock is ahead of the controller's, ns: it decides when their motor
+    /// interrupts come.
     pub bus_ahead_ns: u64,
     /// Observations.
     pub seen: Observed,
-    /// Bytes on the bus with the cycles their stop bits end, whoever sent them; kept where there is a list.
+    /// Bytes on the bus with the cycles their stop bits end, whoever sent them; kept where there is
+    /// a list.
     pub trace: Option<Vec<(u64, u8)>>,
     port_e: u8,
     /// When the bus was last turned around.
@@ -99,7 +102,8 @@ impl ElfCm5 {
         }
     }
 
-    /// When the next byte for the controller ends; at most a short step away, for servos answer within 18 us.
+    /// When the next byte for the controller ends; at most a short step away, for servos answer
+    /// within 18 us.
     fn next_event(&self) -> u64 {
         let bus = self.bus_next();
         let link = self.to_link.front().map(|(end, _)| *end);

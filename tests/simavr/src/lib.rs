@@ -1,7 +1,7 @@
 //! The CM-5 in simavr: the very ELF that is flashed, against simulated servos and a simulated PC.
 //!
-//! simavr is under the GPL-3, so nothing that is shipped links this crate. Where Debian's `libsimavr-dev` is not
-//! installed the crate is empty, and [`AVAILABLE`] says so.
+//! simavr is under the GPL-3, so nothing that is shipped links this crate. Where Debian's
+//! `libsimavr-dev` is not installed the crate is empty, and [`AVAILABLE`] says so.
 #![allow(unsafe_code)]
 
 /// Whether simavr was there when this was built.

@@ -1,7 +1,9 @@
-//! How old the readings are at the law's moment, and when its torques act: on the ELF, from the bus itself.
+//! How old the readings are at the law's moment, and when its torques act: on the ELF, from the bus
+//! itself.
 //!
-//! The driven joints' shafts turn as clocks, one position code every 20 us, so that an answer says when it was measured. The
-//! law's moment is the end of the last answer; the host says the attitude after every report, as in the closed loop.
+//! The driven joints' shafts turn as clocks, one position code every 20 us, so that an answer says
+//! when it was measured. The law's moment is the end of the last answer; the host says the attitude
+//! after every report, as in the closed loop.
 
 use super::SimulatedCm5 as _;
 use super::balance::{arm_balance, plan};

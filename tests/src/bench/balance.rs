@@ -1,4 +1,5 @@
-//! The robot in closed loop with the firmware: three links on a bar, two joints driven by servos in wheel mode.
+//! The robot in closed loop with the firmware: three links on a bar, two joints driven by servos in
+//! wheel mode.
 
 use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
@@ -65,7 +66,8 @@ impl Source {
 pub struct Conditions {
     /// Share of full output below which a servo does not move; the plan believes in 8 %.
     pub dead_zone: f64,
-    /// The robot's own eccentricity, m: each centre of mass so far beside its line. The plan knows none.
+    /// The robot's own eccentricity, m: each centre of mass so far beside its line. The plan knows
+    /// none.
     pub eccentric_m: [f64; 3],
     /// Angles at the start from upright and straight, rad; at rest.
     pub start_rad: [f64; 3],
@@ -82,7 +84,8 @@ pub struct Balanced {
     pub torque_rms_nm: [f64; 2],
     /// What the firmware said at the end; nothing where there is none.
     pub condition: Option<Condition>,
-    /// The firmware's own account, its longest tick and its overruns since shortly before it was armed.
+    /// The firmware's own account, its longest tick and its overruns since shortly before it was
+    /// armed.
     pub telemetry: Option<Telemetry>,
     /// What each tick saw and commanded, as far as the line told.
     pub ticks: Vec<Tick>,
@@ -93,7 +96,8 @@ pub struct Balanced {
 pub struct Tick {
     /// The tick's number.
     pub number: u16,
-    /// The first link's angle, both joints' in position codes from their centres, the first link's rate.
+    /// The first link's angle, both joints' in position codes from their centres, the first link's
+    /// rate.
     pub readings: [i16; 4],
     /// The same with the other attitude, where one was arriving just as the tick began.
     pub or: Option<[i16; 4]>,
@@ -106,8 +110,8 @@ pub fn plan() -> (OnBoard, Plan) {
     Source::Host.plan()
 }
 
-/// Makes driven servos turn without end, uploads the plan unless it is there, and waits for the law's moment with the robot as it
-/// is: the token that arms, and the firmware's account so far.
+/// Makes driven servos turn without end, uploads the plan unless it is there, and waits for the
+/// law's moment with the robot as it is: the token that arms, and the firmware's account so far.
 ///
 /// # Errors
 /// What the firmware refused; nothing if it did not answer.

@@ -43,7 +43,8 @@ pub fn patterns(most: usize, seed: u64) -> FrameTally {
     flips(&frame(12, &mut rng), most)
 }
 
-/// Every flip of 1 to 3 bits, the zeros at both ends included, on frames of `wire` bytes with `payloads` random bodies.
+/// Every flip of 1 to 3 bits, the zeros at both ends included, on frames of `wire` bytes with
+/// `payloads` random bodies.
 pub fn bit_flips(wire: usize, payloads: usize, seed: u64) -> FrameTally {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let frames: Vec<Vec<u8>> = (0..payloads).map(|_| frame(wire, &mut rng)).collect();
@@ -87,7 +88,8 @@ fn deeper(sent: &[u8], line: &mut [u8], from: usize, left: usize, tally: &mut Fr
     }
 }
 
-/// How many frames the damaged line holds that are accepted; the one sent is damaged, so none may be.
+/// How many frames the damaged line holds that are accepted; the one sent is damaged, so none may
+/// be.
 fn wrong(sent: &[u8], line: &[u8]) -> u64 {
     debug_assert_ne!(sent, line);
     // What lies between zeros is read as a frame, as is what the next frame's zero ends.
@@ -102,7 +104,8 @@ fn wrong(sent: &[u8], line: &[u8]) -> u64 {
         copy.copy_from_slice(piece);
         decode(copy).is_ok()
     });
-    // The frame itself, cut out whole by a flip in the zero behind it alone, is the one that was sent.
+    // The frame itself, cut out whole by a flip in the zero behind it alone, is the one that was
+    // sent.
     let whole = sent.strip_suffix(&[0]).unwrap_or(sent);
     accepted.filter(|piece| *piece != whole).count() as u64
 }

@@ -14,7 +14,8 @@ pub const SHIFTS: u8 = 31;
 /// The shifts that `handstand gains` chooses itself; with `--input-step` it may come to any.
 pub const CHOSEN: [u8; 3] = [0, 8, 16];
 
-/// States are shared out to so many controllers, whatever the number of cores, so that a seed always tries the same ones.
+/// States are shared out to so many controllers, whatever the number of cores, so that a seed
+/// always tries the same ones.
 const CONTROLLERS: usize = 16;
 /// States per table: short of it, a small run would not meet every shift.
 const PER_TABLE: usize = 50;
@@ -76,8 +77,8 @@ fn shares(states: usize, seed: u64) -> Vec<(usize, u64)> {
     (0..CONTROLLERS).map(share).zip(seeds).collect()
 }
 
-/// Compares on random tables and states, small and extreme. Every shift has its turn in both inputs at once, then every one
-/// beside a random one.
+/// Compares on random tables and states, small and extreme. Every shift has its turn in both inputs
+/// at once, then every one beside a random one.
 ///
 /// # Panics
 /// The program cannot be loaded, or does not answer.
@@ -148,7 +149,8 @@ impl ObserverRun {
     }
 }
 
-/// Compares this observer, then random ones, on random memories, small and extreme; at most a thousand per observer.
+/// Compares this observer, then random ones, on random memories, small and extreme; at most a
+/// thousand per observer.
 ///
 /// # Panics
 /// As [`law`].

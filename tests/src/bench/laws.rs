@@ -1,5 +1,5 @@
-//! The laws side by side: in floating point and in fixed point on the host, in a loop timed like the CM-5's; and the
-//! CM-5's own, told tick by tick what it saw.
+//! The laws side by side: in floating point and in fixed point on the host, in a loop timed like
+//! the CM-5's; and the CM-5's own, told tick by tick what it saw.
 
 use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
@@ -91,10 +91,12 @@ impl HostLaw for Float<'_> {
     }
 }
 
-/// How many ticks of the firmware differ from the fixed law on the same readings, and how many were compared.
+/// How many ticks of the firmware differ from the fixed law on the same readings, and how many were
+/// compared.
 ///
-/// The firmware's memory is not told, so that the fixed law follows from the first tick on: one difference would show in
-/// all later ones. Where a tick may have seen either of two attitudes, both are followed as long as they agree with it.
+/// The firmware's memory is not told, so that the fixed law follows from the first tick on: one
+/// difference would show in all later ones. Where a tick may have seen either of two attitudes,
+/// both are followed as long as they agree with it.
 pub fn different(plan: &Plan, ticks: &[Tick]) -> (usize, usize) {
     let mut possible = vec![Fixed::new(plan)];
     let mut different = 0;
@@ -222,8 +224,8 @@ pub struct Sides {
     pub fixed: Balanced,
     /// The firmware's, or what it refused.
     pub board: Result<Balanced, Option<Refusal>>,
-    /// Ticks in which the firmware differs from the fixed law on the same readings, and ticks compared; none with a gyro,
-    /// whose readings no report tells.
+    /// Ticks in which the firmware differs from the fixed law on the same readings, and ticks
+    /// compared; none with a gyro, whose readings no report tells.
     pub different: (usize, usize),
 }
 

@@ -56,7 +56,8 @@ impl Worst {
     }
 }
 
-/// Tries `count` times, in parallel, ten times each on a bench of its own, and says on stderr how far it is.
+/// Tries `count` times, in parallel, ten times each on a bench of its own, and says on stderr how
+/// far it is.
 pub fn worst_of<B>(
     count: usize,
     seed: u64,

@@ -1,4 +1,5 @@
-//! The bench of the firmware: the same scenarios on the logic in process and on the real ELF in simavr.
+//! The bench of the firmware: the same scenarios on the logic in process and on the real ELF in
+//! simavr.
 
 #[cfg(simavr)]
 mod ages;

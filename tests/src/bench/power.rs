@@ -18,7 +18,8 @@ pub struct PowerCuts {
     pub neither: usize,
 }
 
-/// Writes one table over another and cuts the power at every byte, with every one of `torn` as what the byte becomes.
+/// Writes one table over another and cuts the power at every byte, with every one of `torn` as what
+/// the byte becomes.
 pub fn power_cuts(torn: &[u8]) -> PowerCuts {
     let old: Vec<u8> = (0..57).map(|at| at * 3 + 1).collect();
     let new: Vec<u8> = (0..57).map(|at| 200 - at).collect();

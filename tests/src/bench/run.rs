@@ -1,4 +1,5 @@
-//! The host's part while the robot is balanced: it hears reports, says attitudes, and writes down what each tick saw.
+//! The host's part while the robot is balanced: it hears reports, says attitudes, and writes down
+//! what each tick saw.
 
 use super::SimulatedCm5;
 use super::balance::{Balanced, Tick};
@@ -17,8 +18,9 @@ pub const REPORT_MS: f64 = 14.5;
 /// Period of the law, ms.
 const PERIOD_MS: f64 = 10.0;
 
-/// An attitude that arrives so close to a tick's beginning may have been seen by it or not, ms: for the beginning is known from
-/// the reports alone. It happens after arming, whose answer makes the reports late, and so the host.
+/// An attitude that arrives so close to a tick's beginning may have been seen by it or not, ms: for
+/// the beginning is known from the reports alone. It happens after arming, whose answer makes the
+/// reports late, and so the host.
 const DOUBT_MS: f64 = 1.0;
 
 /// The host's part of a run, and what it writes down.
@@ -114,7 +116,8 @@ impl Run {
         }
     }
 
-    /// What each tick saw and commanded: the attitude that had arrived when it began, and the commands before the next one's.
+    /// What each tick saw and commanded: the attitude that had arrived when it began, and the
+    /// commands before the next one's.
     ///
     /// Ticks begin every 10 ms; of all reports the one that waited least on the line tells when.
     fn ticks(&self) -> Vec<Tick> {

@@ -4,13 +4,14 @@ use super::SimulatedCm5;
 use handstand::link::Pty;
 use std::time::{Duration, Instant};
 
-/// Further behind than this, simulated time stands still for a moment: a program at the port waits some 30 ms for an
-/// answer.
+/// Further behind than this, simulated time stands still for a moment: a program at the port waits
+/// some 30 ms for an answer.
 const LATE_MS: f64 = 10.0;
 /// How often slowness is said, s.
 const SAY_EVERY_S: f64 = 5.0;
 
-/// Keeps real time, as far as the machine is fast enough, while `goes_on`; says on stderr when it is not.
+/// Keeps real time, as far as the machine is fast enough, while `goes_on`; says on stderr when it
+/// is not.
 ///
 /// # Errors
 /// The port fails.

@@ -100,7 +100,8 @@ fn obeyed(reports: &[(f64, StreamReport)], said: &[(f64, u8)]) -> (Vec<f64>, u16
     let mut worst = 0;
     let mut next = reports.iter().peekable();
     for (tick, (at, sequence)) in said.iter().enumerate() {
-        // The first report after it was said that knows it, within a quarter of the numbers' circle.
+        // The first report after it was said that knows it, within a quarter of the numbers'
+        // circle.
         while next.peek().is_some_and(|(_, report)| {
             report.obeyed != *sequence && sequence.wrapping_sub(report.obeyed) < 64
         }) {

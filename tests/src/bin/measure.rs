@@ -1,4 +1,5 @@
-//! The chores of `cargo xtask` that measure, one file each under `src/measure/`; it runs this program.
+//! The chores of `cargo xtask` that measure, one file each under `src/measure/`; it runs this
+//! program.
 
 #[path = "../measure/mod.rs"]
 mod measure;

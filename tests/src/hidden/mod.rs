@@ -44,7 +44,8 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// Every case: those with an effect, those with none, then those whose effect the library lacks.
+    /// Every case: those with an effect, those with none, then those whose effect the library
+    /// lacks.
     pub fn cases(&self) -> Vec<Case> {
         let hidden = |left_out| {
             let seeds = move |kind| {
@@ -69,8 +70,8 @@ impl Plan {
     }
 }
 
-/// Tries all cases, `jobs` at a time, sharing `threads` threads out among them; outcomes in the order of the
-/// cases, whatever these numbers are. `heard` hears of every outcome as it comes.
+/// Tries all cases, `jobs` at a time, sharing `threads` threads out among them; outcomes in the
+/// order of the cases, whatever these numbers are. `heard` hears of every outcome as it comes.
 ///
 /// # Errors
 /// A file that could not be written or read back.
@@ -86,7 +87,8 @@ pub fn try_all(
     std::thread::scope(|scope| {
         for _ in 0..jobs.max(1) {
             scope.spawn(|| {
-                // A pool of its own: diagnoses that share one steal each other's work, and their times mean nothing.
+                // A pool of its own: diagnoses that share one steal each other's work, and their
+                // times mean nothing.
                 let pool = ThreadPoolBuilder::new().num_threads(each).build().ok();
                 loop {
                     let index = next.fetch_add(1, Ordering::SeqCst);

@@ -1,7 +1,8 @@
 //! `cargo xtask bench-firmware`: the firmware's promises, measured, one row each.
 //!
-//! Runs the very ELF in simavr against simulated servos; without simavr or an ELF it measures the same logic in process
-//! and says so. simavr lets a byte of 8N1 take 11 bits; the bench sets it to 10, so no time here needs correcting.
+//! Runs the very ELF in simavr against simulated servos; without simavr or an ELF it measures the
+//! same logic in process and says so. simavr lets a byte of 8N1 take 11 bits; the bench sets it to
+//! 10, so no time here needs correcting.
 
 mod ages;
 mod frames;

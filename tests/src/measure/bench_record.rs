@@ -1,4 +1,5 @@
-//! `cargo xtask bench-record`: recorders killed a thousand times; no file may be lost, nor more than a second of any.
+//! `cargo xtask bench-record`: recorders killed a thousand times; no file may be lost, nor more
+//! than a second of any.
 
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};

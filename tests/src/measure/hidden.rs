@@ -1,9 +1,9 @@
 //! `cargo xtask hidden`: how often a hidden effect is named, missed, or invented, against targets.
 //!
-//! Every effect of the challenges on several benches, benches that hide nothing, and every effect again with a
-//! library that lacks it. Training on two motions of 20 s, held out a third. The same arguments give the same
-//! tables on any number of threads. A line goes to stderr as each diagnosis ends, whichever ends first; the tables
-//! go to stdout. Fails when a target is missed.
+//! Every effect of the challenges on several benches, benches that hide nothing, and every effect
+//! again with a library that lacks it. Training on two motions of 20 s, held out a third. The same
+//! arguments give the same tables on any number of threads. A line goes to stderr as each diagnosis
+//! ends, whichever ends first; the tables go to stdout. Fails when a target is missed.
 
 use super::page::Page;
 use clap::builder::PossibleValuesParser;

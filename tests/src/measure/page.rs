@@ -13,8 +13,8 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Prints the tables, or the JSON where that is asked for, and writes docs/measured/NAME.md if asked; whether that
-    /// could be done.
+    /// Prints the tables, or the JSON where that is asked for, and writes docs/measured/NAME.md if
+    /// asked; whether that could be done.
     pub(super) fn show(
         &self,
         json: Option<Value>,

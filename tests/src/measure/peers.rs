@@ -1,7 +1,9 @@
-//! `cargo xtask peers`: the same tasks by other programs and by the library, in one run and in turns.
+//! `cargo xtask peers`: the same tasks by other programs and by the library, in one run and in
+//! turns.
 //!
-//! First says and installs what the peers need, into `target/peers`; `--no-install` leaves that out. A figure is
-//! a ratio of two times taken one after the other on this machine. Fails when a target is missed.
+//! First says and installs what the peers need, into `target/peers`; `--no-install` leaves that
+//! out. A figure is a ratio of two times taken one after the other on this machine. Fails when a
+//! target is missed.
 
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
@@ -244,7 +246,8 @@ impl Bench {
 const THREADS: usize = 2;
 
 impl Bench {
-    /// Runs a second of the paper's closed loop, ideal and with effects, and whether they are the same runs.
+    /// Runs a second of the paper's closed loop, ideal and with effects, and whether they are the
+    /// same runs.
     fn closed_loop(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
         let rk4 = ("mujoco_rk4", 20.0);
         let rigid = ("rigid, ", Robot::Ideal, [rk4, ("numba", 1.0)]);
@@ -368,7 +371,8 @@ impl Rows {
             .add_row([name, ours, theirs, ratio, target, verdict]);
     }
 
-    /// Pairs of seconds, ours and theirs, taken in turns; theirs must take at least `target` times as long.
+    /// Pairs of seconds, ours and theirs, taken in turns; theirs must take at least `target` times
+    /// as long.
     fn faster(&mut self, name: &str, pairs: &[(f64, f64)], target: f64) {
         let ours = median(pairs.iter().map(|pair| pair.0));
         let theirs = median(pairs.iter().map(|pair| pair.1));

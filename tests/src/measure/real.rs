@@ -1,9 +1,10 @@
 //! `cargo xtask real`: the diagnosis on public logs of real rigs, one row per rig.
 //!
-//! The logs lie in the folder `HANDSTAND_DATA` names. Each row starts from the rig's model in `host/models` as it
-//! is, and says what the diagnosis says; nothing is picked by hand but the motions held out. The scatter is how far
-//! readings lie from the cubic through their neighbours: no law that moves smoothly leaves much less. Where a row
-//! misses what a careful analyst expects, the last lines say why.
+//! The logs lie in the folder `HANDSTAND_DATA` names. Each row starts from the rig's model in
+//! `host/models` as it is, and says what the diagnosis says; nothing is picked by hand but the
+//! motions held out. The scatter is how far readings lie from the cubic through their neighbours:
+//! no law that moves smoothly leaves much less. Where a row misses what a careful analyst expects,
+//! the last lines say why.
 
 use super::page::Page;
 use super::scatter::scatter_rad;
@@ -194,7 +195,8 @@ fn judge(rig: &Rig, data: &Path) -> Result<Row> {
     })
 }
 
-/// The table, then why rows miss what was expected. Sets stand on lines of their own, so that no id is broken.
+/// The table, then why rows miss what was expected. Sets stand on lines of their own, so that no id
+/// is broken.
 fn tables(rows: &[(&Rig, Row)]) -> Measured {
     let mut table = Table::new();
     table

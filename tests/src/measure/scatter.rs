@@ -8,8 +8,8 @@ const NEIGHBOURS: usize = 9;
 /// Values of a cubic.
 const CUBIC: usize = 4;
 
-/// Root-mean-square distance of the readings from the cubics through nine neighbours each, rad, for each degree of
-/// freedom left; over all joints and motions.
+/// Root-mean-square distance of the readings from the cubics through nine neighbours each, rad, for
+/// each degree of freedom left; over all joints and motions.
 ///
 /// Beside the reading's resolution this holds what time stamps are off by, times the speed.
 pub(super) fn scatter_rad(motions: &[Motion]) -> f64 {

@@ -1,7 +1,8 @@
 //! `cargo xtask virtual`: a serial port with a CM-5 and simulated servos behind it, in real time.
 //!
-//! The chip's very program in simavr where both are there, else the same logic in process. It is a chore of the tests, for
-//! simavr is under the GPL and nothing that is shipped contains it; `handstand virtual --pty --cm5` is what is shipped.
+//! The chip's very program in simavr where both are there, else the same logic in process. It is a
+//! chore of the tests, for simavr is under the GPL and nothing that is shipped contains it;
+//! `handstand virtual --pty --cm5` is what is shipped.
 
 use handstand::link::Pty;
 use handstand::link::virtual_cm5::{set_up, spec};

@@ -24,8 +24,8 @@ const FREE: [(&str, &str); 4] = [
 /// The start of the fit that is timed, against the truth: as in `fit_scipy.py`.
 const FIXED_START: [f64; 4] = [2.0, 0.5, 2.0, 0.5];
 
-/// Only its weight's moment is known, 0.2 kg at 0.1 m; a heavy mass close to the joint has the same and next to
-/// no inertia about it, so that the whole inertia is free.
+/// Only its weight's moment is known, 0.2 kg at 0.1 m; a heavy mass close to the joint has the same
+/// and next to no inertia about it, so that the whole inertia is free.
 const MODEL: &str = r#"
 [rig]
 name = "arm"
@@ -76,8 +76,8 @@ pub struct Arm {
 pub struct Starts {
     /// Starts.
     pub count: usize,
-    /// Those that end at no more than 1.1 times the floor, the error of the true parameters refitted, with every
-    /// parameter within 10 % of the truth.
+    /// Those that end at no more than 1.1 times the floor, the error of the true parameters
+    /// refitted, with every parameter within 10 % of the truth.
     pub converged: usize,
     /// The floor, rad.
     pub floor_rad: f64,
@@ -194,7 +194,8 @@ impl Arm {
         }
     }
 
-    /// Seconds of a diagnosis of the arm without its Coulomb friction, the last log held out, and what it says.
+    /// Seconds of a diagnosis of the arm without its Coulomb friction, the last log held out, and
+    /// what it says.
     pub fn diagnose_seconds(&self) -> (f64, String) {
         let mut model = self.off_by(&FIXED_START);
         model

@@ -27,7 +27,8 @@ const PERIOD_S: f64 = 0.01;
 pub enum Robot {
     /// A rigid chain with ideal drives.
     Ideal,
-    /// Coulomb friction of 5 mN m at shoulder and hip, a dead zone of 1 %, 2 N m at most, 5 ms of delay.
+    /// Coulomb friction of 5 mN m at shoulder and hip, a dead zone of 1 %, 2 N m at most, 5 ms of
+    /// delay.
     WithEffects,
 }
 

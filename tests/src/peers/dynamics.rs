@@ -33,7 +33,8 @@ pub(super) fn chain(n: usize) -> Chain {
     }
 }
 
-/// Median seconds of one evaluation; the angle moves a little on each, so that nothing can be saved up.
+/// Median seconds of one evaluation; the angle moves a little on each, so that nothing can be saved
+/// up.
 pub fn forward_seconds(n: usize) -> f64 {
     let chain = chain(n);
     let mut work = Workspace::new(n);
@@ -62,8 +63,8 @@ pub fn forward_seconds(n: usize) -> f64 {
     seconds / calls as f64
 }
 
-/// Largest difference to a peer's accelerations in the file that `dynamics.py --accelerations` writes, against
-/// the largest acceleration; none if the file lacks it.
+/// Largest difference to a peer's accelerations in the file that `dynamics.py --accelerations`
+/// writes, against the largest acceleration; none if the file lacks it.
 pub fn farthest_off(states: &Value, n: usize, peer: &str) -> Option<f64> {
     let state = states.get(n.to_string())?;
     let list = |key: &str| -> Option<Vec<f64>> {

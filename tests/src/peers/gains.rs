@@ -16,7 +16,8 @@ pub fn chain_fixture() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/tests/data/riccati_chain.f64")
 }
 
-/// Median time, s, of one sampled regulator of so many equal links upright, the first joint passive.
+/// Median time, s, of one sampled regulator of so many equal links upright, the first joint
+/// passive.
 pub fn dlqr_seconds(links: usize) -> f64 {
     let plant = chain(links);
     let (n, m) = plant.b.shape();

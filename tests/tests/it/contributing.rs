@@ -1,5 +1,5 @@
-//! The worked examples of CONTRIBUTING.md, done word for word in a copy of the tree, compile; ARCHITECTURE.md names
-//! files that exist.
+//! The worked examples of CONTRIBUTING.md, done word for word in a copy of the tree, compile;
+//! ARCHITECTURE.md names files that exist.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -38,8 +38,8 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// The text after a change: lines that begin with a space stand in it one below the other, exactly once; those with `-`
-/// go, those with `+` come.
+/// The text after a change: lines that begin with a space stand in it one below the other, exactly
+/// once; those with `-` go, those with `+` come.
 fn changed(text: &str, block: &Block) -> String {
     let side = |signs: [char; 2]| -> Vec<&str> {
         let wanted = block.lines.iter().filter(|line| line.starts_with(signs));

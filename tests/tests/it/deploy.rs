@@ -1,4 +1,5 @@
-//! `gains deploy --flash` all the way: built by the AVR's own toolchain, through a boot loader of ours, run in simavr.
+//! `gains deploy --flash` all the way: built by the AVR's own toolchain, through a boot loader of
+//! ours, run in simavr.
 
 #[path = "../../../host/tests/it/common/boot_loader.rs"]
 #[allow(dead_code)] // its troubles are other tests'
@@ -14,7 +15,8 @@ use std::time::{Duration, Instant};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
-/// The image that was flashed, on a chip with an erased EEPROM; at the port until nobody can be there any more.
+/// The image that was flashed, on a chip with an erased EEPROM; at the port until nobody can be
+/// there any more.
 fn run_image(pty: &handstand::link::Pty, elf: &Path, image: &[u8]) {
     let mut rig = ElfCm5::new(elf).unwrap();
     let flash = rig.core.flash();
@@ -31,7 +33,8 @@ fn a_plan_goes_through_toolchain_and_boot_loader_and_is_read_back_from_the_chip(
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    // `cargo xtask` is the one beside this test, which built the ELF, without cargo's looking for changes.
+    // `cargo xtask` is the one beside this test, which built the ELF, without cargo's looking for
+    // changes.
     let beside = std::env::current_exe().unwrap();
     let beside = beside.ancestors().nth(2).unwrap();
     let cargo = folder.path().join("cargo");

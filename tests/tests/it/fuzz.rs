@@ -1,4 +1,5 @@
-//! The saved cases of every fuzz target, as they are and damaged a little: `cargo xtask fuzz` looks further.
+//! The saved cases of every fuzz target, as they are and damaged a little: `cargo xtask fuzz` looks
+//! further.
 
 use handstand_fuzz::{TARGETS, Target, corpus};
 use std::collections::BTreeSet;

@@ -18,8 +18,9 @@ fn outcomes(cases: &[Case]) -> Vec<Outcome> {
 
 #[test]
 fn hidden_effects_are_named_and_none_is_invented() {
-    // Backlash, mass and encoder scale are those that others are most easily taken for; the error of a dead zone has
-    // false valleys, and a trailing sensor's windows begin ahead of their readings.
+    // Backlash, mass and encoder scale are those that others are most easily taken for; the error
+    // of a dead zone has false valleys, and a trailing sensor's windows begin ahead of their
+    // readings.
     let kinds = [
         "viscous",
         "com_angle",

@@ -1,7 +1,7 @@
 //! 95 % intervals hold the truth about as often as they say, and are not wide for nothing.
 //!
-//! Benches whose true structure is known, with the noise, rounding and jitter of every challenge; only the values
-//! are fitted.
+//! Benches whose true structure is known, with the noise, rounding and jitter of every challenge;
+//! only the values are fitted.
 
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};

@@ -1,4 +1,5 @@
-//! Benchmarks sampled, the firmware run, the guides followed. One test program: each more would link the library again.
+//! Benchmarks sampled, the firmware run, the guides followed. One test program: each more would
+//! link the library again.
 
 mod contributing;
 mod dependencies;

@@ -1,4 +1,5 @@
-//! What must hold of the sources before anything is run: format, lints, documentation, packages, the oldest compiler.
+//! What must hold of the sources before anything is run: format, lints, documentation, packages,
+//! the oldest compiler.
 
 use handstand_xtask::{cargo, program, root};
 use serde_json::Value;
@@ -28,8 +29,8 @@ fn runs(words: &[&str]) -> bool {
     program::run(cargo(words).env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// Whether no dependency needs a newer compiler than the workspace promises to build with. Clippy's `incompatible_msrv`
-/// looks at what the sources themselves use.
+/// Whether no dependency needs a newer compiler than the workspace promises to build with. Clippy's
+/// `incompatible_msrv` looks at what the sources themselves use.
 fn oldest_compiler() -> bool {
     let promised = env!("CARGO_PKG_RUST_VERSION");
     let Some(metadata) = metadata() else {
@@ -62,8 +63,8 @@ fn numbers(version: &str) -> [u32; 3] {
     [(); 3].map(|()| parts.next().unwrap_or(0))
 }
 
-/// Whether cargo accepts every crate that is published: versions on dependencies, files, licence, description. They are
-/// not compiled again.
+/// Whether cargo accepts every crate that is published: versions on dependencies, files, licence,
+/// description. They are not compiled again.
 fn packages() -> bool {
     let Some(metadata) = metadata() else {
         return false;

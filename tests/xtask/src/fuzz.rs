@@ -1,8 +1,10 @@
-//! `cargo xtask fuzz`: mutates the saved cases of every parser, guided by coverage, for some seconds each.
+//! `cargo xtask fuzz`: mutates the saved cases of every parser, guided by coverage, for some
+//! seconds each.
 //!
-//! libFuzzer needs no nightly compiler: the pass that counts edges is part of every rustc, and the parsers are safe Rust,
-//! so that no sanitizer is needed. A case that makes a target panic, hang or eat memory is kept under
-//! `target/fuzz/found`; put it into `tests/fuzz/corpus`, and the tests fail until the parser is mended.
+//! libFuzzer needs no nightly compiler: the pass that counts edges is part of every rustc, and the
+//! parsers are safe Rust, so that no sanitizer is needed. A case that makes a target panic, hang or
+//! eat memory is kept under `target/fuzz/found`; put it into `tests/fuzz/corpus`, and the tests
+//! fail until the parser is mended.
 
 use handstand_xtask::{cargo, program, root};
 use std::path::{Path, PathBuf};

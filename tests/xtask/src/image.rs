@@ -1,4 +1,5 @@
-//! `cargo xtask firmware`: builds the CM-5's program, says what it takes, and refuses what must not be in it.
+//! `cargo xtask firmware`: builds the CM-5's program, says what it takes, and refuses what must not
+//! be in it.
 
 use handstand_xtask::firmware::{self, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolchain};
 use serde_json::json;

@@ -103,7 +103,8 @@ pub struct Args {
     only_tests: bool,
 }
 
-/// Says what is needed and installs what is not here; what cannot be installed is said, and its tests skipped.
+/// Says what is needed and installs what is not here; what cannot be installed is said, and its
+/// tests skipped.
 pub fn run(args: &Args) {
     if !args.only_tests {
         crates();
@@ -160,8 +161,8 @@ fn bring(need: &Need) {
         need.wanted_for,
         need.packages.join(" ")
     );
-    // The lists of packages may be missing or stale, and then bring too old a version; they are renewed only when they
-    // did not serve.
+    // The lists of packages may be missing or stale, and then bring too old a version; they are
+    // renewed only when they did not serve.
     let well = |need: &Need| install(need) && need.is_met();
     if !(well(need) || (apt(&["update"]) && well(need))) {
         println!(

@@ -1,4 +1,5 @@
-//! Chores that run beside others. What one prints is kept until it is waited for, so that nothing is mixed.
+//! Chores that run beside others. What one prints is kept until it is waited for, so that nothing
+//! is mixed.
 
 use std::io::Write as _;
 use std::process::{Command, Output, Stdio};

@@ -1,4 +1,5 @@
-//! What `cargo xtask` is made of. It knows nothing of the library, so nothing waits for that to be compiled.
+//! What `cargo xtask` is made of. It knows nothing of the library, so nothing waits for that to be
+//! compiled.
 
 pub mod firmware;
 pub mod program;

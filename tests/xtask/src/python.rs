@@ -5,7 +5,8 @@ use handstand_xtask::root;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The environment: ROBOTIS's SDK drives simulated servos in a test, MCAP's own reader reads our recordings in another.
+/// The environment: ROBOTIS's SDK drives simulated servos in a test, MCAP's own reader reads our
+/// recordings in another.
 fn sdk() -> PathBuf {
     root().join("target/sdk/venv")
 }

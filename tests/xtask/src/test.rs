@@ -1,8 +1,10 @@
-//! `cargo xtask test`: everything that must hold; at its end what failed, by name, and `N passed, N failed`.
+//! `cargo xtask test`: everything that must hold; at its end what failed, by name, and `N passed, N
+//! failed`.
 //!
-//! First says and installs what the builds need; `--no-install` leaves that out. Then each check of the sources counts as
-//! one test, as does the firmware's build, and every test of the workspace as one. The firmware is built, and what only
-//! the tests need installed, beside the checks: either alone keeps one core waiting.
+//! First says and installs what the builds need; `--no-install` leaves that out. Then each check of
+//! the sources counts as one test, as does the firmware's build, and every test of the workspace as
+//! one. The firmware is built, and what only the tests need installed, beside the checks: either
+//! alone keeps one core waiting.
 
 use super::checks::CHECKS;
 use super::install;

@@ -5,8 +5,8 @@ use core::convert::Infallible;
 use core::marker::PhantomData;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-/// A port whose single bits the AVR sets and clears in one instruction: those below I/O address 0x20. So an interrupt and the
-/// program may change pins of the same port.
+/// A port whose single bits the AVR sets and clears in one instruction: those below I/O address
+/// 0x20. So an interrupt and the program may change pins of the same port.
 pub trait Port {
     /// Pins with a bit in `mask` are driven, or not.
     fn drive(mask: u8, is_driven: bool);
@@ -60,7 +60,8 @@ impl<P: Port, const BIT: u8> Output<P, BIT> {
     /// Its bit in the port's registers.
     pub const MASK: u8 = 1 << BIT;
 
-    /// Drives it from now on. The level comes before the direction, so that it never shows another one.
+    /// Drives it from now on. The level comes before the direction, so that it never shows another
+    /// one.
     #[inline(always)]
     pub fn new(level: embedded_hal::digital::PinState) -> Self {
         let mut pin = Output(PhantomData);

@@ -1,7 +1,8 @@
 //! USART0, the servo bus: half duplex, packet by packet.
 //!
-//! Not as embedded-io's traits: a byte lasts 160 cycles. Packets leave by interrupt while they are still being made, and answers
-//! are polled with a time-out of their own for the first byte; a reader of bytes has no words for either.
+//! Not as embedded-io's traits: a byte lasts 160 cycles. Packets leave by interrupt while they are
+//! still being made, and answers are polled with a time-out of their own for the first byte; a
+//! reader of bytes has no words for either.
 
 use super::{
     DOUBLE_SPEED, EIGHT_BITS, EMPTY_INTERRUPT, RECEIVED, RECEIVER, RECEIVER_ON, SENT,
@@ -31,7 +32,8 @@ pub fn start(r: &Peripherals) {
     }
 }
 
-/// The bus's transmitter: idle, or a packet is on its way. Written by the program when idle, by the interrupt when it ends.
+/// The bus's transmitter: idle, or a packet is on its way. Written by the program when idle, by the
+/// interrupt when it ends.
 static STATE: SharedByte = SharedByte::new(IDLE);
 const IDLE: u8 = 0;
 /// More of the packet will be handed over.
@@ -39,11 +41,12 @@ const OPEN: u8 = 1;
 /// All of it was.
 const CLOSED: u8 = 2;
 
-/// Longest time a packet takes, us: 63 bytes of 10 us in [`OUT`], and as much again for interrupts between them.
+/// Longest time a packet takes, us: 63 bytes of 10 us in [`OUT`], and as much again for interrupts
+/// between them.
 const LONGEST_US: u16 = 1300;
 
-/// Hands over bytes of a packet, which go out while the program goes on; the first ones of it wait until the packet
-/// before is out, and drive the bus.
+/// Hands over bytes of a packet, which go out while the program goes on; the first ones of it wait
+/// until the packet before is out, and drive the bus.
 #[inline(always)]
 pub fn put(r: &Peripherals, mut bytes: &[u8]) {
     if STATE.get() != OPEN
@@ -83,7 +86,8 @@ fn is_sending() -> bool {
     STATE.get() != IDLE
 }
 
-/// Waits until the last stop bit is out. A USART that is not done after twice the longest time is broken, and given up.
+/// Waits until the last stop bit is out. A USART that is not done after twice the longest time is
+/// broken, and given up.
 #[inline(always)]
 fn finish(r: &Peripherals) {
     let start = clock(r);
@@ -118,13 +122,15 @@ pub fn flush() {
     while IN.pop().is_some() {}
 }
 
-/// Takes bytes from the servos until `out` is full, or nothing comes for `first` counts of the clock, or `between` after the
-/// first byte; how many came. It polls: an interrupt costs half of the time a byte lasts.
+/// Takes bytes from the servos until `out` is full, or nothing comes for `first` counts of the
+/// clock, or `between` after the first byte; how many came. It polls: an interrupt costs half of
+/// the time a byte lasts.
 #[inline(always)]
 pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize {
     finish(r);
     let mut used = 0;
-    // What came meanwhile, while the interrupt still takes the next ones: the receiver itself holds two bytes.
+    // What came meanwhile, while the interrupt still takes the next ones: the receiver itself holds
+    // two bytes.
     while let Some(slot) = out.get_mut(used) {
         let Some(byte) = IN.pop() else { break };
         *slot = byte;

@@ -76,7 +76,8 @@ impl WriteReady for Link {
 }
 
 impl Write for Link {
-    /// Queues what finds room; waits until a byte does, at most the 174 us another one takes to leave.
+    /// Queues what finds room; waits until a byte does, at most the 174 us another one takes to
+    /// leave.
     #[inline(always)]
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         while !bytes.is_empty() && OUT.room() == 0 {}
@@ -91,7 +92,8 @@ impl Write for Link {
         Ok(count)
     }
 
-    /// Waits until the last byte is being shifted out. A full queue takes 44 ms, longer than the watchdog waits.
+    /// Waits until the last byte is being shifted out. A full queue takes 44 ms, longer than the
+    /// watchdog waits.
     fn flush(&mut self) -> Result<(), Infallible> {
         while !OUT.is_empty() || self.0.ucsr1a().read().bits() & EMPTY == 0 {}
         Ok(())
@@ -107,7 +109,8 @@ fn USART1_RX() {
 
 #[avr_device::interrupt(atmega128a)]
 fn USART1_UDRE() {
-    // SAFETY: only this interrupt writes the data register; the program changes UCSR1B in one store.
+    // SAFETY: only this interrupt writes the data register; the program changes UCSR1B in one
+    // store.
     let r = unsafe { Peripherals::steal() };
     unsafe {
         match OUT.pop() {

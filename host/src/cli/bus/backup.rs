@@ -1,7 +1,8 @@
 //! `bus backup`, `bus restore`: the servos' settings as a TOML file.
 //!
-//! All registers that can be written and are kept without power are saved, with model and firmware to compare. Restoring
-//! leaves id and baud rate as they are, writes only what differs, and reads every register back.
+//! All registers that can be written and are kept without power are saved, with model and firmware
+//! to compare. Restoring leaves id and baud rate as they are, writes only what differs, and reads
+//! every register back.
 
 use super::super::Outcome;
 use super::super::input;
@@ -89,7 +90,8 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
     }
     let mut servos = args.port.servos()?;
     let mut changes: Vec<RegisterChange> = Vec::new();
-    // All servos are read before any is written: a servo that is missing stops a half restored robot from arising.
+    // All servos are read before any is written: a servo that is missing stops a half restored
+    // robot from arising.
     for servo in &saved {
         let now = Settings::read(&mut servos, servo.id)?;
         if now.get(MODEL) != servo.get(MODEL) {

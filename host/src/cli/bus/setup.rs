@@ -1,7 +1,8 @@
 //! `bus setup`: what 100 Hz needs, and ids one servo at a time.
 //!
-//! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms; status level 1 spares
-//! the answers to writes. A new id is given only while a single servo is connected: two of one id cannot be told apart.
+//! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms;
+//! status level 1 spares the answers to writes. A new id is given only while a single servo is
+//! connected: two of one id cannot be told apart.
 
 use super::super::Outcome;
 use super::super::port::{Ids, Port, id_list};

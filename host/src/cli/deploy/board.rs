@@ -26,7 +26,8 @@ pub struct BoardArgs {
     /// Largest change of a torque in a tick, N m
     #[arg(long, default_value_t = 1.0)]
     slew: f64,
-    /// Take the first link's rate from the gyro at the ADC, so many rad/s per code; else from the PC
+    /// Take the first link's rate from the gyro at the ADC, so many rad/s per code; else from the
+    /// PC
     #[arg(long, value_name = "RAD_S", allow_negative_numbers = true)]
     gyro_per_code: Option<f64>,
     /// ADC code of the gyro at rest

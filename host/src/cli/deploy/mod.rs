@@ -1,26 +1,30 @@
-//! `handstand gains deploy MODEL`: gains from a model onto the CM-5. `handstand deploy` is the same.
+//! `handstand gains deploy MODEL`: gains from a model onto the CM-5. `handstand deploy` is the
+//! same.
 //!
-//! Two laws run on the board. `--law observer`, unless told otherwise, is the one that stands on 10-bit positions: a Kalman
-//! filter with known delays and angles of balance, and a regulator behind it; it has weights of its own. `--law state` is
-//! what `handstand gains` designs, with its options, on positions and their differences.
+//! Two laws run on the board. `--law observer`, unless told otherwise, is the one that stands on
+//! 10-bit positions: a Kalman filter with known delays and angles of balance, and a regulator
+//! behind it; it has weights of its own. `--law state` is what `handstand gains` designs, with its
+//! options, on positions and their differences.
 //!
-//! Step by step: designs; writes the whole plan (`--header`), and of a law on plain states the table (`--rust`, `--c`), as
-//! source files; uploads the plan, which the CM-5 keeps in EEPROM beside the one before, or with `--flash` builds the
-//! firmware with the plan compiled in and writes that through the boot loader; reads it back; compares bytes and
-//! fingerprint; and runs the CM-5's law, on the tables read back, over random states against wide integers: not a bit
-//! may differ.
+//! Step by step: designs; writes the whole plan (`--header`), and of a law on plain states the
+//! table (`--rust`, `--c`), as source files; uploads the plan, which the CM-5 keeps in EEPROM
+//! beside the one before, or with `--flash` builds the firmware with the plan compiled in and
+//! writes that through the boot loader; reads it back; compares bytes and fingerprint; and runs the
+//! CM-5's law, on the tables read back, over random states against wide integers: not a bit may
+//! differ.
 //!
-//! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at full output, dead zone,
-//! slew, where the first link's rate comes from (the PC, or with `--gyro-per-code` the gyro), and when it counts as fallen.
-//! States are in the firmware's steps, so `--state-step` has no place here.
+//! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at
+//! full output, dead zone, slew, where the first link's rate comes from (the PC, or with
+//! `--gyro-per-code` the gyro), and when it counts as fallen. States are in the firmware's steps,
+//! so `--state-step` has no place here.
 //!
 //! ```console
 //! $ handstand gains deploy handstand.toml --port /dev/ttyUSB0
 //! $ handstand gains deploy handstand.toml --law state --q 100 --r 1 --flash --port /dev/ttyUSB0
 //! ```
 //!
-//! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null), `fingerprint`, `bytes`, `uploaded`,
-//! `states_replayed`.
+//! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null),
+//! `fingerprint`, `bytes`, `uploaded`, `states_replayed`.
 
 mod board;
 mod build;
@@ -53,7 +57,8 @@ pub struct Args {
     /// The law
     #[arg(long, value_enum, default_value_t = LawKind::Observer)]
     law: LawKind,
-    /// Compile the plan into the firmware and write that through the boot loader, instead of uploading it
+    /// Compile the plan into the firmware and write that through the boot loader, instead of
+    /// uploading it
     #[arg(long)]
     flash: bool,
     #[command(flatten)]

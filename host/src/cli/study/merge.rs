@@ -1,9 +1,11 @@
-//! `handstand study merge JOURNAL|FOLDER... -o FOLDER`: shards put together, as if one run had done them all.
+//! `handstand study merge JOURNAL|FOLDER... -o FOLDER`: shards put together, as if one run had done
+//! them all.
 //!
-//! Verifies that all belong to one study and that no run came out twice differently. If runs are missing it lists them,
-//! writes nothing and exits with 1.
+//! Verifies that all belong to one study and that no run came out twice differently. If runs are
+//! missing it lists them, writes nothing and exits with 1.
 //!
-//! `--json` prints `complete`, and `summary` or `missing` (`first_run`, `last_run`) with `torn` (`file`, `bytes`).
+//! `--json` prints `complete`, and `summary` or `missing` (`first_run`, `last_run`) with `torn`
+//! (`file`, `bytes`).
 
 use super::super::{Outcome, talk::Talk};
 use handstand::Result;

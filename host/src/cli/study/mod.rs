@@ -1,8 +1,8 @@
 //! `handstand study`: robustness of the closed loop, by simulation.
 //!
-//! `sweep` varies one quantity, `monte-carlo` draws everything that is uncertain, in shards if need be, which `merge`
-//! puts together. A study file gives robot, controller and conditions (`docs/study.md`); without one it is the
-//! paper's robot with the controller `dlqr-delay`.
+//! `sweep` varies one quantity, `monte-carlo` draws everything that is uncertain, in shards if need
+//! be, which `merge` puts together. A study file gives robot, controller and conditions
+//! (`docs/study.md`); without one it is the paper's robot with the controller `dlqr-delay`.
 //!
 //! ```console
 //! $ handstand study sweep delay dead-zone -o delay

@@ -1,8 +1,10 @@
-//! `handstand study monte-carlo STUDY.toml -o FOLDER [--shard I/N]`: simulates robots drawn from the uncertain quantities.
+//! `handstand study monte-carlo STUDY.toml -o FOLDER [--shard I/N]`: simulates robots drawn from
+//! the uncertain quantities.
 //!
-//! Every finished chunk of runs is on disk before the next is counted: killed at any time, the same command goes on where
-//! it was. The rows are the same for any number of threads and shards. A whole study ends in `runs.csv`,
-//! `summary.json` and `stabilised.svg`; a shard leaves its journal for `handstand study merge`.
+//! Every finished chunk of runs is on disk before the next is counted: killed at any time, the same
+//! command goes on where it was. The rows are the same for any number of threads and shards. A
+//! whole study ends in `runs.csv`, `summary.json` and `stabilised.svg`; a shard leaves its journal
+//! for `handstand study merge`.
 //!
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 

@@ -1,10 +1,12 @@
-//! `handstand study sweep [NAME]... [--controller NAME] [--study FILE] [-o FOLDER]`: one quantity varied, one table each.
+//! `handstand study sweep [NAME]... [--controller NAME] [--study FILE] [-o FOLDER]`: one quantity
+//! varied, one table each.
 //!
-//! Every level is run from the same seeded random starts, and tilted until it is not stabilised. With `-o` each sweep
-//! leaves `NAME.csv` and `NAME.svg`. Without names, lists the quantities that can be swept.
+//! Every level is run from the same seeded random starts, and tilted until it is not stabilised.
+//! With `-o` each sweep leaves `NAME.csv` and `NAME.svg`. Without names, lists the quantities that
+//! can be swept.
 //!
-//! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`, `tilt_border_rad`,
-//! `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
+//! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`,
+//! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
 use super::super::show::table;
 use super::super::{Outcome, input, talk::Talk};

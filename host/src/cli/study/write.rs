@@ -13,8 +13,8 @@ pub fn folder(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Error::file(folder, "write", error))
 }
 
-/// Writes `runs.csv`, `summary.json`, `stabilised.svg`, prints the summary. What is there already with the same content
-/// stays.
+/// Writes `runs.csv`, `summary.json`, `stabilised.svg`, prints the summary. What is there already
+/// with the same content stays.
 pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Result<()> {
     let file = into.join("runs.csv");
     let summary = merged.summary(&file)?;

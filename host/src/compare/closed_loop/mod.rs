@@ -18,11 +18,9 @@ use crate::model::Model;
 use crate::sim::closed_loop::{
     ClosedLoop, InitialState, PosedPlant, Sensor, StateFeedback, Velocity, set_delay, stream,
 };
-use crate::synth::StateFeedbackPlan;
+use crate::synth::{StateFeedbackPlan, continuous_period_s, linearise, poles};
+use nalgebra::DMatrix;
 use series::{Both, Series, pooled};
-
-/// Sampling time that stands for gains in continuous time, s.
-const CONTINUOUS_S: f64 = 1e-3;
 
 /// Simulates the loop of `model`, with all its effects, and the plan's law from the first sample of
 /// each motion, and compares angles at the samples.
@@ -66,7 +64,7 @@ fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Resu
     let columns = &model.log.joints;
     let steps = columns.iter().filter_map(|joint| joint.position.resolution);
     let logs_speeds = columns.iter().all(|joint| joint.velocity.is_some());
-    let mut closed = ClosedLoop::around(plant, plan.ts_s.unwrap_or(CONTINUOUS_S));
+    let mut closed = ClosedLoop::around(plant, period_s(model, plan)?);
     closed.sensor = Sensor {
         position_resolution_rad: steps.fold(0.0, f64::max),
         velocity: match logs_speeds {
@@ -76,6 +74,16 @@ fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Resu
         ..Sensor::EXACT
     };
     Ok(closed)
+}
+
+/// The plan's sampling time, s, or what stands for it in continuous time.
+fn period_s(model: &Model, plan: &StateFeedbackPlan) -> Result<f64> {
+    if let Some(ts_s) = plan.ts_s {
+        return Ok(ts_s);
+    }
+    let plant = linearise(model, &plan.pose_rad)?.plant;
+    let k = DMatrix::from_fn(plan.k.len(), plant.a.nrows(), |i, j| plan.k[i][j]);
+    Ok(continuous_period_s(&poles(&(plant.a - plant.b * k))?))
 }
 
 fn one_motion(

@@ -14,7 +14,8 @@ impl Image {
     /// Reads a raw binary.
     ///
     /// # Errors
-    /// A file that cannot be read; Intel HEX or ELF, which the boot loader would write into flash as they are; too large.
+    /// A file that cannot be read; Intel HEX or ELF, which the boot loader would write into flash
+    /// as they are; too large.
     pub fn load(path: &Path) -> Result<Image> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
         Image::check(bytes)

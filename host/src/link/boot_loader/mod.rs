@@ -1,8 +1,9 @@
 //! The CM-5's boot loader (V1.31), which takes a program over the PC line.
 //!
-//! `#` during reset until the banner, `\r`, prompt `- `; `load 0` -> `Ready..` -> the raw bytes and their sum modulo 256;
-//! 150 ms of silence end them -> `Success` or `Error`, `Size:`, `Checksum:XX-YY`; then `verify`, `app` (start the
-//! application at power-on), `go`. 57600 8N1. It lies at 0x1E000, so an image has at most 122,880 bytes.
+//! `#` during reset until the banner, `\r`, prompt `- `; `load 0` -> `Ready..` -> the raw bytes and
+//! their sum modulo 256; 150 ms of silence end them -> `Success` or `Error`, `Size:`,
+//! `Checksum:XX-YY`; then `verify`, `app` (start the application at power-on), `go`. 57600 8N1. It
+//! lies at 0x1E000, so an image has at most 122,880 bytes.
 
 mod error;
 mod image;
@@ -95,8 +96,8 @@ impl<L: SerialLink> BootLoader<L> {
 
     /// Lets it compare flash with what it received; its answer.
     ///
-    /// How it words the answer is not known to us. Only one that speaks of an error or a failure counts as bad: size and
-    /// checksum of what it received were compared before.
+    /// How it words the answer is not known to us. Only one that speaks of an error or a failure
+    /// counts as bad: size and checksum of what it received were compared before.
     ///
     /// # Errors
     /// [`BootLoaderError`] if it says nothing, or says so.

@@ -1,4 +1,5 @@
-//! Answers that come sometimes, late, wrong, or from somebody else: what disturbs them, told by what arrives.
+//! Answers that come sometimes, late, wrong, or from somebody else: what disturbs them, told by
+//! what arrives.
 
 use super::ping_test::{PINGS, PingTest};
 use super::{Cause, cause};
@@ -64,7 +65,8 @@ pub(super) fn disturbances(pings: &[PingTest]) -> impl Iterator<Item = Cause> {
         .filter_map(move |kind| disturbance(kind, &there))
 }
 
-/// Whether its answers look like those of two: garbled, or one behind the other where they miss each other.
+/// Whether its answers look like those of two: garbled, or one behind the other where they miss
+/// each other.
 pub(super) fn is_twice(test: &PingTest) -> bool {
     2 * (test.garbled + test.doubled) > PINGS
 }

@@ -12,7 +12,8 @@ use handstand_shared::message::Condition;
 /// Speeds servos are found at, likeliest first.
 const BAUDS: [u32; 6] = [1_000_000, 57_600, 115_200, 500_000, 200_000, 9_600];
 
-/// No servo responds: another speed, a controller that is no adapter now, no power, or the line is not connected.
+/// No servo responds: another speed, a controller that is no adapter now, no power, or the line is
+/// not connected.
 pub(super) fn no_response<L: SerialLink>(
     servos: &mut Servos<L>,
     ids: &[u8],
@@ -101,7 +102,8 @@ fn firmware<L: SerialLink>(
     }))
 }
 
-/// Not a byte from anywhere: the tests cannot see further, so the causes are ranked by how common they are.
+/// Not a byte from anywhere: the tests cannot see further, so the causes are ranked by how common
+/// they are.
 fn silence(echo: bool) -> Vec<Cause> {
     let evidence = "no byte came at any speed from any id, and no CM-5 answers";
     let mut causes = vec![

@@ -1,4 +1,5 @@
-//! `sensor_msgs/msg/JointState` as ROS 2 serialises it: CDR, little endian (OMG DDS-XTypes 1.3, XCDR1).
+//! `sensor_msgs/msg/JointState` as ROS 2 serialises it: CDR, little endian (OMG DDS-XTypes 1.3,
+//! XCDR1).
 
 /// The schema's name.
 pub const NAME: &str = "sensor_msgs/msg/JointState";

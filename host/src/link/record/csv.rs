@@ -1,5 +1,5 @@
-//! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`, `supply1_v`,
-//! `temperature1_celsius`, `error1`. What a servo did not say is an empty field.
+//! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`,
+//! `supply1_v`, `temperature1_celsius`, `error1`. What a servo did not say is an empty field.
 
 use super::recorder::Writer;
 use super::sample::{RobotSample, ServoSample};

@@ -1,4 +1,5 @@
-//! Latency budget of a robot: round trip of a request, split into its parts, and time of a whole round.
+//! Latency budget of a robot: round trip of a request, split into its parts, and time of a whole
+//! round.
 
 use super::tally::{Quantiles, RecordingTally};
 use super::{SampleSource, Stream};
@@ -21,7 +22,8 @@ pub struct LatencyBudget {
     pub round_trip_us: Quantiles,
     /// Of its median: bytes on the PC's line.
     pub line_us: f64,
-    /// Of its median: bytes on the servos' bus and their return delay; of a stream the CM-5's tick, bus included.
+    /// Of its median: bytes on the servos' bus and their return delay; of a stream the CM-5's tick,
+    /// bus included.
     pub bus_us: f64,
     /// The rest of the median: adapter, USB, drivers.
     pub rest_us: f64,
@@ -45,8 +47,8 @@ pub struct RoundTrip {
 }
 
 impl RoundTrip {
-    /// Ping servos behind an adapter, at least 50 times. A ping and its reply are 6 bytes each, on the line and, where the
-    /// line is not the bus itself, on the bus again.
+    /// Ping servos behind an adapter, at least 50 times. A ping and its reply are 6 bytes each, on
+    /// the line and, where the line is not the bus itself, on the bus again.
     ///
     /// # Errors
     /// No servo answers, or the port fails.
@@ -102,7 +104,8 @@ impl RoundTrip {
         })
     }
 
-    /// The budget with `rounds` samples of `source`, as long as `goes_on`, for a sampling time of `period_us`.
+    /// The budget with `rounds` samples of `source`, as long as `goes_on`, for a sampling time of
+    /// `period_us`.
     ///
     /// # Errors
     /// The device fails, or a sample does not come.

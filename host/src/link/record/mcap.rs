@@ -1,5 +1,6 @@
-//! Recordings as MCAP: `/joint_states` and `/joint_goals` (ROS 2 `sensor_msgs/msg/JointState`; `effort` is the load as a
-//! share of full output), and `/servo_health` (JSON: supply, temperature, error bits). What a servo did not say is NaN or null.
+//! Recordings as MCAP: `/joint_states` and `/joint_goals` (ROS 2 `sensor_msgs/msg/JointState`;
+//! `effort` is the load as a share of full output), and `/servo_health` (JSON: supply, temperature,
+//! error bits). What a servo did not say is NaN or null.
 
 use super::cdr::{JointStateMessage, NAME, SCHEMA};
 use super::recorder::Writer;

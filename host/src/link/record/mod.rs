@@ -1,7 +1,7 @@
 //! Recording servos: samples from a robot into files that survive a crash, and back.
 //!
-//! Read downward: `sample` -> `cdr` -> `csv`, `mcap` -> [`RobotRecorder`], [`read`]; `source` -> `adapter`, `stream` fetch samples over a
-//! link.
+//! Read downward: `sample` -> `cdr` -> `csv`, `mcap` -> [`RobotRecorder`], [`read`]; `source` ->
+//! `adapter`, `stream` fetch samples over a link.
 
 mod adapter;
 mod cdr;

@@ -61,7 +61,8 @@ impl RobotRecorder {
     /// A new file for these servos.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it exists and `force` is false, or its ending says no format; [`Error::File`] if the system refuses.
+    /// [`Error::Usage`] if it exists and `force` is false, or its ending says no format;
+    /// [`Error::File`] if the system refuses.
     pub fn create(path: &Path, ids: &[u8], force: bool) -> Result<RobotRecorder> {
         let format = FileFormat::of(path)?;
         let refused = |error: std::io::Error| match error.kind() {

@@ -8,8 +8,8 @@ use std::time::Duration;
 /// Switches torque off, whatever else is going on.
 pub type EmergencyOff = Box<dyn FnOnce() + Send>;
 
-/// Says these bytes twice, some time apart: what else was being said may have garbled the first, or have been a goal, which
-/// switches torque on.
+/// Says these bytes twice, some time apart: what else was being said may have garbled the first, or
+/// have been a goal, which switches torque on.
 pub(super) fn send_twice(mut voice: LineWriter, bytes: Vec<u8>) -> EmergencyOff {
     const APART: Duration = Duration::from_millis(50);
     Box::new(move || {
@@ -23,7 +23,8 @@ pub(super) fn send_twice(mut voice: LineWriter, bytes: Vec<u8>) -> EmergencyOff 
 
 /// Servos that can be sampled, and moved.
 pub trait SampleSource {
-    /// Sends goals, in the order of ids, if there are any; waits for the next sample. None: it did not come in time.
+    /// Sends goals, in the order of ids, if there are any; waits for the next sample. None: it did
+    /// not come in time.
     ///
     /// # Errors
     /// The device failed.
@@ -41,8 +42,8 @@ pub trait SampleSource {
     /// The device failed.
     fn disarm(&mut self) -> Result<()>;
 
-    /// What switches torque off from another thread, should the program have to end at once; none where nothing outlives
-    /// it.
+    /// What switches torque off from another thread, should the program have to end at once; none
+    /// where nothing outlives it.
     fn emergency_off(&mut self) -> Option<EmergencyOff>;
 
     /// Why the robot must be stopped, if it must.

@@ -158,7 +158,8 @@ impl<L: SerialLink> SampleSource for Stream<L> {
 
 impl<L: SerialLink> Drop for Stream<L> {
     fn drop(&mut self) {
-        // Nobody is left who could be told that it failed; the firmware switches off by itself when the line is silent.
+        // Nobody is left who could be told that it failed; the firmware switches off by itself when
+        // the line is silent.
         if self.armed {
             let _ = self.disarm();
         }

@@ -10,7 +10,8 @@ use std::time::Duration;
 pub struct SimLink<P>(pub P);
 
 impl SimLink<AdapterPort> {
-    /// An adapter on the bus that `spec` describes, such as `ids=1-3,delay=0,dead=2`, without a robot.
+    /// An adapter on the bus that `spec` describes, such as `ids=1-3,delay=0,dead=2`, without a
+    /// robot.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] where the text describes no bus.

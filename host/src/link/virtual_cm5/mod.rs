@@ -1,7 +1,9 @@
-//! Simulated CM-5 and servos as links, and models of this crate as their robots (feature `virtual-cm5`).
+//! Simulated CM-5 and servos as links, and models of this crate as their robots (feature
+//! `virtual-cm5`).
 //!
-//! The simulation itself is the crate `handstand-cm5-sim`. [`SimLink`] makes its serial ports links, [`sim::Live`] is the
-//! plant behind its servos, and [`set_up`] makes a bus with a robot from a [`BusSpec`].
+//! The simulation itself is the crate `handstand-cm5-sim`. [`SimLink`] makes its serial ports
+//! links, [`sim::Live`] is the plant behind its servos, and [`set_up`] makes a bus with a robot
+//! from a [`BusSpec`].
 //!
 //! [`sim::Live`]: crate::sim::Live
 

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 /// The line counts as busy for this long after its last byte.
 const BUSY: Duration = Duration::from_millis(100);
 
-/// Pass bytes between `device` and the program at `pty`, simulated time following real time, while `goes_on`, which gets
-/// the time since the beginning.
+/// Pass bytes between `device` and the program at `pty`, simulated time following real time, while
+/// `goes_on`, which gets the time since the beginning.
 ///
 /// # Errors
 /// The pseudo terminal fails, or those of `goes_on`.

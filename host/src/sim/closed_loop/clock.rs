@@ -8,7 +8,8 @@ use rand_chacha::ChaCha8Rng;
 pub struct Clock {
     /// Period between samples, s. The controller takes every period for this one.
     pub period_s: f64,
-    /// Largest share of the period by which a sample comes early or late, 0 to 0.45; evenly distributed.
+    /// Largest share of the period by which a sample comes early or late, 0 to 0.45; evenly
+    /// distributed.
     pub jitter: f64,
     /// Probability that a command is lost on its way and the one before stays.
     pub loss: f64,

@@ -79,8 +79,8 @@ pub fn run_jobs<'a>(jobs: impl IntoIterator<Item = Job<'a>>) -> Vec<Outcome> {
 }
 
 impl ClosedLoop {
-    /// A loop with exact sensors and a perfect clock around the plant of `model` at `pose_rad`, rad in the model's
-    /// own convention. The model's effects are all in it.
+    /// A loop with exact sensors and a perfect clock around the plant of `model` at `pose_rad`, rad
+    /// in the model's own convention. The model's effects are all in it.
     ///
     /// # Errors
     /// As [`PosedPlant::new`].
@@ -128,7 +128,8 @@ impl ClosedLoop {
         Run::new(self, controller, start, seconds, rng).finish(see)
     }
 
-    /// Runs from every start, on all cores; run `i` has the random numbers of [`stream`]`(seed, i)`.
+    /// Runs from every start, on all cores; run `i` has the random numbers of [`stream`]`(seed,
+    /// i)`.
     pub fn run_all(
         &self,
         controller: &dyn Controller,

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// What is measured at a sample, as deviations from the readings at the pose that is held, in the model's convention.
+/// What is measured at a sample, as deviations from the readings at the pose that is held, in the
+/// model's convention.
 #[derive(Debug, Clone, Copy)]
 pub struct Measurement<'a> {
     /// Angle of each joint, rad.
@@ -11,8 +12,8 @@ pub struct Measurement<'a> {
     pub speed_rad_s: &'a [f64],
 }
 
-/// A sampled control law. Its settings are its own; what it remembers from sample to sample is lent to it, so that one
-/// controller serves many runs at once.
+/// A sampled control law. Its settings are its own; what it remembers from sample to sample is lent
+/// to it, so that one controller serves many runs at once.
 pub trait Controller: Sync + fmt::Debug {
     /// How many numbers it remembers.
     fn memory_len(&self) -> usize {
@@ -24,8 +25,8 @@ pub trait Controller: Sync + fmt::Debug {
         memory.fill(0.0);
     }
 
-    /// Commands to the drives from the base outwards, N m or what the loop's [`Commands`](super::Commands) say, into
-    /// `command`.
+    /// Commands to the drives from the base outwards, N m or what the loop's
+    /// [`Commands`](super::Commands) say, into `command`.
     fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command: &mut [f64]);
 }
 

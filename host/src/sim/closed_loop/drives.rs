@@ -41,8 +41,8 @@ impl Drives {
 
     /// The model with these non-idealities as effects at every driven joint.
     ///
-    /// A torque drive that saturates becomes a motor whose torque does not fall with speed; its dead zone is a
-    /// share of its full range, that of a drive without a limit a torque.
+    /// A torque drive that saturates becomes a motor whose torque does not fall with speed; its
+    /// dead zone is a share of its full range, that of a drive without a limit a torque.
     pub fn on(&self, model: &Model, period_s: f64) -> Model {
         let mut model = model.clone();
         let delay_s = self.delay_periods * period_s;

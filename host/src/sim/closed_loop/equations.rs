@@ -1,4 +1,5 @@
-//! What advances a plant in a loop: dense equations where they suffice, else the general simulation.
+//! What advances a plant in a loop: dense equations where they suffice, else the general
+//! simulation.
 
 use crate::dynamics::Dense;
 use crate::sim::Plant;

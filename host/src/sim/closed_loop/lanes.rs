@@ -1,7 +1,7 @@
 //! Several runs in the lanes of one integration.
 //!
-//! Each lane goes its own way from event to event; those that need the same number of steps next take them together.
-//! A run comes out the same, bit for bit, whatever runs beside it.
+//! Each lane goes its own way from event to event; those that need the same number of steps next
+//! take them together. A run comes out the same, bit for bit, whatever runs beside it.
 
 use super::Outcome;
 use super::equations::{Absolute, Equations};

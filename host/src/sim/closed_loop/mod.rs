@@ -1,8 +1,8 @@
 //! A plant held at a pose by its controller: plant, sensor, controller and delay closed to a loop.
 //!
-//! States are deviations from the pose that is held (upright, for the handstand), joint by joint, each relative to the
-//! link before. Configurations are shared by many runs at once; what changes during a run is kept apart. A run
-//! allocates at its beginning only.
+//! States are deviations from the pose that is held (upright, for the handstand), joint by joint,
+//! each relative to the link before. Configurations are shared by many runs at once; what changes
+//! during a run is kept apart. A run allocates at its beginning only.
 //!
 //! ```text
 //! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay -> drives with their effects -> torque -> plant

@@ -7,7 +7,8 @@ use serde::Serialize;
 pub struct Limits {
     /// A link that leans further off its pose than this has fallen, rad.
     pub fall_rad: f64,
-    /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the end, rad, ..
+    /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the
+    /// end, rad, ..
     pub stable_rad: f64,
     /// .. for this long, s; in a shorter run for its second half.
     pub stable_s: f64,
@@ -52,8 +53,8 @@ pub struct Outcome {
     pub rms_torque_nm: f64,
     /// Largest angle of any joint, rad.
     pub largest_rad: f64,
-    /// Peak to peak of the joint that swings most over the last second (or, of a shorter run, the last half), rad:
-    /// the limit cycle. None if it fell.
+    /// Peak to peak of the joint that swings most over the last second (or, of a shorter run, the
+    /// last half), rad: the limit cycle. None if it fell.
     pub limit_cycle_rad: Option<f64>,
     /// When the last joint came within the settling band to stay, s; none if it never did.
     pub settle_s: Option<f64>,
@@ -66,7 +67,8 @@ pub(super) struct Tally {
     squares: f64,
     torque_squares_s: f64,
     largest: f64,
-    /// Time of the last sample beyond the settling band, and beyond the stable one, s; below 0 if there was none.
+    /// Time of the last sample beyond the settling band, and beyond the stable one, s; below 0 if
+    /// there was none.
     unsettled_s: f64,
     unstable_s: f64,
 }

@@ -35,7 +35,8 @@ impl Pending {
             }
         }
         for ring in &mut rings {
-            // A jittering sample can come almost half a period early, so one more may be on its way.
+            // A jittering sample can come almost half a period early, so one more may be on its
+            // way.
             let places = (ring.delay_s / period_s).max(0.0).ceil() as usize + 3;
             ring.due_s = vec![0.0; places];
             ring.commands = vec![0.0; places * ring.drives.len()];

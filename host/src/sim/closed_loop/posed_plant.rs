@@ -1,7 +1,8 @@
 //! The plant about the pose that a controller holds.
 //!
-//! Where the torques are constant between commands (no friction, no drive that follows the speed, at most four
-//! links), dense equations advance it, several runs at once; else the simulation that serves measuring does.
+//! Where the torques are constant between commands (no friction, no drive that follows the speed,
+//! at most four links), dense equations advance it, several runs at once; else the simulation that
+//! serves measuring does.
 
 use super::body::Body;
 use super::equations::{Absolute, Equations};
@@ -52,8 +53,8 @@ pub(super) struct DrivenJoint {
 }
 
 impl PosedPlant {
-    /// The plant of a model, all its effects included, about `pose_rad`: one angle per joint in the model's own
-    /// convention, rad. Steps are 1 ms at most.
+    /// The plant of a model, all its effects included, about `pose_rad`: one angle per joint in the
+    /// model's own convention, rad. Steps are 1 ms at most.
     ///
     /// # Errors
     /// A pose of another length, or nothing driven.
@@ -151,7 +152,8 @@ impl PosedPlant {
         self.drives.iter().map(|drive| drive.joint)
     }
 
-    /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric masses in balance.
+    /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
+    /// masses in balance.
     pub fn balanced_rad(&self) -> Vec<f64> {
         let chain = &self.plant.rig.chain;
         let turn = self.plant.base_m_s2[0].atan2(self.plant.base_m_s2[1]);
@@ -225,7 +227,8 @@ impl PosedPlant {
         }
     }
 
-    /// Readings of the encoders as deviations from those of the pose, in the model's convention: rad and rad/s.
+    /// Readings of the encoders as deviations from those of the pose, in the model's convention:
+    /// rad and rad/s.
     #[inline]
     pub(super) fn readings(&self, body: &Body, angle_rad: &mut [f64], speed_rad_s: &mut [f64]) {
         let (mut angle, mut speed) = (0.0, 0.0);

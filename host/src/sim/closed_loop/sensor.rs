@@ -10,7 +10,8 @@ pub const GYRO_STEP_RAD_S: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// Joint encoders, and where the speeds come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
-    /// Smallest step of an angle, rad; 0 reads exactly. The AX-12 has 300 deg / 1024. The pose lies on a step.
+    /// Smallest step of an angle, rad; 0 reads exactly. The AX-12 has 300 deg / 1024. The pose lies
+    /// on a step.
     pub position_resolution_rad: f64,
     /// Standard deviation of an angle's noise, rad, before it is rounded.
     pub position_noise_rad: f64,
@@ -25,7 +26,8 @@ pub struct Sensor {
 pub enum Velocity {
     /// The true speed.
     Direct,
-    /// (angle(k) - angle(k - 1)) / period of the angles as read: the paper's estimate. 0 at the first sample.
+    /// (angle(k) - angle(k - 1)) / period of the angles as read: the paper's estimate. 0 at the
+    /// first sample.
     Difference,
 }
 
@@ -39,7 +41,8 @@ pub struct Gyro {
 }
 
 impl Sensor {
-    /// 10-bit angles, speeds of the driven joints from their differences, a 10 deg/s gyro on the arms: the paper's.
+    /// 10-bit angles, speeds of the driven joints from their differences, a 10 deg/s gyro on the
+    /// arms: the paper's.
     pub const PAPER: Sensor = Sensor {
         position_resolution_rad: Position::LSB_RAD,
         position_noise_rad: 0.0,
@@ -58,8 +61,9 @@ impl Sensor {
         gyro: None,
     };
 
-    /// Measures what the encoders read: `angle_rad` and `speed_rad_s`, and `gyro_rad_s` of the first link.
-    /// `measured_rad` holds the measurement before and takes the new one; `first` says there is none.
+    /// Measures what the encoders read: `angle_rad` and `speed_rad_s`, and `gyro_rad_s` of the
+    /// first link. `measured_rad` holds the measurement before and takes the new one; `first` says
+    /// there is none.
     #[inline]
     #[expect(
         clippy::too_many_arguments,

@@ -5,10 +5,12 @@ use super::{Controller, Measurement};
 /// State feedback on angles, speeds and past commands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StateFeedback {
-    /// Gains, one row per driven joint: command per rad of each joint's angle, then per rad/s of each joint's speed,
-    /// then, for designs with a delay, per command of one sample ago, two samples ago, ...
+    /// Gains, one row per driven joint: command per rad of each joint's angle, then per rad/s of
+    /// each joint's speed, then, for designs with a delay, per command of one sample ago, two
+    /// samples ago, ...
     pub gains: Vec<Vec<f64>>,
-    /// State that is held: deviations of angles, rad, then of speeds, rad/s. Eccentric masses are compensated here.
+    /// State that is held: deviations of angles, rad, then of speeds, rad/s. Eccentric masses are
+    /// compensated here.
     pub hold: Vec<f64>,
     /// Command that is given at that state.
     pub feed: Vec<f64>,

@@ -243,7 +243,8 @@ fn the_general_simulation_agrees_where_its_effects_vanish() {
     }
 }
 
-/// A robot that hangs, its shoulder stuck: it swings as if the joint were locked, and the drive's 0.1 N m do nothing.
+/// A robot that hangs, its shoulder stuck: it swings as if the joint were locked, and the drive's
+/// 0.1 N m do nothing.
 #[test]
 fn friction_sticks_in_the_loop() {
     let model = with(&[("coulomb", 1, &[5.0]), ("coulomb", 2, &[5.0])]);

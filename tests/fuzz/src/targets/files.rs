@@ -1,4 +1,5 @@
-//! Files: logs, recordings, studies and their journals, servo settings, the program for the boot loader.
+//! Files: logs, recordings, studies and their journals, servo settings, the program for the boot
+//! loader.
 
 use super::{text, with_file};
 use handstand::link::Settings;

@@ -12,7 +12,8 @@ pub(crate) fn parse(bytes: &[u8]) {
     }
 }
 
-/// Sets every free value and adds an effect, which one the bytes decide: what is written is read back.
+/// Sets every free value and adds an effect, which one the bytes decide: what is written is read
+/// back.
 pub(crate) fn edit(bytes: &[u8]) {
     let path = Path::new("model.toml");
     let Some(text) = text(bytes) else {

@@ -8,7 +8,8 @@ use handstand_shared::gains::GainTable;
 use handstand_shared::message::{self, Command, Message, Report};
 use handstand_shared::plan::Plan;
 
-/// Whatever the line carries, a packet that is found is whole, and a request in it is written as it was read.
+/// Whatever the line carries, a packet that is found is whole, and a request in it is written as it
+/// was read.
 pub(crate) fn dynamixel(bytes: &[u8]) {
     let mut parser = Parser::<256>::default();
     for byte in bytes {

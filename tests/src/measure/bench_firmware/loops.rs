@@ -117,7 +117,8 @@ fn loop_rows(names: [&'static str; 3], start: &str, sides: &Sides, seconds: f64)
     ]
 }
 
-/// What the firmware says of itself while it balances, whatever the moment of the servos' interrupts.
+/// What the firmware says of itself while it balances, whatever the moment of the servos'
+/// interrupts.
 #[cfg(simavr)]
 pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
     use handstand_tests::bench::balance;

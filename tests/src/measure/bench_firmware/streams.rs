@@ -97,8 +97,9 @@ fn elf_rows(run: &StreamRun, rig: &handstand_simavr::ElfCm5) -> Vec<Row> {
     ]
 }
 
-/// The longest tick, from its start to its end, with all waiting for the bus, whatever the moment at which the servos' motor
-/// interrupts come: the controller starts in ten different tenths of their millisecond.
+/// The longest tick, from its start to its end, with all waiting for the bus, whatever the moment
+/// at which the servos' motor interrupts come: the controller starts in ten different tenths of
+/// their millisecond.
 #[cfg(simavr)]
 fn longest_tick(built: &Built, args: &Args) -> Row {
     let starts = args.reduced(10, 3) as u64;

@@ -46,7 +46,8 @@ pub fn commands_are_the_laws(bench: &mut impl SimulatedCm5) {
             bench.send(&Command::Attitude(Attitude { angle, rate }));
             bench.run_ms(10.0);
         }
-        // The shafts stand still at their centres, so only the first link departs; six ticks are enough for the slew.
+        // The shafts stand still at their centres, so only the first link departs; six ticks are
+        // enough for the slew.
         let u = control(table, &[angle, 0, 0, rate, 0, 0]);
         for (joint, u) in plan.joints.iter().zip(u) {
             let command = joint.command(u);
@@ -70,8 +71,8 @@ fn on_board_the_servos_get_what_the_law_says() {
     commands_are_the_laws(&mut VirtualCm5::new());
 }
 
-/// Two degrees off, eccentric and with another dead zone than the plan believes in, it stands; and its
-/// commands are those of the host's fixed law on the same readings.
+/// Two degrees off, eccentric and with another dead zone than the plan believes in, it stands; and
+/// its commands are those of the host's fixed law on the same readings.
 pub fn it_stands(bench: &mut impl SimulatedCm5, seconds: f64) {
     let two = 2f64.to_radians();
     let conditions = Conditions {

@@ -71,7 +71,8 @@ fn conditions(bench: &impl SimulatedCm5) -> Vec<Condition> {
     seen
 }
 
-/// From the blow on the host goes on speaking: torque falls in all, and never comes back to who gave up.
+/// From the blow on the host goes on speaking: torque falls in all, and never comes back to who
+/// gave up.
 fn is_let_down(
     bench: &mut impl SimulatedCm5,
     id: u8,

@@ -46,7 +46,8 @@ pub fn find_built() -> Option<Built> {
     built.elf.exists().then_some(built)
 }
 
-/// Builds it, with a plan compiled in if one is given. The first time the register definitions are generated too, which takes minutes.
+/// Builds it, with a plan compiled in if one is given. The first time the register definitions are
+/// generated too, which takes minutes.
 ///
 /// # Errors
 /// What failed; the compiler's own messages go to stderr.
