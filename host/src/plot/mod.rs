@@ -1,7 +1,7 @@
 //! Charts: axes with round ticks, curves, bars, bands, a heat map, as SVG; and curves as text.
 //!
 //! Every drawing of the library comes from here; `plot` knows no layer but `number`. What is drawn
-//! is a [`Chart`] (data), or [`Axes`] that a page fills itself. Marks carry the class of a
+//! is a [`Chart`] (data), or `Axes` that a page fills itself. Marks carry the class of a
 //! [`Tone`]; the style sheet gives its colour, so that one drawing serves light, dark and print.
 //! Only the page that plays a motion draws its chart itself, in the browser: it redraws at the
 //! window's width and scales to the tracks that the reader leaves shown.
