@@ -189,21 +189,14 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
             GOALS => {
                 let goals = JointStateMessage::of(&message.data)
                     .ok_or_else(|| refused(format!("{GOALS}: no joint states")))?;
-                let joints = samples
-                    .last_mut()
-                    .map_or(&mut [][..], |sample| &mut sample.joints);
-                joints
-                    .iter_mut()
-                    .zip(goals.position)
-                    .for_each(|(joint, goal)| joint.goal_rad = said(goal));
+                for (joint, goal) in newest(&mut samples).iter_mut().zip(goals.position) {
+                    joint.goal_rad = said(goal);
+                }
             }
             HEALTH => {
                 let health: Health = serde_json::from_slice(&message.data)
                     .map_err(|error| refused(format!("{HEALTH}: {error}")))?;
-                let joints = samples
-                    .last_mut()
-                    .map_or(&mut [][..], |sample| &mut sample.joints);
-                for (at, joint) in joints.iter_mut().enumerate() {
+                for (at, joint) in newest(&mut samples).iter_mut().enumerate() {
                     joint.supply_v = health.supply_v.get(at).copied().flatten();
                     joint.temperature_celsius =
                         health.temperature_celsius.get(at).copied().flatten();
@@ -216,6 +209,13 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
     // A finished file ends in the magic it began with.
     torn |= !bytes.ends_with(::mcap::MAGIC);
     Ok((ids, samples, torn))
+}
+
+/// Joints of the newest sample; none before the first.
+fn newest(samples: &mut [RobotSample]) -> &mut [ServoSample] {
+    samples
+        .last_mut()
+        .map_or(&mut [][..], |sample| &mut sample.joints)
 }
 
 fn said(value: f64) -> Option<f64> {
