@@ -62,11 +62,12 @@ pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gain
     })
 }
 
-/// Longest sampling time, s, that stands for continuous time in a loop with these poles, 1/s: a
-/// fifth of the fastest mode's time constant, 1 ms at most and 10 us at least.
+/// Sampling time, s, that stands for continuous time in a loop with these poles, 1/s: half the
+/// fastest mode's time constant, but at least 0.1 ms, for shorter ones take too long to simulate,
+/// and at most 1 ms.
 pub fn continuous_period_s(poles: &[Complex<f64>]) -> f64 {
     let fastest_1_s = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
-    (0.2 / fastest_1_s).clamp(1e-5, 1e-3)
+    (0.5 / fastest_1_s).clamp(1e-4, 1e-3)
 }
 
 impl Gains {
