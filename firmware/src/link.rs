@@ -44,7 +44,7 @@ impl Link {
         self.decoder.reset();
     }
 
-    /// A new talk: numbers begin anew.
+    /// A new session: lost frames are counted from 0.
     pub fn greet(&mut self, statistics: &mut Statistics) {
         statistics.lost_frames = 0;
     }

@@ -60,7 +60,7 @@ pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
     fn remedy(&self) -> Cow<'_, str>;
 }
 
-/// A reason that nobody matches on.
+/// A reason in words, without data to match on.
 #[derive(Debug)]
 struct PlainReason {
     what: String,

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! innovation  = readings - predict [estimate, past inputs]           four readings
-//! raw_command = sat(feedback [estimate, past inputs, innovation])    two inputs
+//! raw command = sat(feedback [estimate, past inputs, innovation])    two inputs
 //! next        = update [estimate, past inputs, innovation, applied]  nine states
 //! ```
 //!
@@ -305,7 +305,7 @@ mod tests {
         assert_ne!(memory.all(), before.all());
         assert_eq!(memory, whole);
         assert!(!observer.step_update(&mut memory));
-        // What nobody did meanwhile is done before the next raw_command.
+        // What was not done meanwhile is done before the next raw command.
         observer.begin_update(&mut left_to_next, [7, 9]);
         let next = [12, 23, 34, 45];
         assert_eq!(

@@ -11,7 +11,7 @@ pub enum State {
     Stream(Torque),
     /// Reads the servos and balances.
     Balance(Torque),
-    /// Torque is off and stays off until the host greets, chooses a mode and arms anew.
+    /// Torque is off and stays off until the host greets, chooses a mode and arms again.
     Fault(Cause),
 }
 

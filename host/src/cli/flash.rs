@@ -182,7 +182,7 @@ fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
 /// Asks on the terminal, unless it was answered beforehand.
 ///
 /// # Errors
-/// [`Error::Usage`] if the answer is not yes, or nobody is there to ask.
+/// [`Error::Usage`] if the answer is not yes, or there is no terminal to ask on.
 pub fn agreed(yes: bool, question: &str) -> Result<()> {
     if yes {
         return Ok(());

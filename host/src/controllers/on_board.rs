@@ -7,7 +7,9 @@
 //! = [x, offsets, past inputs],
 //!
 //! ```text
-//! innovation = y - C s        raw_command = -K (s + L innovation)        next = A (s + L innovation) + B applied
+//! innovation  = y - C s
+//! raw command = -K (s + L innovation)
+//! next        = A (s + L innovation) + B applied
 //! ```
 
 use super::observed::{Options, regulator};

@@ -97,7 +97,7 @@ impl Pty {
     fn failed(&self, errno: Errno) -> Error {
         Error::device(
             format!("{}: {}", self.name, std::io::Error::from(errno)),
-            "start it anew",
+            "start it again",
         )
     }
 }

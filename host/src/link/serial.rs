@@ -128,7 +128,7 @@ fn refused(name: &str, baud: u32, error: &serialport::Error) -> Error {
     let (what, remedy) = match error.kind() {
         Kind::Io(ErrorKind::PermissionDenied) => (
             "no permission to open it".to_string(),
-            "join the group that owns serial ports, then log in anew: sudo usermod -aG dialout $USER".to_string(),
+            "join the group that owns serial ports, then log in again: sudo usermod -aG dialout $USER".to_string(),
         ),
         _ if text.contains("busy") || text.contains("lock") => (
             "another program uses it".to_string(),

@@ -78,7 +78,7 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
         ),
         Refusal::State => (
             "not in this state",
-            "choose a mode first; after a fault, greet anew",
+            "choose a mode first; after a fault, greet again",
         ),
         Refusal::Armed => ("torque is on", "disarm first"),
         Refusal::Token => ("the greeting is out of date", "try again"),
@@ -96,7 +96,7 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
         ),
         Refusal::BadPlan => (
             "the gain table is unsound",
-            "make it anew; if it stays so, firmware and program do not belong together",
+            "make it again; if it stays so, firmware and program do not belong together",
         ),
         Refusal::ServoList => (
             "the list of servos is empty, too long, or names an id twice",

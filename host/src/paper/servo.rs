@@ -326,7 +326,7 @@ fn identification() -> Vec<Figure> {
             )],
             holds: Holds::Yes,
             sentence: format!(
-                "{} samples at 100 Hz made with eq. (2), steps of +-5 rad/s by lot; the noise model is our own choice, \
+                "{} samples at 100 Hz made with eq. (2), random steps of +-5 rad/s; the noise model is our own choice, \
                  since the paper prints none.",
                 training.count()
             ),

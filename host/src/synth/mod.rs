@@ -48,7 +48,7 @@ pub use plan::{PlanReason, StateFeedbackPlan};
 pub use pose::balanced;
 pub use quantise::{Format, Ranges, quantise};
 pub use request::{Request, Sensors, Time};
-pub use robust::{lost_share, multi_model, multi_model_continuation, spectral_radius};
+pub use robust::{multi_model, multi_model_continuation, spectral_radius};
 pub use signal::Signal;
 pub use system::{Continuous, Discrete};
 pub use weight::Weight;

@@ -47,14 +47,6 @@ pub fn spectral_radius(a: &DMatrix<f64>) -> f64 {
     (log_scale + share * rest.ln()).exp()
 }
 
-/// Share of the plants that u = -K x lets fall: spectral radius of A - B K not below 1.
-pub fn lost_share(plants: &[Discrete], k: &DMatrix<f64>) -> f64 {
-    let lost = plants
-        .iter()
-        .filter(|plant| spectral_radius(&(&plant.a - &plant.b * k)) >= 1.0);
-    lost.count() as f64 / plants.len().max(1) as f64
-}
-
 /// The gain of least mean cost over `plants`, searched from `start`, which must hold all of them.
 ///
 /// # Errors

@@ -120,7 +120,7 @@ mod tests {
     use crate::sysid::generate::{paper_noise_model, pseudo_random};
     use crate::sysid::structure::structures;
 
-    /// Derivatives by filtering against differences of errors computed anew, for every family.
+    /// Derivatives by filtering against differences of errors computed again, for every family.
     #[test]
     fn the_gradient_is_that_of_finite_differences() {
         let input = pseudo_random(300, 7, 3);

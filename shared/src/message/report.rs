@@ -56,7 +56,7 @@ pub enum Condition {
     BalanceArmed,
     /// It must stop: positions held, torque limit falling.
     Soft,
-    /// Torque off until armed anew.
+    /// Torque off until armed again.
     Fault(Cause),
 }
 
@@ -194,7 +194,7 @@ pub struct Telemetry {
     pub supply: u8,
     /// The gyro's last reading, ADC code.
     pub gyro: u16,
-    /// The servo that let the robot down, until it is armed anew.
+    /// The servo that let the robot down, until it is armed again.
     pub tripped: Option<TrippedServo>,
 }
 

@@ -1,4 +1,4 @@
-//! One driven joint: from its servo's position to the law's reading, from the law's raw_command to
+//! One driven joint: from its servo's position to the law's reading, from the law's raw command to
 //! the servo's command.
 
 use crate::raw::{Position, Signed};

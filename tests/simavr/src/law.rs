@@ -20,7 +20,7 @@ pub struct ObserverTick {
     pub raw_command: [i16; INPUTS],
     /// What it remembers afterwards.
     pub memory: Memory,
-    /// Cycles until the raw_command, marks included.
+    /// Cycles until the raw command, marks included.
     pub command_cycles: u64,
     /// Cycles of the update after it, marks included.
     pub update_cycles: u64,

@@ -123,9 +123,9 @@ fn law_share(elf: &Path, states: usize, seed: u64, first: usize) -> LawRun {
 pub struct ObserverRun {
     /// Memories and readings tried.
     pub states: usize,
-    /// How many differ in any bit of raw_command or memory.
+    /// How many differ in any bit of raw command or memory.
     pub different: usize,
-    /// Most cycles from readings to raw_command, marks included.
+    /// Most cycles from readings to raw command, marks included.
     pub raw_command: u64,
     /// Most cycles of the update, marks included.
     pub update: u64,
