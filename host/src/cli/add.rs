@@ -43,12 +43,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let candidate = Candidate::named(&args.effect, &model)?;
     let split = args.fit.motions(&model, &args.logs)?;
     let horizon = args.fit.judging.run.horizon;
-    let bar = talk.bar().with_message(format!("starts of {candidate}"));
+    let bar = talk.bar(0).with_message(format!("starts of {candidate}"));
     let refitted = refit_with(&model, candidate, &split, horizon, &|done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });
-    bar.finish_and_clear();
+    drop(bar);
     let refitted = match refitted {
         Ok(refitted) => refitted,
         Err(why) => return fit::refuse(&why, talk),

@@ -60,15 +60,8 @@ pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
         Command::New(args) => new(args, talk),
         Command::Score(args) => {
             let score = challenge::score(&args.folder, &Model::load(&args.model)?)?;
-            if talk.json {
-                talk.data(&score)?;
-            } else {
-                talk.print(&text(&score))?;
-            }
-            Ok(match score.solved {
-                true => Outcome::Done,
-                false => Outcome::Refused,
-            })
+            talk.result(&score, || text(&score))?;
+            Ok(Outcome::answer(score.solved))
         }
     }
 }
@@ -115,21 +108,18 @@ pub fn text(score: &ChallengeScore) -> String {
         [] => nothing(),
         added => added.join(", "),
     };
-    table.add_row([
-        "effect".into(),
-        score.hidden.clone().unwrap_or_else(nothing),
-        found,
-    ]);
+    let hidden = score.hidden.clone().unwrap_or_else(nothing);
+    table.add_row(["effect".into(), hidden, found]);
     for value in &score.values {
         let estimate = value.estimate.map_or("-".to_string(), exact);
         table.add_row([value.key.clone(), exact(value.true_value), estimate]);
     }
-    let truth = exact(1e3 * score.true_error_rad);
-    table.add_row([
-        "error on c.csv, mrad".into(),
-        truth,
-        exact(1e3 * score.error_rad),
-    ]);
+    let errors = [score.true_error_rad, score.error_rad].map(|rad| exact(1e3 * rad));
+    table.add_row(
+        ["error on c.csv, mrad"]
+            .into_iter()
+            .chain(errors.iter().map(String::as_str)),
+    );
     let said = match score.solved {
         true => "Solved: the model names what was hidden.",
         false => "Not solved: the model does not name what was hidden.",

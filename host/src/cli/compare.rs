@@ -78,11 +78,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         },
         talk,
     )?;
-    if talk.json {
-        talk.data(&json(&report))?;
-    } else {
-        talk.print(&text)?;
-    }
+    talk.result(&json(&report), || text)?;
     args.page.write(|| Ok(html(&report)), talk)?;
     Ok(Outcome::Done)
 }

@@ -63,10 +63,7 @@ impl Args {
 /// Diagnoses, prints, writes the page.
 pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let diagnosis = find(args, talk)?;
-    Ok(match diagnosis.verdict {
-        Verdict::Unfit => Outcome::Refused,
-        _ => Outcome::Done,
-    })
+    Ok(Outcome::answer(diagnosis.verdict != Verdict::Unfit))
 }
 
 /// The diagnosis itself, printed and written as by [`run`].
@@ -143,15 +140,13 @@ fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis 
         horizon: args.judging.run.horizon,
         ..defaults
     };
-    let bar = talk.bar();
+    let bar = talk.bar(0);
     let (training, held_out) = (split.training.clone(), split.held_out.clone());
-    let diagnosis = diagnose(model, training, held_out, &options, &|progress| {
+    diagnose(model, training, held_out, &options, &|progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.what);
-    });
-    bar.finish_and_clear();
-    diagnosis
+    })
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.

@@ -52,11 +52,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 
 /// Says why there is no new model.
 pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "refused": why.to_string(), "blind": why.blind }))?;
-    } else {
-        talk.print(&show::undetermined(why))?;
-    }
+    let data = json!({ "refused": why.to_string(), "blind": why.blind });
+    talk.result(&data, || show::undetermined(why))?;
     Ok(Outcome::Refused)
 }
 

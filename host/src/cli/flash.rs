@@ -99,12 +99,10 @@ pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) ->
     let patience = Duration::from_secs(how.wait);
     let pace = Duration::from_micros(how.pace_us);
     let mut loader = BootLoader::enter(link, pace, patience, || !interrupt.has_come())?;
-    let bar = talk.bar();
-    bar.set_length(image.bytes().len() as u64);
+    let bar = talk.bar(image.bytes().len() as u64);
     bar.set_message("bytes; do not switch off");
-    let loaded = loader.load(image, |sent| bar.set_position(sent as u64));
-    bar.finish_and_clear();
-    loaded?;
+    loader.load(image, |sent| bar.set_position(sent as u64))?;
+    drop(bar);
     let said = loader.verify()?;
     talk.say(&format!("verify: the boot loader says `{said}`"));
     if !how.no_app {
@@ -152,7 +150,10 @@ fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
     // Fuses and lock bits are never written.
     let words = ["-p", "m128", "-c", programmer, "-U", &target];
     let line = format!("avrdude {}", words.join(" "));
-    talk.say("This erases the whole chip, the CM-5's boot loader included: afterwards only a programmer can write it.");
+    talk.say(
+        "This erases the whole chip, the CM-5's boot loader included: afterwards only a \
+         programmer can write it.",
+    );
     if args.dry_run {
         talk.say(&format!("{line}; not run"));
     } else {

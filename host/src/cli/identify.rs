@@ -18,7 +18,7 @@ use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
+    Candidate, Estimate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
     structures, try_all,
 };
 use handstand::{Error, Result};
@@ -78,20 +78,14 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             grid.extend(structures(text)?);
         }
     }
-    let bar = talk.bar();
-    bar.set_length(grid.len() as u64);
+    let bar = talk.bar(grid.len() as u64);
     let trials = try_all(&grid, &data.training, &data.validation, &|| bar.inc(1));
-    bar.finish_and_clear();
+    drop(bar);
     let chosen = select(&trials, &data.validation);
-    if talk.json {
-        talk.data(&found_json(&data, &trials, chosen))?;
-    } else {
-        talk.print(&text::text(&data, &trials, chosen))?;
-    }
-    Ok(match chosen {
-        Some(_) => Outcome::Done,
-        None => Outcome::Refused,
-    })
+    talk.result(&found_json(&data, &trials, chosen), || {
+        text::text(&data, &trials, chosen)
+    })?;
+    Ok(Outcome::answer(chosen.is_some()))
 }
 
 fn data(args: &Args) -> Result<Data> {
@@ -121,6 +115,14 @@ fn data(args: &Args) -> Result<Data> {
     })
 }
 
+/// Each coefficient with its interval.
+fn coefficients(estimate: &Estimate) -> Vec<(String, Interval)> {
+    let values = estimate.model.values(&estimate.structure);
+    let known = values.into_iter().zip(estimate.half_widths());
+    let known = known.map(|(value, half)| Interval::around(value, half));
+    estimate.structure.names().into_iter().zip(known).collect()
+}
+
 fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
     let trial = |trial: &Candidate| match &trial.outcome {
         Ok(fitted) => json!({
@@ -137,18 +139,14 @@ fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value
         .and_then(|index| trials[index].outcome.as_ref().ok())
         .map(|fitted| {
             let estimate = &fitted.estimate;
-            let names = estimate.structure.names();
-            let values = estimate.model.values(&estimate.structure);
-            let halves = estimate.half_widths();
-            let coefficients: Vec<Value> = (0..names.len())
-                .map(|k| {
-                    let known = Interval::around(values[k], halves[k]);
-                    json!({ "name": names[k], "value": known.value, "low": known.low, "high": known.high })
-                })
-                .collect();
+            let coefficient = |(name, known): (String, Interval)| {
+                let (value, low, high) = (known.value, known.low, known.high);
+                json!({ "name": name, "value": value, "low": low, "high": high })
+            };
+            let coefficients = coefficients(estimate).into_iter().map(coefficient);
             json!({
                 "orders": estimate.structure.to_string(),
-                "coefficients": coefficients,
+                "coefficients": coefficients.collect::<Vec<Value>>(),
                 "polynomials": estimate.model,
                 "dynamics": dynamics(estimate, data.ts_s),
                 "converged": estimate.converged,

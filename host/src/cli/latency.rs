@@ -41,8 +41,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         ));
     }
     let interrupt = Interrupt::listen();
-    let bar = talk.bar();
-    bar.set_length(args.rounds);
+    let bar = talk.bar(args.rounds);
     let goes_on = || {
         bar.inc(1);
         !interrupt.has_come()
@@ -59,18 +58,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let mut adapter = Adapter::new(servos, ids, Duration::ZERO);
         trip.budget(&mut adapter, rounds, period_us, goes_on)
     };
-    bar.finish_and_clear();
+    drop(bar);
     let answer = budget?;
-    if talk.json {
-        talk.data(&answer)?;
-    } else {
-        talk.print(&text(&answer, args))?;
-    }
-    Ok(if answer.fits {
-        Outcome::Done
-    } else {
-        Outcome::Refused
-    })
+    talk.result(&answer, || text(&answer, args))?;
+    Ok(Outcome::answer(answer.fits))
 }
 
 fn text(answer: &LatencyBudget, args: &Args) -> String {
@@ -95,7 +86,8 @@ fn text(answer: &LatencyBudget, args: &Args) -> String {
         false => format!("does not fit: {}", remedy(answer, args)),
     };
     format!(
-        "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\nround of {} servos: {}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
+        "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\n\
+         round of {} servos: {}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
         times(&answer.round_trip_us),
         answer.line_us,
         answer.bus_us,
@@ -114,7 +106,8 @@ fn remedy(answer: &LatencyBudget, args: &Args) -> &'static str {
     } else if answer.bus_us == largest {
         "return delay 0: handstand bus setup"
     } else if answer.line_us == largest {
-        "the PC's line is the slowest part: --stream, or an adapter on the servos' bus at 1000000 baud"
+        "the PC's line is the slowest part: --stream, or an adapter on the servos' bus at \
+         1000000 baud"
     } else {
         "the adapter is the slowest part: --stream, or an FTDI latency timer of 1 ms"
     }

@@ -48,18 +48,14 @@ pub fn check(args: &Args, talk: &Talk) -> Result<Outcome> {
         Some(Severity::Warn) => ("warned", "fit for use, with the warnings above"),
         Some(Severity::Note) | None => ("clean", "fit for use"),
     };
-    if talk.json {
-        let findings: Vec<Value> = findings.iter().map(finding).collect();
-        talk.data(&json!({ "verdict": verdict, "findings": findings }))?;
-    } else {
-        let mut lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
-        lines.push(sentence.to_string());
-        talk.print(&lines.join("\n"))?;
-    }
-    Ok(match refused(&findings) {
-        true => Outcome::Refused,
-        false => Outcome::Done,
-    })
+    let data: Vec<Value> = findings.iter().map(finding).collect();
+    let data = json!({ "verdict": verdict, "findings": data });
+    talk.result(&data, || {
+        let lines = findings.iter().map(ToString::to_string);
+        let lines: Vec<String> = lines.chain([sentence.to_string()]).collect();
+        lines.join("\n")
+    })?;
+    Ok(Outcome::answer(!refused(&findings)))
 }
 
 /// Whether any finding makes the logs useless.

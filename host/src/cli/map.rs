@@ -14,13 +14,14 @@
 //! blurs the edge.
 
 use super::servo_columns::{self, ServoColumns};
+use super::show::{self, known};
 use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{Outcome, input};
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What can be mapped.
 #[derive(Debug, clap::Subcommand)]
@@ -72,46 +73,42 @@ fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
         Ok(map) => map,
         Err(why) => return refused(&why.to_string(), talk),
     };
+    let data = json!({
+        "input_unit": input_unit,
+        "output_unit": output_unit,
+        "up": map.up,
+        "down": map.down,
+        "inverse": map.inverse(),
+    });
+    talk.result(&data, || dead_zone_text(&map, input_unit, output_unit))?;
+    Ok(Outcome::Done)
+}
+
+fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> String {
     let inverse = map.inverse();
-    if talk.json {
-        talk.data(&json!({
-            "input_unit": input_unit,
-            "output_unit": output_unit,
-            "up": map.up,
-            "down": map.down,
-            "inverse": inverse,
-        }))?;
-        return Ok(Outcome::Done);
-    }
     let mut table = show::table(["", "Above zero", "Below zero", "Unit"]);
     let mut row = |name: &str, of: &dyn Fn(&Side) -> String, unit: String| {
         table.add_row([name.to_string(), of(&map.up), of(&map.down), unit]);
     };
+    let slope = format!("{output_unit} per {input_unit}");
+    let limit = |limit: Option<Interval>| limit.map_or("none seen".into(), |limit| known(&limit));
     row("dead zone ends at", &|s| known(&s.edge), input_unit.into());
-    row(
-        "slope outside",
-        &|s| known(&s.slope),
-        format!("{output_unit} per {input_unit}"),
-    );
-    let limit = |side: &Side| {
-        side.limit
-            .map_or("none seen".to_string(), |limit| known(&limit))
-    };
-    row("limit", &limit, output_unit.into());
+    row("slope outside", &|s| known(&s.slope), slope);
+    row("limit", &|s| limit(s.limit), output_unit.into());
     row("left over, RMS", &|s| exact(s.rms), output_unit.into());
     row("blocks", &|s| s.blocks.to_string(), String::new());
     let most = match inverse.limit {
         Some(limit) => format!(", |y| up to {} {output_unit}", exact(limit)),
         None => String::new(),
     };
-    talk.print(&format!(
-        "{table}\n\nTurned round, the command u for an output y{most}:\n  y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
+    format!(
+        "{table}\n\nTurned round, the command u for an output y{most}:\n  \
+         y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
         exact(inverse.edge_up),
         exact(inverse.per_output_up),
         exact(inverse.edge_down),
         exact(inverse.per_output_down),
-    ))?;
-    Ok(Outcome::Done)
+    )
 }
 
 fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
@@ -119,17 +116,19 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
     if input_unit != output_unit {
         return Err(Error::usage(
             format!("the command is in {input_unit} and the output in {output_unit}"),
-            "a speed error needs a commanded speed: give --input as a speed and --output as an angle or a speed",
+            "a speed error needs a commanded speed: give --input as a speed and --output as an \
+             angle or a speed",
         ));
     }
     let line = match SupplyLine::fit(&blocks) {
         Ok(line) => line,
         Err(why) => return refused(&why.to_string(), talk),
     };
-    if talk.json {
-        talk.data(&line)?;
-        return Ok(Outcome::Done);
-    }
+    talk.result(&line, || supply_text(&line))?;
+    Ok(Outcome::Done)
+}
+
+fn supply_text(line: &SupplyLine) -> String {
     let per_v = line.error_per_v;
     let percent = Interval {
         value: 100.0 * per_v.value,
@@ -141,32 +140,21 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
     } else {
         "The speed error follows the supply."
     };
-    talk.print(&format!(
-        "speed error per volt  {} % of the command\nright at              {} V\nsupply seen           {} to {} V, {} blocks\nleft over, RMS        {} % of the command\n{seen}",
+    format!(
+        "speed error per volt  {} % of the command\n\
+         right at              {} V\n\
+         supply seen           {} to {} V, {} blocks\n\
+         left over, RMS        {} % of the command\n{seen}",
         known(&percent),
         known(&line.right_at_v),
         exact(line.range_v.0),
         exact(line.range_v.1),
         line.blocks,
         exact(100.0 * line.rms),
-    ))?;
-    Ok(Outcome::Done)
+    )
 }
 
 fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "refused": why }) as &Value)?;
-    } else {
-        talk.print(&format!("refused: {why}"))?;
-    }
+    talk.result(&json!({ "refused": why }), || format!("refused: {why}"))?;
     Ok(Outcome::Refused)
-}
-
-fn known(known: &Interval) -> String {
-    format!(
-        "{} ({} to {})",
-        exact(known.value),
-        exact(known.low),
-        exact(known.high)
-    )
 }

@@ -177,6 +177,14 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// The answer to what was asked: yes or no.
+    pub fn answer(yes: bool) -> Self {
+        match yes {
+            true => Outcome::Done,
+            false => Outcome::Refused,
+        }
+    }
+
     /// The process's exit code.
     pub fn exit_code(self) -> u8 {
         match self {

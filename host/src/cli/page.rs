@@ -7,7 +7,7 @@ use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
 use handstand::output::number::hex;
 use handstand::report::{LogFile, ModelFile, Provenance, Report};
-use handstand::{Error, Result, output};
+use handstand::{Error, Result};
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -43,11 +43,10 @@ impl PageFile {
     /// # Errors
     /// Those of `page`, and as [`output::write_new`].
     pub fn write(&self, page: impl FnOnce() -> Result<String>, talk: &Talk) -> Result<()> {
-        if let Some(file) = &self.file {
-            output::write_new(file, &page()?, self.force)?;
-            talk.say(&format!("wrote {}", file.display()));
+        match &self.file {
+            Some(file) => talk.write(file, &page()?, self.force),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -66,14 +66,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 fn worked(talk: &Talk) -> Result<Study> {
-    let bar = talk.bar();
-    bar.set_length(STEPS);
-    let whole = study(&|what| {
+    let bar = talk.bar(STEPS);
+    study(&|what| {
         bar.set_message(what.to_string());
         bar.inc(1);
-    });
-    bar.finish_and_clear();
-    whole
+    })
 }
 
 fn numbers(rows: &[Row]) -> String {

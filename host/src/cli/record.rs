@@ -16,7 +16,7 @@
 use super::interrupt::Interrupt;
 use super::robot::Robot;
 use super::talk::Talk;
-use super::{Outcome, input};
+use super::{Outcome, input, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -50,17 +50,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let interrupt = Interrupt::listen();
     let mut source = args.robot.open()?;
     let mut recorder = RobotRecorder::create(&args.file, &args.robot.ids.0, args.force)?;
-    let bar = talk.bar();
-    bar.set_length(args.seconds.map_or(0, |seconds| {
-        (seconds / args.robot.period().map_or(0.01, |p| p.as_secs_f64())) as u64
-    }));
+    let period_s = args.robot.period().map_or(0.01, |p| p.as_secs_f64());
+    let bar = talk.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
     let mut tally = RecordingTally::default();
     let mut silent = 0;
-    while !interrupt.has_come()
-        && args
-            .seconds
-            .is_none_or(|seconds| tally.samples == 0 || tally.seconds() < seconds)
-    {
+    let goes_on = |tally: &RecordingTally| {
+        let within = |seconds| tally.samples == 0 || tally.seconds() < seconds;
+        !interrupt.has_come() && args.seconds.is_none_or(within)
+    };
+    while goes_on(&tally) {
         let Some(sample) = source.sample(None)? else {
             silent += 1;
             if silent == 20 {
@@ -78,7 +76,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         bar.inc(1);
         bar.set_message(format!("samples, {} answers missing", tally.missing));
     }
-    bar.finish_and_clear();
+    drop(bar);
     recorder.finish()?;
     report(args, &tally, None, talk)
 }
@@ -117,9 +115,7 @@ fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) 
         args.file.display(),
         tally.samples,
         tally.seconds(),
-        tally
-            .rate_hz()
-            .map_or("–".to_string(), |rate| format!("{rate:.1}")),
+        or_dash(tally.rate_hz().map(|rate| format!("{rate:.1}"))),
         tally.missing
     ));
     Ok(Outcome::Done)

@@ -18,11 +18,12 @@ use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::output::number::exact;
+use handstand::output::table::TableColumn;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
 use handstand::synth::{dlqr, upright, zoh};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;
-use serde_json::json;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Share of the robots that may be unstable under a robust gain.
@@ -56,18 +57,15 @@ pub struct Args {
     seed: u64,
 }
 
-/// A gain and the loops of the drawn robots under it.
-struct Row {
+/// A gain, and the loops of the drawn robots under it.
+#[derive(Serialize)]
+struct GainRobustness {
     gain: String,
-    k: DMatrix<f64>,
-    radii: Vec<f64>,
+    unstable: f64,
+    median_radius: f64,
+    worst_radius: f64,
     largest_error: f64,
-}
-
-impl Row {
-    fn unstable(&self) -> f64 {
-        unstable_share(&self.radii)
-    }
+    k: Vec<Vec<f64>>,
 }
 
 /// Designs, draws, prints.
@@ -80,31 +78,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             ));
         }
     }
-    let rows = rows(args, &Model::load(&args.model)?, talk)?;
-    if talk.json {
-        let data = rows.iter().map(|row| {
-            json!({
-                "gain": row.gain,
-                "unstable": row.unstable(),
-                "median_radius": row.radii[row.radii.len() / 2],
-                "worst_radius": row.radii[row.radii.len() - 1],
-                "largest_error": row.largest_error,
-                "k": row.k.row_iter().map(|k| k.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
-            })
-        });
-        talk.data(&data.collect::<Vec<_>>())?;
-    } else {
-        talk.print(&text(args, &rows))?;
-    }
-    Ok(
-        match rows.last().is_some_and(|row| row.unstable() <= UNSTABLE) {
-            true => Outcome::Done,
-            false => Outcome::Refused,
-        },
-    )
+    let gains = judged(args, &Model::load(&args.model)?, talk)?;
+    talk.result(&gains, || text(args, &gains))?;
+    let last = gains.last();
+    Ok(Outcome::answer(
+        last.is_some_and(|gain| gain.unstable <= UNSTABLE),
+    ))
 }
 
-fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
+fn judged(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
     let case = Case::ideal(model.clone(), DEFAULT, args.ts);
     let errors = MassErrors {
         case: &case,
@@ -112,18 +94,14 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         draws: args.draws as usize,
         seed: args.seed,
     };
-    let bar = talk.bar();
-    bar.set_length(4);
+    let bar = talk.bar(4);
     bar.set_message("drawing robots");
     let plants = errors.plants(args.masses / 100.0)?;
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let sampled = zoh(&nominal.plant, args.ts, 0.0)?;
     let regulator = |q: f64| {
-        let (q, r) = DesignModel {
-            q,
-            ..nominal.clone()
-        }
-        .weights();
+        let own = nominal.clone();
+        let (q, r) = DesignModel { q, ..own }.weights();
         Ok::<_, Error>(dlqr(&sampled, &q, &r)?.k)
     };
     let multi = MultiModel {
@@ -131,66 +109,55 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         with_inertia: args.with_inertia,
         weight: args.q,
     };
+    let title = format!("multi-model, {} % of each mass", exact(args.design));
     let gains = [
         ("DLQR, Q = 100 I, R = I".to_string(), regulator(100.0)?),
         ("DLQR, Q = I, R = I".to_string(), regulator(1.0)?),
-        (
-            format!("multi-model, {} % of each mass", exact(args.design)),
-            multi.gain(&nominal)?,
-        ),
+        (title, multi.gain(&nominal)?),
     ];
     bar.inc(1);
-    let mut rows = Vec::new();
-    for (gain, k) in gains {
+    let judge = |(gain, k): (String, DMatrix<f64>)| {
         bar.set_message(gain.clone());
-        rows.push(Row {
-            radii: radii(&plants, &k),
-            largest_error: errors.largest(&k, UNSTABLE)?,
-            gain,
-            k,
-        });
+        let radii = radii(&plants, &k);
+        let largest_error = errors.largest(&k, UNSTABLE)?;
         bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok(rows)
+        Ok(GainRobustness {
+            gain,
+            unstable: unstable_share(&radii),
+            median_radius: radii[radii.len() / 2],
+            worst_radius: radii[radii.len() - 1],
+            largest_error,
+            k: k.row_iter()
+                .map(|row| row.iter().copied().collect())
+                .collect(),
+        })
+    };
+    gains.into_iter().map(judge).collect()
 }
 
-fn text(args: &Args, rows: &[Row]) -> String {
-    let mut table = show::table([
-        "Gain",
-        "unstable %",
-        "median radius",
-        "worst radius",
-        "2 % unstable at, %",
-    ]);
-    for row in rows {
-        table.add_row([
-            row.gain.clone(),
-            format!("{:.1}", 100.0 * row.unstable()),
-            format!("{:.4}", row.radii[row.radii.len() / 2]),
-            format!("{:.4}", row.radii[row.radii.len() - 1]),
-            format!("{:.1}", 100.0 * row.largest_error),
-        ]);
-    }
-    let mut lines = vec![
-        format!(
-            "{} robots, each mass within {} % of the model's:",
-            args.draws,
-            exact(args.masses)
-        ),
-        table.to_string(),
-        String::new(),
-        "The multi-model gain, u = -K x:".to_string(),
+fn text(args: &Args, gains: &[GainRobustness]) -> String {
+    let columns: &[TableColumn<GainRobustness>] = &[
+        ("Gain", &|gain| gain.gain.clone()),
+        ("unstable %", &|gain| {
+            format!("{:.1}", 100.0 * gain.unstable)
+        }),
+        ("median radius", &|gain| {
+            format!("{:.4}", gain.median_radius)
+        }),
+        ("worst radius", &|gain| format!("{:.4}", gain.worst_radius)),
+        ("2 % unstable at, %", &|gain| {
+            format!("{:.1}", 100.0 * gain.largest_error)
+        }),
     ];
-    if let Some(row) = rows.last() {
-        for k in row.k.row_iter() {
-            lines.push(
-                k.iter()
-                    .map(|k| format!("{k:>10.4}"))
-                    .collect::<Vec<_>>()
-                    .join(" "),
-            );
-        }
+    let mut text = format!(
+        "{} robots, each mass within {} % of the model's:\n{}\n\nThe multi-model gain, u = -K x:",
+        args.draws,
+        exact(args.masses),
+        show::table_of(gains, columns)
+    );
+    for row in gains.last().map_or(&[][..], |gain| &gain.k) {
+        let row: Vec<String> = row.iter().map(|k| format!("{k:>10.4}")).collect();
+        text += &format!("\n{}", row.join(" "));
     }
-    lines.join("\n")
+    text
 }

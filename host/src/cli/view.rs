@@ -17,7 +17,7 @@ use super::{Outcome, input, page};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
-use handstand::{Error, Model, Result, output};
+use handstand::{Error, Model, Result};
 use std::path::PathBuf;
 
 /// Animate a motion on an HTML page.
@@ -70,8 +70,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     scene.add_overlay(&model, &read(&args.overlay, &model.log)?);
     let page = html(&scene, &talk.command)
         .map_err(|error| Error::file(&args.output, "write", error.into()))?;
-    output::write_new(&args.output, &page, args.force)?;
-    talk.say(&format!("wrote {}", args.output.display()));
+    talk.write(&args.output, &page, args.force)?;
     if talk.json {
         talk.data(&serde_json::json!({
             "page": args.output.to_string_lossy(),

@@ -93,22 +93,19 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         .as_deref()
         .map(|path| Alias::new(path, pty.name()))
         .transpose()?;
-    if talk.json {
-        talk.data(&serde_json::json!({
-            "port": pty.name(),
-            "ids": spec.ids,
-            "cm5": args.cm5,
-            "robot": spec.robot.as_ref().map(|robot| &robot.model),
-        }))?;
-    } else {
-        talk.print(pty.name())?;
-    }
+    let data = serde_json::json!({
+        "port": pty.name(),
+        "ids": spec.ids,
+        "cm5": args.cm5,
+        "robot": spec.robot.as_ref().map(|robot| &robot.model),
+    });
+    talk.result(&data, || pty.name().to_string())?;
     let speed = if args.cm5 { 57_600 } else { 1_000_000 };
     talk.say(&format!(
         "{} simulated servos at {speed} baud; Ctrl-C ends it",
         spec.ids.len(),
     ));
-    let bar = talk.bar();
+    let bar = talk.bar(0);
     serve(&mut device, &pty, |elapsed| {
         if let Some(state) = states.newest()? {
             bar.set_message(state);
@@ -116,7 +113,6 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let is_over = args.seconds.is_some_and(|s| elapsed.as_secs_f64() > s);
         Ok(!interrupt.has_come() && !is_over)
     })?;
-    bar.finish_and_clear();
     drop(alias);
     Ok(Outcome::Done)
 }

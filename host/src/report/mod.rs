@@ -21,7 +21,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
-pub use text::{diagnosis_text, plain_table};
+pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;

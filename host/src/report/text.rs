@@ -8,7 +8,8 @@ use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
 use crate::fitting::FittedValue;
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
-use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
+use crate::output::table::plain_table;
+use comfy_table::{CellAlignment, Table};
 
 /// Columns of a table.
 const WIDTH: u16 = 90;
@@ -145,18 +146,6 @@ fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
 fn list(title: &str, items: &[String]) -> Option<String> {
     let lines: Vec<String> = items.iter().map(|item| format!("  - {item}")).collect();
     (!items.is_empty()).then(|| format!("{title}\n{}", lines.join("\n")))
-}
-
-/// A table without frame, as wide as its text asks and at most as wide as the terminal.
-pub fn plain_table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
-    table
 }
 
 /// The table's lines, numbers in these columns under each other; nothing without rows.

@@ -4,12 +4,14 @@
 //! length of its rows in bytes and their SHA-256, then the rows. Each is appended and synced whole;
 //! what does not match its sum at the end was torn by a crash and is cut off.
 
+use super::monte_carlo::{CHUNK, columns};
+use super::parse::Study;
 use crate::error::{Error, Place, Result};
+use crate::output::number::hex;
 use fs4::fs_std::FileExt as _;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
@@ -30,12 +32,23 @@ pub struct Header {
 }
 
 /// Version of the format.
-pub const FORMAT: u32 = 1;
+const FORMAT: u32 = 1;
 /// Most chunks of a study: some thousand million runs. A damaged header may say any number, and the
 /// missing ones are listed.
 const MOST_CHUNKS: usize = 10_000_000;
 
 impl Header {
+    /// The header of a study's journals.
+    pub fn of(study: &Study) -> Header {
+        Header {
+            handstand_study: FORMAT,
+            fingerprint: study.fingerprint(),
+            runs: study.judging.runs,
+            chunk: CHUNK,
+            columns: columns(study),
+        }
+    }
+
     /// Number of chunks of the whole study.
     pub fn chunks(&self) -> usize {
         self.runs.div_ceil(self.chunk.max(1))
@@ -196,13 +209,5 @@ fn chunk_at(bytes: &[u8], place: usize) -> Option<(usize, String, usize)> {
 }
 
 fn sum(rows: &str) -> String {
-    hex(Sha256::digest(rows.as_bytes()).as_slice())
-}
-
-/// Bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hex(Sha256::digest(rows))
 }

@@ -12,6 +12,7 @@ use crate::model::Model;
 use crate::model::reader::Table;
 use crate::model::source::TomlSource;
 use crate::model::suggest::suggest;
+use crate::output::number::hex;
 use crate::sim::closed_loop::{Drives, Gyro, Sensor, Velocity};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
@@ -113,7 +114,7 @@ impl Study {
             self.judging,
             drawn
         );
-        super::journal::hex(Sha256::digest(said.as_bytes()).as_slice())
+        hex(Sha256::digest(said))
     }
 }
 

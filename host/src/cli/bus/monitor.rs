@@ -1,13 +1,13 @@
 //! `bus monitor`: rounds of readings, until Ctrl-C or `--rounds`. Nothing is written to the servos.
 
-use super::super::Outcome;
-use super::super::interrupt::Interrupt;
-use super::super::port::{Ids, Port, id_list};
-use super::super::show::table;
-use super::super::talk::Talk;
+use super::scan::degrees;
+use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::show::{or_dash, table_of};
+use crate::cli::{Outcome, interrupt::Interrupt, talk::Talk};
 use handstand::Result;
 use handstand::link::Reading;
 use handstand::link::record::ServoSample;
+use handstand::output::table::TableColumn;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
 use std::time::Duration;
@@ -28,7 +28,7 @@ pub struct Args {
     every: f64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct ServoReading {
     id: u8,
     position_rad: Option<f64>,
@@ -63,7 +63,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 Ok(reading) => ServoReading::of(*id, &reading),
                 Err(error) => {
                     error.port()?;
-                    ServoReading::silent(*id)
+                    ServoReading {
+                        id: *id,
+                        error_flags: vec!["silent"],
+                        ..ServoReading::default()
+                    }
                 }
             });
         }
@@ -100,49 +104,35 @@ impl ServoReading {
             error_flags: reading.error.names().collect(),
         }
     }
-
-    fn silent(id: u8) -> Self {
-        ServoReading {
-            id,
-            position_rad: None,
-            speed_rad_s: None,
-            load_share: None,
-            supply_v: None,
-            temperature_celsius: None,
-            error_flags: vec!["silent"],
-        }
-    }
 }
 
 fn text(seen: &[ServoReading]) -> String {
-    let mut shown = table([
-        "Id",
-        "Position",
-        "Speed",
-        "Load",
-        "Supply",
-        "Temp",
-        "Error flags",
-    ]);
-    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_string());
-    for servo in seen {
-        shown.add_row([
-            servo.id.to_string(),
-            or_dash(
-                servo
-                    .position_rad
-                    .map(|value| format!("{:.1} deg", value.to_degrees())),
-            ),
-            or_dash(servo.speed_rad_s.map(|value| format!("{value:.2} rad/s"))),
+    let columns: &[TableColumn<ServoReading>] = &[
+        ("Id", &|servo| servo.id.to_string()),
+        ("Position", &|servo| {
+            or_dash(servo.position_rad.map(degrees))
+        }),
+        ("Speed", &|servo| {
+            or_dash(servo.speed_rad_s.map(|speed| format!("{speed:.2} rad/s")))
+        }),
+        ("Load", &|servo| {
             or_dash(
                 servo
                     .load_share
-                    .map(|value| format!("{:.0} %", value * 100.0)),
-            ),
-            or_dash(servo.supply_v.map(|value| format!("{value:.1} V"))),
-            or_dash(servo.temperature_celsius.map(|value| format!("{value} C"))),
-            servo.error_flags.join(", "),
-        ]);
-    }
-    shown.to_string()
+                    .map(|load| format!("{:.0} %", load * 100.0)),
+            )
+        }),
+        ("Supply", &|servo| {
+            or_dash(servo.supply_v.map(|volts| format!("{volts:.1} V")))
+        }),
+        ("Temp", &|servo| {
+            or_dash(
+                servo
+                    .temperature_celsius
+                    .map(|celsius| format!("{celsius} C")),
+            )
+        }),
+        ("Error flags", &|servo| servo.error_flags.join(", ")),
+    ];
+    table_of(seen, columns).to_string()
 }

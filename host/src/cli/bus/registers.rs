@@ -1,13 +1,12 @@
 //! `bus read`, `bus write`: single registers.
 
-use super::super::Outcome;
-use super::super::port::Port;
-use super::super::show::table;
-use super::super::talk::Talk;
+use crate::cli::{Outcome, port::Port, show::table_of, talk::Talk};
 use handstand::model::suggest::suggest;
+use handstand::output::table::TableColumn;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
+use serde::Serialize;
 use serde_json::json;
 
 /// Read registers of a servo.
@@ -36,6 +35,17 @@ pub struct WriteArgs {
     port: Port,
 }
 
+/// What a register of a servo holds.
+#[derive(Serialize)]
+struct RegisterContent {
+    address: u8,
+    register: &'static str,
+    code: u16,
+    means: String,
+    #[serde(skip)]
+    default: Option<u16>,
+}
+
 /// A register by name, however spelt, or by address.
 pub fn register(text: &str) -> Result<Register, String> {
     let found = match text.parse() {
@@ -56,28 +66,31 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
     } else {
         &args.registers
     };
-    let mut rows = Vec::new();
-    let mut shown = table(["Address", "Register", "Code", "Means", "Default"]);
+    let mut contents = Vec::new();
     for register in wanted {
         let code = servos.get(args.id, *register)?;
-        let meaning = meaning(*register, code);
-        shown.add_row([
-            register.address.to_string(),
-            register.name.to_string(),
-            code.to_string(),
-            meaning.clone(),
-            if register.access == Access::Write {
-                register.default.to_string()
-            } else {
-                String::new()
-            },
-        ]);
-        rows.push(json!({ "address": register.address, "register": register.name, "code": code, "means": meaning }));
+        contents.push(RegisterContent {
+            address: register.address,
+            register: register.name,
+            code,
+            means: meaning(*register, code),
+            default: (register.access == Access::Write).then_some(register.default),
+        });
     }
-    match talk.json {
-        true => talk.data(&rows)?,
-        false => talk.print(&shown.to_string())?,
-    }
+    talk.result(&contents, || {
+        let columns: &[TableColumn<RegisterContent>] = &[
+            ("Address", &|content| content.address.to_string()),
+            ("Register", &|content| content.register.to_string()),
+            ("Code", &|content| content.code.to_string()),
+            ("Means", &|content| content.means.clone()),
+            ("Default", &|content| {
+                content
+                    .default
+                    .map_or(String::new(), |code| code.to_string())
+            }),
+        ];
+        table_of(&contents, columns).to_string()
+    })?;
     Ok(Outcome::Done)
 }
 
@@ -101,11 +114,9 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
     let mut servos = args.port.servos()?;
     let before = servos.get(*id, *register)?;
     servos.set(*id, *register, *code)?;
-    if talk.json {
-        talk.data(&json!({ "id": id, "register": register.name, "before": before, "code": code }))?;
-    } else {
-        talk.print(&format!("servo {id}: {} {before} -> {code}", register.name))?;
-    }
+    let name = register.name;
+    let data = json!({ "id": id, "register": name, "before": before, "code": code });
+    talk.result(&data, || format!("servo {id}: {name} {before} -> {code}"))?;
     Ok(Outcome::Done)
 }
 

@@ -136,12 +136,10 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
     let board = args.board.board()?;
     if args.law == LawKind::Observer {
         if let Some(option) = args.gains.for_plain_states() {
-            return Err(Error::usage(
-                format!(
-                    "{option} is for gains on plain states, which `--law observer` does not run"
-                ),
-                "leave it out, or say --law state",
-            ));
+            let what = format!(
+                "{option} is for gains on plain states, which `--law observer` does not run"
+            );
+            return Err(Error::usage(what, "leave it out, or say --law state"));
         }
         let machine = deploy::observer_design(&model, &board, &args.board.timing())?;
         return deploy::plan(&model, BoardLaw::Observer(&machine), &board);
@@ -182,13 +180,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "flash the firmware that belongs to this program",
         )
     })?;
-    let bar = talk.bar();
-    bar.set_length(args.states);
-    let replayed = deploy::replay(&back.law, args.states, args.seed, |done| {
-        bar.set_position(done)
-    });
-    bar.finish_and_clear();
-    replayed?;
+    let bar = talk.bar(args.states);
+    let done = |done| bar.set_position(done);
+    deploy::replay(&back.law, args.states, args.seed, done)?;
+    drop(bar);
     steps.say(format!(
         "replayed: its law on its tables equals wide integers bit for bit over {} states",
         args.states
@@ -198,27 +193,24 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         (false, true) => Some("flash"),
         (false, false) => Some("upload"),
     };
-    if talk.json {
-        return talk
-            .data(&json!({
-                "law": args.law.to_possible_value().map(|law| law.get_name().to_string()),
-                "steps": steps.done,
-                "way": way,
-                "fingerprint": format!("{fingerprint:08X}"),
-                "bytes": bytes.len(),
-                "uploaded": way.is_some(),
-                "states_replayed": args.states,
-            }))
-            .map(|()| Outcome::Done);
-    }
-    talk.print(&format!(
-        "fingerprint {fingerprint:08X}, {} bytes",
-        bytes.len()
-    ))?;
-    talk.say(match way {
-        None => "nothing was sent",
-        Some(_) => "the CM-5 has these gains; torque is off",
+    let (fingerprint, bytes) = (format!("{fingerprint:08X}"), bytes.len());
+    let data = json!({
+        "law": args.law.to_possible_value().map(|law| law.get_name().to_string()),
+        "steps": steps.done,
+        "way": way,
+        "fingerprint": fingerprint,
+        "bytes": bytes,
+        "uploaded": way.is_some(),
+        "states_replayed": args.states,
     });
+    talk.result(&data, || {
+        format!("fingerprint {fingerprint}, {bytes} bytes")
+    })?;
+    match way {
+        _ if talk.json => {}
+        None => talk.say("nothing was sent"),
+        Some(_) => talk.say("the CM-5 has these gains; torque is off"),
+    }
     Ok(Outcome::Done)
 }
 
@@ -227,11 +219,9 @@ fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut DeploySteps) 
         return Ok(bytes.to_vec());
     }
     let mut session = Session::open(args.port.open()?)?;
-    let bar = steps.talk.bar();
-    bar.set_length(bytes.len() as u64);
-    let sent = deploy::upload(&mut session, bytes, |sent| bar.set_position(sent));
-    bar.finish_and_clear();
-    sent?;
+    let bar = steps.talk.bar(bytes.len() as u64);
+    deploy::upload(&mut session, bytes, |sent| bar.set_position(sent))?;
+    drop(bar);
     steps.say("uploaded: the CM-5 keeps it in EEPROM".to_string());
     verified(&mut session, bytes, fingerprint, steps)
 }
@@ -260,7 +250,8 @@ fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Res
     if theirs != ours {
         return Err(Error::device(
             format!(
-                "the CM-5 balances by {theirs:08X}, not by {ours:08X} that was compiled in: a plan in its EEPROM wins"
+                "the CM-5 balances by {theirs:08X}, not by {ours:08X} that was compiled in: a plan \
+                 in its EEPROM wins"
             ),
             "replace that plan: the same without --flash",
         ));
