@@ -25,7 +25,7 @@ use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::controllers::{DESIGNS, Design};
 use handstand::study::{
-    CONDITIONS, Case, Condition, Judging, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
+    CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
 };
 use handstand::{Error, Model, Result, output};
 use serde::Serialize;
@@ -117,7 +117,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         output::write_new(file, &plot, args.force)?;
     }
     talk.result(&trials, || result::text(&trials, &designs, &conditions))?;
-    let answered = |condition: &&Condition| {
+    let answered = |condition: &&LoopCondition| {
         let mut own = trials.iter().filter(|t| t.condition == condition.id);
         own.any(|trial| trial.stabilised >= STABILISED_SHARE)
     };
@@ -128,7 +128,7 @@ fn trials(
     args: &Args,
     model: &Model,
     designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    conditions: &[&'static LoopCondition],
     talk: &Talk,
 ) -> Result<Vec<ControllerTrial>> {
     let judging = Judging {
@@ -187,7 +187,7 @@ pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
 ///
 /// # Errors
 /// An unknown name.
-pub fn chosen_conditions(names: &[String]) -> Result<Vec<&'static Condition>> {
+pub fn chosen_conditions(names: &[String]) -> Result<Vec<&'static LoopCondition>> {
     chosen("condition", names, CONDITIONS.iter(), |condition| {
         condition.id
     })

@@ -78,7 +78,7 @@ struct DelayMargins {
 /// A way from sample to torque, what it takes, and the compensated controllers that tolerate it.
 #[derive(Serialize)]
 struct PathBudget {
-    path: &'static str,
+    path: String,
     bus_s: f64,
     line_s: f64,
     servo_s: f64,
@@ -153,7 +153,7 @@ impl PathBudget {
             own.map(|own| own.controller).collect()
         };
         PathBudget {
-            path: path.title,
+            path: path.title(),
             bus_s: path.bus_s(),
             line_s: path.line_s(),
             servo_s,
@@ -165,7 +165,7 @@ impl PathBudget {
 
     fn title(&self) -> String {
         match self.servo_s {
-            0.0 => self.path.to_string(),
+            0.0 => self.path.clone(),
             dead_s => format!("  and a servo's dead time of {:.0} ms", 1e3 * dead_s),
         }
     }

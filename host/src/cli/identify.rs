@@ -18,7 +18,7 @@ use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Candidate, Estimate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
+    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
     structures, try_all,
 };
 use handstand::{Error, Result};
@@ -115,14 +115,6 @@ fn data(args: &Args) -> Result<Data> {
     })
 }
 
-/// Each coefficient with its interval.
-fn coefficients(estimate: &Estimate) -> Vec<(String, Interval)> {
-    let values = estimate.model.values(&estimate.structure);
-    let known = values.into_iter().zip(estimate.half_widths());
-    let known = known.map(|(value, half)| Interval::around(value, half));
-    estimate.structure.names().into_iter().zip(known).collect()
-}
-
 fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
     let trial = |trial: &Candidate| match &trial.outcome {
         Ok(fitted) => json!({
@@ -143,7 +135,7 @@ fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value
                 let (value, low, high) = (known.value, known.low, known.high);
                 json!({ "name": name, "value": value, "low": low, "high": high })
             };
-            let coefficients = coefficients(estimate).into_iter().map(coefficient);
+            let coefficients = estimate.coefficients().into_iter().map(coefficient);
             json!({
                 "orders": estimate.structure.to_string(),
                 "coefficients": coefficients.collect::<Vec<Value>>(),

@@ -28,7 +28,14 @@ pub struct Study {
     pub uncertain: Vec<Uncertain>,
 }
 
-const HANDSTAND: &str = include_str!("../../models/handstand.toml");
+/// The paper's robot: the model file with its Table 1.
+///
+/// # Errors
+/// None is known: the file is the project's own.
+pub fn handstand() -> Result<Model> {
+    let text = include_str!("../../models/handstand.toml");
+    Model::parse(text, Path::new("handstand.toml"))
+}
 
 impl Study {
     /// The paper's robot with its regulator (Q = 100 I, R = I, 10 ms) under ideal circumstances:
@@ -37,8 +44,7 @@ impl Study {
     /// # Errors
     /// None that are not bugs.
     pub fn paper() -> Result<Study> {
-        let model = Model::parse(HANDSTAND, Path::new("handstand.toml"))?;
-        Ok(Study::of(model))
+        Ok(Study::of(handstand()?))
     }
 
     /// The same for another robot.

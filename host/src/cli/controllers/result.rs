@@ -5,13 +5,13 @@ use crate::cli::show;
 use handstand::controllers::Design;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::plot::heat_map;
-use handstand::study::Condition;
+use handstand::study::LoopCondition;
 
 /// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(
     trials: &[ControllerTrial],
     designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    conditions: &[&'static LoopCondition],
 ) -> String {
     let mut parts = vec![format!(
         "Robots stabilised, % of {}:\n{}",
@@ -54,7 +54,7 @@ pub fn text(
 fn matrix(
     trials: &[ControllerTrial],
     designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    conditions: &[&'static LoopCondition],
     cell: impl Fn(&ControllerTrial) -> String,
 ) -> String {
     let mut table = show::wide_table();
@@ -89,7 +89,7 @@ fn region(trial: &ControllerTrial) -> String {
 pub fn plot(
     trials: &[ControllerTrial],
     designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    conditions: &[&'static LoopCondition],
 ) -> String {
     let ids: Vec<&str> = designs.iter().map(|design| design.info().id).collect();
     let titles: Vec<&str> = conditions.iter().map(|condition| condition.title).collect();

@@ -1,6 +1,6 @@
 //! What was identified, in words and tables.
 
-use super::{Data, coefficients};
+use super::Data;
 use crate::cli::show::{self, ends, known};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
@@ -119,7 +119,7 @@ fn model(data: &Data, fitted: &FittedModel) -> String {
         ("Value", &|(_, known)| exact(known.value)),
         ("95 % interval", &|(_, known)| ends(known)),
     ];
-    let coefficients = show::table_of(&coefficients(estimate), columns);
+    let coefficients = show::table_of(&estimate.coefficients(), columns);
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
         format!("{structure} has the transfer function"),
