@@ -5,7 +5,7 @@ use super::bench_arm::NOMINAL_SUPPLY_V;
 use super::physics::{Mount, Physics};
 use super::reference::{MOTION_S, Reference};
 use super::rounding::rounded;
-use super::truth::{Arm, Commands};
+use super::truth::{Arm, ArmCommands};
 use handstand_shared::raw::Position;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +33,7 @@ const MOST_CLIPPED: f64 = 0.04;
 #[derive(Debug, Clone)]
 pub struct ArmRecording {
     /// Times, duty, torque on, and the true supply.
-    pub commands: Commands,
+    pub commands: ArmCommands,
     /// Rounded readings, rad.
     pub position: Vec<f64>,
     /// Conditions.
@@ -78,7 +78,7 @@ fn attempt(
         .map(|k| rounded((k as f64 * PERIOD_S + JITTER_S * normal(rng)).max(0.0), 6))
         .collect();
     let mut arm = Arm::settled(truth, mount);
-    let mut commands = Commands::default();
+    let mut commands = ArmCommands::default();
     let mut position = Vec::with_capacity(samples);
     let mut noise = NOISE.0 * normal(rng);
     for (k, &time_s) in times.iter().enumerate() {

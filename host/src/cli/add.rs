@@ -14,8 +14,7 @@
 //! Exit code 1, and no file, when the logs do not determine the values. `--json` prints what
 //! `handstand fit` prints, and `effect`, as `delay@1`.
 
-use super::talk::Talk;
-use super::{Outcome, fit, input};
+use super::{ExitStatus, Talk, fit, input};
 use handstand::fitting::{Candidate, refit_with};
 use handstand::log::LogRequest;
 use handstand::model::edit;
@@ -24,7 +23,7 @@ use std::path::PathBuf;
 
 /// Add an effect to a model, its parameters fitted to logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct AddArgs {
     /// Model file
     model: PathBuf,
     /// The effect: `delay`, or `coulomb@2` where there are several joints
@@ -33,11 +32,11 @@ pub struct Args {
     #[arg(long = "fit", required = true, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
     #[command(flatten)]
-    fit: input::FitArgs,
+    fit: input::RefitArgs,
 }
 
 /// Fits, writes, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let candidate = Candidate::named(&args.effect, &model)?;

@@ -13,8 +13,7 @@
 //! `added`, `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`,
 //! `true_error_rad`.
 
-use super::talk::Talk;
-use super::{Outcome, show};
+use super::{ExitStatus, Talk, show};
 use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
 use handstand::fitting::effect_named;
 use handstand::output::number::exact;
@@ -24,7 +23,7 @@ use std::path::PathBuf;
 
 /// What can be done with challenges.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum ChallengeCommand {
     /// Create a virtual bench with a hidden effect
     New(New),
     /// Score a model against the hidden effect
@@ -55,18 +54,18 @@ pub struct ScoreArgs {
 }
 
 /// Makes or scores.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &ChallengeCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::New(args) => new(args, talk),
-        Command::Score(args) => {
+        ChallengeCommand::New(args) => new(args, talk),
+        ChallengeCommand::Score(args) => {
             let score = challenge::score(&args.folder, &Model::load(&args.model)?)?;
             talk.result(&score, || text(&score))?;
-            Ok(Outcome::answer(score.solved))
+            Ok(ExitStatus::answer(score.solved))
         }
     }
 }
 
-fn new(args: &New, talk: &Talk) -> Result<Outcome> {
+fn new(args: &New, talk: &Talk) -> Result<ExitStatus> {
     let made = challenge::generate(args.seed, hidden(args.effect.as_deref())?);
     challenge::write(&made, &args.output)?;
     if talk.json {
@@ -81,7 +80,7 @@ fn new(args: &New, talk: &Talk) -> Result<Outcome> {
             args.output.display()
         ));
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 fn hidden(named: Option<&str>) -> Result<Hidden> {

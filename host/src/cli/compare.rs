@@ -22,8 +22,7 @@
 //! `failures`, `traces`, `closed_loop`) and `provenance`.
 
 use super::page::{self, Page, PageFile};
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::{ExitStatus, Talk, input};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
 use handstand::report::{html, json};
@@ -32,7 +31,7 @@ use std::path::PathBuf;
 
 /// Compare a model's simulation with measured logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct CompareArgs {
     /// Model file
     model: PathBuf,
     /// Logs
@@ -50,7 +49,7 @@ pub struct Args {
 }
 
 /// Compares, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
     let mut horizon = args.run.horizon;
     let mut comparisons = Vec::new();
@@ -80,5 +79,5 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     )?;
     talk.result(&json(&report), || text)?;
     args.page.write(|| Ok(html(&report)), talk)?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

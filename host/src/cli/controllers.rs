@@ -21,8 +21,7 @@
 //! `controller`, `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
-use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{ExitStatus, Talk, input, show};
 use handstand::controllers::{DESIGNS, Design};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
@@ -36,7 +35,7 @@ mod result;
 
 /// Simulate controllers in closed loop with the robot's non-idealities.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ControllersArgs {
     /// Model file; without it, what there is
     model: Option<PathBuf>,
     /// A controller to try, by name; all without it
@@ -90,7 +89,7 @@ struct ControllerTrial {
 }
 
 /// Lists or tries.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
     let Some(file) = &args.model else {
         return list::run(talk);
     };
@@ -121,11 +120,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let mut own = trials.iter().filter(|t| t.condition == condition.id);
         own.any(|trial| trial.stabilised >= STABILISED_SHARE)
     };
-    Ok(Outcome::answer(conditions.iter().all(answered)))
+    Ok(ExitStatus::answer(conditions.iter().all(answered)))
 }
 
 fn trials(
-    args: &Args,
+    args: &ControllersArgs,
     model: &Model,
     designs: &[&'static dyn Design],
     conditions: &[&'static LoopCondition],

@@ -22,8 +22,7 @@
 //! that tolerate the total).
 
 use super::controllers::{chosen_conditions, chosen_designs};
-use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{ExitStatus, Talk, input, show};
 use handstand::controllers::{Design, DesignModel};
 use handstand::output::table::TableColumn;
 use handstand::study::{
@@ -38,7 +37,7 @@ use std::path::PathBuf;
 
 /// Find the delay margin of each controller.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DelaysArgs {
     /// Model file
     model: PathBuf,
     /// A controller, by name; all without it
@@ -88,7 +87,7 @@ struct PathBudget {
 }
 
 /// Searches and prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DelaysArgs, talk: &Talk) -> Result<ExitStatus> {
     let designs = chosen_designs(&args.controllers)?;
     let model = Model::load(&args.model)?;
     let margins = search(args, &model, &designs, talk)?;
@@ -99,7 +98,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         .collect();
     let data = json!({ "controllers": margins, "paths": paths });
     talk.result(&data, || text(&margins, &paths, args))?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// Dead times of a servo, s: none, and as measured.
@@ -108,7 +107,7 @@ fn dead_times() -> impl Iterator<Item = f64> {
 }
 
 fn search(
-    args: &Args,
+    args: &DelaysArgs,
     model: &Model,
     designs: &[&'static dyn Design],
     talk: &Talk,
@@ -171,7 +170,7 @@ impl PathBudget {
     }
 }
 
-fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &Args) -> String {
+fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &DelaysArgs) -> String {
     let longest: &[TableColumn<DelayMargins>] = &[
         ("Controller", &|own| own.controller.to_string()),
         ("uncompensated", &|own| ms(own.uncompensated)),

@@ -18,8 +18,7 @@
 //! `docs/json.md`.
 
 use super::page::{self, Page, PageFile};
-use super::talk::Talk;
-use super::{Outcome, input, log};
+use super::{ExitStatus, Talk, input, log};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
@@ -33,7 +32,7 @@ use std::path::PathBuf;
 
 /// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DiagnoseArgs {
     /// Model file
     model: PathBuf,
     /// Logs to learn from
@@ -46,14 +45,14 @@ pub struct Args {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     #[command(flatten)]
-    judging: input::Judging,
+    judging: input::HoldoutArgs,
     #[command(flatten)]
     plan: input::PlanFile,
     #[command(flatten)]
     page: PageFile,
 }
 
-impl Args {
+impl DiagnoseArgs {
     /// The logs to learn from, then those to judge by.
     fn all_logs(&self) -> Vec<LogRequest> {
         [self.logs.as_slice(), &self.judging.holdout].concat()
@@ -61,13 +60,13 @@ impl Args {
 }
 
 /// Diagnoses, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
     let diagnosis = find(args, talk)?;
-    Ok(Outcome::answer(diagnosis.verdict != Verdict::Unfit))
+    Ok(ExitStatus::answer(diagnosis.verdict != Verdict::Unfit))
 }
 
 /// The diagnosis itself, printed and written as by [`run`].
-pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
+pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     args.page.vacant()?;
     for effect in &args.without {
         effect_named(effect)?;
@@ -107,7 +106,7 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
 }
 
 /// A command line to be copied: the files' names in place of what stands for them.
-fn with_names(line: &str, args: &Args) -> String {
+fn with_names(line: &str, args: &DiagnoseArgs) -> String {
     let words = |logs: &[LogRequest]| {
         let words: Vec<String> = logs.iter().map(|log| quoted(&log.to_string())).collect();
         words.join(" ")
@@ -132,7 +131,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis {
+fn try_all(model: &Model, split: &Split, args: &DiagnoseArgs, talk: &Talk) -> Diagnosis {
     let defaults = DiagnoseOptions::default();
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
@@ -178,7 +177,7 @@ impl Compared {
         model: &Model,
         diagnosis: &Diagnosis,
         plan: Option<&StateFeedbackPlan>,
-        args: &Args,
+        args: &DiagnoseArgs,
     ) -> Result<Compared> {
         let motions = read(&args.all_logs(), &model.log)?;
         let mut named = vec![("the model as it is".to_string(), model.clone())];
@@ -203,7 +202,7 @@ impl Compared {
     }
 
     /// The comparisons of the page, all over the first one's horizon.
-    fn comparisons(&self, judged_over_s: Option<f64>, args: &Args) -> Vec<Comparison> {
+    fn comparisons(&self, judged_over_s: Option<f64>, args: &DiagnoseArgs) -> Vec<Comparison> {
         let judged_over = judged_over_s.map(Horizon::Seconds);
         let mut horizon = args.judging.run.horizon.or(judged_over);
         let mut comparisons = Vec::new();

@@ -17,10 +17,7 @@
 //! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with
 //! `--dry-run` or `--isp` `command` or less.
 
-use super::Outcome;
-use super::interrupt::Interrupt;
-use super::port::Port;
-use super::talk::Talk;
+use super::{ExitStatus, Talk, interrupt::Interrupt, port::Port};
 use handstand::link::boot_loader::{BootLoader, Image};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -31,7 +28,7 @@ use std::time::Duration;
 
 /// Flash firmware into the CM-5.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct FlashArgs {
     /// Raw binary; for --isp also HEX or ELF
     image: PathBuf,
     #[command(flatten)]
@@ -67,7 +64,7 @@ pub struct Loader {
 }
 
 /// Checks the image, then writes it.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(programmer) = &args.isp {
         return isp(args, programmer, talk);
     }
@@ -115,7 +112,7 @@ pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) ->
     Ok(said)
 }
 
-fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<Outcome> {
+fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<ExitStatus> {
     if talk.json {
         talk.data(&json!({
             "bytes": image.bytes().len(),
@@ -125,7 +122,7 @@ fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Resul
             "starts_at_power_on": starts,
         }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// avrdude's letter for a kind of file.
@@ -141,7 +138,7 @@ fn format_of(path: &Path) -> Result<&'static str> {
     }
 }
 
-fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
+fn isp(args: &FlashArgs, programmer: &str, talk: &Talk) -> Result<ExitStatus> {
     let kind = format_of(&args.image)?;
     if let Err(error) = std::fs::metadata(&args.image) {
         return Err(Error::file(&args.image, "read", error));
@@ -177,7 +174,7 @@ fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({ "command": line, "run": !args.dry_run }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// Asks on the terminal, unless it was answered beforehand.

@@ -20,9 +20,8 @@
 //! `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
-use super::talk::Talk;
 use super::weight_arg::{WeightArg, weight};
-use super::{Outcome, input, page};
+use super::{ExitStatus, Talk, input, page};
 use handstand::model::Model;
 use handstand::output::write_new;
 use handstand::study::{left_out, verify};
@@ -35,7 +34,7 @@ mod verification;
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Args {
+pub struct GainsArgs {
     /// Model file
     model: PathBuf,
     /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
@@ -134,7 +133,7 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 }
 
 /// Designs, prints, writes the files.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let (part, request, made) = requested(args, talk)?;
     let design = Design::of(&part, &request)?;
     let whole = Model::load(&args.model)?;
@@ -150,12 +149,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     }
     write(args, &design, &made, &data, talk)?;
     Ok(match verified.stabilised {
-        true => Outcome::Done,
-        false => Outcome::Refused,
+        true => ExitStatus::Done,
+        false => ExitStatus::Refused,
     })
 }
 
-impl Args {
+impl GainsArgs {
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
@@ -195,7 +194,7 @@ impl Args {
 }
 
 /// The model without the effects left out, what is asked of its design, and where it came from.
-pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Provenance)> {
+pub(super) fn requested(args: &GainsArgs, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
         input::vacant(file, args.force)?;
@@ -231,7 +230,7 @@ fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String
 }
 
 /// The request, and where the pose was moved to if it was.
-fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
+fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)> {
     let mut pose_rad = match &args.pose {
         Pose::Upright => upright(model),
         Pose::Angles(angles) => angles.clone(),
@@ -308,7 +307,7 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
 
 /// Writes the files that the options ask for; `data` is what the JSON file holds.
 pub(super) fn write(
-    args: &Args,
+    args: &GainsArgs,
     design: &Design,
     made: &Provenance,
     data: &serde_json::Value,

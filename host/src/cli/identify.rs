@@ -14,8 +14,7 @@
 //! `docs/json.md`. Exit code 1: no model could be fitted.
 
 use super::servo_columns::{self, ChosenColumns, ServoColumns};
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
     Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
@@ -36,7 +35,7 @@ const DEFAULT: [&str; 4] = [
 
 /// Identify a servo as a black box.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct IdentifyArgs {
     /// Logs to learn from
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
@@ -70,7 +69,7 @@ struct Data {
 }
 
 /// Fits, selects, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &IdentifyArgs, talk: &Talk) -> Result<ExitStatus> {
     let data = data(args)?;
     let mut grid: Vec<Structure> = args.orders.iter().flat_map(|g| g.0.clone()).collect();
     if grid.is_empty() {
@@ -85,10 +84,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     talk.result(&found_json(&data, &trials, chosen), || {
         text::text(&data, &trials, chosen)
     })?;
-    Ok(Outcome::answer(chosen.is_some()))
+    Ok(ExitStatus::answer(chosen.is_some()))
 }
 
-fn data(args: &Args) -> Result<Data> {
+fn data(args: &IdentifyArgs) -> Result<Data> {
     if !(args.split > 0.0 && args.split < 1.0) {
         return Err(Error::usage(
             format!("a share of {} to learn from", args.split),

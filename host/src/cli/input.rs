@@ -50,7 +50,7 @@ pub fn closed_loop(
 
 /// How models are judged.
 #[derive(Debug, clap::Args)]
-pub struct Judging {
+pub struct HoldoutArgs {
     /// Logs to judge by, which are not fitted
     #[arg(long, num_args = 1.., value_name = "LOG", value_parser = log)]
     pub holdout: Vec<LogRequest>,
@@ -61,10 +61,10 @@ pub struct Judging {
 
 /// How a fit is judged, and where the new model goes.
 #[derive(Debug, clap::Args)]
-pub struct FitArgs {
+pub struct RefitArgs {
     /// How it is judged
     #[command(flatten)]
-    pub judging: Judging,
+    pub judging: HoldoutArgs,
     /// New model file
     #[arg(long, short, value_name = "NEW.toml")]
     pub output: PathBuf,
@@ -73,7 +73,7 @@ pub struct FitArgs {
     pub force: bool,
 }
 
-impl FitArgs {
+impl RefitArgs {
     /// Reads the motions to fit and those to judge by; the new model's name is checked before that
     /// work.
     ///

@@ -13,15 +13,14 @@
 //! `fits`, `missing`; each measured time with `min`, `median`, `p99`, `max`.
 
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, interrupt::Interrupt};
+use super::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::link::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
 /// Measure round trips.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct LatencyArgs {
     #[command(flatten)]
     robot: Robot,
     /// Rounds to measure
@@ -33,7 +32,7 @@ pub struct Args {
 }
 
 /// Measures, judges.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
     if !(0.1..=10_000.0).contains(&args.period_ms) {
         return Err(Error::usage(
             format!("--period-ms {} is no sampling time", args.period_ms),
@@ -61,10 +60,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     drop(bar);
     let answer = budget?;
     talk.result(&answer, || text(&answer, args))?;
-    Ok(Outcome::answer(answer.fits))
+    Ok(ExitStatus::answer(answer.fits))
 }
 
-fn text(answer: &LatencyBudget, args: &Args) -> String {
+fn text(answer: &LatencyBudget, args: &LatencyArgs) -> String {
     let times = |times: &Quantiles| {
         format!(
             "{:.0} us median, {:.0} to {:.0}, 99 % below {:.0}",
@@ -99,7 +98,7 @@ fn text(answer: &LatencyBudget, args: &Args) -> String {
     )
 }
 
-fn remedy(answer: &LatencyBudget, args: &Args) -> &'static str {
+fn remedy(answer: &LatencyBudget, args: &LatencyArgs) -> &'static str {
     let largest = answer.line_us.max(answer.bus_us).max(answer.rest_us);
     if args.robot.stream {
         "fewer servos, or return delay 0: handstand bus setup"

@@ -15,8 +15,7 @@
 
 use super::servo_columns::{self, ServoColumns};
 use super::show::{self, known};
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::{ExitStatus, Talk, input};
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
@@ -25,16 +24,16 @@ use serde_json::json;
 
 /// What can be mapped.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum MapCommand {
     /// Estimate dead zone, slope and limit from command to speed or torque, and the inverse map
-    DeadZone(Args),
+    DeadZone(MapArgs),
     /// Estimate the relative speed error over the supply voltage
-    Supply(Args),
+    Supply(MapArgs),
 }
 
 /// What to map.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MapArgs {
     /// Logs
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
@@ -46,15 +45,15 @@ pub struct Args {
 }
 
 /// Fits and prints.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &MapCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::DeadZone(args) => dead_zone(args, talk),
-        Command::Supply(args) => supply(args, talk),
+        MapCommand::DeadZone(args) => dead_zone(args, talk),
+        MapCommand::Supply(args) => supply(args, talk),
     }
 }
 
 /// Means of the logs, and the units of input and output.
-fn measured(args: &Args) -> Result<(Vec<BlockMean>, &'static str, &'static str)> {
+fn measured(args: &MapArgs) -> Result<(Vec<BlockMean>, &'static str, &'static str)> {
     if !(args.block > 0.0 && args.block.is_finite()) {
         return Err(Error::usage(
             format!("blocks of {} s", args.block),
@@ -67,7 +66,7 @@ fn measured(args: &Args) -> Result<(Vec<BlockMean>, &'static str, &'static str)>
     Ok((blocks, chosen.input_unit, chosen.output_unit))
 }
 
-fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
+fn dead_zone(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
@@ -81,7 +80,7 @@ fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
         "inverse": map.inverse(),
     });
     talk.result(&data, || dead_zone_text(&map, input_unit, output_unit))?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> String {
@@ -111,7 +110,7 @@ fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> Str
     )
 }
 
-fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
+fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     if input_unit != output_unit {
         return Err(Error::usage(
@@ -125,7 +124,7 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
         Err(why) => return refused(&why.to_string(), talk),
     };
     talk.result(&line, || supply_text(&line))?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 fn supply_text(line: &SupplyLine) -> String {
@@ -154,7 +153,7 @@ fn supply_text(line: &SupplyLine) -> String {
     )
 }
 
-fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
+fn refused(why: &str, talk: &Talk) -> Result<ExitStatus> {
     talk.result(&json!({ "refused": why }), || format!("refused: {why}"))?;
-    Ok(Outcome::Refused)
+    Ok(ExitStatus::Refused)
 }

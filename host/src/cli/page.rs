@@ -1,12 +1,11 @@
 //! Pages: what they were made from, and writing them.
 
-use super::input;
-use super::talk::Talk;
+use super::{Talk, input};
 use handstand::compare::Comparison;
 use handstand::diagnose::Diagnosis;
 use handstand::log::{Motion, Split};
 use handstand::output::number::hex;
-use handstand::report::{LogFile, ModelFile, Provenance, Report};
+use handstand::report::{LogFile, ModelFile, Report, ReportProvenance};
 use handstand::{Error, Result};
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
@@ -77,7 +76,7 @@ pub fn report(page: Page, talk: &Talk) -> Result<Report> {
         title: page.title,
         comparisons: page.comparisons,
         diagnosis: page.diagnosis,
-        provenance: Provenance {
+        provenance: ReportProvenance {
             program_version: env!("CARGO_PKG_VERSION").to_string(),
             model_files: model_files?,
             logs,

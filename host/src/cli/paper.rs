@@ -14,8 +14,7 @@
 //! with `--findings` or `--report` also `figures` and `findings` (`docs/json.md`).
 
 use super::page::PageFile;
-use super::talk::Talk;
-use super::{Outcome, show};
+use super::{ExitStatus, Talk, show};
 use handstand::Result;
 use handstand::output::table::TableColumn;
 use handstand::paper::{
@@ -25,7 +24,7 @@ use serde_json::{Value, json};
 
 /// Recompute the paper's numbers, figures and findings, and compare.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct PaperArgs {
     /// Also judge the figures and all that the paper found
     #[arg(long)]
     findings: bool,
@@ -34,7 +33,7 @@ pub struct Args {
 }
 
 /// Computes, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &PaperArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
     let whole = match args.findings || args.page.is_wanted() {
         true => Some(worked(talk)?),
@@ -57,7 +56,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         args.page.write(page, talk)?;
     }
     let differs = rows.iter().any(|row| row.verdict == Agreement::Differs);
-    Ok(Outcome::answer(!differs))
+    Ok(ExitStatus::answer(!differs))
 }
 
 fn worked(talk: &Talk) -> Result<Reproduction> {

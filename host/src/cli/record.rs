@@ -15,8 +15,7 @@
 
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, input, show::or_dash};
+use super::{ExitStatus, Talk, input, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -24,7 +23,7 @@ use std::path::PathBuf;
 
 /// Record servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct RecordArgs {
     /// File to write, .csv or .mcap
     file: PathBuf,
     #[command(flatten)]
@@ -41,7 +40,7 @@ pub struct Args {
 }
 
 /// Samples until told to stop.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     FileFormat::of(&args.file)?;
     input::vacant(&args.file, args.force)?;
     if let Some(from) = &args.from {
@@ -81,7 +80,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     report(args, &tally, None, talk)
 }
 
-fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> {
+fn convert(args: &RecordArgs, from: &std::path::Path, talk: &Talk) -> Result<ExitStatus> {
     let recording = read(from)?;
     let mut recorder = RobotRecorder::create(&args.file, &recording.ids, args.force)?;
     let mut tally = RecordingTally::default();
@@ -99,7 +98,12 @@ fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> 
     report(args, &tally, Some(recording.torn), talk)
 }
 
-fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) -> Result<Outcome> {
+fn report(
+    args: &RecordArgs,
+    tally: &RecordingTally,
+    torn: Option<bool>,
+    talk: &Talk,
+) -> Result<ExitStatus> {
     if talk.json {
         talk.data(&json!({
             "file": args.file.display().to_string(),
@@ -118,5 +122,5 @@ fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) 
         or_dash(tally.rate_hz().map(|rate| format!("{rate:.1}"))),
         tally.missing
     ));
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

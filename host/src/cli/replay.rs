@@ -16,8 +16,7 @@
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, input, show::or_dash};
+use super::{ExitStatus, Talk, input, show::or_dash};
 use handstand::Result;
 use handstand::link::record::{
     FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
@@ -27,7 +26,7 @@ use std::path::PathBuf;
 
 /// Let the servos repeat a recording.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ReplayArgs {
     /// Recording to follow
     motion: PathBuf,
     #[command(flatten)]
@@ -44,7 +43,7 @@ pub struct Args {
 }
 
 /// Follows the motion.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let recording = read(&args.motion)?;
     let motion = GoalMotion::of(&recording, &args.motion)?;
     let mut robot = args.robot.clone();
@@ -79,7 +78,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     report(&followed, talk)
 }
 
-fn report(followed: &FollowedMotion, talk: &Talk) -> Result<Outcome> {
+fn report(followed: &FollowedMotion, talk: &Talk) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
         MotionStop::Interrupted => "Ctrl-C",
@@ -98,10 +97,10 @@ fn report(followed: &FollowedMotion, talk: &Talk) -> Result<Outcome> {
         format!("to the goals: {tracking} rms\nto the recording: {repeat} rms")
     })?;
     match stopped {
-        None => Ok(Outcome::Done),
+        None => Ok(ExitStatus::Done),
         Some(why) => {
             talk.say(&format!("stopped, torque is off: {why}"));
-            Ok(Outcome::Stopped)
+            Ok(ExitStatus::Stopped)
         }
     }
 }

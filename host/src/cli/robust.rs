@@ -14,8 +14,7 @@
 //! `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable)
 //! and `k`, by rows.
 
-use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{ExitStatus, Talk, input, show};
 use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
@@ -31,7 +30,7 @@ const UNSTABLE: f64 = 0.02;
 
 /// Verify the robustness of gains to errors of the masses.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct RobustArgs {
     /// Model file
     model: PathBuf,
     /// Largest error of each mass, %
@@ -69,7 +68,7 @@ struct GainRobustness {
 }
 
 /// Designs, draws, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
     for (name, percent) in [("--masses", args.masses), ("--design", args.design)] {
         if percent >= 100.0 {
             return Err(Error::usage(
@@ -81,12 +80,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let gains = judged(args, &Model::load(&args.model)?, talk)?;
     talk.result(&gains, || text(args, &gains))?;
     let last = gains.last();
-    Ok(Outcome::answer(
+    Ok(ExitStatus::answer(
         last.is_some_and(|gain| gain.unstable <= UNSTABLE),
     ))
 }
 
-fn judged(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
+fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
     let case = Case::ideal(model.clone(), DEFAULT, args.ts);
     let errors = MassErrors {
         case: &case,
@@ -135,7 +134,7 @@ fn judged(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>
     gains.into_iter().map(judge).collect()
 }
 
-fn text(args: &Args, gains: &[GainRobustness]) -> String {
+fn text(args: &RobustArgs, gains: &[GainRobustness]) -> String {
     let columns: &[TableColumn<GainRobustness>] = &[
         ("Gain", &|gain| gain.gain.clone()),
         ("unstable %", &|gain| {

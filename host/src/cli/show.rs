@@ -1,6 +1,6 @@
 //! Tables and figures as every command shows them.
 
-use super::talk::Talk;
+use super::Talk;
 use comfy_table::{ContentArrangement, Table};
 use handstand::fitting::{FittedValue, Horizon, Refitted, Undetermined};
 use handstand::output::number::exact;

@@ -115,17 +115,10 @@ impl Talk {
     /// An error with its remedy. Lines are not broken, so that `file:line:column` can be clicked
     /// and searched.
     pub fn error(&self, error: Error) {
-        let handler = miette::MietteHandlerOpts::new().wrap_lines(false).build();
-        let shown = Shown(&handler, &error);
-        let _ = write!(std::io::stderr(), "{shown}");
-    }
-}
-
-struct Shown<'a>(&'a miette::MietteHandler, &'a Error);
-
-impl std::fmt::Display for Shown<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        use miette::ReportHandler as _;
-        self.0.debug(self.1, f)
+        // Set once, and only here.
+        let _ = miette::set_hook(Box::new(|_| {
+            Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
+        }));
+        let _ = write!(std::io::stderr(), "{:?}", miette::Report::new(error));
     }
 }

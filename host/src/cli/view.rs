@@ -12,8 +12,7 @@
 //! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
 //! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
-use super::talk::Talk;
-use super::{Outcome, input, page};
+use super::{ExitStatus, Talk, input, page};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
@@ -22,7 +21,7 @@ use std::path::PathBuf;
 
 /// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ViewArgs {
     /// Model file: lengths to draw, columns of the log
     model: PathBuf,
     /// Logs to play
@@ -45,7 +44,7 @@ pub struct Args {
 }
 
 /// Reads, runs the models, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
     input::vacant(&args.output, args.force)?;
     let model = Model::load(&args.model)?;
     let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
@@ -77,5 +76,5 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "motions": scene.motions.iter().map(|m| &m.name).collect::<Vec<_>>(),
         }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

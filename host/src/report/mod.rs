@@ -47,12 +47,12 @@ pub struct Report {
     /// What is missing in the first of them, where that was asked.
     pub diagnosis: Option<Diagnosis>,
     /// What the report was made from.
-    pub provenance: Provenance,
+    pub provenance: ReportProvenance,
 }
 
 /// What a report was made from and by.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Provenance {
+pub struct ReportProvenance {
     /// Version of this program.
     pub program_version: String,
     /// Models, in the order of the chain.

@@ -4,6 +4,7 @@
 //! length of its rows in bytes and their SHA-256, then the rows. Each is appended and synced whole;
 //! what does not match its sum at the end was torn by a crash and is cut off.
 
+use super::error::StudyError;
 use super::monte_carlo::{CHUNK, columns};
 use super::parse::Study;
 use crate::error::{Error, Place, Result};
@@ -89,10 +90,8 @@ impl Journal {
         options.read(true).write(true).create(true).truncate(false);
         let file = options.open(path).map_err(refused)?;
         if !file.try_lock_exclusive().map_err(refused)? {
-            return Err(Error::usage(
-                format!("{}: another program is writing it", path.display()),
-                "wait for it, or give this one another folder",
-            ));
+            let locked = StudyError::Locked(path.to_path_buf());
+            return Err(Error::Usage(Box::new(locked)));
         }
         let mut journal = Journal {
             path: path.to_path_buf(),
@@ -111,11 +110,7 @@ impl Journal {
         }
         let found = content(&bytes, path)?;
         if found.header != *header {
-            return Err(Error::data(
-                Place::file(path),
-                "this is the journal of another study, or of another version of the program",
-                "give this study another folder, or delete the journal",
-            ));
+            return Err(Error::refused(Place::file(path), StudyError::OtherStudy));
         }
         journal.torn_bytes = found.length - found.whole;
         journal.done = found.rows.into_keys().collect();
@@ -167,13 +162,7 @@ fn content(bytes: &[u8], path: &Path) -> Result<Content> {
         .filter(|header: &Header| header.handstand_study == FORMAT && header.chunk > 0)
         .filter(|header| header.chunks() <= MOST_CHUNKS)
         .filter(|_| line.len() < bytes.len())
-        .ok_or_else(|| {
-            Error::data(
-                Place::at(path, 1, 1),
-                "this is no journal of a study",
-                "name a .journal file that `handstand study monte-carlo` wrote, or its folder",
-            )
-        })?;
+        .ok_or_else(|| Error::refused(Place::at(path, 1, 1), StudyError::NoJournal))?;
     let mut place = line.len() + 1;
     let mut rows = BTreeMap::new();
     while let Some((chunk, text, end)) = chunk_at(bytes, place) {

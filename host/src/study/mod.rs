@@ -9,6 +9,7 @@
 
 mod case;
 mod conditions;
+mod error;
 mod journal;
 mod judge;
 mod latency;
@@ -31,6 +32,7 @@ mod tests;
 
 pub use case::{Case, Control, Designed};
 pub use conditions::{CONDITIONS, LoopCondition, NonIdeality, condition};
+pub use error::StudyError;
 pub use journal::{Header, Journal};
 pub use judge::{Figures, Judging, STABILISED_SHARE, judge, outcomes};
 pub use latency::{SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath};
@@ -41,7 +43,9 @@ pub use monte_carlo::{CHUNK, chunk_rows, fill};
 pub use parse::{Study, handstand};
 pub use plot::{monte_carlo_svg, sweep_svg};
 pub use quantities::QUANTITIES;
-pub use quantity::{Distribution, Levels, Place, Quantity, Spread, Uncertain, quantity, sweeps};
+pub use quantity::{
+    Distribution, Levels, Quantity, Spread, SpreadOver, Uncertain, quantity, sweeps,
+};
 pub(crate) use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;

@@ -4,6 +4,7 @@
 //! shard.
 
 use super::case::Designed;
+use super::error::StudyError;
 use super::journal::Journal;
 use super::judge::{Drawn, run_drawn};
 use super::parse::Study;
@@ -67,7 +68,7 @@ pub fn fill(
                 let rows = chunk_rows(study, designed, chunk)?;
                 // Nobody listens any more after a write has failed.
                 send.send((chunk, rows))
-                    .map_err(|_| Error::usage("writing has stopped", "see the error before"))
+                    .map_err(|_| Error::Usage(Box::new(StudyError::WritingStopped)))
             })
         });
         // Taken by value: once this loop ends early, the computing stops.

@@ -7,7 +7,7 @@
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{Outcome, input, talk::Talk};
+use crate::cli::{ExitStatus, Talk, input};
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
 use handstand_shared::control_table::MODEL;
@@ -45,7 +45,7 @@ pub struct RestoreArgs {
 }
 
 /// Reads all, writes the file.
-pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
+pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<ExitStatus> {
     input::vacant(&args.file, args.force)?;
     let mut servos = args.port.servos()?;
     let ids = answering(&mut servos, &args.ids.0, talk)?;
@@ -57,11 +57,11 @@ pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
         talk.data(&json!({ "file": file, "ids": ids }))?;
     }
     talk.say(&format!("wrote {file}: {} servos", ids.len()));
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// Compares, writes what differs, reads back.
-pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
+pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut saved = Settings::load(&args.file)?;
     if let Some(Ids(ids)) = &args.ids {
         let absent = |id: &&u8| saved.iter().all(|servo| servo.id != **id);

@@ -1,6 +1,6 @@
 //! Registers that get another content, and showing them.
 
-use crate::cli::{Outcome, show::table_of, talk::Talk};
+use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
 use handstand_shared::control_table::Register;
 use serde::{Serialize, Serializer};
@@ -35,10 +35,10 @@ pub fn report(
     after: &str,
     done: &str,
     talk: &Talk,
-) -> Result<Outcome> {
+) -> Result<ExitStatus> {
     if talk.json {
         talk.data(data)?;
-        return Ok(Outcome::Done);
+        return Ok(ExitStatus::Done);
     }
     let table = table_of(
         changes,
@@ -53,5 +53,5 @@ pub fn report(
         talk.print(&table.to_string())?;
     }
     talk.say(done);
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

@@ -6,13 +6,13 @@
 //! 1: causes were found.
 
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{Outcome, talk::Talk};
+use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::link::doctor::{BusDiagnosis, examine};
 
 /// Find what is wrong.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DoctorArgs {
     #[command(flatten)]
     port: Port,
     /// Servos that should be there
@@ -21,7 +21,7 @@ pub struct Args {
 }
 
 /// Examines, shows.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
     let link = args.port.open()?;
     let bar = talk.bar(0);
     let diagnosis = examine(link, &args.ids.0, |step| {
@@ -30,7 +30,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     })?;
     drop(bar);
     talk.result(&diagnosis, || text(&diagnosis))?;
-    Ok(Outcome::answer(diagnosis.causes.is_empty()))
+    Ok(ExitStatus::answer(diagnosis.causes.is_empty()))
 }
 
 fn text(diagnosis: &BusDiagnosis) -> String {

@@ -3,7 +3,7 @@
 use super::scan::degrees;
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::show::{or_dash, table_of};
-use crate::cli::{Outcome, interrupt::Interrupt, talk::Talk};
+use crate::cli::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::Result;
 use handstand::link::Reading;
 use handstand::link::record::ServoSample;
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// Watch servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MonitorArgs {
     #[command(flatten)]
     port: Port,
     /// Servos to watch
@@ -46,7 +46,7 @@ struct Round {
 }
 
 /// Reads and shows round by round. With `--json` all rounds at the end.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
     let every = Duration::try_from_secs_f64(args.every).unwrap_or(Duration::from_secs(1));
     let interrupt = Interrupt::listen();
     let mut servos = args.port.servos()?;
@@ -88,7 +88,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&rounds)?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 impl ServoReading {

@@ -1,6 +1,6 @@
 //! `bus read`, `bus write`: single registers.
 
-use crate::cli::{Outcome, port::Port, show::table_of, talk::Talk};
+use crate::cli::{ExitStatus, Talk, port::Port, show::table_of};
 use handstand::model::suggest::suggest;
 use handstand::output::table::TableColumn;
 use handstand::{Error, Result};
@@ -59,7 +59,7 @@ pub fn register(text: &str) -> Result<Register, String> {
 }
 
 /// Reads, shows.
-pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
+pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let wanted = if args.registers.is_empty() {
         REGISTERS
@@ -91,11 +91,11 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
         ];
         table_of(&contents, columns).to_string()
     })?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// Writes, reads back, shows.
-pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
+pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
     let WriteArgs {
         id, register, code, ..
     } = args;
@@ -117,7 +117,7 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
     let name = register.name;
     let data = json!({ "id": id, "register": name, "before": before, "code": code });
     talk.result(&data, || format!("servo {id}: {name} {before} -> {code}"))?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// A code in words.

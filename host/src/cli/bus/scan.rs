@@ -1,7 +1,7 @@
 //! `bus scan`: pings every id and reads what answers.
 
 use crate::cli::port::{AnyLink, Ids, Port, id_list};
-use crate::cli::{Outcome, show::table_of, talk::Talk};
+use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
 use handstand::link::record::no_response;
 use handstand::link::{ServoError, ServoResult, Servos};
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// Scan the bus for servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ScanArgs {
     #[command(flatten)]
     port: Port,
     /// Ids to ask
@@ -36,7 +36,7 @@ pub struct Found {
 }
 
 /// Asks, shows.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let found = scan(&mut servos, &args.ids.0, talk)?;
     talk.result(&found, || table(&found))?;
@@ -44,7 +44,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     talk.say(&format!("{} of {asked} ids answer", found.len()));
     match found.is_empty() {
         true => Err(no_response()),
-        false => Ok(Outcome::Done),
+        false => Ok(ExitStatus::Done),
     }
 }
 

@@ -7,14 +7,14 @@
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{Outcome, talk::Talk};
+use crate::cli::{ExitStatus, Talk};
 use handstand::{Error, Result};
 use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
 use serde_json::json;
 
 /// Prepare servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct SetupArgs {
     #[command(flatten)]
     port: Port,
     /// Servos to prepare
@@ -32,7 +32,7 @@ pub struct Args {
 }
 
 /// Scans, sets what differs, reads back.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let mut ids = answering(&mut servos, &args.ids.0, talk)?;
     let mut changes = Vec::new();

@@ -1,13 +1,13 @@
 //! The controllers and the conditions there are.
 
-use crate::cli::{Outcome, show, talk::Talk};
+use crate::cli::{ExitStatus, Talk, show};
 use handstand::Result;
 use handstand::controllers::{DESIGNS, Speeds};
 use handstand::study::CONDITIONS;
 use serde_json::json;
 
 /// Lists them.
-pub fn run(talk: &Talk) -> Result<Outcome> {
+pub fn run(talk: &Talk) -> Result<ExitStatus> {
     let infos = DESIGNS.iter().map(|design| {
         let info = design.info();
         json!({
@@ -23,7 +23,7 @@ pub fn run(talk: &Talk) -> Result<Outcome> {
     if !talk.json {
         talk.say("`handstand controllers MODEL` tries them");
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 fn text() -> String {

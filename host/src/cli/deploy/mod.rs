@@ -31,8 +31,7 @@ mod build;
 
 use super::flash::{Loader, write};
 use super::port::Port;
-use super::talk::Talk;
-use super::{Outcome, gains};
+use super::{ExitStatus, Talk, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
 use handstand::deploy::{self, BoardLaw, plan_file};
@@ -47,9 +46,9 @@ use std::path::{Path, PathBuf};
 /// Bring gains onto the CM-5.
 #[derive(Debug, clap::Args)]
 #[group(id = "deploy")]
-pub struct Args {
+pub struct DeployArgs {
     #[command(flatten)]
-    gains: gains::Args,
+    gains: gains::GainsArgs,
     #[command(flatten)]
     board: BoardArgs,
     #[command(flatten)]
@@ -96,17 +95,17 @@ pub struct GainsCommand {
     #[command(subcommand)]
     then: Option<Then>,
     #[command(flatten)]
-    gains: Option<gains::Args>,
+    gains: Option<gains::GainsArgs>,
 }
 
 #[derive(Debug, clap::Subcommand)]
 enum Then {
     /// Deploy the gains to the CM-5, and read them back
-    Deploy(Box<Args>),
+    Deploy(Box<DeployArgs>),
 }
 
 /// Designs; deploys if told to.
-pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<Outcome> {
+pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<ExitStatus> {
     match (&args.then, &args.gains) {
         (Some(Then::Deploy(args)), _) => run(args, talk),
         (None, Some(args)) => gains::run(args, talk),
@@ -131,7 +130,7 @@ impl DeploySteps<'_> {
 }
 
 /// The plan; the files of a design are written.
-fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
+fn planned(args: &DeployArgs, talk: &Talk) -> Result<Plan> {
     let model = Model::load(args.gains.model())?;
     let board = args.board.board()?;
     if args.law == LawKind::Observer {
@@ -153,7 +152,7 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
 }
 
 /// Designs, brings over, reads back, replays.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut steps = DeploySteps {
         done: Vec::new(),
         talk,
@@ -211,10 +210,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         None => talk.say("nothing was sent"),
         Some(_) => talk.say("the CM-5 has these gains; torque is off"),
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
-fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut DeploySteps) -> Result<Vec<u8>> {
+fn upload(
+    args: &DeployArgs,
+    bytes: &[u8],
+    fingerprint: u32,
+    steps: &mut DeploySteps,
+) -> Result<Vec<u8>> {
     if args.dry_run {
         return Ok(bytes.to_vec());
     }
@@ -226,7 +230,7 @@ fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut DeploySteps) 
     verified(&mut session, bytes, fingerprint, steps)
 }
 
-fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Result<Vec<u8>> {
+fn flash(args: &DeployArgs, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()
         .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
     let file = folder.path().join("plan.rs");

@@ -7,7 +7,7 @@
 //! `--json` prints `complete`, and `summary` or `missing` (`first_run`, `last_run`) with `torn`
 //! (`file`, `bytes`).
 
-use crate::cli::{Outcome, talk::Talk};
+use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::study::{Missing, merge};
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// Merge a study's shards.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MergeArgs {
     /// Journals, or folders that hold them
     #[arg(required = true, value_name = "JOURNAL|FOLDER")]
     journals: Vec<PathBuf>,
@@ -28,18 +28,18 @@ pub struct Args {
 }
 
 /// Merges, or says what is missing.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &MergeArgs, talk: &Talk) -> Result<ExitStatus> {
     merged(&args.journals, &args.output, args.force, talk)
 }
 
 /// Merges journals into a folder and prints the summary, or says what is missing.
-pub fn merged(journals: &[PathBuf], into: &Path, force: bool, talk: &Talk) -> Result<Outcome> {
+pub fn merged(journals: &[PathBuf], into: &Path, force: bool, talk: &Talk) -> Result<ExitStatus> {
     let merged = merge(journals)?;
     match &merged {
         Ok(merged) => super::write::finished(merged, into, force, talk)?,
         Err(missing) => talk.result(&data(missing), || text(missing))?,
     }
-    Ok(Outcome::answer(merged.is_ok()))
+    Ok(ExitStatus::answer(merged.is_ok()))
 }
 
 fn data(missing: &Missing) -> Value {

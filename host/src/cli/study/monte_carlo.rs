@@ -8,7 +8,7 @@
 //!
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
-use crate::cli::{Outcome, talk::Talk};
+use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::study::{CHUNK, Header, Journal, Shard, Study, fill};
 use serde_json::json;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 /// Simulate robots drawn from the uncertain quantities.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MonteCarloArgs {
     /// Study file
     study: PathBuf,
     /// Folder for the journal, and for table, summary and plot
@@ -37,7 +37,7 @@ pub struct Args {
 }
 
 /// Runs what is not done yet.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut study = Study::load(&args.study)?;
     if let Some(runs) = args.runs {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
@@ -81,5 +81,5 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     talk.result(&data, || {
         format!("{journal}: {chunks} chunks, all of shard {shard}")
     })?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

@@ -9,7 +9,7 @@
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
 use crate::cli::show::{or_dash, table, table_of};
-use crate::cli::{Outcome, input, talk::Talk};
+use crate::cli::{ExitStatus, Talk, input};
 use handstand::controllers::{DESIGNS, design};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
@@ -22,7 +22,7 @@ use std::path::PathBuf;
 
 /// Sweep one parameter of the closed loop.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct SweepArgs {
     /// Sweeps, or `all`
     #[arg(value_name = "NAME", value_parser = known)]
     names: Vec<String>,
@@ -73,7 +73,7 @@ fn controller(id: &str) -> Result<&'static str, String> {
 }
 
 /// Sweeps, prints, writes.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if args.names.is_empty() {
         return list(talk);
     }
@@ -133,10 +133,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&all)?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
-fn list(talk: &Talk) -> Result<Outcome> {
+fn list(talk: &Talk) -> Result<ExitStatus> {
     let data = sweeps().map(|(quantity, levels)| {
         json!({
             "id": quantity.id,
@@ -151,7 +151,7 @@ fn list(talk: &Talk) -> Result<Outcome> {
         table.add_rows(rows);
         table.to_string()
     })?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// The levels as a table, and why some have no controller.

@@ -1,6 +1,6 @@
 //! A finished Monte Carlo study, printed and written.
 
-use crate::cli::{show::table_of, talk::Talk};
+use crate::cli::{Talk, show::table_of};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::study::{FigureQuantiles, Influence, Merged, Summary, monte_carlo_svg};

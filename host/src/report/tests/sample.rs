@@ -8,7 +8,7 @@ use crate::diagnose::{
     Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
-use crate::report::{LogFile, ModelFile, Provenance, Report};
+use crate::report::{LogFile, ModelFile, Report, ReportProvenance};
 
 pub(in crate::report) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
@@ -29,7 +29,7 @@ pub(in crate::report) fn report() -> Report {
             comparison("named.toml", 6.31),
         ],
         diagnosis: Some(diagnosis()),
-        provenance: Provenance {
+        provenance: ReportProvenance {
             program_version: "0.1.0".into(),
             model_files: vec![model("ideal.toml"), model("named.toml")],
             logs: vec![log("swing.csv", false), log("sines.csv", true)],
