@@ -18,12 +18,12 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use error::{ChallengeError, SealError};
+pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use bench_arm::{BenchArm, STALL_NM};
 use hidden_effect::HiddenEffect;
 use motion::{ArmRecording, record};
@@ -48,20 +48,15 @@ pub struct Challenge {
 /// Makes the challenge of this seed; equal arguments give equal bytes.
 pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
     let (rig, secret, recordings) = stage(seed, hidden);
-    let logs = ["a", "b", "c"]
-        .iter()
-        .zip(&recordings)
-        .map(|(name, recording)| {
-            (
-                format!("{name}.csv"),
-                recording.csv(&format!("Bench arm, motion {name}.")),
-            )
-        })
-        .collect();
+    let logs = ["a", "b", "c"].iter().zip(&recordings);
+    let logs = logs.map(|(name, recording)| {
+        let log = recording.csv(&format!("Bench arm, motion {name}."));
+        (format!("{name}.csv"), log)
+    });
     let parameters = secret.iter().flat_map(|secret| &secret.parameters);
     Challenge {
         model_toml: text::model_toml(&rig, rig.believed, None),
-        logs,
+        logs: logs.collect(),
         answer: ChallengeAnswer {
             seed,
             kind: secret.as_ref().map(|secret| secret.kind.to_owned()),
@@ -126,15 +121,11 @@ fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [A
 
 /// Whether fewer than 3 % of the samples ask for more than the limit, N m.
 fn spared(recordings: &[ArmRecording], limit_nm: f64) -> bool {
-    let duties = || {
-        recordings
-            .iter()
-            .flat_map(|recording| &recording.commands.duty)
-    };
-    let beyond = duties()
-        .filter(|duty| STALL_NM * duty.abs() > limit_nm)
-        .count();
-    (beyond as f64) < 0.03 * duties().count() as f64
+    let recordings = recordings.iter();
+    let duties = recordings.flat_map(|recording| &recording.commands.duty);
+    let all = duties.clone().count();
+    let beyond = duties.filter(|duty| STALL_NM * duty.abs() > limit_nm);
+    (beyond.count() as f64) < 0.03 * all as f64
 }
 
 /// Independent random numbers for each purpose, so that one seed is one rig whatever it hides.
@@ -148,20 +139,21 @@ fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
 ///
 /// # Errors
 /// The folder is not empty, or the system refuses a file.
-pub fn write(challenge: &Challenge, dir: &Path) -> Result<(), ChallengeError> {
+pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
     match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
-        Ok(true) => return Err(ChallengeError::NotEmpty(dir.to_path_buf())),
+        Ok(true) => {
+            let taken = ChallengeError::NotEmpty(dir.to_path_buf());
+            return Err(Error::Usage(Box::new(taken)));
+        }
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(Error::file(dir, "read", error).into());
+            return Err(Error::file(dir, "read", error));
         }
         _ => {}
     }
     fs::create_dir_all(dir).map_err(|error| Error::file(dir, "create", error))?;
     let sealed = seal(&challenge.answer);
-    let logs = challenge
-        .logs
-        .iter()
-        .map(|(name, log)| (name.as_str(), log.as_str()));
+    let logs = challenge.logs.iter();
+    let logs = logs.map(|(name, log)| (name.as_str(), log.as_str()));
     let others = [
         ("nominal.toml", challenge.model_toml.as_str()),
         ("answer.sealed", &sealed),

@@ -1,7 +1,7 @@
 use super::physics::{DriveCommand, Mount, Physics};
 use super::truth::Arm;
 use super::*;
-use std::path::PathBuf;
+use crate::error::Place;
 
 const RELEASED: DriveCommand = DriveCommand {
     duty: 0.0,
@@ -128,11 +128,10 @@ fn a_sealed_answer_opens_and_a_changed_one_does_not() {
     let other = if &text[at..=at] == "0" { "1" } else { "0" };
     changed.replace_range(at..=at, other);
     let error = unseal(&changed).unwrap_err();
-    assert_eq!(error, SealError::Changed);
-    let file = PathBuf::from("answer.sealed");
-    let error = Error::from(ChallengeError::Sealed { file, what: error });
+    assert_eq!(error, ChallengeError::Changed);
+    let error = Error::refused(Place::file("answer.sealed"), error);
     assert_eq!(error.exit_code(), 3);
-    assert_eq!(unseal("{}").unwrap_err(), SealError::NotSealed);
+    assert_eq!(unseal("{}").unwrap_err(), ChallengeError::NotSealed);
 }
 
 #[test]

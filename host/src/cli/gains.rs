@@ -23,11 +23,11 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk, input, page};
 use handstand::model::Model;
-use handstand::output::write_new;
-use handstand::study::{left_out, verify};
+use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
 use handstand::{Error, Result};
+use handstand_shared::raw::Position;
 use std::path::{Path, PathBuf};
 
 mod verification;
@@ -138,20 +138,18 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let design = Design::of(&part, &request)?;
     let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
-    let verified = verify(&whole, &design, &request, &left_out)?;
+    let bar = talk.bar(verification_steps(&left_out) as u64);
+    bar.set_message("simulations of the loop");
+    let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
+    drop(bar);
     let mut data = export::json(&design, &made);
     data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
-    if talk.json {
-        talk.data(&data)?;
-    } else {
-        talk.print(&export::text(&design))?;
-        talk.print(&verification::text(&verified))?;
-    }
+    talk.result(&data, || {
+        let design = export::text(&design);
+        format!("{}\n{}", design.trim_end(), verification::text(&verified))
+    })?;
     write(args, &design, &made, &data, talk)?;
-    Ok(match verified.stabilised {
-        true => ExitStatus::Done,
-        false => ExitStatus::Refused,
-    })
+    Ok(ExitStatus::answer(verified.stabilised))
 }
 
 impl GainsArgs {
@@ -181,10 +179,8 @@ impl GainsArgs {
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
         ];
-        given
-            .into_iter()
-            .find(|(given, _)| *given)
-            .map(|(_, name)| name)
+        let mut names = given.into_iter().filter(|(given, _)| *given);
+        names.next().map(|(_, name)| name)
     }
 
     /// Whether files are replaced.
@@ -217,12 +213,13 @@ fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String
         model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
             let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            let held = match held.as_slice() {
+                [] => "none at all".to_string(),
+                held => held.join(", "),
+            };
             return Err(Error::usage(
                 format!("`{}` holds no effect `{id}`", model.name),
-                match held.is_empty() {
-                    true => "it holds none at all".to_string(),
-                    false => format!("it holds {}", held.join(", ")),
-                },
+                format!("it holds {held}"),
             ));
         }
     }
@@ -249,38 +246,29 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         },
     };
     let joints = model.link_count();
-    let inputs = model
-        .joints
-        .iter()
-        .filter(|joint| joint.drive.is_driven())
-        .count();
+    let driven = model.joints.iter().filter(|joint| joint.drive.is_driven());
+    let inputs = driven.count();
     let list = |given: &Option<WeightArg>, name, size| {
-        given
-            .as_ref()
-            .map(|given| given.list(name, size))
-            .transpose()
+        let list = given.as_ref().map(|given| given.list(name, size));
+        list.transpose()
     };
-    let process = args.process.as_ref().map(WeightArg::read).transpose()?;
-    let degree = std::f64::consts::PI / 180.0;
+    let read = |given: &Option<WeightArg>| given.as_ref().map(WeightArg::read).transpose();
+    let ranges = Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat());
+    let sensors = Sensors {
+        position_step_rad: args.position_step.unwrap_or(Position::LSB_RAD),
+        gyro_step_rad_s: args
+            .gyro_step
+            .unwrap_or(10.0 * std::f64::consts::PI / 180.0),
+        process: read(&args.process)?,
+    };
     let request = Request {
         pose_rad,
-        q: weighed(&args.q, 100.0)?,
-        r: weighed(&args.r, 1.0)?,
+        q: read(&args.q)?.unwrap_or(Weight::Scalar(100.0)),
+        r: read(&args.r)?.unwrap_or(Weight::Scalar(1.0)),
         time,
-        sensors: args.lqg.then_some(Sensors {
-            position_step_rad: args
-                .position_step
-                .unwrap_or(handstand_shared::raw::Position::LSB_RAD),
-            gyro_step_rad_s: args.gyro_step.unwrap_or(10.0 * degree),
-            process,
-        }),
-        state_range: match &args.range {
-            Some(range) => range.read()?,
-            // Half a radian, ten radians per second: more than a balancing robot ever comes back
-            // from.
-            None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
-        },
-        input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
+        sensors: args.lqg.then_some(sensors),
+        state_range: read(&args.range)?.unwrap_or(ranges),
+        input_range: read(&args.limit)?,
         format: Format {
             bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
@@ -288,12 +276,6 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         },
     };
     Ok((request, moved))
-}
-
-fn weighed(given: &Option<WeightArg>, default: f64) -> Result<Weight> {
-    given
-        .as_ref()
-        .map_or(Ok(Weight::Scalar(default)), WeightArg::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
@@ -313,11 +295,7 @@ pub(super) fn write(
     data: &serde_json::Value,
     talk: &Talk,
 ) -> Result<()> {
-    let put = |file: &Path, text: &str| -> Result<()> {
-        write_new(file, text, args.force)?;
-        talk.say(&format!("wrote {}", file.display()));
-        Ok(())
-    };
+    let put = |file: &Path, text: &str| talk.write(file, text, args.force);
     if let Some(fixed) = &design.fixed {
         if let Some(file) = &args.rust {
             put(file, &export::rust_file(design, fixed, made))?;

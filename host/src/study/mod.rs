@@ -51,4 +51,4 @@ pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
-pub use verify::{LeftOut, Verification, Without, left_out, verify};
+pub use verify::{LeftOut, Verification, Without, left_out, verification_steps, verify};
