@@ -21,11 +21,11 @@
 //! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`,
 //! `failures`, `traces`, `closed_loop`) and `provenance`.
 
-use super::page::{self, Page, PageFile};
+use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
-use handstand::report::{html, json};
+use handstand::report::{Report, html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
@@ -67,16 +67,12 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
         comparisons.push(comparison);
     }
     let text = compare::text(&comparisons);
-    let report = page::report(
-        Page {
-            title: format!("{} against measured motions", comparisons[0].model),
-            comparisons,
-            diagnosis: None,
-            models: &files,
-            split: &split,
-        },
-        talk,
-    )?;
+    let report = Report {
+        title: format!("{} against measured motions", comparisons[0].model),
+        comparisons,
+        diagnosis: None,
+        provenance: page::provenance(&files, &split, talk)?,
+    };
     talk.result(&json(&report), || text)?;
     args.page.write(|| Ok(html(&report)), talk)?;
     Ok(ExitStatus::Done)

@@ -103,7 +103,7 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
         ));
     }
     for file in args.csv.iter().chain(&args.plot) {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
     show::omitted(&model, talk)?;

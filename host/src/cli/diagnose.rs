@@ -17,14 +17,14 @@
 //! `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
 //! `docs/json.md`.
 
-use super::page::{self, Page, PageFile};
+use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input, log};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
 use handstand::fitting::{Horizon, effect_named};
 use handstand::log::{LogFinding, LogRequest, Motion, Severity, Split, read, split};
-use handstand::report::{diagnosis_json, diagnosis_text, html};
+use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};
 use serde_json::json;
@@ -79,7 +79,7 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
         print(&diagnosis, &[], talk)?;
         return Ok(diagnosis);
     }
-    let named = input::motions(&model, &args.logs, &args.judging.holdout)?;
+    let named = input::motions(&model.log, &args.logs, &args.judging.holdout)?;
     let split = split(named.training, named.held_out);
     let mut diagnosis = try_all(&model, &split, args, talk);
     let warned = findings
@@ -92,14 +92,12 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
     print(&diagnosis, &compared.named_loops(), talk)?;
     let page = || {
-        let page = Page {
+        Ok(html(&Report {
             title: format!("What {} is missing", model.name),
             comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
-            models: &[&args.model],
-            split: &split,
-        };
-        Ok(html(&page::report(page, talk)?))
+            provenance: page::provenance(&[&args.model], &split, talk)?,
+        }))
     };
     args.page.write(page, talk)?;
     Ok(diagnosis)

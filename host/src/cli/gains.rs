@@ -21,12 +21,12 @@
 //! script for MATLAB and Octave.
 
 use super::weight_arg::{WeightArg, weight};
-use super::{ExitStatus, Talk, input, page};
+use super::{ExitStatus, Talk, page};
 use handstand::model::Model;
 use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
-use handstand::{Error, Result};
+use handstand::{Error, Result, output};
 use handstand_shared::raw::Position;
 use std::path::{Path, PathBuf};
 
@@ -193,7 +193,7 @@ impl GainsArgs {
 pub(super) fn requested(args: &GainsArgs, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     let mut model = Model::load(&args.model)?;
     for id in leave_out(&mut model, &args.without)? {

@@ -13,7 +13,7 @@
 //! of each motion is held out. `docs/identify.md` explains the output; its keys as `--json` are in
 //! `docs/json.md`. Exit code 1: no model could be fitted.
 
-use super::servo_columns::{self, ChosenColumns, ServoColumns};
+use super::servo_columns::{ChosenColumns, ServoColumns};
 use super::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
@@ -95,14 +95,19 @@ fn data(args: &IdentifyArgs) -> Result<Data> {
         ));
     }
     let chosen = args.columns.chosen()?;
-    let (logs, held_out) = servo_columns::motions(&chosen, &args.logs, &args.validate)?;
-    let all: Vec<Motion> = logs.iter().chain(&held_out).cloned().collect();
+    let split = input::motions(&chosen.columns, &args.logs, &args.validate)?;
+    let all: Vec<Motion> = split
+        .training
+        .iter()
+        .chain(&split.held_out)
+        .cloned()
+        .collect();
     let ts_s = sampling_period_s(&all);
     let records = |motions: &[Motion]| -> Result<Vec<Record>> {
         let of = |motion| record(motion, chosen.joint, chosen.output, ts_s);
         motions.iter().map(of).collect()
     };
-    let (mut training, mut validation) = (records(&logs)?, records(&held_out)?);
+    let (mut training, mut validation) = (records(&split.training)?, records(&split.held_out)?);
     if validation.is_empty() {
         (training, validation) = training.iter().map(|r| r.split(args.split)).unzip();
     }

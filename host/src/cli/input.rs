@@ -1,8 +1,11 @@
 //! Arguments that several commands take.
 
+use super::page::file_name;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, Split, read};
+use handstand::model::LogColumns;
+use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
@@ -81,7 +84,7 @@ impl RefitArgs {
     /// As [`vacant`] and [`motions`].
     pub fn motions(&self, model: &Model, logs: &[LogRequest]) -> Result<Split> {
         vacant(&self.output, self.force)?;
-        motions(model, logs, &self.judging.holdout)
+        motions(&model.log, logs, &self.judging.holdout)
     }
 }
 
@@ -119,54 +122,34 @@ pub fn said(error: Error) -> String {
 /// from.
 ///
 /// # Errors
-/// Logs that cannot be read, or a motion in both.
-pub fn motions(model: &Model, logs: &[LogRequest], held_out: &[LogRequest]) -> Result<Split> {
-    told_apart(logs, held_out)?;
-    Ok(Split {
-        training: read(logs, &model.log)?,
-        held_out: read(held_out, &model.log)?,
-    })
-}
-
-/// Refuses a log that is both learned from and judged by.
-///
-/// # Errors
-/// [`Error::Usage`] that names it.
-pub fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
-    match held_out.iter().find(|log| logs.contains(log)) {
-        Some(both) => Err(Error::usage(
+/// Logs that cannot be read, or a log in both.
+pub fn motions(
+    columns: &LogColumns,
+    logs: &[LogRequest],
+    held_out: &[LogRequest],
+) -> Result<Split> {
+    if let Some(both) = held_out.iter().find(|log| logs.contains(log)) {
+        return Err(Error::usage(
             format!("{both} is fitted and held out"),
             "name it once: a log that was learned from proves nothing",
-        )),
-        None => Ok(()),
+        ));
     }
+    Ok(Split {
+        training: read(logs, columns)?,
+        held_out: read(held_out, columns)?,
+    })
 }
 
 /// Name and SHA-256 of every file the motions came from, each once.
 pub fn files(motions: &[Motion]) -> Vec<(String, String)> {
     let mut files: Vec<(String, String)> = Vec::new();
     for source in motions.iter().map(|motion| &motion.source) {
-        let name = source.path.file_name().unwrap_or(source.path.as_os_str());
-        let file = (name.to_string_lossy().into_owned(), source.sha256.clone());
+        let file = (file_name(&source.path), source.sha256.clone());
         if !files.contains(&file) {
             files.push(file);
         }
     }
     files
-}
-
-/// Refuses a name that is taken before the work begins, not after it.
-///
-/// # Errors
-/// [`Error::Usage`] if the file exists and may not be replaced.
-pub fn vacant(path: &Path, force: bool) -> Result<()> {
-    if !force && path.symlink_metadata().is_ok() {
-        return Err(Error::usage(
-            format!("{} exists", path.display()),
-            "choose another name or pass --force",
-        ));
-    }
-    Ok(())
 }
 
 /// The text of a file.

@@ -13,10 +13,10 @@
 //! Both work on means over blocks of time, so record slowly: an input that changes within a block
 //! blurs the edge.
 
-use super::servo_columns::{self, ServoColumns};
+use super::servo_columns::ServoColumns;
 use super::show::{self, known};
 use super::{ExitStatus, Talk, input};
-use handstand::log::LogRequest;
+use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
@@ -61,7 +61,7 @@ fn measured(args: &MapArgs) -> Result<(Vec<BlockMean>, &'static str, &'static st
         ));
     }
     let chosen = args.columns.chosen()?;
-    let (motions, _) = servo_columns::motions(&chosen, &args.logs, &[])?;
+    let motions = read(&args.logs, &chosen.columns)?;
     let blocks = blocks(&motions, chosen.joint, chosen.output, args.block);
     Ok((blocks, chosen.input_unit, chosen.output_unit))
 }

@@ -15,9 +15,9 @@
 
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::{ExitStatus, Talk, input, show::or_dash};
+use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
-use handstand::{Error, Result};
+use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -42,7 +42,7 @@ pub struct RecordArgs {
 /// Samples until told to stop.
 pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     FileFormat::of(&args.file)?;
-    input::vacant(&args.file, args.force)?;
+    output::vacant(&args.file, args.force)?;
     if let Some(from) = &args.from {
         return convert(args, from, talk);
     }

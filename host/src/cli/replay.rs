@@ -16,11 +16,11 @@
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::{ExitStatus, Talk, input, show::or_dash};
-use handstand::Result;
+use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
     FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
 };
+use handstand::{Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut robot = args.robot.clone();
     robot.ids.0 = recording.ids.clone();
     if let Some(file) = &args.record {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     talk.say(&format!(
         "{}: {} servos, {:.1} s. The robot will move.",

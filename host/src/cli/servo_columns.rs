@@ -1,8 +1,6 @@
 //! Which columns of a log are a servo's input and output: by a model file, or by flags; never
 //! guessed.
 
-use super::input;
-use handstand::log::{LogRequest, Motion, read};
 use handstand::model::{Column, Dimension, JointColumns, LogColumns, Unit};
 use handstand::sysid::OutputQuantity;
 use handstand::{Error, Model, Result};
@@ -133,22 +131,6 @@ impl ServoColumns {
             split_at_gap_s: None,
         })
     }
-}
-
-/// The motions of `logs`, refused if they are named twice.
-///
-/// # Errors
-/// As [`input::motions`].
-pub fn motions(
-    chosen: &ChosenColumns,
-    logs: &[LogRequest],
-    held_out: &[LogRequest],
-) -> Result<(Vec<Motion>, Vec<Motion>)> {
-    input::told_apart(logs, held_out)?;
-    Ok((
-        read(logs, &chosen.columns)?,
-        read(held_out, &chosen.columns)?,
-    ))
 }
 
 fn si(dimension: Dimension) -> &'static str {

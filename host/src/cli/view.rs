@@ -16,7 +16,7 @@ use super::{ExitStatus, Talk, input, page};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
-use handstand::{Error, Model, Result};
+use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
 
 /// Animate a motion on an HTML page.
@@ -45,7 +45,7 @@ pub struct ViewArgs {
 
 /// Reads, runs the models, writes the page.
 pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
-    input::vacant(&args.output, args.force)?;
+    output::vacant(&args.output, args.force)?;
     let model = Model::load(&args.model)?;
     let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
     for file in &args.others {

@@ -8,7 +8,7 @@ use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
 use crate::fitting::FittedValue;
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
-use crate::output::table::plain_table;
+use crate::output::table::{TableColumn, plain_table, table_of};
 use comfy_table::{CellAlignment, Table};
 
 /// Columns of a table.
@@ -40,34 +40,29 @@ fn headline(diagnosis: &Diagnosis) -> String {
 }
 
 fn effects(effects: &[FittedEffect]) -> Option<String> {
-    let header = [
-        "Effect",
-        "Joint",
-        "Parameter",
-        "Value",
-        "95 % interval",
-        "Unit",
-        "",
-    ];
-    let mut table = plain_table(header);
+    let mut values = Vec::new();
     for effect in effects {
-        table.add_rows(effect.parameters.iter().map(|fitted| row(effect, fitted)));
+        values.extend(effect.parameters.iter().map(|fitted| (effect, fitted)));
     }
-    Some(format!("Missing effects\n{}", lines(table, &[1, 3, 4])?))
-}
-
-fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
-    let [value, low, high] = interval(fitted.value, fitted.low, fitted.high);
-    let note = if fitted.on_bound { "on its bound" } else { "" };
-    [
-        effect.title.clone(),
-        effect.joint.map_or("rig".into(), |joint| joint.to_string()),
-        fitted.key.clone(),
-        value,
-        format!("{low} to {high}"),
-        unit(&fitted.unit).to_string(),
-        note.to_string(),
-    ]
+    let ends = |fitted: &FittedValue| interval(fitted.value, fitted.low, fitted.high);
+    let note = |on_bound: bool| if on_bound { "on its bound" } else { "" };
+    let columns: &[TableColumn<(&FittedEffect, &FittedValue)>] = &[
+        ("Effect", &|(effect, _)| effect.title.clone()),
+        ("Joint", &|(effect, _)| {
+            effect.joint.map_or("rig".into(), |joint| joint.to_string())
+        }),
+        ("Parameter", &|(_, fitted)| fitted.key.clone()),
+        ("Value", &|(_, fitted)| ends(fitted)[0].clone()),
+        ("95 % interval", &|(_, fitted)| {
+            ends(fitted)[1..].join(" to ")
+        }),
+        ("Unit", &|(_, fitted)| unit(&fitted.unit).to_string()),
+        ("", &|(_, fitted)| note(fitted.on_bound).to_string()),
+    ];
+    Some(format!(
+        "Missing effects\n{}",
+        lines(table_of(&values, columns), &[1, 3, 4])?
+    ))
 }
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {

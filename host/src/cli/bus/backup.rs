@@ -7,7 +7,7 @@
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{ExitStatus, Talk, input};
+use crate::cli::{ExitStatus, Talk};
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
 use handstand_shared::control_table::MODEL;
@@ -46,7 +46,7 @@ pub struct RestoreArgs {
 
 /// Reads all, writes the file.
 pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<ExitStatus> {
-    input::vacant(&args.file, args.force)?;
+    output::vacant(&args.file, args.force)?;
     let mut servos = args.port.servos()?;
     let ids = answering(&mut servos, &args.ids.0, talk)?;
     let read = ids.iter().map(|id| Settings::read(&mut servos, *id));

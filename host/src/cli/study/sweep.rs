@@ -9,7 +9,7 @@
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
 use crate::cli::show::{or_dash, table, table_of};
-use crate::cli::{ExitStatus, Talk, input};
+use crate::cli::{ExitStatus, Talk};
 use handstand::controllers::{DESIGNS, design};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
@@ -102,7 +102,7 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
         for (quantity, _) in &chosen {
             for ending in ["csv", "svg"] {
                 let file = folder.join(format!("{}.{ending}", quantity.id));
-                input::vacant(&file, args.force)?;
+                output::vacant(&file, args.force)?;
             }
         }
         super::write::folder(folder)?;
