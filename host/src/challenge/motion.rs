@@ -144,7 +144,8 @@ impl ArmRecording {
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
             "# {title}\n\
-             # Time is when the sample was taken and its duty sent; duty is the share of full range.\n\
+             # Time is when the sample was taken and its duty sent; duty is the share of full \
+             range.\n\
              # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
              time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned\n"
         );

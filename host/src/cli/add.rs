@@ -29,7 +29,8 @@ pub struct AddArgs {
     /// The effect: `delay`, or `coulomb@2` where there are several joints
     effect: String,
     /// Logs to fit
-    #[arg(long = "fit", required = true, num_args = 1.., value_name = "LOG", value_parser = input::log)]
+    #[arg(long = "fit", required = true, num_args = 1..)]
+    #[arg(value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
     #[command(flatten)]
     fit: input::RefitArgs,

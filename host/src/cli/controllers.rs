@@ -45,7 +45,8 @@ pub struct ControllersArgs {
     #[arg(long = "condition", value_name = "NAME")]
     conditions: Vec<String>,
     /// Robots let go in each trial
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     robots: u32,
     /// Robots in each step of the search for the region; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]

@@ -66,8 +66,10 @@ pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
     )?;
     let model = match &found {
         Some(effect) => {
-            talk.say("\nThe model with it (`add` sets it beside the old model refitted without it), and the two files side by side as \
-                 they are, on the motion held out:");
+            talk.say(
+                "\nThe model with it (`add` sets it beside the old model refitted without it), and \
+                 the two files side by side as they are, on the motion held out:",
+            );
             step(
                 &[
                     "add",

@@ -53,7 +53,8 @@ pub struct FlashArgs {
 #[derive(Debug, Clone, clap::Args)]
 pub struct Loader {
     /// Pause after every byte, for a line that loses some
-    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000))]
+    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0)]
+    #[arg(value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pace_us: u64,
     /// Seconds to wait for the reset
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]

@@ -44,18 +44,15 @@ pub struct GainsArgs {
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     r: Option<WeightArg>,
     /// Sampling time, s
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value_t = 0.01,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
+    #[arg(allow_negative_numbers = true)]
     ts: f64,
     /// Delay of the inputs, s; the model's own without it
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     delay: Option<f64>,
     /// Angles in rad, the model's way, or `upright`
-    #[arg(long, value_name = "ANGLES", default_value = "upright", value_parser = pose, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLES", default_value = "upright")]
+    #[arg(value_parser = pose, allow_hyphen_values = true)]
     pose: Pose,
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
@@ -77,7 +74,8 @@ pub struct GainsArgs {
     gyro_step: Option<f64>,
     /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their
     /// limit]
-    #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(long, value_name = "WEIGHT", requires = "lqg")]
+    #[arg(value_parser = weight, allow_hyphen_values = true)]
     process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]

@@ -5,7 +5,8 @@
 //! as the best one. From a measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
 //!
 //! ```console
-//! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg --validate other.csv
+//! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg \
+//!     --validate other.csv
 //! ```
 //!
 //! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`,
@@ -43,7 +44,8 @@ pub struct IdentifyArgs {
     #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     validate: Vec<LogRequest>,
     /// Share of each motion to learn from where no logs are held out
-    #[arg(long, value_name = "SHARE", default_value_t = 2.0 / 3.0, hide_default_value = true, conflicts_with = "validate")]
+    #[arg(long, value_name = "SHARE", default_value_t = 2.0 / 3.0)]
+    #[arg(hide_default_value = true, conflicts_with = "validate")]
     split: f64,
     /// Orders to try, with ranges: bj:1,2,1,2,1 or oe:1-2,1-3,1
     #[arg(long, value_name = "ORDERS", value_parser = orders)]

@@ -7,7 +7,8 @@
 //!
 //! ```console
 //! $ handstand map dead-zone ramp.csv --time t=s --input command=% --output angle=deg
-//! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg --supply volts=V
+//! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg \
+//!     --supply volts=V
 //! ```
 //!
 //! Both work on means over blocks of time, so record slowly: an input that changes within a block

@@ -40,13 +40,15 @@ pub struct RobustArgs {
     #[arg(long)]
     with_inertia: bool,
     /// Error the multi-model gain is designed for, %
-    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * MASS_ERROR, value_parser = input::positive)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * MASS_ERROR)]
+    #[arg(value_parser = input::positive)]
     design: f64,
     /// Weight of every state in that design
     #[arg(long, value_name = "Q", default_value_t = WEIGHT, value_parser = input::positive)]
     q: f64,
     /// Robots drawn
-    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     draws: u32,
     /// Sampling time, s
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = input::positive)]

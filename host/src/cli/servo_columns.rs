@@ -10,7 +10,8 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct ServoColumns {
     /// Model file whose [log] names the columns
-    #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["time", "input", "output", "supply"])]
+    #[arg(long, value_name = "MODEL.toml")]
+    #[arg(conflicts_with_all = ["time", "input", "output", "supply"])]
     model: Option<PathBuf>,
     /// Joint of the model, counted from 1; the driven one without it
     #[arg(long, value_name = "N", requires = "model")]
@@ -111,8 +112,8 @@ impl ServoColumns {
         else {
             return Err(Error::usage(
                 "the log's columns are not declared",
-                "give --model MODEL.toml, or all of --time, --input and --output, such as --time t=s --input \
-                 goal=rad/s --output angle=deg",
+                "give --model MODEL.toml, or all of --time, --input and --output, such as --time \
+                 t=s --input goal=rad/s --output angle=deg",
             ));
         };
         Ok(LogColumns {
@@ -169,7 +170,8 @@ fn column(text: &str) -> Result<Column, String> {
         }),
         Some(_) if !name.is_empty() => Err("say how many make a turn: ticks/1228.8".to_string()),
         _ => Err(format!(
-            "{}; units are those of a model file's [log]: rad deg turn rad/s deg/s rpm, N m, V, 1, % and so on",
+            "{}; units are those of a model file's [log]: rad deg turn rad/s deg/s rpm, N m, V, 1, \
+             % and so on",
             wrong()
         )),
     }

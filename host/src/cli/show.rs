@@ -97,7 +97,8 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
 /// Values that cannot be had, for people.
 pub fn undetermined(refused: &Undetermined) -> String {
     format!(
-        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show them."
+        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show \
+         them."
     )
 }
 

@@ -32,8 +32,8 @@ fn header(study: &Reproduction) -> Markup {
         header.verdict-named {
             p.title { "Development of a simulation environment of an entertainment humanoid robot" }
             h1 {
-                (study.rows.len() - misprints) " of " (study.rows.len()) " numbers agree to every digit, "
-                (misprints) " are misprints."
+                (study.rows.len() - misprints) " of " (study.rows.len())
+                " numbers agree to every digit, " (misprints) " are misprints."
             }
             p {
                 "What the paper concludes from its figures holds here for "
@@ -155,7 +155,8 @@ fn findings(study: &Reproduction) -> Section {
     Section {
         id: "findings",
         title: "What the paper found",
-        lead: "Everything it measured, simulated or left open, with the command that shows it here.",
+        lead: "Everything it measured, simulated or left open, with the command that shows it \
+               here.",
         body: table(&headings, &rows),
     }
 }

@@ -130,8 +130,8 @@ fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
 fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
     let structure = diagnosis.residual_structure.as_ref()?;
     Some(format!(
-        "Residual structure: a free form could still gain {} (at least {}) of the squared error above the \
-         floor; it leans on {}.",
+        "Residual structure: a free form could still gain {} (at least {}) of the squared error \
+         above the floor; it leans on {}.",
         percent(structure.explainable_share.clamp(0.0, 1.0)),
         percent(structure.explainable_low.clamp(0.0, 1.0)),
         structure.shape

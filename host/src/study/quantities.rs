@@ -72,7 +72,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "dead-zone",
         title: "dead zone",
-        meaning: "Share of the full torque up to which a command does nothing; the paper measured 7 to 10 %.",
+        meaning: "Share of the full torque up to which a command does nothing; the paper measured \
+                  7 to 10 %.",
         levels: Some(Levels {
             unit: "%",
             values: &[0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0],
@@ -92,7 +93,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "delay",
         title: "delay",
-        meaning: "Time from a sample to the torque it asks for; the design counts on what the study says.",
+        meaning: "Time from a sample to the torque it asks for; the design counts on what the \
+                  study says.",
         levels: Some(Levels {
             unit: "ms",
             values: &[

@@ -1,9 +1,9 @@
 //! `bus doctor`: why a servo gives no status packet. Likely causes first, each with what was seen
 //! and what to do.
 //!
-//! It listens for an echo, pings every servo twenty times, and where no servo answers tries a CM-5's
-//! firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all is well;
-//! 1: causes were found.
+//! It listens for an echo, pings every servo twenty times, and where no servo answers tries a
+//! CM-5's firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all
+//! is well; 1: causes were found.
 
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk};

@@ -44,7 +44,10 @@ pub fn merged(journals: &[PathBuf], into: &Path, force: bool, talk: &Talk) -> Re
 
 fn data(missing: &Missing) -> Value {
     let run = |(first, last): &(usize, usize)| json!({ "first_run": first, "last_run": last });
-    let torn = |(file, bytes): &(PathBuf, u64)| json!({ "file": file.display().to_string(), "bytes": bytes });
+    let torn = |(file, bytes): &(PathBuf, u64)| {
+        let file = file.display().to_string();
+        json!({ "file": file, "bytes": bytes })
+    };
     json!({
         "complete": false,
         "missing": missing.runs.iter().map(run).collect::<Vec<_>>(),
