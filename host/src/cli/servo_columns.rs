@@ -134,16 +134,9 @@ impl ServoColumns {
     }
 }
 
+/// Name of the SI unit, which stands first among those that measure the same.
 fn si(dimension: Dimension) -> &'static str {
-    match dimension {
-        Dimension::Time => "s",
-        Dimension::Angle => "rad",
-        Dimension::Speed => "rad/s",
-        Dimension::Torque => "N m",
-        Dimension::Voltage => "V",
-        Dimension::Mass => "kg",
-        Dimension::Ratio => "1",
-    }
+    dimension.unit_names().next().unwrap_or("1")
 }
 
 /// `COLUMN=UNIT`, with `ticks/TURN` for counts.

@@ -38,10 +38,10 @@ use PrintedQuantity::{A, B, Dlqr, Link, Lqr, Pole, Servo};
 /// Every number that can be computed, as it stands in its rows. Gains are without the minus sign of
 /// `u = -k x`.
 pub fn printed() -> Vec<Printed> {
-    type Quantity = fn(usize, usize) -> PrintedQuantity;
+    type NumberAt = fn(usize, usize) -> PrintedQuantity;
     const SERVO: [&str; 3] = ["b1", "f1", "f2"];
     const RECOMPUTED: &str = "recomputed";
-    let blocks: [(&'static str, &[&'static str], Quantity); 7] = [
+    let blocks: [(&'static str, &[&'static str], NumberAt); 7] = [
         (
             "Table 1",
             &[

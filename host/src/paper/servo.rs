@@ -49,10 +49,10 @@ pub(super) fn figures() -> Result<Vec<PaperFigure>> {
 }
 
 /// A chart, and what follows from it.
-type Drawn = (Chart, Holds, String);
+type FittedFigure = (Chart, Holds, String);
 
 /// A figure that shows a fit, or that none was found.
-fn fitted(number: &'static str, drawn: Result<Drawn, String>) -> PaperFigure {
+fn fitted(number: &'static str, drawn: Result<FittedFigure, String>) -> PaperFigure {
     let (charts, holds, sentence) = match drawn {
         Ok((chart, holds, sentence)) => (vec![chart], holds, sentence),
         Err(why) => {
@@ -178,7 +178,7 @@ fn within(known: &Interval, scale: f64) -> String {
     format!("{value} ({low} to {high})")
 }
 
-fn dead_zone(model: &Model) -> Result<Drawn, String> {
+fn dead_zone(model: &Model) -> Result<FittedFigure, String> {
     let motion = simulated(model, ramp(8000, 0.4), None, 0.0, 4);
     let blocks = blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S);
     let map = DeadZoneMap::fit(&blocks).map_err(|why| why.to_string())?;
@@ -200,7 +200,7 @@ fn dead_zone(model: &Model) -> Result<Drawn, String> {
     Ok((chart, Holds::at_least_in_part(is_found), sentence))
 }
 
-fn supply(model: &Model) -> Result<Drawn, String> {
+fn supply(model: &Model) -> Result<FittedFigure, String> {
     let mut means = Vec::new();
     for (seed, volts) in (50..).zip([8.0, 8.8, 9.6, 10.4, 11.2]) {
         // What the servo would have to be told to move at the speed, past its dead zone.
@@ -242,7 +242,7 @@ fn supply(model: &Model) -> Result<Drawn, String> {
 }
 
 /// A known mass is lifted until it hangs in balance: its weight's moment is the torque.
-fn torque(model: &Model) -> Result<Drawn, String> {
+fn torque(model: &Model) -> Result<FittedFigure, String> {
     let mut motion = simulated(model, ramp(24_000, 1.0), None, LIFTED_KG, 7);
     let (own, at) = (&model.links[0], model.log.payload_at_m);
     let moment = model.gravity_m_s2 * (own.mass_kg * own.com_m + LIFTED_KG * at);

@@ -1,7 +1,6 @@
 mod controllers;
 
 use super::*;
-use crate::error::Error;
 use crate::sim::closed_loop::Velocity;
 use std::path::{Path, PathBuf};
 
