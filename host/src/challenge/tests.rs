@@ -175,7 +175,7 @@ fn files_are_written_once() {
     ] {
         assert!(inside.join(name).is_file(), "{name}");
     }
-    let again = Error::from(write(&challenge, &inside).unwrap_err());
+    let again = write(&challenge, &inside).unwrap_err();
     assert_eq!(again.exit_code(), 2);
     assert!(!challenge.model_toml.contains("backlash"));
     assert!(challenge.answer.true_model_toml.contains("backlash"));

@@ -172,19 +172,19 @@ impl PathBudget {
 
 fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &DelaysArgs) -> String {
     let longest: &[TableColumn<DelayMargins>] = &[
-        ("Controller", &|own| own.controller.to_string()),
-        ("uncompensated", &|own| ms(own.uncompensated)),
-        ("one sample compensated", &|own| ms(own.one_sample)),
-        ("compensated", &|own| ms(own.compensated)),
-        ("stabilised, compensated", &|own| {
-            own.stabilised.map_or(String::new(), ms)
+        ("Controller", &|o| o.controller.to_string()),
+        ("uncompensated", &|o| ms(o.uncompensated)),
+        ("one sample compensated", &|o| ms(o.one_sample)),
+        ("compensated", &|o| ms(o.compensated)),
+        ("stabilised, compensated", &|o| {
+            o.stabilised.map_or(String::new(), ms)
         }),
     ];
     let budget: &[TableColumn<PathBudget>] = &[
-        ("From sample to torque", &|path| path.title()),
-        ("ms", &|path| format!("{:.1}", 1e3 * path.total_s)),
-        ("stable", &|path| {
-            format!("{} of {}", path.stable.len(), margins.len())
+        ("From sample to torque", &|p| p.title()),
+        ("ms", &|p| format!("{:.1}", 1e3 * p.total_s)),
+        ("stable", &|p| {
+            format!("{} of {}", p.stable.len(), margins.len())
         }),
         (
             "stabilised, compensated",

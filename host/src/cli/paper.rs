@@ -69,11 +69,11 @@ fn worked(talk: &Talk) -> Result<Reproduction> {
 
 fn numbers(rows: &[CheckedNumber]) -> String {
     let columns: &[TableColumn<CheckedNumber>] = &[
-        ("Where", &|row| row.printed.place.to_string()),
-        ("Quantity", &|row| row.printed.quantity.name()),
-        ("Stated", &|row| row.printed.text.to_string()),
-        ("Computed", &|row| row.computed_text()),
-        ("Verdict", &|row| row.verdict.to_string()),
+        ("Where", &|r| r.printed.place.to_string()),
+        ("Quantity", &|r| r.printed.quantity.name()),
+        ("Stated", &|r| r.printed.text.to_string()),
+        ("Computed", &|r| r.computed_text()),
+        ("Verdict", &|r| r.verdict.to_string()),
     ];
     let count = |of: fn(&Agreement) -> bool| rows.iter().filter(|row| of(&row.verdict)).count();
     format!(

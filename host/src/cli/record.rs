@@ -119,7 +119,7 @@ fn report(
         args.file.display(),
         tally.samples,
         tally.seconds(),
-        or_dash(tally.rate_hz().map(|rate| format!("{rate:.1}"))),
+        or_dash(tally.rate_hz(), |rate| format!("{rate:.1}")),
         tally.missing
     ));
     Ok(ExitStatus::Done)

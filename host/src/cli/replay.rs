@@ -91,7 +91,7 @@ fn report(followed: &FollowedMotion, talk: &Talk) -> Result<ExitStatus> {
         "repeat_rms_rad": repeat,
         "stopped": stopped,
     });
-    let milli = |rad: Option<f64>| or_dash(rad.map(|rad| format!("{:.1} mrad", rad * 1e3)));
+    let milli = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} mrad", rad * 1e3));
     talk.result(&data, || {
         let (tracking, repeat) = (milli(tracking), milli(repeat));
         format!("to the goals: {tracking} rms\nto the recording: {repeat} rms")

@@ -138,16 +138,12 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
 
 fn text(args: &RobustArgs, gains: &[GainRobustness]) -> String {
     let columns: &[TableColumn<GainRobustness>] = &[
-        ("Gain", &|gain| gain.gain.clone()),
-        ("unstable %", &|gain| {
-            format!("{:.1}", 100.0 * gain.unstable)
-        }),
-        ("median radius", &|gain| {
-            format!("{:.4}", gain.median_radius)
-        }),
-        ("worst radius", &|gain| format!("{:.4}", gain.worst_radius)),
-        ("2 % unstable at, %", &|gain| {
-            format!("{:.1}", 100.0 * gain.largest_error)
+        ("Gain", &|g| g.gain.clone()),
+        ("unstable %", &|g| format!("{:.1}", 100.0 * g.unstable)),
+        ("median radius", &|g| format!("{:.4}", g.median_radius)),
+        ("worst radius", &|g| format!("{:.4}", g.worst_radius)),
+        ("2 % unstable at, %", &|g| {
+            format!("{:.1}", 100.0 * g.largest_error)
         }),
     ];
     let mut text = format!(

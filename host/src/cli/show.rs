@@ -129,7 +129,7 @@ pub fn known(known: &Interval) -> String {
     format!("{} ({})", exact(known.value), ends(known))
 }
 
-/// A value with its unit's decimals, or a dash.
-pub fn or_dash(value: Option<String>) -> String {
-    value.unwrap_or_else(|| "–".to_string())
+/// A value as `text` shows it, or a dash where there is none.
+pub fn or_dash<V>(value: Option<V>, text: impl Fn(V) -> String) -> String {
+    value.map_or("–".to_string(), text)
 }

@@ -48,7 +48,7 @@ fn numbers(study: &Reproduction) -> Section {
     let facts = &study.computed.servo_facts;
     let headings = markup! {
         th { "Where" } th { "Quantity" } th { "Unit" } th.number { "Stated" }
-        th.number { "Computed" } th { "Agreement" }
+        th.number { "Computed" } th { "Verdict" }
     };
     let body = markup! {
         (table(&headings, &markup! { @for row in &study.rows { (number(row)) } }))
@@ -149,7 +149,7 @@ fn drawn_chart(chart: &Chart) -> Markup {
 
 fn findings(study: &Reproduction) -> Section {
     let headings = markup! {
-        th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Agreement" }
+        th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Verdict" }
     };
     let rows = markup! { @for row in &study.findings { (finding(row)) } };
     Section {

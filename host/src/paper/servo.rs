@@ -204,7 +204,7 @@ fn supply(model: &Model) -> Result<FittedFigure, String> {
     let mut means = Vec::new();
     for (seed, volts) in (50..).zip([8.0, 8.8, 9.6, 10.4, 11.2]) {
         // What the servo would have to be told to move at the speed, past its dead zone.
-        let command = |k: usize| if (k / 300) % 2 == 0 { 0.5 } else { -0.4 };
+        let command = |k: usize| [0.5, -0.4][k / 300 % 2];
         let command = (0..1200).map(command).collect();
         let motion = simulated(model, command, Some(vec![volts; 1200]), 0.0, seed);
         means.extend(blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S));

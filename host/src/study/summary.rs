@@ -36,7 +36,7 @@ pub struct Summary {
     pub fallen_share: f64,
     /// Share of robots whose loop, linearised at their balance, is unstable.
     pub unstable: f64,
-    /// FigureQuantiles of each figure over the stabilised runs.
+    /// Quantiles of each figure over the stabilised runs.
     pub figures: Vec<FigureQuantiles>,
     /// How each uncertain value goes with being stabilised.
     pub influence: Vec<Influence>,

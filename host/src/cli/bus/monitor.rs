@@ -108,31 +108,19 @@ impl ServoReading {
 
 fn text(seen: &[ServoReading]) -> String {
     let columns: &[TableColumn<ServoReading>] = &[
-        ("Id", &|servo| servo.id.to_string()),
-        ("Position", &|servo| {
-            or_dash(servo.position_rad.map(degrees))
+        ("Id", &|s| s.id.to_string()),
+        ("Position", &|s| or_dash(s.position_rad, degrees)),
+        ("Speed", &|s| {
+            or_dash(s.speed_rad_s, |w| format!("{w:.2} rad/s"))
         }),
-        ("Speed", &|servo| {
-            or_dash(servo.speed_rad_s.map(|speed| format!("{speed:.2} rad/s")))
+        ("Load", &|s| {
+            or_dash(s.load_share, |share| format!("{:.0} %", 100.0 * share))
         }),
-        ("Load", &|servo| {
-            or_dash(
-                servo
-                    .load_share
-                    .map(|load| format!("{:.0} %", load * 100.0)),
-            )
+        ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
+        ("Temp", &|s| {
+            or_dash(s.temperature_celsius, |t| format!("{t} C"))
         }),
-        ("Supply", &|servo| {
-            or_dash(servo.supply_v.map(|volts| format!("{volts:.1} V")))
-        }),
-        ("Temp", &|servo| {
-            or_dash(
-                servo
-                    .temperature_celsius
-                    .map(|celsius| format!("{celsius} C")),
-            )
-        }),
-        ("Error flags", &|servo| servo.error_flags.join(", ")),
+        ("Error flags", &|s| s.error_flags.join(", ")),
     ];
     table_of(seen, columns).to_string()
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::{ExitStatus, Talk, port::Port, show::table_of};
 use handstand::model::suggest::suggest;
-use handstand::output::table::TableColumn;
+use handstand::output::table::{TableColumn, or_empty};
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
@@ -79,15 +79,11 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     talk.result(&contents, || {
         let columns: &[TableColumn<RegisterContent>] = &[
-            ("Address", &|content| content.address.to_string()),
-            ("Register", &|content| content.register.to_string()),
-            ("Code", &|content| content.code.to_string()),
-            ("Means", &|content| content.means.clone()),
-            ("Default", &|content| {
-                content
-                    .default
-                    .map_or(String::new(), |code| code.to_string())
-            }),
+            ("Address", &|c| c.address.to_string()),
+            ("Register", &|c| c.register.to_string()),
+            ("Code", &|c| c.code.to_string()),
+            ("Means", &|c| c.means.clone()),
+            ("Default", &|c| or_empty(c.default)),
         ];
         table_of(&contents, columns).to_string()
     })?;

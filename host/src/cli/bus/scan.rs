@@ -50,17 +50,15 @@ pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
 
 fn table(found: &[Found]) -> String {
     let columns: &[TableColumn<Found>] = &[
-        ("Id", &|servo| servo.id.to_string()),
-        ("Model", &|servo| model(servo.model)),
-        ("Firmware", &|servo| servo.firmware.to_string()),
-        ("Return delay", &|servo| {
-            format!("{} us", servo.return_delay_us)
-        }),
-        ("Status level", &|servo| servo.status_level.to_string()),
-        ("Position", &|servo| degrees(servo.position_rad)),
-        ("Supply", &|servo| format!("{:.1} V", servo.supply_v)),
-        ("Temp", &|servo| format!("{} C", servo.temperature_celsius)),
-        ("Error flags", &|servo| servo.error_flags.join(", ")),
+        ("Id", &|s| s.id.to_string()),
+        ("Model", &|s| model(s.model)),
+        ("Firmware", &|s| s.firmware.to_string()),
+        ("Return delay", &|s| format!("{} us", s.return_delay_us)),
+        ("Status level", &|s| s.status_level.to_string()),
+        ("Position", &|s| degrees(s.position_rad)),
+        ("Supply", &|s| format!("{:.1} V", s.supply_v)),
+        ("Temp", &|s| format!("{} C", s.temperature_celsius)),
+        ("Error flags", &|s| s.error_flags.join(", ")),
     ];
     table_of(found, columns).to_string()
 }

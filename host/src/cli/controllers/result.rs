@@ -28,12 +28,12 @@ pub fn text(
     }
     let degrees = |rad: Option<f64>| or_dash(rad.map(f64::to_degrees));
     let columns: &[TableColumn<ControllerTrial>] = &[
-        ("Controller", &|trial| trial.controller.to_string()),
-        ("stabilised %", &|trial| percent(trial.stabilised)),
-        ("fallen %", &|trial| percent(trial.fallen)),
-        ("rms deg", &|trial| degrees(trial.rms_angle_rad)),
-        ("limit cycle deg", &|trial| degrees(trial.limit_cycle_rad)),
-        ("rms N m", &|trial| or_dash(trial.rms_torque_nm)),
+        ("Controller", &|t| t.controller.to_string()),
+        ("stabilised %", &|t| percent(t.stabilised)),
+        ("fallen %", &|t| percent(t.fallen)),
+        ("rms deg", &|t| degrees(t.rms_angle_rad)),
+        ("limit cycle deg", &|t| degrees(t.limit_cycle_rad)),
+        ("rms N m", &|t| or_dash(t.rms_torque_nm)),
     ];
     // Each by itself would fill pages; the file has them all.
     let few = conditions.len() <= 2;
@@ -105,16 +105,16 @@ pub fn plot(
 /// Everything, a line per trial.
 pub fn csv(trials: &[ControllerTrial]) -> String {
     let columns: &[TableColumn<ControllerTrial>] = &[
-        ("controller", &|trial| trial.controller.to_string()),
-        ("condition", &|trial| trial.condition.to_string()),
-        ("robots", &|trial| trial.robots.to_string()),
-        ("stabilised", &|trial| trial.stabilised.to_string()),
-        ("fallen", &|trial| trial.fallen.to_string()),
-        ("rms_angle_rad", &|trial| or_empty(trial.rms_angle_rad)),
-        ("limit_cycle_rad", &|trial| or_empty(trial.limit_cycle_rad)),
-        ("rms_torque_nm", &|trial| or_empty(trial.rms_torque_nm)),
-        ("region_rad", &|trial| or_empty(trial.region_rad)),
-        ("region_open", &|trial| or_empty(trial.region_open)),
+        ("controller", &|t| t.controller.to_string()),
+        ("condition", &|t| t.condition.to_string()),
+        ("robots", &|t| t.robots.to_string()),
+        ("stabilised", &|t| t.stabilised.to_string()),
+        ("fallen", &|t| t.fallen.to_string()),
+        ("rms_angle_rad", &|t| or_empty(t.rms_angle_rad)),
+        ("limit_cycle_rad", &|t| or_empty(t.limit_cycle_rad)),
+        ("rms_torque_nm", &|t| or_empty(t.rms_torque_nm)),
+        ("region_rad", &|t| or_empty(t.region_rad)),
+        ("region_open", &|t| or_empty(t.region_open)),
     ];
     csv_of(trials, columns)
 }

@@ -161,27 +161,23 @@ fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
         unit => format!("{}, {unit}", quantity.title),
     };
     let figure = |level: &Level, of: fn(&Figures) -> Option<f64>| {
-        or_dash(level.figures.as_ref().and_then(of).map(exact))
+        or_dash(level.figures.as_ref().and_then(of), exact)
     };
-    let share = |level: &Level, of: fn(&Figures) -> String| or_dash(level.figures.as_ref().map(of));
+    let share = |level: &Level, of: fn(&Figures) -> String| or_dash(level.figures.as_ref(), of);
+    let degrees = |rad: f64| format!("{:.1}", rad.to_degrees());
     let columns: &[TableColumn<Level>] = &[
-        (&level, &|level| level.label.clone()),
-        ("stabilised", &|level| {
-            share(level, |f| percent(f.stabilised_share))
+        (&level, &|l| l.label.clone()),
+        ("stabilised", &|l| share(l, |f| percent(f.stabilised_share))),
+        ("95 % interval", &|l| share(l, stabilised_interval)),
+        ("tilt, deg", &|l| or_dash(l.tilt_border_rad, degrees)),
+        ("rms, deg", &|l| {
+            figure(l, |f| f.rms_angle_rad.map(f64::to_degrees))
         }),
-        ("95 % interval", &|level| share(level, stabilised_interval)),
-        ("tilt, deg", &|level| {
-            let border_rad = level.tilt_border_rad;
-            or_dash(border_rad.map(|rad| format!("{:.1}", rad.to_degrees())))
+        ("cycle, deg", &|l| {
+            figure(l, |f| f.limit_cycle_rad.map(f64::to_degrees))
         }),
-        ("rms, deg", &|level| {
-            figure(level, |f| f.rms_angle_rad.map(f64::to_degrees))
-        }),
-        ("cycle, deg", &|level| {
-            figure(level, |f| f.limit_cycle_rad.map(f64::to_degrees))
-        }),
-        ("torque, N m", &|level| figure(level, |f| f.rms_torque_nm)),
-        ("settles, s", &|level| figure(level, |f| f.settle_s)),
+        ("torque, N m", &|l| figure(l, |f| f.rms_torque_nm)),
+        ("settles, s", &|l| figure(l, |f| f.settle_s)),
     ];
     let refused = ran.levels.iter().filter_map(|level| {
         let why = level.refused.as_ref()?;
@@ -209,28 +205,22 @@ fn csv(ran: &Sweep) -> String {
         or_empty(level.figures.as_ref().and_then(of))
     };
     let columns: &[TableColumn<Level>] = &[
-        ("level", &|level| level.level.to_string()),
+        ("level", &|l| l.level.to_string()),
         ("unit", &|_| ran.unit.to_string()),
-        ("runs", &|level| figure(level, |f| Some(f.runs as f64))),
-        ("stabilised", &|level| {
-            figure(level, |f| Some(f.stabilised as f64))
+        ("runs", &|l| figure(l, |f| Some(f.runs as f64))),
+        ("stabilised", &|l| figure(l, |f| Some(f.stabilised as f64))),
+        ("stabilised_share", &|l| {
+            figure(l, |f| Some(f.stabilised_share))
         }),
-        ("stabilised_share", &|level| {
-            figure(level, |f| Some(f.stabilised_share))
+        ("stabilised_low", &|l| figure(l, |f| Some(f.stabilised_low))),
+        ("stabilised_high", &|l| {
+            figure(l, |f| Some(f.stabilised_high))
         }),
-        ("stabilised_low", &|level| {
-            figure(level, |f| Some(f.stabilised_low))
-        }),
-        ("stabilised_high", &|level| {
-            figure(level, |f| Some(f.stabilised_high))
-        }),
-        ("tilt_border_rad", &|level| or_empty(level.tilt_border_rad)),
-        ("rms_angle_rad", &|level| figure(level, |f| f.rms_angle_rad)),
-        ("rms_torque_nm", &|level| figure(level, |f| f.rms_torque_nm)),
-        ("limit_cycle_rad", &|level| {
-            figure(level, |f| f.limit_cycle_rad)
-        }),
-        ("settle_s", &|level| figure(level, |f| f.settle_s)),
+        ("tilt_border_rad", &|l| or_empty(l.tilt_border_rad)),
+        ("rms_angle_rad", &|l| figure(l, |f| f.rms_angle_rad)),
+        ("rms_torque_nm", &|l| figure(l, |f| f.rms_torque_nm)),
+        ("limit_cycle_rad", &|l| figure(l, |f| f.limit_cycle_rad)),
+        ("settle_s", &|l| figure(l, |f| f.settle_s)),
     ];
     csv_of(&ran.levels, columns)
 }

@@ -50,10 +50,10 @@ fn shown(summary: &Summary) -> String {
         None => "–".to_string(),
     };
     let figures: &[TableColumn<FigureQuantiles>] = &[
-        ("Of the stabilised", &|figure| figure.figure.clone()),
-        ("5 %", &|figure| quantile(figure, 0)),
-        ("median", &|figure| quantile(figure, 1)),
-        ("95 %", &|figure| quantile(figure, 2)),
+        ("Of the stabilised", &|f| f.figure.clone()),
+        ("5 %", &|f| quantile(f, 0)),
+        ("median", &|f| quantile(f, 1)),
+        ("95 %", &|f| quantile(f, 2)),
     ];
     let mut text = format!(
         "{} of {} runs are stabilised: {} (95 % interval {} to {}), {} fall\n\
@@ -68,13 +68,11 @@ fn shown(summary: &Summary) -> String {
         table_of(&summary.figures, figures)
     );
     let influence: &[TableColumn<Influence>] = &[
-        ("Uncertain", &|own| own.value.clone()),
-        ("correlation with being stabilised", &|own| {
-            format!("{:+.2}", own.correlation)
+        ("Uncertain", &|o| o.value.clone()),
+        ("correlation with being stabilised", &|o| {
+            format!("{:+.2}", o.correlation)
         }),
-        ("of its size", &|own| {
-            format!("{:+.2}", own.correlation_of_size)
-        }),
+        ("of its size", &|o| format!("{:+.2}", o.correlation_of_size)),
     ];
     if !summary.influence.is_empty() {
         text += &format!("\n{}\n", table_of(&summary.influence, influence));
