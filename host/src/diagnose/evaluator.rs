@@ -12,7 +12,7 @@ use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
-use crate::fitting::{Candidate, FitData, Horizon, longest_stable};
+use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -65,8 +65,7 @@ impl<'a> Evaluator<'a> {
         };
         let steps = StepCounter::new(planned_steps(candidates.len(), most_effects), progress);
         let whole = FitData::new(model, training, Horizon::Whole);
-        let stable = || longest_stable(model, &whole);
-        let longest = options.horizon.unwrap_or_else(stable);
+        let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let search_horizon = search_horizon(&whole, longest, few);
         let search = whole.recut(search_horizon);
@@ -76,10 +75,8 @@ impl<'a> Evaluator<'a> {
             Some(horizon) => (horizon, whole.recut(horizon)),
             None => longest_useful(&base.search.model, &whole, longest),
         };
-        let held_out = (!held_out.is_empty()).then(|| FitData {
-            sigma_rad: training.sigma_rad.clone(),
-            ..FitData::new(model, held_out, horizon)
-        });
+        let held_out = (!held_out.is_empty())
+            .then(|| FitData::new(model, held_out, horizon).weighted_like(&training));
         base.evaluate(&training, held_out.as_ref(), FINISH);
         let changes = every_change(&base, &candidates, &search);
         Evaluator {

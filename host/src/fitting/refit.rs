@@ -8,10 +8,9 @@ use super::data::{FitData, Horizon};
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
-use super::horizon::longest_stable;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
-use super::staged::{fit_staged, initial_guess};
+use super::staged::fit_staged;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
@@ -102,14 +101,8 @@ pub fn refit(
     split: &Split,
     horizon: Option<Horizon>,
 ) -> Result<Refitted, Undetermined> {
-    let (data, horizon) = match horizon {
-        Some(_) => training(model, split, horizon),
-        // How long a run is stable depends on the values, which may be far off.
-        None => {
-            let whole = FitData::new(model, split.training.clone(), Horizon::Whole);
-            training(&initial_guess(model, free, &whole), split, None)
-        }
-    };
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
     finish(model, found, &data, split, horizon)
 }
@@ -127,7 +120,8 @@ pub fn refit_with(
     horizon: Option<Horizon>,
     progress: &dyn Fn(usize, usize),
 ) -> Result<Refitted, Undetermined> {
-    let (data, horizon) = training(model, split, horizon);
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let data = FitData::new(model, split.training.clone(), horizon);
     let base = fit(model, &model.free, &data, None, FitOptions::default());
     let mut free = model.free.clone();
     free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
@@ -148,12 +142,6 @@ pub fn refit_with(
     let options = FitOptions::default();
     let found = fit(&from.model, &free, &data, Some(&from.nodes), options);
     finish(&base.model, found, &data, split, horizon)
-}
-
-fn training(model: &Model, split: &Split, horizon: Option<Horizon>) -> (FitData, Horizon) {
-    let data = FitData::new(model, split.training.clone(), Horizon::Whole);
-    let horizon = horizon.unwrap_or_else(|| longest_stable(model, &data));
-    (data.recut(horizon), horizon)
 }
 
 fn finish(

@@ -137,10 +137,8 @@ fn true_error_rad(
     horizon_s: Option<f64>,
 ) -> f64 {
     let horizon = horizon_s.map_or(Horizon::Whole, Horizon::Seconds);
-    let data = FitData {
-        sigma_rad: FitData::new(truth, training, horizon).sigma_rad,
-        ..FitData::new(truth, held_out, horizon)
-    };
+    let data = FitData::new(truth, held_out, horizon)
+        .weighted_like(&FitData::new(truth, training, horizon));
     fit_start_states(truth, &data).rms_rad(&data)
 }
 
