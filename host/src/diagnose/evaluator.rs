@@ -1,11 +1,10 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::block_errors::AT_NOISE_FLOOR;
-use super::budget::{FEW_SAMPLES, FINISH, planned_steps};
+use super::budget::{EVALUATE, FEW_SAMPLES, FINISH, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
-use super::horizon::{longest_useful, search_horizon};
+use super::horizon::search_horizon;
 use super::hypothesis::{Evaluation, Hypothesis};
 use super::initial_guess::{PredictionChange, changes};
 use super::multistart::base_fit;
@@ -16,11 +15,6 @@ use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
-
-/// Iterations over the evaluation horizon, from what the windows found.
-const EVALUATE: usize = 12;
-/// The first windows to evaluate over where no model follows a whole motion, s.
-const LONGEST_WINDOW_S: f64 = 4.0;
 
 /// What every hypothesis is fitted to and judged by.
 pub(super) struct Evaluator<'a> {
@@ -33,7 +27,7 @@ pub(super) struct Evaluator<'a> {
     pub base: Hypothesis,
     pub horizon: Horizon,
     /// Whether the user has chosen it.
-    horizon_given: bool,
+    pub horizon_given: bool,
     /// How long the windows of `search` are.
     pub search_horizon: Horizon,
     pub placebos: Vec<Hypothesis>,
@@ -71,12 +65,9 @@ impl<'a> Evaluator<'a> {
         let search = whole.recut(search_horizon);
         let fitted = base_fit(model, &search, few, options.seed);
         let mut base = Hypothesis::new(Vec::new(), fitted);
-        let (horizon, training) = match options.horizon {
-            Some(horizon) => (horizon, whole.recut(horizon)),
-            None => longest_useful(&base.search.model, &whole, longest),
-        };
+        let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
-            .then(|| FitData::new(model, held_out, horizon).weighted_like(&training));
+            .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
         base.evaluate(&training, held_out.as_ref(), FINISH);
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
@@ -84,7 +75,7 @@ impl<'a> Evaluator<'a> {
             training,
             held_out,
             base,
-            horizon,
+            horizon: longest,
             horizon_given: options.horizon.is_some(),
             search_horizon,
             placebos: Vec::new(),
@@ -117,50 +108,6 @@ impl<'a> Evaluator<'a> {
     pub fn at_noise_floor(&self, hypothesis: &Hypothesis) -> bool {
         let evaluation = hypothesis.evaluation.as_ref();
         evaluation.is_some_and(Evaluation::is_noise)
-    }
-
-    /// Shortens the evaluation horizon while the best hypothesis, which explains every short window
-    /// of the training motions, does not follow them over the whole horizon: an arm that sticks a
-    /// sample sooner or later takes another way, and no model predicts that from the start of the
-    /// run.
-    pub fn shorten(&mut self, best: &mut Hypothesis) {
-        if !best.follows_windows() {
-            return;
-        }
-        let mut shortened = false;
-        loop {
-            self.evaluate(best);
-            let evaluation = best.evaluation.as_ref();
-            let follows = evaluation.is_some_and(|e| e.training.rms() < AT_NOISE_FLOOR);
-            let Some(shorter) = self.shorter().filter(|_| !follows) else {
-                break;
-            };
-            shortened = true;
-            best.evaluation = None;
-            self.horizon = shorter;
-            self.training = self.training.recut(shorter);
-            self.held_out = self.held_out.as_ref().map(|data| data.recut(shorter));
-        }
-        if shortened {
-            let held_out = self.held_out.as_ref();
-            self.base.evaluation = None;
-            self.base.evaluate(&self.training, held_out, FINISH);
-            for placebo in &mut self.placebos {
-                placebo.evaluation = None;
-                placebo.evaluate(&self.training, held_out, EVALUATE);
-            }
-        }
-    }
-
-    /// The next shorter evaluation horizon, if it may be chosen and is not the shortest already.
-    fn shorter(&self) -> Option<Horizon> {
-        let least = self.search_horizon.seconds()?;
-        let next = match self.horizon {
-            Horizon::Whole => LONGEST_WINDOW_S,
-            Horizon::Seconds(seconds) if seconds > least => seconds / 2.0,
-            Horizon::Seconds(_) => return None,
-        };
-        (!self.horizon_given).then_some(Horizon::Seconds(next.min(LONGEST_WINDOW_S).max(least)))
     }
 
     /// Evaluates a hypothesis over the evaluation horizon.

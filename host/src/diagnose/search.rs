@@ -113,9 +113,7 @@ impl Evaluator<'_> {
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
         }
-        if let Some(best) = hypotheses.first_mut() {
-            self.shorten(best);
-        }
+        self.choose_horizon(&hypotheses);
         self.evaluated(hypotheses)
     }
 

@@ -150,6 +150,17 @@ impl FitData {
         self.windows.iter().map(|w| w.samples.len()).sum()
     }
 
+    /// Duration of the longest window, s.
+    pub fn longest_window_s(&self) -> f64 {
+        let seconds = |window: &Window| {
+            let time = &self.motions[window.motion].time_s[window.samples.clone()];
+            time.last()
+                .zip(time.first())
+                .map_or(0.0, |(end, begin)| end - begin)
+        };
+        self.windows.iter().map(seconds).fold(0.0, f64::max)
+    }
+
     /// Duration of the longest motion, s.
     pub fn longest_s(&self) -> f64 {
         let durations = self.motions.iter().map(Motion::duration_s);
