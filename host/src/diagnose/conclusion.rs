@@ -2,11 +2,12 @@
 
 use super::block_errors::{BlockErrors, reduction};
 use super::evaluator::Evaluator;
-use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut};
+use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
-use super::verdict::Evidence;
+use super::values::{compared, contradicted};
+use super::verdict::{Evidence, Explanation};
 use super::words;
-use crate::fitting::{ErrorReduction, FitData, FittedValue, fitted_values};
+use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
 use crate::output::number::percent;
 
 /// Correlation from which two values are hardly told apart.
@@ -30,9 +31,13 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
     let mut diagnosis = Diagnosis {
         verdict: evidence.verdict(&rivals),
         effects: effects(chosen, added),
+        wrong_values: wrong_values(evidence, base),
         error: error(evidence),
         alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
-        base: base.to_vec(),
+        base: match chosen.value {
+            Some(_) => Vec::new(),
+            None => base.to_vec(),
+        },
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
         motions: motions(evidence),
@@ -41,21 +46,44 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
         next: Vec::new(),
         warnings: warnings(evidence, correlation.is_some()),
         horizon_s: evaluator.horizon.seconds(),
+        windows: windows(evaluator),
     };
     words::complete(&mut diagnosis);
     diagnosis
 }
 
 fn error(evidence: &Evidence) -> ErrorReduction {
-    let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
-    let blocks = base.deciding().zip(chosen.deciding());
+    let (given, chosen) = (&evidence.evaluator.given, evidence.chosen());
+    let blocks = given.deciding().zip(chosen.deciding());
     ErrorReduction {
-        before_rad: base.deciding_rms_rad(),
+        before_rad: given.deciding_rms_rad(),
+        refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),
         floor_rad: evidence.evaluator.training.floor_rad(),
         held_out: evidence.evaluator.held_out.is_some(),
         reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
     }
+}
+
+/// The values that are wrong: the one that explains all, or those that the refit contradicts; all of
+/// them where only together they differ.
+fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
+    let given = &evidence.evaluator.start;
+    let contradicted = contradicted(given, base);
+    match evidence.explanation() {
+        Explanation::Given(_) => Vec::new(),
+        Explanation::Value(_) => compared(given, base),
+        Explanation::Refit(_) if contradicted.is_empty() => compared(given, base),
+        Explanation::Refit(_) | Explanation::Effects(_) => contradicted,
+    }
+}
+
+/// How long the windows of all motions are.
+fn windows(evaluator: &Evaluator) -> Vec<MotionWindow> {
+    let data = [Some(&evaluator.training), evaluator.held_out.as_ref()];
+    let data = data.into_iter().flatten();
+    data.flat_map(|data| data.motion_windows(evaluator.horizon))
+        .collect()
 }
 
 fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
@@ -100,20 +128,25 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
 fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
     let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
     let added = values.len() - hypothesis.added_values();
+    let own = match hypothesis.value {
+        Some(_) => &values[..],
+        None => &[],
+    };
     Alternative {
         effects: effects(hypothesis, &values[added..]),
+        wrong_values: compared(&evaluator.start, own),
         error_rad: hypothesis.deciding_rms_rad(),
     }
 }
 
 fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
-    let (base, best) = (&evidence.evaluator.base, evidence.best.as_ref());
+    let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
     let kept = |h: &Hypothesis| {
-        best.into_iter()
-            .chain(rivals.iter().copied())
-            .any(|k| k.adds(&h.set))
+        let mut kept = rivals.iter().copied().chain([chosen]);
+        kept.any(|k| k.value == h.value && k.adds(&h.set))
     };
-    let rest = evidence.hypotheses.iter().filter(|h| !kept(h));
+    let evaluated = evidence.values.iter().filter(|h| h.evaluation.is_some());
+    let rest = evaluated.chain(&evidence.hypotheses).filter(|h| !kept(h));
     rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
@@ -155,7 +188,7 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
 
 fn motions(evidence: &Evidence) -> Vec<MotionError> {
     let evaluator = evidence.evaluator;
-    let evaluations = (&evaluator.base.evaluation, &evidence.chosen().evaluation);
+    let evaluations = (&evaluator.given.evaluation, &evidence.chosen().evaluation);
     let (Some(before), Some(after)) = evaluations else {
         return Vec::new();
     };

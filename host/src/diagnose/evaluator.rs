@@ -11,6 +11,7 @@ use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
+use super::values::as_given;
 use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
 use crate::model::Model;
@@ -24,6 +25,9 @@ pub(super) struct Evaluator<'a> {
     pub training: FitData,
     /// Held-out motions over the evaluation horizon.
     pub held_out: Option<FitData>,
+    /// The model as it came.
+    pub given: Hypothesis,
+    /// The model with its free values refitted.
     pub base: Hypothesis,
     pub horizon: Horizon,
     /// Whether the user has chosen it.
@@ -37,6 +41,8 @@ pub(super) struct Evaluator<'a> {
     /// The model as it came.
     pub start: Model,
     pub seed: u64,
+    /// Error that is good enough, rad.
+    pub tolerance_rad: Option<f64>,
     /// Most effects named together.
     pub most_effects: usize,
     pub steps: StepCounter<'a>,
@@ -69,12 +75,16 @@ impl<'a> Evaluator<'a> {
         let held_out = (!held_out.is_empty())
             .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
         base.evaluate(&training, held_out.as_ref(), FINISH);
+        let mut given = as_given(model, &search);
+        given.evaluate(&training, held_out.as_ref(), FINISH);
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
             training,
             held_out,
+            given,
             base,
+            tolerance_rad: options.tolerance_rad,
             horizon: longest,
             horizon_given: options.horizon.is_some(),
             search_horizon,

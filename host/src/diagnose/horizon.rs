@@ -80,12 +80,10 @@ impl Evaluator<'_> {
         self.horizon = horizon;
         self.training = self.training.recut(horizon);
         self.held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
-        self.base.evaluation = None;
-        self.base
-            .evaluate(&self.training, self.held_out.as_ref(), FINISH);
-        for placebo in &mut self.placebos {
-            placebo.evaluation = None;
-            placebo.evaluate(&self.training, self.held_out.as_ref(), EVALUATE);
+        let placebos = self.placebos.iter_mut();
+        for hypothesis in placebos.chain([&mut self.base, &mut self.given]) {
+            hypothesis.evaluation = None;
+            hypothesis.evaluate(&self.training, self.held_out.as_ref(), FINISH);
         }
     }
 }

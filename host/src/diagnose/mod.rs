@@ -19,12 +19,14 @@ mod restarts;
 mod search;
 mod selection;
 mod terms;
+mod values;
 mod verdict;
 pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
     Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
+    WrongValue,
 };
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

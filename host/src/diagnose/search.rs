@@ -44,15 +44,18 @@ pub fn diagnose(
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
-    let chosen = best.as_ref().unwrap_or(&evaluator.base);
-    let evidence = Evidence {
+    let values = evaluator.try_values();
+    let mut evidence = Evidence {
         evaluator: &evaluator,
-        residual_structure: evaluator.residual_structure(chosen),
-        per_motion_reduction: per_motion_reduction(chosen, &evaluator.training),
+        residual_structure: None,
+        per_motion_reduction: None,
         hypotheses,
+        values,
         best,
         seed: options.seed,
     };
+    evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
+    evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
     let diagnosis = conclude(&evidence);
     evaluator.steps.step(STRUCTURE_STEPS);
     diagnosis

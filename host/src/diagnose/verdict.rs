@@ -9,12 +9,36 @@ pub(super) struct Evidence<'a> {
     pub evaluator: &'a Evaluator<'a>,
     /// Every set that was tried.
     pub hypotheses: Vec<Hypothesis>,
+    /// Every single value of the given model that was refitted.
+    pub values: Vec<Hypothesis>,
     /// The smallest set that improves.
     pub best: Option<Hypothesis>,
     pub residual_structure: Option<ResidualStructure>,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: Option<f64>,
     pub seed: u64,
+}
+
+/// What explains the measurement, the simplest that does.
+#[derive(Clone, Copy)]
+pub(super) enum Explanation<'a> {
+    /// The model as given.
+    Given(&'a Hypothesis),
+    /// One other value in the model file.
+    Value(&'a Hypothesis),
+    /// Other values for all that are free.
+    Refit(&'a Hypothesis),
+    /// Missing effects.
+    Effects(&'a Hypothesis),
+}
+
+impl<'a> Explanation<'a> {
+    pub fn hypothesis(self) -> &'a Hypothesis {
+        match self {
+            Explanation::Given(h) | Explanation::Value(h) => h,
+            Explanation::Refit(h) | Explanation::Effects(h) => h,
+        }
+    }
 }
 
 /// Share of what is left that a free form must significantly gain before the explanation counts as
@@ -28,19 +52,60 @@ const MOST_LEFT: f64 = 0.125;
 /// Where more than this share of what is left goes as every motion gets values of its own, they are
 /// no constants.
 const MOST_VARYING: f64 = 0.5;
+/// A model that leaves more than so many floors is not nominal.
+const MOST_NOMINAL: f64 = 1.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
 const FAR_OFF: f64 = 2.0;
 
 impl Evidence<'_> {
-    pub fn chosen(&self) -> &Hypothesis {
-        self.best.as_ref().unwrap_or(&self.evaluator.base)
+    /// The simplest explanation that is not clearly worse than the best.
+    pub fn explanation(&self) -> Explanation<'_> {
+        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
+        let base = &evaluator.base;
+        let champion = match &self.best {
+            Some(best) => Explanation::Effects(best),
+            None if evaluator.improves(given, base) => Explanation::Refit(base),
+            None => Explanation::Given(given),
+        };
+        match evaluator.accepted(given, &self.values) {
+            Some(value) if !evaluator.clearly_worse(value, champion.hypothesis(), given) => {
+                Explanation::Value(value)
+            }
+            _ => champion,
+        }
     }
 
-    /// Sets with no more values that the data do not tell from the best.
+    pub fn chosen(&self) -> &Hypothesis {
+        self.explanation().hypothesis()
+    }
+
+    /// Explanations no less simple than the chosen one that the data do not tell from it.
     pub fn rivals(&self) -> Vec<&Hypothesis> {
-        let Some(best) = &self.best else {
-            return Vec::new();
-        };
+        match self.explanation() {
+            Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
+            Explanation::Value(value) => self.rivals_of_value(value),
+            Explanation::Effects(best) => self.rivals_of_set(best),
+        }
+    }
+
+    /// Other values, and single effects unless the value is one that would be refitted anyway.
+    fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&Hypothesis> {
+        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
+        let refit_explains = !evaluator.clearly_worse(&evaluator.base, value, given);
+        let effects = self
+            .hypotheses
+            .iter()
+            .filter(|h| h.set.len() == 1 && !refit_explains);
+        let others = self.values.iter().filter(|h| h.value != value.value);
+        others
+            .chain(effects)
+            .filter(|h| evaluator.improves(given, h))
+            .filter(|h| !evaluator.clearly_worse(h, value, given))
+            .collect()
+    }
+
+    /// Sets with no more values.
+    fn rivals_of_set(&self, best: &Hypothesis) -> Vec<&Hypothesis> {
         let (evaluator, base) = (self.evaluator, &self.evaluator.base);
         let others = self.hypotheses.iter().filter(|h| !h.adds(&best.set));
         others
@@ -53,8 +118,12 @@ impl Evidence<'_> {
     /// Whether what remains is more than may be passed over.
     fn incomplete(&self) -> bool {
         let chosen = self.chosen();
-        if self.evaluator.at_noise_floor(chosen) || self.evaluator.held_out.is_none() {
+        if self.evaluator.at_noise_floor(chosen) {
             return false;
+        }
+        if self.evaluator.held_out.is_none() {
+            let given = matches!(self.explanation(), Explanation::Given(_));
+            return given && self.leaves_much();
         }
         // Far above the noise, structure needs less proof.
         let least = match self.is_far_off(chosen) {
@@ -71,19 +140,19 @@ impl Evidence<'_> {
     /// Whether the best explanation needs other values in every motion.
     pub fn values_vary(&self) -> bool {
         let share = self.per_motion_reduction.unwrap_or(0.0);
-        self.best.is_some() && share > MOST_VARYING
+        !matches!(self.explanation(), Explanation::Given(_)) && share > MOST_VARYING
     }
 
     /// Whether the best explanation leaves a good part of the squared error above the noise, or the
-    /// base model, with no explanation found, is far off.
+    /// model as given, with no explanation found, more than noise.
     fn leaves_much(&self) -> bool {
         let left = self.chosen().deciding_mean();
-        let before = self.evaluator.base.deciding_mean();
-        if self.best.is_some() {
-            left > FAR_OFF && left - 1.0 > MOST_LEFT * (before - 1.0)
-        } else {
-            self.is_far_off(self.chosen())
-        }
+        let before = match self.explanation() {
+            Explanation::Effects(_) => self.evaluator.base.deciding_mean(),
+            Explanation::Value(_) | Explanation::Refit(_) => self.evaluator.given.deciding_mean(),
+            Explanation::Given(_) => return left.sqrt() > MOST_NOMINAL,
+        };
+        left > FAR_OFF && left - 1.0 > MOST_LEFT * (before - 1.0)
     }
 
     /// Whether a hypothesis leaves a multiple of the noise that no noise explains.
@@ -102,12 +171,28 @@ impl Evidence<'_> {
     }
 
     pub fn verdict(&self, rivals: &[&Hypothesis]) -> Verdict {
-        match &self.best {
-            _ if self.incomplete() => Verdict::Unexplained,
-            None => Verdict::Nominal,
-            Some(_) if self.placebo_ranks() => Verdict::Unexplained,
-            Some(_) if !rivals.is_empty() => Verdict::Ambiguous,
-            Some(_) => Verdict::Named,
+        let explanation = self.explanation();
+        if matches!(explanation, Explanation::Given(_)) && self.is_tolerated() {
+            return Verdict::Adequate;
         }
+        if self.incomplete() {
+            return Verdict::Unexplained;
+        }
+        match explanation {
+            Explanation::Given(_) => Verdict::Nominal,
+            Explanation::Refit(_) => Verdict::WrongValue,
+            Explanation::Value(_) if rivals.is_empty() => Verdict::WrongValue,
+            Explanation::Effects(_) if self.placebo_ranks() => Verdict::Unexplained,
+            Explanation::Effects(_) if rivals.is_empty() => Verdict::Named,
+            Explanation::Value(_) | Explanation::Effects(_) => Verdict::Ambiguous,
+        }
+    }
+
+    /// Whether the model as given leaves more than noise, but no more than the user tolerates.
+    fn is_tolerated(&self) -> bool {
+        let given = &self.evaluator.given;
+        let tolerance = self.evaluator.tolerance_rad;
+        !self.evaluator.at_noise_floor(given)
+            && tolerance.is_some_and(|tolerance| given.deciding_rms_rad() <= tolerance)
     }
 }

@@ -164,6 +164,7 @@ fn finish(
         values,
         error: ErrorReduction {
             before_rad: rms_rad(before),
+            refitted_rad: None,
             after_rad: rms_rad(&found.model),
             floor_rad: judged.floor_rad(),
             held_out: !split.held_out.is_empty(),
