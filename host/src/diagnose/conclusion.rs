@@ -34,10 +34,7 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
         wrong_values: wrong_values(evidence, base),
         error: error(evidence),
         alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
-        base: match chosen.value {
-            Some(_) => Vec::new(),
-            None => base.to_vec(),
-        },
+        base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
         motions: motions(evidence),
@@ -74,7 +71,7 @@ fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
         Explanation::Given(_) => Vec::new(),
         Explanation::Value(_) => compared(given, base),
         Explanation::Refit(_) if contradicted.is_empty() => compared(given, base),
-        Explanation::Refit(_) | Explanation::Effects(_) => contradicted,
+        _ => contradicted,
     }
 }
 
@@ -145,8 +142,8 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
         let mut kept = rivals.iter().copied().chain([chosen]);
         kept.any(|k| k.value == h.value && k.adds(&h.set))
     };
-    let evaluated = evidence.values.iter().filter(|h| h.evaluation.is_some());
-    let rest = evaluated.chain(&evidence.hypotheses).filter(|h| !kept(h));
+    let values = evidence.values.iter().chain(&evidence.values_refitted);
+    let rest = values.chain(&evidence.hypotheses).filter(|h| !kept(h));
     rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
@@ -162,7 +159,12 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
 }
 
 fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
-    let (evaluator, base) = (evidence.evaluator, &evidence.evaluator.base);
+    let evaluator = evidence.evaluator;
+    // A value refitted alone is compared with the model as given.
+    let base = match hypothesis.value {
+        Some(_) if hypothesis.search.free.len() == 1 => &evaluator.given,
+        _ => &evaluator.base,
+    };
     let why = if hypothesis.rests_on_bound() {
         "its best value is on a bound, where it vanishes or stops being physical"
     } else if hypothesis.search_mean > 0.99 * base.search_mean {
@@ -172,15 +174,15 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
         "it fits the training motions and makes the held-out ones worse"
     } else {
-        match &evidence.best {
-            Some(best) if hypothesis.set.len() > best.set.len() => {
+        match evidence.explanation() {
+            Explanation::Given(_) => "what it gains may be chance",
+            Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
                 "one more effect brings no significant reduction"
             }
-            Some(best) if evaluator.clearly_worse(hypothesis, best, base) => {
-                return format!("{} leaves significantly less", best.names().join(" + "));
+            explanation if evaluator.clearly_worse(hypothesis, explanation.hypothesis(), base) => {
+                return format!("{} leaves significantly less", explanation.name());
             }
-            Some(_) => "the chosen set does as well with fewer values",
-            None => "what it gains may be chance",
+            _ => "the chosen explanation does as well and is simpler",
         }
     };
     why.to_string()

@@ -11,6 +11,7 @@ use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
+use super::step_size::coarsened;
 use super::values::as_given;
 use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
@@ -69,6 +70,7 @@ impl<'a> Evaluator<'a> {
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let search_horizon = search_horizon(&whole, longest, few);
         let search = whole.recut(search_horizon);
+        let model = &coarsened(model, &search);
         let fitted = base_fit(model, &search, few, options.seed);
         let mut base = Hypothesis::new(Vec::new(), fitted);
         let training = whole.recut(longest);

@@ -13,7 +13,8 @@ use std::cmp::Ordering;
 pub(super) struct Hypothesis {
     /// The effects added to the base, in the order they were added.
     pub set: Vec<Candidate>,
-    /// The value of the given model that alone was refitted, where that is the hypothesis.
+    /// The value of the given model that is wrong, where that is the hypothesis: refitted alone, or
+    /// along with those that are free.
     pub value: Option<ParameterPath>,
     /// The fit on short windows.
     pub search: Fit,
@@ -198,7 +199,7 @@ impl Hypothesis {
     pub fn rests_on_bound(&self) -> bool {
         let on_bound = self.fit().on_bound();
         let added = match self.value {
-            Some(_) => 0,
+            Some(_) => on_bound.len() - 1,
             None => on_bound.len() - self.added_values(),
         };
         on_bound[added..].contains(&true)

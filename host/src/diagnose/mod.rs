@@ -18,6 +18,7 @@ mod residual_structure;
 mod restarts;
 mod search;
 mod selection;
+mod step_size;
 mod terms;
 mod values;
 mod verdict;

@@ -44,13 +44,14 @@ pub fn diagnose(
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
-    let values = evaluator.try_values();
+    let (values, values_refitted) = (evaluator.try_values(), evaluator.try_values_refitted());
     let mut evidence = Evidence {
         evaluator: &evaluator,
         residual_structure: None,
         per_motion_reduction: None,
         hypotheses,
         values,
+        values_refitted,
         best,
         seed: options.seed,
     };

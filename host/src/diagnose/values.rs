@@ -12,11 +12,26 @@ use rayon::prelude::*;
 impl Evaluator<'_> {
     /// Every value of the given model fitted alone, free or not; the best are evaluated.
     pub fn try_values(&self) -> Vec<Hypothesis> {
-        let paths = values_of(&self.start);
+        self.fit_values(&self.given, &values_of(&self.start))
+    }
+
+    /// Every value that is not free fitted along with those that are; the best are evaluated.
+    pub fn try_values_refitted(&self) -> Vec<Hypothesis> {
+        let free = &self.base.search.free;
+        if free.is_empty() {
+            return Vec::new();
+        }
+        let mut paths = values_of(&self.start);
+        paths.retain(|path| !free.contains(path));
+        self.fit_values(&self.base, &paths)
+    }
+
+    fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
         let look = |&path: &ParameterPath| {
-            let (model, nodes) = (&self.start, &self.given.search.nodes);
+            let from = &from.search;
+            let free = [from.free.as_slice(), &[path]].concat();
             let options = FitOptions::iterations(LOOK).rough();
-            let search = fit(model, &[path], &self.search, Some(nodes), options);
+            let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
             Hypothesis {
                 value: Some(path),
                 ..Hypothesis::new(Vec::new(), search)
@@ -24,7 +39,8 @@ impl Evaluator<'_> {
         };
         let mut values: Vec<Hypothesis> = paths.par_iter().map(look).collect();
         values.sort_by(Hypothesis::by_error);
-        values.par_iter_mut().take(FINALISTS).for_each(|value| {
+        values.truncate(FINALISTS);
+        values.par_iter_mut().for_each(|value| {
             value.resume(&self.search, FitOptions::iterations(FINISH));
             self.evaluate(value);
         });

@@ -11,6 +11,8 @@ pub(super) struct Evidence<'a> {
     pub hypotheses: Vec<Hypothesis>,
     /// Every single value of the given model that was refitted.
     pub values: Vec<Hypothesis>,
+    /// The same along with the free values, for values that are not free.
+    pub values_refitted: Vec<Hypothesis>,
     /// The smallest set that improves.
     pub best: Option<Hypothesis>,
     pub residual_structure: Option<ResidualStructure>,
@@ -28,6 +30,8 @@ pub(super) enum Explanation<'a> {
     Value(&'a Hypothesis),
     /// Other values for all that are free.
     Refit(&'a Hypothesis),
+    /// Other values for all that are free, and for one that is not.
+    ValueAndRefit(&'a Hypothesis),
     /// Missing effects.
     Effects(&'a Hypothesis),
 }
@@ -36,7 +40,17 @@ impl<'a> Explanation<'a> {
     pub fn hypothesis(self) -> &'a Hypothesis {
         match self {
             Explanation::Given(h) | Explanation::Value(h) => h,
-            Explanation::Refit(h) | Explanation::Effects(h) => h,
+            Explanation::Refit(h) | Explanation::ValueAndRefit(h) => h,
+            Explanation::Effects(h) => h,
+        }
+    }
+
+    /// What it changes, for people.
+    pub fn name(self) -> String {
+        match self {
+            Explanation::Given(_) => "the model as given".to_string(),
+            Explanation::Refit(_) => "the refitted model".to_string(),
+            _ => self.hypothesis().names().join(" + "),
         }
     }
 }
@@ -67,9 +81,15 @@ impl Evidence<'_> {
             None if evaluator.improves(given, base) => Explanation::Refit(base),
             None => Explanation::Given(given),
         };
-        match evaluator.accepted(given, &self.values) {
-            Some(value) if !evaluator.clearly_worse(value, champion.hypothesis(), given) => {
-                Explanation::Value(value)
+        let best = champion.hypothesis();
+        if let Some(value) = evaluator.accepted(given, &self.values)
+            && !evaluator.clearly_worse(value, best, given)
+        {
+            return Explanation::Value(value);
+        }
+        match evaluator.accepted(base, &self.values_refitted) {
+            Some(value) if !evaluator.clearly_worse(value, best, base) => {
+                Explanation::ValueAndRefit(value)
             }
             _ => champion,
         }
@@ -84,6 +104,14 @@ impl Evidence<'_> {
         match self.explanation() {
             Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
             Explanation::Value(value) => self.rivals_of_value(value),
+            Explanation::ValueAndRefit(value) => {
+                let base = &self.evaluator.base;
+                self.rivals_among(
+                    value,
+                    base,
+                    self.values_refitted.iter().chain(self.singles()),
+                )
+            }
             Explanation::Effects(best) => self.rivals_of_set(best),
         }
     }
@@ -92,15 +120,24 @@ impl Evidence<'_> {
     fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&Hypothesis> {
         let (evaluator, given) = (self.evaluator, &self.evaluator.given);
         let refit_explains = !evaluator.clearly_worse(&evaluator.base, value, given);
-        let effects = self
-            .hypotheses
-            .iter()
-            .filter(|h| h.set.len() == 1 && !refit_explains);
-        let others = self.values.iter().filter(|h| h.value != value.value);
+        let effects = self.singles().filter(|_| !refit_explains);
+        self.rivals_among(value, given, self.values.iter().chain(effects))
+    }
+
+    fn singles(&self) -> impl Iterator<Item = &Hypothesis> {
+        self.hypotheses.iter().filter(|h| h.set.len() == 1)
+    }
+
+    fn rivals_among<'a>(
+        &self,
+        value: &Hypothesis,
+        reference: &Hypothesis,
+        others: impl Iterator<Item = &'a Hypothesis>,
+    ) -> Vec<&'a Hypothesis> {
         others
-            .chain(effects)
-            .filter(|h| evaluator.improves(given, h))
-            .filter(|h| !evaluator.clearly_worse(h, value, given))
+            .filter(|h| h.value != value.value)
+            .filter(|h| self.evaluator.improves(reference, h))
+            .filter(|h| !self.evaluator.clearly_worse(h, value, reference))
             .collect()
     }
 
@@ -148,7 +185,9 @@ impl Evidence<'_> {
     fn leaves_much(&self) -> bool {
         let left = self.chosen().deciding_mean();
         let before = match self.explanation() {
-            Explanation::Effects(_) => self.evaluator.base.deciding_mean(),
+            Explanation::Effects(_) | Explanation::ValueAndRefit(_) => {
+                self.evaluator.base.deciding_mean()
+            }
             Explanation::Value(_) | Explanation::Refit(_) => self.evaluator.given.deciding_mean(),
             Explanation::Given(_) => return left.sqrt() > MOST_NOMINAL,
         };
@@ -181,10 +220,12 @@ impl Evidence<'_> {
         match explanation {
             Explanation::Given(_) => Verdict::Nominal,
             Explanation::Refit(_) => Verdict::WrongValue,
-            Explanation::Value(_) if rivals.is_empty() => Verdict::WrongValue,
+            Explanation::Value(_) | Explanation::ValueAndRefit(_) if rivals.is_empty() => {
+                Verdict::WrongValue
+            }
             Explanation::Effects(_) if self.placebo_ranks() => Verdict::Unexplained,
             Explanation::Effects(_) if rivals.is_empty() => Verdict::Named,
-            Explanation::Value(_) | Explanation::Effects(_) => Verdict::Ambiguous,
+            _ => Verdict::Ambiguous,
         }
     }
 
