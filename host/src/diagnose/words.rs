@@ -87,7 +87,7 @@ fn share(diagnosis: &Diagnosis) -> String {
     let error = &diagnosis.error;
     let removed = 1.0 - (error.after_rad / error.before_rad).powi(2);
     match removed > 0.0 {
-        true => format!(", which removes {} of the squared error", percent(removed)),
+        true => format!(", which removes {} % of the squared error", short(100.0 * removed)),
         false => String::new(),
     }
 }

@@ -70,6 +70,14 @@ impl Outcome {
         self.verdict == Verdict::Named && self.effects.iter().eq(self.hidden.iter())
     }
 
+    /// Whether it says that an effect is missing.
+    pub fn names_effects(&self) -> bool {
+        matches!(
+            self.verdict,
+            Verdict::Named | Verdict::Ambiguous | Verdict::Unexplained
+        )
+    }
+
     /// Held-out error against the true model's.
     pub fn ratio(&self) -> f64 {
         self.after_rad / self.true_rad
