@@ -87,7 +87,10 @@ fn share(diagnosis: &Diagnosis) -> String {
     let error = &diagnosis.error;
     let removed = 1.0 - (error.after_rad / error.before_rad).powi(2);
     match removed > 0.0 {
-        true => format!(", which removes {} % of the squared error", short(100.0 * removed)),
+        true => format!(
+            ", which removes {} % of the squared error",
+            short(100.0 * removed)
+        ),
         false => String::new(),
     }
 }
@@ -217,26 +220,23 @@ fn horizon(diagnosis: &Diagnosis) -> String {
         .map_or(String::new(), |seconds| format!(" --horizon {seconds}"))
 }
 
-/// Each effect added to the model before, then the first and the last side by side.
+/// The effects added to the model, then both models side by side.
 fn commands(diagnosis: &Diagnosis) -> Vec<String> {
     let ((holdout, judged), horizon) = (held_out(diagnosis), horizon(diagnosis));
-    let mut from = MODEL.to_string();
-    let mut lines = Vec::new();
-    for (index, effect) in diagnosis.effects.iter().enumerate() {
-        let to = match index {
-            0 => "better.toml".to_string(),
-            index => format!("better{}.toml", index + 1),
-        };
-        let address = effect.address();
-        lines.push(format!(
-            "Add it: handstand add {from} {address} --fit {LOGS}{holdout}{horizon} -o {to}"
-        ));
-        from = to;
-    }
-    lines.push(format!(
-        "See what it gains: handstand compare {MODEL} {judged} --model {from}{horizon}"
-    ));
-    lines
+    let effects: Vec<String> = diagnosis
+        .effects
+        .iter()
+        .map(FittedEffect::address)
+        .collect();
+    let effects = effects.join(" ");
+    vec![
+        format!(
+            "Add it: handstand add {MODEL} {effects} --fit {LOGS}{holdout}{horizon} -o better.toml"
+        ),
+        format!(
+            "See what it gains: handstand compare {MODEL} {judged} --model better.toml{horizon}"
+        ),
+    ]
 }
 
 /// One experiment for each effect that some of the first explanations have and others do not.
