@@ -38,8 +38,8 @@ impl Guess {
         let (joints, first) = (motion.position_rad.len(), window.samples.start);
         let mut unknowns = DVector::zeros(3 * joints);
         let mut deviation = DVector::zeros(3 * joints);
-        for joint in 0..joints {
-            let (time, position) = (&motion.time_s, &motion.position_rad[joint]);
+        for (joint, position) in motion.position_rad.iter().enumerate() {
+            let time = &motion.time_s;
             let [wide, near] = [REACH_S, REACH_S / 2.0]
                 .map(|reach| LocalParabola::around(time, position, first, reach));
             for (order, least) in LEAST_DEVIATIONS.into_iter().enumerate() {
