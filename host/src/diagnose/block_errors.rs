@@ -224,3 +224,52 @@ pub(super) fn reduction(before: &BlockErrors, after: &BlockErrors, seed: u64) ->
 pub(super) fn significantly_worse(worse: &BlockErrors, better: &BlockErrors, seed: u64) -> bool {
     bootstrap(worse, better, seed, gain)[0] > 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One motion for each list of sums; each block has ten residuals.
+    fn errors(motions: &[&[f64]]) -> BlockErrors {
+        let mut errors = BlockErrors {
+            motions: vec![(0.0, 0); motions.len()],
+            ..BlockErrors::default()
+        };
+        for (motion, sums) in motions.iter().enumerate() {
+            let blocks = sums.iter().map(|sum| Block {
+                motion,
+                sum: *sum,
+                count: 10,
+            });
+            errors.blocks.extend(blocks);
+        }
+        errors
+    }
+
+    #[test]
+    fn a_motion_with_large_errors_does_not_swamp_another() {
+        let wild: Vec<f64> = (0..20).map(|k| 1e6 * f64::from(1 + k % 7)).collect();
+        let (calm, calmer) = (vec![100.0; 20], vec![20.0; 20]);
+        let before = errors(&[&wild, &calm]);
+        let after = errors(&[&wild, &calmer]);
+        assert!(significantly_worse(&before, &after, 1));
+        let alone = gain(&paired(&errors(&[&calm]), &errors(&[&calmer])));
+        assert!((gain(&paired(&before, &after)) - alone).abs() < 1e-9);
+    }
+
+    #[test]
+    fn blocks_are_resampled_within_their_motion() {
+        // Each motion gains the same in all of its blocks: nothing is left to chance.
+        let before = errors(&[&[1000.0; 8], &[40.0; 8]]);
+        let after = errors(&[&[500.0; 8], &[30.0; 8]]);
+        let [low, high] = bootstrap(&before, &after, 1, gain);
+        assert!((high - low).abs() < 1e-9, "{low} {high}");
+    }
+
+    #[test]
+    fn what_is_gained_in_some_blocks_and_lost_in_others_is_not_significant() {
+        let before = errors(&[&[100.0, 50.0, 100.0, 50.0, 100.0, 50.0, 100.0, 50.0]]);
+        let after = errors(&[&[50.0, 100.0, 50.0, 100.0, 50.0, 100.0, 50.0, 99.0]]);
+        assert!(!significantly_worse(&before, &after, 1));
+    }
+}

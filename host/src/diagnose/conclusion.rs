@@ -2,10 +2,10 @@
 
 use super::block_errors::{BlockErrors, reduction};
 use super::evaluator::Evaluator;
+use super::explanation::{Evidence, Explanation};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
 use super::values::{compared, contradicted};
-use super::verdict::{Evidence, Explanation};
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
 use crate::output::number::percent;

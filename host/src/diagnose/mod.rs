@@ -7,6 +7,7 @@ mod candidates;
 mod conclusion;
 mod consistency;
 mod evaluator;
+mod explanation;
 mod findings;
 mod horizon;
 mod hypothesis;

@@ -13,12 +13,12 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
+use super::explanation::Evidence;
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
-use super::verdict::Evidence;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;

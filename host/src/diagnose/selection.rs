@@ -10,6 +10,31 @@ use crate::fitting::Fit;
 /// A hypothesis that leaves up to this much more of the squared error may be as good.
 const NEAR: f64 = 1.1;
 
+/// What a larger explanation must bring to be preferred to a smaller one.
+#[derive(Debug, Clone, Copy)]
+struct Gate {
+    /// Lower end of the interval of the log-likelihood gained where it counts.
+    gain_low: f64,
+    /// Largest reduction of the error among the motions.
+    largest_reduction: f64,
+    /// Whether no value lies on its bound, and none of several effects may be nothing.
+    every_value_counts: bool,
+    /// Change of the Bayesian information criterion on the training motions.
+    bic_change: f64,
+    /// Whether motions that took no part in the fit decide.
+    held_out: bool,
+}
+
+impl Gate {
+    fn is_passed(self) -> bool {
+        let practical = if self.held_out { 0.03 } else { 0.10 };
+        self.every_value_counts
+            && self.gain_low > 0.0
+            && self.largest_reduction > practical
+            && self.bic_change < -10.0
+    }
+}
+
 impl Evaluator<'_> {
     /// The best hypothesis that is significantly and usefully better than `reference` where it
     /// counts.
@@ -45,12 +70,14 @@ impl Evaluator<'_> {
         };
         let after = evaluation.deciding();
         let [low, _] = bootstrap(before, after, self.seed, gain);
-        let practical = if self.held_out.is_some() { 0.03 } else { 0.10 };
-        evaluation.significant
-            && !hypothesis.rests_on_bound()
-            && low > 0.0
-            && largest_reduction(&paired(before, after)) > practical
-            && self.bic_change(reference, hypothesis) < -10.0
+        let gate = Gate {
+            gain_low: low,
+            largest_reduction: largest_reduction(&paired(before, after)),
+            every_value_counts: evaluation.significant && !hypothesis.rests_on_bound(),
+            bic_change: self.bic_change(reference, hypothesis),
+            held_out: self.held_out.is_some(),
+        };
+        gate.is_passed()
     }
 
     /// Whether the data tell that `hypothesis` is worse than `best`; `reference` is what both
@@ -115,4 +142,47 @@ fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
     (n * (1.0 - correlation) / (1.0 + correlation))
         .max(2.0 * errors.len() as f64)
         .min(n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_condition_of_the_gate_counts() {
+        let gate = Gate {
+            gain_low: 1.0,
+            largest_reduction: 0.05,
+            every_value_counts: true,
+            bic_change: -11.0,
+            held_out: true,
+        };
+        assert!(gate.is_passed());
+        let refused = [
+            Gate {
+                gain_low: -0.1,
+                ..gate
+            },
+            Gate {
+                largest_reduction: 0.02,
+                ..gate
+            },
+            Gate {
+                every_value_counts: false,
+                ..gate
+            },
+            Gate {
+                bic_change: -9.0,
+                ..gate
+            },
+            // The motions of the fit flatter it.
+            Gate {
+                held_out: false,
+                ..gate
+            },
+        ];
+        for gate in refused {
+            assert!(!gate.is_passed(), "{gate:?}");
+        }
+    }
 }

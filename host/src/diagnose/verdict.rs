@@ -1,58 +1,41 @@
-//! What may be claimed.
+//! What may be claimed: the rules, apart from how their signs are found.
 
-use super::evaluator::Evaluator;
-use super::findings::{ResidualStructure, Verdict};
-use super::hypothesis::Hypothesis;
+use super::findings::Verdict;
 
-/// Everything the verdict rests on.
-pub(super) struct Evidence<'a> {
-    pub evaluator: &'a Evaluator<'a>,
-    /// Every set that was tried.
-    pub hypotheses: Vec<Hypothesis>,
-    /// Every single value of the given model that was refitted.
-    pub values: Vec<Hypothesis>,
-    /// The same along with the free values, for values that are not free.
-    pub values_refitted: Vec<Hypothesis>,
-    /// The smallest set that improves.
-    pub best: Option<Hypothesis>,
-    pub residual_structure: Option<ResidualStructure>,
-    /// Share of what is left that goes when every motion has values of its own.
-    pub per_motion_reduction: Option<f64>,
-    pub seed: u64,
-}
-
-/// What explains the measurement, the simplest that does.
-#[derive(Clone, Copy)]
-pub(super) enum Explanation<'a> {
+/// What kind of explanation was chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
     /// The model as given.
-    Given(&'a Hypothesis),
-    /// One other value in the model file.
-    Value(&'a Hypothesis),
-    /// Other values for all that are free.
-    Refit(&'a Hypothesis),
-    /// Other values for all that are free, and for one that is not.
-    ValueAndRefit(&'a Hypothesis),
+    Given,
+    /// Other values in the model file.
+    Values,
     /// Missing effects.
-    Effects(&'a Hypothesis),
+    Effects,
 }
 
-impl<'a> Explanation<'a> {
-    pub fn hypothesis(self) -> &'a Hypothesis {
-        match self {
-            Explanation::Given(h) | Explanation::Value(h) => h,
-            Explanation::Refit(h) | Explanation::ValueAndRefit(h) => h,
-            Explanation::Effects(h) => h,
-        }
-    }
-
-    /// What it changes, for people.
-    pub fn name(self) -> String {
-        match self {
-            Explanation::Given(_) => "the model as given".to_string(),
-            Explanation::Refit(_) => "the refitted model".to_string(),
-            _ => self.hypothesis().names().join(" + "),
-        }
-    }
+/// What a verdict hangs on. Means are of squared residuals over the noise; 1 is the noise.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Signs {
+    pub kind: Kind,
+    /// Mean of what the explanation improves on.
+    pub before: f64,
+    /// Mean that it leaves.
+    pub left: f64,
+    /// Whether that is nothing but noise, on the motions fitted and on those held out.
+    pub at_noise_floor: bool,
+    /// Whether motions that took no part in the fit decide.
+    pub held_out: bool,
+    /// Whether the user asked for no less error.
+    pub tolerated: bool,
+    /// Share of what is left that a free form could still gain, and the lower end of its interval.
+    pub free_form_share: f64,
+    pub free_form_low: f64,
+    /// Share of what is left that goes when every motion has values of its own.
+    pub per_motion_reduction: f64,
+    /// Whether a placebo regressor gains about as much as the effects.
+    pub placebo_ranks: bool,
+    /// Whether other explanations do as well.
+    pub rivals: bool,
 }
 
 /// Share of what is left that a free form must significantly gain before the explanation counts as
@@ -71,169 +54,229 @@ const MOST_NOMINAL: f64 = 1.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
 const FAR_OFF: f64 = 2.0;
 
-impl Evidence<'_> {
-    /// The simplest explanation that is not clearly worse than the best.
-    pub fn explanation(&self) -> Explanation<'_> {
-        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
-        let base = &evaluator.base;
-        let champion = match &self.best {
-            Some(best) => Explanation::Effects(best),
-            None if evaluator.improves(given, base) => Explanation::Refit(base),
-            None => Explanation::Given(given),
-        };
-        let best = champion.hypothesis();
-        if let Some(value) = evaluator.accepted(given, &self.values)
-            && !evaluator.clearly_worse(value, best, given)
-        {
-            return Explanation::Value(value);
-        }
-        match evaluator.accepted(base, &self.values_refitted) {
-            Some(value) if !evaluator.clearly_worse(value, best, base) => {
-                Explanation::ValueAndRefit(value)
-            }
-            _ => champion,
+impl Signs {
+    pub fn verdict(&self) -> Verdict {
+        match self.kind {
+            Kind::Given if !self.at_noise_floor && self.tolerated => Verdict::Adequate,
+            _ if self.is_incomplete() => Verdict::Unexplained,
+            Kind::Given => Verdict::Nominal,
+            _ if self.placebo_ranks => Verdict::Unexplained,
+            _ if self.rivals => Verdict::Ambiguous,
+            Kind::Values => Verdict::WrongValue,
+            Kind::Effects => Verdict::Named,
         }
     }
 
-    pub fn chosen(&self) -> &Hypothesis {
-        self.explanation().hypothesis()
-    }
-
-    /// Explanations no less simple than the chosen one that the data do not tell from it.
-    pub fn rivals(&self) -> Vec<&Hypothesis> {
-        match self.explanation() {
-            Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
-            Explanation::Value(value) => self.rivals_of_value(value),
-            Explanation::ValueAndRefit(value) => {
-                let base = &self.evaluator.base;
-                self.rivals_among(
-                    value,
-                    base,
-                    self.values_refitted.iter().chain(self.singles()),
-                )
-            }
-            Explanation::Effects(best) => self.rivals_of_set(best),
-        }
-    }
-
-    /// Other values, and single effects unless the value is one that would be refitted anyway.
-    fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&Hypothesis> {
-        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
-        let refit_explains = !evaluator.clearly_worse(&evaluator.base, value, given);
-        let effects = self.singles().filter(|_| !refit_explains);
-        self.rivals_among(value, given, self.values.iter().chain(effects))
-    }
-
-    fn singles(&self) -> impl Iterator<Item = &Hypothesis> {
-        self.hypotheses.iter().filter(|h| h.set.len() == 1)
-    }
-
-    fn rivals_among<'a>(
-        &self,
-        value: &Hypothesis,
-        reference: &Hypothesis,
-        others: impl Iterator<Item = &'a Hypothesis>,
-    ) -> Vec<&'a Hypothesis> {
-        others
-            .filter(|h| h.value != value.value)
-            .filter(|h| self.evaluator.improves(reference, h))
-            .filter(|h| !self.evaluator.clearly_worse(h, value, reference))
-            .collect()
-    }
-
-    /// Sets with no more values.
-    fn rivals_of_set(&self, best: &Hypothesis) -> Vec<&Hypothesis> {
-        let (evaluator, base) = (self.evaluator, &self.evaluator.base);
-        let others = self.hypotheses.iter().filter(|h| !h.adds(&best.set));
-        others
-            .filter(|h| h.added_values() <= best.added_values())
-            .filter(|h| evaluator.improves(base, h))
-            .filter(|h| !evaluator.clearly_worse(h, best, base))
-            .collect()
+    /// Whether the explanation needs other values in every motion.
+    pub fn values_vary(&self) -> bool {
+        self.kind != Kind::Given && self.per_motion_reduction > MOST_VARYING
     }
 
     /// Whether what remains is more than may be passed over.
-    fn incomplete(&self) -> bool {
-        let chosen = self.chosen();
-        if self.evaluator.at_noise_floor(chosen) {
+    fn is_incomplete(&self) -> bool {
+        if self.at_noise_floor {
             return false;
         }
-        if self.evaluator.held_out.is_none() {
-            let given = matches!(self.explanation(), Explanation::Given(_));
-            return given && self.leaves_much();
+        match (self.kind, self.held_out) {
+            (Kind::Given, _) => self.left.sqrt() > MOST_NOMINAL || self.is_structured(),
+            (_, true) => self.is_structured() || self.leaves_much() || self.values_vary(),
+            // The motions that were fitted prove nothing about what is left.
+            (_, false) => false,
         }
-        // Far above the noise, structure needs less proof.
-        let least = match self.is_far_off(chosen) {
+    }
+
+    /// Whether what is left has a structure. Far above the noise, structure needs less proof.
+    fn is_structured(&self) -> bool {
+        let least = match self.left.sqrt() > FAR_OFF * FAR_OFF {
             true => 0.0,
             false => UNEXPLAINED_LOW,
         };
-        let structured = self
-            .residual_structure
-            .as_ref()
-            .is_some_and(|r| r.explainable_low > least && r.explainable_share > UNEXPLAINED_SHARE);
-        structured || self.leaves_much() || self.values_vary()
+        self.free_form_low > least && self.free_form_share > UNEXPLAINED_SHARE
     }
 
-    /// Whether the best explanation needs other values in every motion.
-    pub fn values_vary(&self) -> bool {
-        let share = self.per_motion_reduction.unwrap_or(0.0);
-        !matches!(self.explanation(), Explanation::Given(_)) && share > MOST_VARYING
-    }
-
-    /// Whether the best explanation leaves a good part of the squared error above the noise, or the
-    /// model as given, with no explanation found, more than noise.
+    /// Whether the explanation leaves a good part of the squared error above the noise.
     fn leaves_much(&self) -> bool {
-        let left = self.chosen().deciding_mean();
-        let before = match self.explanation() {
-            Explanation::Effects(_) | Explanation::ValueAndRefit(_) => {
-                self.evaluator.base.deciding_mean()
-            }
-            Explanation::Value(_) | Explanation::Refit(_) => self.evaluator.given.deciding_mean(),
-            Explanation::Given(_) => return left.sqrt() > MOST_NOMINAL,
+        self.left > FAR_OFF && self.left - 1.0 > MOST_LEFT * (self.before - 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Effects that explain all but noise.
+    const FOUND: Signs = Signs {
+        kind: Kind::Effects,
+        before: 400.0,
+        left: 1.3,
+        at_noise_floor: true,
+        held_out: true,
+        tolerated: false,
+        free_form_share: 0.0,
+        free_form_low: 0.0,
+        per_motion_reduction: 0.0,
+        placebo_ranks: false,
+        rivals: false,
+    };
+    /// The same with something left above the noise.
+    const ABOVE: Signs = Signs {
+        left: 1.8,
+        at_noise_floor: false,
+        ..FOUND
+    };
+    const GIVEN: Signs = Signs {
+        kind: Kind::Given,
+        before: 1.1,
+        left: 1.1,
+        ..FOUND
+    };
+
+    #[test]
+    fn what_explains_all_is_named_by_its_kind() {
+        assert_eq!(FOUND.verdict(), Verdict::Named);
+        assert_eq!(ABOVE.verdict(), Verdict::Named);
+        let values = Signs {
+            kind: Kind::Values,
+            ..FOUND
         };
-        left > FAR_OFF && left - 1.0 > MOST_LEFT * (before - 1.0)
+        assert_eq!(values.verdict(), Verdict::WrongValue);
+        assert_eq!(GIVEN.verdict(), Verdict::Nominal);
     }
 
-    /// Whether a hypothesis leaves a multiple of the noise that no noise explains.
-    fn is_far_off(&self, hypothesis: &Hypothesis) -> bool {
-        hypothesis.deciding_mean().sqrt() > FAR_OFF * FAR_OFF
-    }
-
-    /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the
-    /// error.
-    pub fn placebo_ranks(&self) -> bool {
-        let base = &self.evaluator.base;
-        let gain = |t: &Hypothesis| (base.deciding_mean() / t.deciding_mean()).ln();
-        self.evaluator.placebos.iter().any(|placebo| {
-            self.evaluator.improves(base, placebo) && gain(placebo) > 0.5 * gain(self.chosen())
-        })
-    }
-
-    pub fn verdict(&self, rivals: &[&Hypothesis]) -> Verdict {
-        let explanation = self.explanation();
-        if matches!(explanation, Explanation::Given(_)) && self.is_tolerated() {
-            return Verdict::Adequate;
+    #[test]
+    fn with_rivals_nothing_is_named() {
+        for kind in [Kind::Values, Kind::Effects] {
+            let signs = Signs {
+                kind,
+                rivals: true,
+                ..FOUND
+            };
+            assert_eq!(signs.verdict(), Verdict::Ambiguous);
         }
-        if self.incomplete() {
-            return Verdict::Unexplained;
-        }
-        match explanation {
-            Explanation::Given(_) => Verdict::Nominal,
-            Explanation::Refit(_) => Verdict::WrongValue,
-            Explanation::Value(_) | Explanation::ValueAndRefit(_) if rivals.is_empty() => {
-                Verdict::WrongValue
+    }
+
+    #[test]
+    fn what_a_placebo_gains_too_proves_nothing() {
+        let signs = Signs {
+            placebo_ranks: true,
+            ..FOUND
+        };
+        assert_eq!(signs.verdict(), Verdict::Unexplained);
+    }
+
+    #[test]
+    fn a_model_as_given_is_nominal_only_near_the_floor() {
+        let left = |left: f64| Signs {
+            left,
+            at_noise_floor: false,
+            ..GIVEN
+        };
+        assert_eq!(left(1.49 * 1.49).verdict(), Verdict::Nominal);
+        assert_eq!(left(1.51 * 1.51).verdict(), Verdict::Unexplained);
+        let fitted = Signs {
+            held_out: false,
+            ..left(4.0)
+        };
+        assert_eq!(fitted.verdict(), Verdict::Unexplained);
+    }
+
+    #[test]
+    fn a_tolerance_makes_a_model_adequate_but_not_nominal() {
+        let above = Signs {
+            left: 9.0,
+            at_noise_floor: false,
+            tolerated: true,
+            ..GIVEN
+        };
+        assert_eq!(above.verdict(), Verdict::Adequate);
+        assert_eq!(
+            Signs {
+                tolerated: true,
+                ..GIVEN
             }
-            Explanation::Effects(_) if self.placebo_ranks() => Verdict::Unexplained,
-            Explanation::Effects(_) if rivals.is_empty() => Verdict::Named,
-            _ => Verdict::Ambiguous,
-        }
+            .verdict(),
+            Verdict::Nominal
+        );
     }
 
-    /// Whether the model as given leaves more than noise, but no more than the user tolerates.
-    fn is_tolerated(&self) -> bool {
-        let given = &self.evaluator.given;
-        let tolerance = self.evaluator.tolerance_rad;
-        !self.evaluator.at_noise_floor(given)
-            && tolerance.is_some_and(|tolerance| given.deciding_rms_rad() <= tolerance)
+    #[test]
+    fn structure_in_what_is_left_must_be_sure_and_large() {
+        let structured = |share: f64, low: f64| Signs {
+            free_form_share: share,
+            free_form_low: low,
+            ..ABOVE
+        };
+        assert_eq!(structured(0.4, 0.21).verdict(), Verdict::Unexplained);
+        assert_eq!(structured(0.3, 0.21).verdict(), Verdict::Named);
+        assert_eq!(structured(0.4, 0.19).verdict(), Verdict::Named);
+        // Far above the noise less is asked for.
+        let far = Signs {
+            before: 1e4,
+            left: 17.0,
+            ..structured(0.4, 0.01)
+        };
+        assert_eq!(far.verdict(), Verdict::Unexplained);
+        assert_eq!(
+            Signs {
+                free_form_low: -0.01,
+                ..far
+            }
+            .verdict(),
+            Verdict::Named
+        );
+    }
+
+    #[test]
+    fn an_eighth_of_the_squared_error_may_be_left() {
+        let left = |left: f64| Signs {
+            before: 81.0,
+            left,
+            ..ABOVE
+        };
+        assert_eq!(left(10.9).verdict(), Verdict::Named);
+        assert_eq!(left(11.1).verdict(), Verdict::Unexplained);
+        // Near the noise a larger share may.
+        assert_eq!(
+            Signs {
+                before: 4.0,
+                ..left(1.9)
+            }
+            .verdict(),
+            Verdict::Named
+        );
+        assert_eq!(
+            Signs {
+                before: 4.0,
+                ..left(2.1)
+            }
+            .verdict(),
+            Verdict::Unexplained
+        );
+    }
+
+    #[test]
+    fn a_law_has_the_same_values_in_all_motions() {
+        let varying = Signs {
+            per_motion_reduction: 0.51,
+            ..ABOVE
+        };
+        assert_eq!(varying.verdict(), Verdict::Unexplained);
+        assert_eq!(
+            Signs {
+                per_motion_reduction: 0.49,
+                ..ABOVE
+            }
+            .verdict(),
+            Verdict::Named
+        );
+        // Fitted motions prove nothing about what is left.
+        assert_eq!(
+            Signs {
+                held_out: false,
+                ..varying
+            }
+            .verdict(),
+            Verdict::Named
+        );
     }
 }
