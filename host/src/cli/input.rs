@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 /// How long models run.
 #[derive(Debug, clap::Args)]
 pub struct RunLength {
-    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable
-    /// without it
+    /// Most seconds a model runs without correction, or `whole`; shorter in motions whose start
+    /// errors grow faster
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
 }

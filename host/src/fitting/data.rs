@@ -2,10 +2,10 @@
 
 use super::growth::stable_horizon;
 use super::noise::noise_rad;
+use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::ops::Range;
 
 /// How long the model runs at most before it starts again from a state fitted to the measurement.
@@ -37,15 +37,6 @@ impl Horizon {
         let seconds = [self, other].into_iter().filter_map(Horizon::seconds);
         Horizon::from_seconds(seconds.min_by(f64::total_cmp))
     }
-}
-
-/// How long the windows of a motion are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MotionWindow {
-    /// The motion.
-    pub motion: String,
-    /// Seconds of a window; absent where the model runs over the whole motion.
-    pub window_s: Option<f64>,
 }
 
 /// A stretch of one motion that is simulated without a restart.

@@ -1,11 +1,11 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, window, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, WrongValue};
-use crate::fitting::FittedValue;
+use crate::fitting::{FittedValue, in_windows};
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
@@ -96,7 +96,7 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
         ),
         format!(
             "RMS {}, on {}.",
-            window(&diagnosis.windows),
+            in_windows(&diagnosis.windows),
             measured_on(error)
         ),
     ];

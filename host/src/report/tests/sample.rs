@@ -43,6 +43,7 @@ pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison 
     Comparison {
         model: model.into(),
         horizon_s: None,
+        windows: Vec::new(),
         signals: vec![signal(error_mrad)],
         horizons: [(Some(0.1), 0.3), (Some(0.5), 0.6), (None, 1.0)]
             .map(|(horizon_s, share)| HorizonError {
