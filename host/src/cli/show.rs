@@ -2,7 +2,7 @@
 
 use super::talk::Talk;
 use comfy_table::{ContentArrangement, Table};
-use handstand::fitting::{Horizon, Refitted, Undetermined, in_windows};
+use handstand::fitting::{Refitted, Undetermined, in_windows};
 use handstand::output::number::exact;
 use handstand::report::plain_table;
 use handstand::synth::{linearise, upright};

@@ -100,15 +100,36 @@ impl FitData {
 
     /// One of the motions, cut as it is here.
     pub fn only(&self, motion: usize) -> FitData {
-        let windows = self.windows_of(motion).map(|(_, window)| Window {
-            motion: 0,
+        self.part(|m| m == motion)
+    }
+
+    /// The motions of both, with the weights of this one.
+    pub fn joined(&self, other: &FitData) -> FitData {
+        let mut joined = self.clone();
+        let moved = other.windows.iter().map(|window| Window {
+            motion: window.motion + self.motions.len(),
             samples: window.samples.clone(),
         });
+        joined.windows.extend(moved);
+        joined.motions.extend(other.motions.iter().cloned());
+        joined.stable.extend(&other.stable);
+        joined
+    }
+
+    /// Some of the motions, cut as they are here.
+    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
+        let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();
+        let windows = kept.iter().enumerate().flat_map(|(index, &motion)| {
+            self.windows_of(motion).map(move |(_, window)| Window {
+                motion: index,
+                samples: window.samples.clone(),
+            })
+        });
         FitData {
-            motions: vec![self.motions[motion].clone()],
             windows: windows.collect(),
+            motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             sigma_rad: self.sigma_rad.clone(),
-            stable: vec![self.stable[motion]],
+            stable: kept.iter().map(|&m| self.stable[m]).collect(),
         }
     }
 

@@ -218,6 +218,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
                 after_rad: 1e-3 * after,
             })
             .into(),
+        folds: Vec::new(),
         collinear: vec![("coulomb@1.torque_nm".into(), "motor.torque_nm".into(), 0.97)],
         summary: vec![
             "Joint 1 resists with about 0.082 N m at every speed, which the model leaves out.".into(),
