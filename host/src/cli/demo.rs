@@ -125,7 +125,10 @@ fn missing(words: &[&str], talk: &Talk) -> Result<Option<(String, Vec<String>)>>
     let horizon = found
         .horizon_s
         .map(|s| vec!["--horizon".to_string(), s.to_string()]);
-    let effect = found.effects.first().map(FittedEffect::address);
+    // Where a wrong value does as well as an effect, the bench hides the effect.
+    let sets = found.alternatives.iter().map(|rival| &rival.effects);
+    let mut effects = std::iter::once(&found.effects).chain(sets).flatten();
+    let effect = effects.next().map(FittedEffect::address);
     Ok(effect.map(|effect| (effect, horizon.unwrap_or_default())))
 }
 
