@@ -1,16 +1,20 @@
 //! Motions cut into windows, with the weight of each joint's residual.
 
+use super::growth::stable_horizon;
 use super::noise::noise_rad;
 use crate::log::Motion;
 use crate::model::Model;
+use rayon::prelude::*;
+use serde::Serialize;
 use std::ops::Range;
 
-/// How long the model runs before it starts again from a state fitted to the measurement.
+/// How long the model runs at most before it starts again from a state fitted to the measurement.
+/// Where start errors grow fast, it starts again earlier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Horizon {
-    /// From the first sample of a motion to the last: free run.
+    /// From the first sample of a motion to the last where that motion is stable: free run.
     Whole,
-    /// Windows of about this many seconds: multiple shooting.
+    /// Windows of about this many seconds, or shorter: multiple shooting.
     Seconds(f64),
 }
 
@@ -27,6 +31,21 @@ impl Horizon {
     pub fn from_seconds(seconds: Option<f64>) -> Self {
         seconds.map_or(Horizon::Whole, Horizon::Seconds)
     }
+
+    /// The shorter of two.
+    pub fn shorter(self, other: Horizon) -> Self {
+        let seconds = [self, other].into_iter().filter_map(Horizon::seconds);
+        Horizon::from_seconds(seconds.min_by(f64::total_cmp))
+    }
+}
+
+/// How long the windows of a motion are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MotionWindow {
+    /// The motion.
+    pub motion: String,
+    /// Seconds of a window; absent where the model runs over the whole motion.
+    pub window_s: Option<f64>,
 }
 
 /// A stretch of one motion that is simulated without a restart.
@@ -47,27 +66,43 @@ pub struct FitData {
     pub windows: Vec<Window>,
     /// Per joint: standard deviation of the measurement, rad, by which residuals are divided.
     pub sigma_rad: Vec<f64>,
+    /// Per motion: the longest windows in which start errors stay small.
+    stable: Vec<Horizon>,
 }
 
 impl FitData {
-    /// Cuts motions into windows; the noise is estimated from the motions and the declared
-    /// resolution.
+    /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
+    /// allow; the noise is estimated from the motions and the declared resolution.
     pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
         let resolution = |joint: usize| model.log.joints[joint].position.resolution;
-        let sigma_rad = (0..model.link_count())
+        let sigma_rad: Vec<f64> = (0..model.link_count())
             .map(|joint| noise_rad(&motions, joint, resolution(joint)))
             .collect();
+        let stable = motions
+            .par_iter()
+            .map(|motion| stable_horizon(model, &sigma_rad, motion));
+        let stable: Vec<Horizon> = stable.collect();
         FitData {
-            windows: cut(&motions, horizon),
+            windows: cut(&motions, &stable, horizon),
             motions,
             sigma_rad,
+            stable,
+        }
+    }
+
+    /// The same motions with the weights of others: those that decide on a fit are weighted as those
+    /// it was fitted to.
+    pub fn weighted_like(self, other: &FitData) -> FitData {
+        FitData {
+            sigma_rad: other.sigma_rad.clone(),
+            ..self
         }
     }
 
     /// The same motions and weights cut at another horizon.
     pub fn recut(&self, horizon: Horizon) -> FitData {
         FitData {
-            windows: cut(&self.motions, horizon),
+            windows: cut(&self.motions, &self.stable, horizon),
             ..self.clone()
         }
     }
@@ -82,7 +117,21 @@ impl FitData {
             motions: vec![self.motions[motion].clone()],
             windows: windows.collect(),
             sigma_rad: self.sigma_rad.clone(),
+            stable: vec![self.stable[motion]],
         }
+    }
+
+    /// How long the windows of each motion are at this horizon.
+    pub fn motion_windows(&self, horizon: Horizon) -> Vec<MotionWindow> {
+        let motions = self.motions.iter().zip(&self.stable);
+        let windows = motions.map(|(motion, stable)| {
+            let seconds = stable.shorter(horizon).seconds();
+            MotionWindow {
+                motion: motion.name.clone(),
+                window_s: seconds.filter(|s| *s < motion.duration_s()),
+            }
+        });
+        windows.collect()
     }
 
     /// The windows of one motion with their indices, in order of time.
@@ -101,6 +150,17 @@ impl FitData {
         self.windows.iter().map(|w| w.samples.len()).sum()
     }
 
+    /// Duration of the longest window, s.
+    pub fn longest_window_s(&self) -> f64 {
+        let seconds = |window: &Window| {
+            let time = &self.motions[window.motion].time_s[window.samples.clone()];
+            time.last()
+                .zip(time.first())
+                .map_or(0.0, |(end, begin)| end - begin)
+        };
+        self.windows.iter().map(seconds).fold(0.0, f64::max)
+    }
+
     /// Duration of the longest motion, s.
     pub fn longest_s(&self) -> f64 {
         let durations = self.motions.iter().map(Motion::duration_s);
@@ -114,10 +174,10 @@ impl FitData {
     }
 }
 
-fn cut(motions: &[Motion], horizon: Horizon) -> Vec<Window> {
+fn cut(motions: &[Motion], stable: &[Horizon], horizon: Horizon) -> Vec<Window> {
     let mut windows = Vec::new();
-    for (motion, log) in motions.iter().enumerate() {
-        let pieces = match horizon {
+    for (motion, (log, stable)) in motions.iter().zip(stable).enumerate() {
+        let pieces = match stable.shorter(horizon) {
             Horizon::Whole => 1,
             Horizon::Seconds(seconds) => {
                 let most = (log.len() / 5).max(1);

@@ -3,13 +3,15 @@
 use crate::diagnose::words::{at_joint, headline, listed};
 use crate::diagnose::{Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
-use crate::fitting::{ErrorReduction, FittedValue};
+use crate::fitting::{ErrorReduction, FittedValue, MotionWindow};
 use crate::output::number::{given, measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Nominal => "nominal",
+        Verdict::Adequate => "adequate",
+        Verdict::WrongValue => "wrong_value",
         Verdict::Named => "named",
         Verdict::Ambiguous => "ambiguous",
         Verdict::Unexplained => "unexplained",
@@ -89,9 +91,19 @@ pub(super) fn sentences(diagnosis: &Diagnosis) -> impl Iterator<Item = &String> 
 }
 
 /// What limits the judgement in time, as a clause.
-pub(super) fn window(horizon_s: Option<f64>) -> String {
-    match horizon_s {
-        Some(horizon_s) => format!("in windows of {} s", given(horizon_s)),
-        None => "over whole motions".into(),
+pub(crate) fn window(windows: &[MotionWindow]) -> String {
+    let seconds = windows.iter().filter_map(|window| window.window_s);
+    let whole = windows.iter().any(|window| window.window_s.is_none());
+    let shortest = seconds.clone().reduce(f64::min);
+    let longest = seconds.reduce(f64::max);
+    match (shortest, longest) {
+        (Some(short), Some(_)) if whole => {
+            format!("in windows from {} s to whole motions", given(short))
+        }
+        (Some(short), Some(long)) if given(short) != given(long) => {
+            format!("in windows of {} to {} s", given(short), given(long))
+        }
+        (Some(short), _) => format!("in windows of {} s", given(short)),
+        _ => "over whole motions".into(),
     }
 }

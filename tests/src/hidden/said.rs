@@ -29,9 +29,10 @@ pub(super) struct Said {
     pub verdict: String,
     /// Effects of the best explanation.
     pub effects: Vec<SaidEffect>,
-    /// Addresses of the effects of the best explanation, then of those that do as well.
+    /// What the best explanation says is missing or wrong, then what those say that do as well:
+    /// addresses of effects, and of values that explain by themselves.
     pub sets: Vec<Vec<String>>,
-    /// Values of the model that were fitted along, by path.
+    /// Values of the model that were fitted, by path.
     pub values: Vec<(String, f64)>,
     /// Seconds run without correction, where the result has one such number.
     pub horizon_s: Option<f64>,
@@ -89,25 +90,50 @@ fn effects(json: &Json) -> Vec<SaidEffect> {
         .collect()
 }
 
+/// Values of the model file in a list of a result, by path.
+fn values(list: &Json) -> Vec<(String, f64)> {
+    let list = list.as_array().into_iter().flatten();
+    let value = |value: &Json| {
+        let path = value["path"].as_str()?;
+        Some((path.to_string(), value["value"].as_f64()?))
+    };
+    list.filter_map(value).collect()
+}
+
+/// A wrong value under the name of the effect that says the same. None for values of effects:
+/// friction of the file, which its owner only guesses.
+fn name(path: &str) -> Option<String> {
+    let (owner, field) = path.split_once('.')?;
+    let number = |kind: &str| owner.strip_prefix(kind);
+    match (number("link"), number("joint"), field) {
+        (Some(link), _, "mass_kg") => Some(format!("mass@{link}")),
+        (_, Some(joint), "stall_torque_nm") => Some(format!("torque_scale@{joint}")),
+        (None, None, _) => None,
+        _ => Some(path.to_string()),
+    }
+}
+
+/// Names of an explanation: its effects, or the values that explain without any.
+fn set(explanation: &Json) -> Vec<String> {
+    let effects = effects(&explanation["effects"]);
+    match effects.is_empty() {
+        false => effects.iter().map(SaidEffect::address).collect(),
+        true => {
+            let values = values(&explanation["wrong_values"]);
+            values.iter().filter_map(|(path, _)| name(path)).collect()
+        }
+    }
+}
+
 /// Reads a result.
 pub(super) fn said(json: &Json) -> Said {
-    let best = effects(&json["effects"]);
-    let names = |set: &[SaidEffect]| set.iter().map(SaidEffect::address).collect();
     let alternatives = json["alternatives"].as_array().into_iter().flatten();
-    let alternatives = alternatives.map(|set| names(&effects(&set["effects"])));
-    let base = json["base"].as_array().into_iter().flatten();
+    let fitted = [&json["base"], &json["wrong_values"]];
     Said {
         verdict: json["verdict"].as_str().unwrap_or_default().to_string(),
-        sets: std::iter::once(names(&best)).chain(alternatives).collect(),
-        values: base
-            .filter_map(|value| {
-                Some((
-                    value["path"].as_str()?.to_string(),
-                    value["value"].as_f64()?,
-                ))
-            })
-            .collect(),
-        effects: best,
+        effects: effects(&json["effects"]),
+        sets: std::iter::once(json).chain(alternatives).map(set).collect(),
+        values: fitted.into_iter().flat_map(values).collect(),
         horizon_s: json["horizon_s"].as_f64(),
     }
 }
@@ -141,5 +167,21 @@ mod tests {
             [("viscous@1.coefficient_nm_s_rad".to_string(), 0.02)]
         );
         assert_eq!(said.horizon_s, Some(0.5));
+    }
+
+    #[test]
+    fn a_wrong_value_is_named_as_the_effect_that_says_the_same() {
+        let value = |path: &str| json!({ "path": path, "value": 0.3, "given": 0.2 });
+        let said = said(&json!({
+            "verdict": "ambiguous",
+            "effects": [],
+            "wrong_values": [value("link2.mass_kg"), value("viscous@1.coefficient_nm_s_rad")],
+            "alternatives": [
+                { "effects": [], "wrong_values": [value("joint1.stall_torque_nm")] },
+                { "effects": [], "wrong_values": [value("link1.com_m")] },
+            ],
+        }));
+        assert_eq!(said.sets, [["mass@2"], ["torque_scale@1"], ["link1.com_m"]]);
+        assert_eq!(said.values.len(), 2);
     }
 }

@@ -169,16 +169,22 @@ fn answer(case: &Case, hidden: &[String], said: &Said) -> Answer {
         set
     };
     let truth = sorted(hidden);
+    let best = said.sets.first().map(|set| sorted(set)).unwrap_or_default();
+    let nothing = match said.verdict.as_str() {
+        "nominal" | "adequate" => true,
+        // Wrong are only the values of friction that the owner guesses.
+        "wrong_value" => best.is_empty(),
+        _ => false,
+    };
     match said.verdict.as_str() {
         "unfit" => Answer::Unfit,
-        "nominal" | "adequate" if case.family.hides_nothing() => Answer::Right,
-        "nominal" | "adequate" => Answer::Nominal,
+        _ if nothing && case.family.hides_nothing() => Answer::Right,
+        _ if nothing => Answer::Nominal,
         "unexplained" if case.family == Family::Outside => Answer::Right,
         "unexplained" => Answer::Unexplained,
         _ if case.family == Family::Outside => Answer::Wrong,
         "ambiguous" if said.sets.iter().any(|set| sorted(set) == truth) => Answer::Equivalent,
-        // One set, given or left of it nothing but values that are known to be off.
-        _ if said.sets.first().is_some_and(|set| sorted(set) == truth) => Answer::Right,
+        "named" | "wrong_value" if best == truth => Answer::Right,
         _ => Answer::Wrong,
     }
 }
@@ -330,6 +336,7 @@ mod tests {
             Answer::Unexplained
         );
         assert_eq!(worth(&heard("nominal", &[])), Answer::Nominal);
+        assert_eq!(worth(&heard("wrong_value", &[&[]])), Answer::Nominal);
         assert_eq!(worth(&heard("unfit", &[])), Answer::Unfit);
     }
 
@@ -341,6 +348,10 @@ mod tests {
             answer(&nothing, &[], &heard("named", &[&["mass@1"]])),
             Answer::Wrong
         );
+        let guessed = heard("wrong_value", &[&[]]);
+        assert_eq!(answer(&nothing, &[], &guessed), Answer::Right);
+        let heavy = heard("wrong_value", &[&["mass@1"]]);
+        assert_eq!(answer(&nothing, &[], &heavy), Answer::Wrong);
         let none = heard("unexplained", &[&[]]);
         assert_eq!(answer(&nothing, &[], &none), Answer::Unexplained);
         let outside = case(Family::Outside, &["mass"]);
