@@ -57,7 +57,8 @@ impl Longest {
 
     /// Whether a delay lies within.
     pub fn tolerates(&self, delay_s: f64) -> bool {
-        matches!((self.shortest_s, self.delay_s), (Some(least), Some(most)) if least <= delay_s && delay_s <= most)
+        let within = |(least, most)| (least..=most).contains(&delay_s);
+        self.shortest_s.zip(self.delay_s).is_some_and(within)
     }
 }
 

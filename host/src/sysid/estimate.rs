@@ -3,6 +3,7 @@
 //! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that
 //! makes the error larger, so that the noise model and its inverse stay stable.
 
+use super::dynamics::Interval;
 use super::model::TransferModel;
 use super::record::Record;
 use super::start::{is_usable, starts};
@@ -53,6 +54,14 @@ impl Estimate {
     pub fn half_widths(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();
         variances.iter().map(|v| 1.96 * v.max(0.0).sqrt()).collect()
+    }
+
+    /// Each coefficient by name, with its 95 % interval.
+    pub fn coefficients(&self) -> Vec<(String, Interval)> {
+        let values = self.model.values(&self.structure).into_iter();
+        let known = values.zip(self.half_widths());
+        let known = known.map(|(value, half)| Interval::around(value, half));
+        self.structure.names().into_iter().zip(known).collect()
     }
 }
 
