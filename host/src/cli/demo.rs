@@ -65,27 +65,27 @@ pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
         talk,
     )?;
     let model = match &found {
-        Some(effect) => {
+        Some((effect, horizon)) => {
             talk.say(
                 "\nThe model with it (`add` sets it beside the old model refitted without it), and \
                  the two files side by side as they are, on the motion held out:",
             );
-            step(
-                &[
-                    "add",
-                    &nominal,
-                    effect,
-                    "--fit",
-                    a,
-                    b,
-                    "--holdout",
-                    c,
-                    "-o",
-                    &model,
-                ],
-                talk,
-            )?;
-            step(&["compare", &nominal, c, "--model", &model], talk)?;
+            let horizon: Vec<&str> = horizon.iter().map(String::as_str).collect();
+            let add = [
+                "add",
+                &nominal,
+                effect,
+                "--fit",
+                a,
+                b,
+                "--holdout",
+                c,
+                "-o",
+                &model,
+            ];
+            step(&[&add[..], &horizon].concat(), talk)?;
+            let compare = ["compare", &nominal, c, "--model", &model];
+            step(&[&compare[..], &horizon].concat(), talk)?;
             model
         }
         None => nominal,
@@ -115,14 +115,22 @@ fn step(words: &[&str], talk: &Talk) -> Result<ExitStatus> {
     command.run(&talk)
 }
 
-/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it.
-fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
+/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it, and
+/// the option that asks for the same horizon.
+fn missing(words: &[&str], talk: &Talk) -> Result<Option<(String, Vec<String>)>> {
     let (command, talk) = parsed(words, talk)?;
     let Command::Diagnose(args) = &command else {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found.effects.first().map(FittedEffect::address))
+    let horizon = found
+        .horizon_s
+        .map(|s| vec!["--horizon".to_string(), s.to_string()]);
+    // Where a wrong value does as well as an effect, the bench hides the effect.
+    let sets = found.alternatives.iter().map(|rival| &rival.effects);
+    let mut effects = std::iter::once(&found.effects).chain(sets).flatten();
+    let effect = effects.next().map(FittedEffect::address);
+    Ok(effect.map(|effect| (effect, horizon.unwrap_or_default())))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

@@ -13,8 +13,8 @@
 //! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
-//! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for
-//! `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
+//! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
+//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
 //! `docs/json.md`.
 
 use super::page::{self, PageFile};
@@ -44,6 +44,9 @@ pub struct DiagnoseArgs {
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Error that is good enough, mrad: a model as given that leaves no more is `adequate`
+    #[arg(long, value_name = "MRAD", value_parser = input::positive)]
+    tolerance: Option<f64>,
     #[command(flatten)]
     judging: input::HoldoutArgs,
     #[command(flatten)]
@@ -135,6 +138,7 @@ fn try_all(model: &Model, split: &Split, args: &DiagnoseArgs, talk: &Talk) -> Di
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         horizon: args.judging.run.horizon,
+        tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
     };
     let bar = talk.bar(0);

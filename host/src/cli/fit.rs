@@ -13,7 +13,7 @@
 //! `refused` and `blind`.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::fitting::{Candidate, Refitted, Undetermined, free_parameters, refit};
+use handstand::fitting::{Refitted, Undetermined, free_parameters, refit};
 use handstand::log::LogRequest;
 use handstand::{Model, Result, model::edit, output};
 use serde_json::json;
@@ -46,7 +46,7 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
     let before = "for the model as it was";
-    write(&refitted, &text, None, before, &args.fit, talk)
+    write(&refitted, &text, &[], before, &args.fit, talk)
 }
 
 /// Says why there is no new model.
@@ -60,7 +60,7 @@ pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<ExitStatus> {
 pub fn write(
     refitted: &Refitted,
     text: &str,
-    added: Option<Candidate>,
+    added: &[String],
     before: &str,
     args: &input::RefitArgs,
     talk: &Talk,
@@ -69,8 +69,8 @@ pub fn write(
     if talk.json {
         let mut data = show::refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());
-        if let Some(added) = added {
-            data["effect"] = json!(added.to_string());
+        if !added.is_empty() {
+            data["effects"] = json!(added);
         }
         talk.data(&data)?;
     } else {

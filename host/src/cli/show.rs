@@ -2,7 +2,7 @@
 
 use super::Talk;
 use comfy_table::{ContentArrangement, Table};
-use handstand::fitting::{FittedValue, Horizon, Refitted, Undetermined};
+use handstand::fitting::{FittedValue, Refitted, Undetermined, in_windows};
 use handstand::output::number::exact;
 use handstand::output::table::{self, TableColumn, plain_table};
 use handstand::synth::{linearise, upright};
@@ -63,9 +63,7 @@ pub fn refitted(refitted: &Refitted, before: &str) -> String {
              noise alone leaves {floor} mrad."
         ),
     ];
-    if let Horizon::Seconds(seconds) = refitted.horizon {
-        lines.push(format!("The model ran {} s at a time.", exact(seconds)));
-    }
+    lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));
     let warnings = warnings(refitted).into_iter();
     lines.extend(warnings.map(|line| format!("warning: {line}")));
     lines.join("\n")
@@ -89,6 +87,7 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
         "values": refitted.values,
         "error": refitted.error,
         "horizon_s": refitted.horizon.seconds(),
+        "windows": refitted.windows,
         "converged": refitted.converged,
         "warnings": warnings(refitted),
     })
