@@ -14,7 +14,7 @@ pub type Duties = [f64; DRIVEN.len()];
 
 /// u = holding - K x, with the duties still on their way in x.
 #[derive(Debug)]
-pub struct Regulator {
+pub struct RobotRegulator {
     gain: DMatrix<f64>,
     /// The pose that is held, rad.
     pub pose: Joints,
@@ -24,10 +24,10 @@ pub struct Regulator {
     sent: Vec<Duties>,
 }
 
-impl Regulator {
+impl RobotRegulator {
     /// About the upright pose of these laws, which must be smooth there; none where there is no
     /// such pose, or no regulator.
-    pub fn upright(laws: &Laws) -> Option<Regulator> {
+    pub fn upright(laws: &Laws) -> Option<RobotRegulator> {
         let pose = upright(laws)?;
         let torque = laws.holding(&pose);
         // A torque is asked for by a duty: what arrives of full duty, at the same supply.
@@ -43,7 +43,7 @@ impl Regulator {
             true => laws.joints[DRIVEN[k]].stall_nm.powi(2),
             false => 0.0,
         });
-        Some(Regulator {
+        Some(RobotRegulator {
             gain: riccati(&a, &b, &q, &r)?,
             pose,
             holding,

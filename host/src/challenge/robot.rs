@@ -30,7 +30,7 @@ pub struct Laws {
 }
 
 /// Forces on the chain at one state.
-struct Forces {
+struct ChainForces {
     mass: [Joints; LINKS],
     /// Torques that gravity and velocities ask of the joints at rest of acceleration, N m.
     needed: Joints,
@@ -44,7 +44,7 @@ impl Laws {
     }
 
     /// Mass matrix, kg m^2, and needed torques in relative angles.
-    fn forces(&self, angle: &Joints, speed: &Joints) -> Forces {
+    fn forces(&self, angle: &Joints, speed: &Joints) -> ChainForces {
         let (theta, omega) = (summed(angle), summed(speed));
         let tilt = self.tilt();
         let mut mass = [[0.0; LINKS]; LINKS];
@@ -83,7 +83,7 @@ impl Laws {
         for (k, joint) in self.joints.iter().enumerate() {
             mass[k][k] += joint.armature;
         }
-        Forces { mass, needed }
+        ChainForces { mass, needed }
     }
 
     /// Torques of the drives, N m, at these speeds.
@@ -179,7 +179,7 @@ impl<'a> Robot<'a> {
     /// `at_speed`, and the torques of dry friction, N m.
     fn kicked(&self, h: f64, push: &[DriveCommand; LINKS], at_speed: &Joints) -> (Joints, Joints) {
         let joints = &self.laws.joints;
-        let Forces { mass, needed } = self.laws.forces(&self.angle, at_speed);
+        let ChainForces { mass, needed } = self.laws.forces(&self.angle, at_speed);
         let drive = self.laws.drives(push, at_speed);
         let inverse = inverse(&mass);
         let pull: Joints = std::array::from_fn(|k| {

@@ -4,7 +4,7 @@
 use super::motion::{NOISE, PERIOD_S, SupplyDrift, normal, sample_times, stepped};
 use super::physics::DriveCommand;
 use super::reference::Reference;
-use super::regulator::{DRIVEN, Duties, Regulator};
+use super::regulator::{DRIVEN, Duties, RobotRegulator};
 use super::robot::{Joints, LINKS, Laws, Robot};
 use super::rounding::rounded;
 use rand::Rng;
@@ -215,7 +215,7 @@ fn hang_once(
 /// A motion of the balancing robot; none where it falls. `smooth` are the laws that its regulator
 /// knows: those without dry friction and dead zones.
 pub fn balance(laws: &Laws, smooth: &Laws, rng: &mut ChaCha8Rng) -> Option<RobotRecording> {
-    let mut regulator = Regulator::upright(smooth)?;
+    let mut regulator = RobotRegulator::upright(smooth)?;
     let supply = SupplyDrift::random(rng);
     let sines: [[[f64; 3]; PROBES.len()]; DRIVEN.len()] = DRIVEN.map(|_| {
         PROBES.map(|(duty, low_hz, high_hz)| {

@@ -1,5 +1,5 @@
 use super::physics::{DriveCommand, Mount, Physics};
-use super::regulator::Regulator;
+use super::regulator::RobotRegulator;
 use super::robot::{Laws, Robot};
 use super::truth::Arm;
 use super::*;
@@ -239,7 +239,7 @@ fn a_regulator_holds_the_robot_upright_where_it_leans_and_where_drives_are_late(
     let mut laws = robot_laws();
     laws.joints[2].switch_on("com_angle", &[0.1]);
     laws.joints[1].switch_on("delay", &[0.013]);
-    let mut regulator = Regulator::upright(&laws).unwrap();
+    let mut regulator = RobotRegulator::upright(&laws).unwrap();
     let start = regulator.pose.map(|angle| angle + 0.002);
     assert!((start[0] - std::f64::consts::PI).abs() > 0.01);
     let mut robot = Robot::new(&laws, start, [0.0; 3]);

@@ -12,7 +12,7 @@
 //! `--json` prints `round_trip_us`, `line_us`, `bus_us`, `rest_us`, `round_us`, `period_us`,
 //! `fits`, `missing`; each measured time with `min`, `median`, `p99`, `max`.
 
-use super::robot::Robot;
+use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::link::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
@@ -22,7 +22,7 @@ use std::time::Duration;
 #[derive(Debug, clap::Args)]
 pub struct LatencyArgs {
     #[command(flatten)]
-    robot: Robot,
+    robot: RobotArgs,
     /// Rounds to measure
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     rounds: u64,

@@ -14,7 +14,7 @@
 //! `torn` (with `--from`).
 
 use super::interrupt::Interrupt;
-use super::robot::Robot;
+use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
 use handstand::{Error, Result, output};
@@ -27,7 +27,7 @@ pub struct RecordArgs {
     /// File to write, .csv or .mcap
     file: PathBuf,
     #[command(flatten)]
-    robot: Robot,
+    robot: RobotArgs,
     /// How long; until Ctrl-C without
     #[arg(long)]
     seconds: Option<f64>,

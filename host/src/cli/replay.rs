@@ -15,7 +15,7 @@
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
-use super::robot::Robot;
+use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
     FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
@@ -30,7 +30,7 @@ pub struct ReplayArgs {
     /// Recording to follow
     motion: PathBuf,
     #[command(flatten)]
-    robot: Robot,
+    robot: RobotArgs,
     /// Record what happens
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// Which servos, and how they are read.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Robot {
+pub struct RobotArgs {
     #[command(flatten)]
     pub port: Port,
     /// Servos
@@ -21,7 +21,7 @@ pub struct Robot {
     pub hz: f64,
 }
 
-impl Robot {
+impl RobotArgs {
     /// Opens it.
     ///
     /// # Errors

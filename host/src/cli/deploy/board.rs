@@ -13,7 +13,7 @@ use handstand_shared::raw::Position;
 pub struct BoardArgs {
     /// Servos of shoulder and hip; a second one in a joint faces the other way
     #[arg(long, default_value = "1+2/11+12", value_parser = joints)]
-    joints: Joints,
+    joints: JointServos,
     /// Torque of a joint at full output, N m
     #[arg(long, default_value_t = 2.0)]
     full_torque: f64,
@@ -40,11 +40,11 @@ pub struct BoardArgs {
 
 /// Servos of each joint.
 #[derive(Debug, Clone)]
-struct Joints(Vec<Vec<u8>>);
+struct JointServos(Vec<Vec<u8>>);
 
-fn joints(text: &str) -> Result<Joints, String> {
+fn joints(text: &str) -> Result<JointServos, String> {
     let joints: Result<_, _> = text.split('/').map(|ids| Ok(id_list(ids)?.0)).collect();
-    joints.map(Joints)
+    joints.map(JointServos)
 }
 
 impl BoardArgs {

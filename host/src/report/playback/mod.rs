@@ -4,4 +4,4 @@ mod page;
 mod scene;
 
 pub use page::html;
-pub use scene::{DrawnLink, DrawnMotion, Input, Kind, Scene, Track};
+pub use scene::{DrawnLink, DrawnMotion, Input, Scene, Track, TrackKind};

@@ -49,7 +49,7 @@ pub struct DrawnMotion {
 /// Where a track comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum TrackKind {
     /// The log.
     Measured,
     /// A model along the log's inputs.
@@ -64,7 +64,7 @@ pub struct Track {
     /// Name in the legend.
     pub name: String,
     /// Where it comes from.
-    pub kind: Kind,
+    pub kind: TrackKind,
     /// Since the motion's start, s.
     pub time_s: Vec<f64>,
     /// Per link: angle from hanging, counter-clockwise, rad.
@@ -100,7 +100,7 @@ impl Scene {
                 .iter()
                 .map(|motion| DrawnMotion {
                     name: motion.name.clone(),
-                    tracks: vec![measured(model, motion, "measured", Kind::Measured)],
+                    tracks: vec![measured(model, motion, "measured", TrackKind::Measured)],
                     inputs: inputs(model, motion),
                 })
                 .collect(),
@@ -122,7 +122,7 @@ impl Scene {
             let (name, time_s) = (&comparison.model, &traces[0].time_s);
             motion
                 .tracks
-                .push(track(model, name, Kind::Model, time_s, &joint_rad));
+                .push(track(model, name, TrackKind::Model, time_s, &joint_rad));
         }
     }
 
@@ -131,7 +131,7 @@ impl Scene {
         for (motion, other) in self.motions.iter_mut().zip(others) {
             motion
                 .tracks
-                .push(measured(model, other, &other.name, Kind::Overlay));
+                .push(measured(model, other, &other.name, TrackKind::Overlay));
         }
     }
 }
@@ -163,14 +163,20 @@ fn rounded(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-fn measured(model: &Model, motion: &Motion, name: &str, kind: Kind) -> Track {
+fn measured(model: &Model, motion: &Motion, name: &str, kind: TrackKind) -> Track {
     let joint_rad: Vec<Vec<f64>> = motion.position_rad.iter().map(|q| thinned(q)).collect();
     let joint_rad: Vec<&[f64]> = joint_rad.iter().map(Vec::as_slice).collect();
     track(model, name, kind, &thinned(&motion.time_s), &joint_rad)
 }
 
 /// Times from the first; the links' angles from the joints', which are relative or absolute.
-fn track(model: &Model, name: &str, kind: Kind, time_s: &[f64], joint_rad: &[&[f64]]) -> Track {
+fn track(
+    model: &Model,
+    name: &str,
+    kind: TrackKind,
+    time_s: &[f64],
+    joint_rad: &[&[f64]],
+) -> Track {
     let first = time_s.first().copied().unwrap_or(0.0);
     let mut from = vec![model.angle_zero.from_hanging_rad(); time_s.len()];
     let mut link_rad = Vec::new();
