@@ -23,7 +23,7 @@
 
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::controllers::{DESIGNS, Design, design};
+use handstand::controllers::{ControllerDesign, DESIGNS, design};
 use handstand::study::{
     CONDITIONS, Case, Condition, Figures, Judging, REGION_JUDGEMENTS, Region, STABILISED_SHARE,
     condition, judge, region,
@@ -76,7 +76,7 @@ pub struct Args {
 
 /// A controller under a condition.
 struct Row {
-    design: &'static dyn Design,
+    design: &'static dyn ControllerDesign,
     condition: &'static Condition,
     figures: Figures,
     region: Option<Region>,
@@ -135,7 +135,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 fn trials(
     args: &Args,
     model: &Model,
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static Condition],
     talk: &Talk,
 ) -> Result<Vec<Row>> {
@@ -176,7 +176,7 @@ fn trials(
 }
 
 /// The controllers of these names, all without any.
-pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
+pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn ControllerDesign>> {
     if names.is_empty() {
         return Ok(DESIGNS.to_vec());
     }

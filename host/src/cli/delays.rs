@@ -24,7 +24,7 @@
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::controllers::{Design, DesignModel};
+use handstand::controllers::{ControllerDesign, DesignModel};
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
     longest_stabilised,
@@ -64,7 +64,7 @@ pub struct Args {
 
 /// The delays that a controller tolerates.
 struct Row {
-    design: &'static dyn Design,
+    design: &'static dyn ControllerDesign,
     uncompensated: Longest,
     one_sample: Longest,
     compensated: Longest,
@@ -103,7 +103,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 fn search(
     args: &Args,
     model: &Model,
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     talk: &Talk,
 ) -> Result<Vec<Row>> {
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;

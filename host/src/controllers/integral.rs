@@ -6,7 +6,7 @@
 //! plant with an odd number of unstable poles isn't stabilised through a stable washout.)
 
 use super::paper;
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
@@ -28,7 +28,7 @@ static INFO: ControllerInfo = ControllerInfo {
     reference: "Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 4.5",
 };
 
-impl Design for Integral {
+impl ControllerDesign for Integral {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }

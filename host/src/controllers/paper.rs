@@ -1,6 +1,6 @@
 //! The paper's sampled regulator (Q = 100 I, R = I), with and without its angle compensation.
 
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
 use crate::synth::{dlqr, zoh};
@@ -42,7 +42,7 @@ pub const COMPENSATED: Paper = Paper(ControllerInfo {
     ..INFO
 });
 
-impl Design for Paper {
+impl ControllerDesign for Paper {
     fn info(&self) -> &ControllerInfo {
         &self.0
     }

@@ -1,6 +1,6 @@
 //! The sampled regulator with the delay in its model, in floating or fixed point.
 
-use super::{ControllerInfo, Design, DesignModel, Speeds, paper};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds, paper};
 use crate::error::Result;
 use crate::sim::closed_loop::state_feedback::remember;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
@@ -27,7 +27,7 @@ const SPEED_RANGE_RAD_S: f64 = 20.0;
 /// Torque that they hold where the drives have no limit, N m.
 const TORQUE_RANGE_NM: f64 = 8.0;
 
-impl Design for Regulator {
+impl ControllerDesign for Regulator {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }

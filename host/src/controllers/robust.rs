@@ -1,7 +1,7 @@
 //! One gain for robots whose masses are not the model's.
 
 use super::paper;
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, StateFeedback};
 use crate::synth::{Discrete, multi_model_continuation, zoh};
@@ -90,7 +90,7 @@ impl MultiModel {
     }
 }
 
-impl Design for Robust {
+impl ControllerDesign for Robust {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }

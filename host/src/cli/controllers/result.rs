@@ -2,7 +2,7 @@
 
 use super::super::show;
 use super::Row;
-use handstand::controllers::Design;
+use handstand::controllers::ControllerDesign;
 use handstand::plot::heat_map;
 use handstand::study::{Condition, Region};
 use serde_json::{Value, json};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(
     rows: &[Row],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static Condition],
 ) -> String {
     let mut parts = vec![format!(
@@ -60,7 +60,7 @@ pub fn text(
 
 fn matrix(
     rows: &[Row],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static Condition],
     cell: impl Fn(&Row) -> String,
 ) -> String {
@@ -92,7 +92,7 @@ fn degrees(region: Region) -> String {
 /// Heat map of the shares that were stabilised.
 pub fn plot(
     rows: &[Row],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static Condition],
 ) -> String {
     let ids: Vec<&str> = designs.iter().map(|design| design.info().id).collect();
