@@ -250,11 +250,7 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         },
     };
     let joints = model.link_count();
-    let inputs = model
-        .joints
-        .iter()
-        .filter(|joint| joint.drive.is_driven())
-        .count();
+    let inputs = model.driven_joints().len();
     let list = |given: &Option<WeightArg>, name, size| {
         given
             .as_ref()

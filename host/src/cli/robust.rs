@@ -89,7 +89,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 "median_radius": row.radii[row.radii.len() / 2],
                 "worst_radius": row.radii[row.radii.len() - 1],
                 "largest_error": row.largest_error,
-                "k": row.k.row_iter().map(|k| k.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
+                "k": handstand::synth::rows(&row.k),
             })
         });
         talk.data(&data.collect::<Vec<_>>())?;

@@ -9,6 +9,7 @@ use super::paper;
 use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
+use crate::synth::rows;
 
 /// Commands this much beyond the nominal zone pass every robot's own zone, which may differ by a
 /// fifth.
@@ -103,7 +104,7 @@ impl ControllerDesign for DeadZoneInverse {
 
     fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         Ok(Box::new(Inverted {
-            inner: StateFeedback::new(known.joints(), paper::rows(&paper::gain(known)?)),
+            inner: StateFeedback::new(known.joints(), rows(&paper::gain(known)?)),
             drive: AssumedDrive::of(known),
             drives: known.drives(),
         }))

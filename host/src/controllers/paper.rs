@@ -3,7 +3,7 @@
 use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
-use crate::synth::{dlqr, zoh};
+use crate::synth::{dlqr, rows, zoh};
 use nalgebra::DMatrix;
 
 /// One of the paper's set-ups.
@@ -64,14 +64,6 @@ impl ControllerDesign for Paper {
 pub(super) fn gain(known: &DesignModel) -> Result<DMatrix<f64>> {
     let (q, r) = known.weights();
     Ok(dlqr(&zoh(&known.plant, known.period_s, 0.0)?, &q, &r)?.k)
-}
-
-/// A matrix as its rows.
-pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix
-        .row_iter()
-        .map(|row| row.iter().copied().collect())
-        .collect()
 }
 
 /// The driven joints' speeds as differences of angles; the arms' is the gyro's.

@@ -224,6 +224,13 @@ impl Model {
         self.links.len()
     }
 
+    /// Joints that something drives, from the base outwards, counted from 0.
+    pub fn driven_joints(&self) -> Vec<usize> {
+        (0..self.joints.len())
+            .filter(|&joint| self.joints[joint].drive.is_driven())
+            .collect()
+    }
+
     /// Whether a sensor's reading trails the motion.
     pub fn trails(&self) -> bool {
         let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);

@@ -8,7 +8,7 @@ use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
     ClosedLoop, Commands, Drives, Gyro, InitialState, Outcome, Sensor, StateFeedback, stream,
 };
-use crate::synth::upright;
+use crate::synth::{rows, upright};
 use nalgebra::DMatrix;
 use std::path::Path;
 
@@ -102,9 +102,7 @@ impl Case {
         closed.plant.disturbance_nm[0] = self.disturbance_nm;
         closed.sensor = self.sensor;
         let balance = closed.plant.balanced_rad();
-        let rows = self.gains.row_iter();
-        let rows = rows.map(|r| r.iter().copied().collect()).collect();
-        let mut controller = StateFeedback::new(balance.len(), rows);
+        let mut controller = StateFeedback::new(balance.len(), rows(&self.gains));
         if self.compensated {
             controller = controller.holding(&balance);
         }

@@ -9,7 +9,7 @@ use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
 };
-use crate::synth::{Design, Request, Time, continuous_period_s};
+use crate::synth::{Design, Request, Time, continuous_period_s, rows};
 use serde::Serialize;
 
 /// Runs from random starts behind each figure.
@@ -156,10 +156,8 @@ impl Tested<'_> {
     }
 
     fn controller(&self) -> StateFeedback {
-        let rows = self.design.gains.k.row_iter();
-        let rows = rows.map(|row| row.iter().copied().collect()).collect();
         let joints = self.model.link_count();
-        StateFeedback::new(joints, rows).feeding(&self.design.u0)
+        StateFeedback::new(joints, rows(&self.design.gains.k)).feeding(&self.design.u0)
     }
 
     fn starts(&self, spread_rad: f64) -> Vec<InitialState> {

@@ -3,7 +3,7 @@
 use super::error::DesignError;
 use super::qr::eigenvalues;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, stack};
 
 /// Eigenvalues, those with the largest real part first.
 ///
@@ -19,6 +19,16 @@ pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
         }
     }
     Err(DesignError::Eigenvalues)
+}
+
+/// Sorts poles per sample, those nearest to the unit circle first, or outside it.
+pub(super) fn slowest_first(poles: &mut [Complex<f64>]) {
+    poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+}
+
+/// Largest modulus of poles.
+pub(super) fn largest(poles: &[Complex<f64>]) -> f64 {
+    poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max)
 }
 
 /// A mode and its controllability margin.
@@ -44,13 +54,8 @@ pub fn modes(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Vec<Mode>, DesignErro
     let (n, size) = (a.nrows(), a.norm().max(b.norm()).max(f64::MIN_POSITIVE));
     let (a, b) = (complex(a), complex(b));
     let mode = |pole: Complex<f64>| {
-        let mut pencil = DMatrix::zeros(n, n + b.ncols());
-        pencil.view_mut((0, 0), (n, n)).copy_from(&a);
-        pencil.view_mut((0, n), b.shape()).copy_from(&b);
-        for i in 0..n {
-            pencil[(i, i)] -= pole;
-        }
-        let svd = pencil.svd(true, false);
+        let shifted = &a - DMatrix::from_diagonal_element(n, n, pole);
+        let svd = stack![shifted, b].svd(true, false);
         let least = svd.singular_values.imin();
         let left = svd
             .u

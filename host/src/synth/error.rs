@@ -1,12 +1,13 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
-use crate::error::Error;
+use crate::error::{Error, Reason};
 use nalgebra::Complex;
+use std::borrow::Cow;
 use std::fmt;
 
 /// What stands in the way of a design; joints, states and inputs count from 0.
 ///
-/// As [`Error::Design`] it ends a command with exit code 3.
+/// As [`Error::Design`], which holds it, it ends a command with exit code 3.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum DesignError {
@@ -210,11 +211,10 @@ fn nearest(weakest: Option<&PlantMode>) -> String {
     })
 }
 
-impl DesignError {
-    /// What to change.
-    pub fn remedy(&self) -> String {
+impl Reason for DesignError {
+    fn remedy(&self) -> Cow<'_, str> {
         use DesignError as E;
-        let plain = match self {
+        Cow::Borrowed(match self {
             E::NothingDriven { .. } => "give a [[joint]] another drive than passive",
             E::NoInertia { .. } => "give every link a mass and an inertia",
             E::DelaysDiffer { .. } => {
@@ -229,7 +229,7 @@ impl DesignError {
             E::DriveTooWeak { .. } => "choose a pose that asks less of it",
             E::SamplingTime(_) => "give seconds above 0",
             E::Delay { most_samples, .. } => {
-                return format!("give a delay from 0 to {most_samples} samples");
+                return format!("give a delay from 0 to {most_samples} samples").into();
             }
             E::GrowsWithinSample(_) => "sample faster",
             E::DiagonalSize { .. } | E::ListSize { .. } => {
@@ -238,21 +238,25 @@ impl DesignError {
             E::MatrixSize { name, size, .. } => {
                 return format!(
                     "give {name} as {size} x {size}, as its diagonal, or as one number"
-                );
+                )
+                .into();
             }
             E::Entry { .. } => "give numbers",
             E::Asymmetric { name, .. } => {
-                return format!("give its symmetric part, half of {name} plus its transpose");
+                return format!("give its symmetric part, half of {name} plus its transpose")
+                    .into();
             }
             E::Indefinite { name, .. } => {
                 return format!(
                     "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
-                );
+                )
+                .into();
             }
             E::NotDefinite { name, of, .. } => {
                 return format!(
                     "give every one of the {of} a weight or variance above 0 in {name}"
-                );
+                )
+                .into();
             }
             E::Innovation => "raise the measurement noise V",
             E::Eigenvalues => "look for entries that are not numbers or of very different size",
@@ -262,7 +266,7 @@ impl DesignError {
                 "scale the weights to like sizes, sample slower, or drive more joints"
             }
             E::WordLength(_) => "choose 8 to 32 bits",
-            E::Count { of, .. } => return format!("give one per {of}, or one for all"),
+            E::Count { of, .. } => return format!("give one per {of}, or one for all").into(),
             E::NotPositive { .. } => "give a number above 0",
             E::BeyondWord { .. } => "declare a smaller range, a coarser step, or more bits",
             E::Overflow { .. } => "declare smaller ranges, take a coarser input step, or more bits",
@@ -271,13 +275,12 @@ impl DesignError {
             }
             E::UnstableStart => "start from plants that differ less",
             E::SpreadTooWide { .. } => "ask for less spread, or for more stages on the way",
-        };
-        plain.to_string()
+        })
     }
 }
 
 impl From<DesignError> for Error {
     fn from(error: DesignError) -> Error {
-        Error::design(error.to_string(), error.remedy())
+        Error::Design(Box::new(error))
     }
 }

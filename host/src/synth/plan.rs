@@ -109,7 +109,7 @@ impl StateFeedbackPlan {
 
 fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
     let joints = model.link_count();
-    let drives = model.joints.iter().filter(|j| j.drive.is_driven()).count();
+    let drives = model.driven_joints().len();
     let sampled = value.get("sampled").filter(|sampled| !sampled.is_null());
     let timing = sampled.map(timing).transpose()?;
     let past = timing.map_or(0, |timing| timing.delayed_inputs);
