@@ -5,7 +5,9 @@ use crate::controllers::{
 };
 use crate::error::Result;
 use crate::model::{Angles, Model};
-use crate::sim::closed_loop::{Clock, ClosedLoop, Commands, Controller, Drives, Limits, Sensor};
+use crate::sim::closed_loop::{
+    Clock, ClosedLoop, Commands, Controller, Drives, Sensor, StabilityCriteria,
+};
 use crate::synth;
 
 /// What is run.
@@ -28,7 +30,7 @@ pub struct Case {
     /// The controller.
     pub control: Control,
     /// What counts as fallen and as stabilised.
-    pub limits: Limits,
+    pub limits: StabilityCriteria,
 }
 
 /// A controller, its settings, and what its designer assumes.
@@ -78,7 +80,7 @@ impl Case {
                 drives: Drives::IDEAL,
                 sensor: Sensor::EXACT,
             },
-            limits: Limits::default(),
+            limits: StabilityCriteria::default(),
         }
     }
 

@@ -32,7 +32,7 @@ pub use closed::{ClosedLoop, InitialState, Job, run_jobs};
 pub use controller::{Controller, Measurement};
 pub use drives::Drives;
 pub(crate) use drives::set_delay;
-pub use outcome::{Limits, Outcome};
+pub use outcome::{Outcome, StabilityCriteria};
 pub use posed_plant::{Commands, PosedPlant};
 pub use random::{normal, stream};
 pub use run::Sample;

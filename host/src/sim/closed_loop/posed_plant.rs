@@ -68,7 +68,7 @@ impl PosedPlant {
             }
         };
         let plant = Plant::without_log(model);
-        PosedPlant::around(plant, pose_rad, commands, model.step_s)
+        PosedPlant::around(plant, model, pose_rad, commands)
     }
 
     /// The plant of a model under the conditions of a motion (payload, attitude), commanded as its
@@ -78,14 +78,14 @@ impl PosedPlant {
     /// As [`PosedPlant::new`].
     pub fn of_motion(model: &Model, pose_rad: &[f64], motion: &Motion) -> Result<PosedPlant> {
         let plant = Plant::new(model, motion);
-        PosedPlant::around(plant, pose_rad, Commands::Own, model.step_s)
+        PosedPlant::around(plant, model, pose_rad, Commands::Own)
     }
 
     fn around(
         plant: Plant,
+        model: &Model,
         pose_rad: &[f64],
         commands: Commands,
-        step_s: f64,
     ) -> Result<PosedPlant> {
         if pose_rad.len() != plant.len() {
             return Err(Error::design(
@@ -93,22 +93,20 @@ impl PosedPlant {
                 "give the pose one angle per joint",
             ));
         }
-        let drives: Vec<DrivenJoint> = (0..plant.len())
-            .filter(|&joint| plant.joints[joint].drive.is_driven())
-            .map(|joint| {
-                let plan = &plant.joints[joint];
-                let is_duty = matches!(plan.drive, Drive::Duty(_));
-                DrivenJoint {
-                    joint,
-                    input_per_command: match (commands, is_duty) {
-                        (Commands::Torque, true) => 1.0 / plan.full_torque_nm,
-                        _ => 1.0,
-                    },
-                    largest_input: if is_duty { 1.0 } else { f64::INFINITY },
-                    delay_s: plan.delay_s,
-                }
-            })
-            .collect();
+        let driven = |joint: usize| {
+            let plan = &plant.joints[joint];
+            let is_duty = matches!(plan.drive, Drive::Duty(_));
+            DrivenJoint {
+                joint,
+                input_per_command: match (commands, is_duty) {
+                    (Commands::Torque, true) => 1.0 / plan.full_torque_nm,
+                    _ => 1.0,
+                },
+                largest_input: if is_duty { 1.0 } else { f64::INFINITY },
+                delay_s: plan.delay_s,
+            }
+        };
+        let drives: Vec<DrivenJoint> = model.driven_joints().into_iter().map(driven).collect();
         if drives.is_empty() {
             return Err(Error::design(
                 "no joint is driven, so nothing can hold the robot up",
@@ -119,8 +117,8 @@ impl PosedPlant {
             equations: Equations::of(&plant),
             drives,
             disturbance_nm: vec![0.0; plant.len()],
-            step_s: step_s.min(LONGEST_STEP_S),
-            pose_rad: plant.pose_rad(pose_rad),
+            step_s: model.step_s.min(LONGEST_STEP_S),
+            pose_rad: model.relative_rad(pose_rad),
             plant,
         })
     }
@@ -195,10 +193,8 @@ impl PosedPlant {
 
     /// What the encoders read at the pose, rad in the model's convention.
     pub fn pose_reading_rad(&self) -> Vec<f64> {
-        let joints = 0..self.joints();
-        joints
-            .map(|joint| self.plant.encoded_rad(joint, &self.pose_rad))
-            .collect()
+        let reading = |joint| self.plant.encoded_rad(joint, &self.pose_rad);
+        (0..self.joints()).map(reading).collect()
     }
 
     /// Input of a drive for a command.
