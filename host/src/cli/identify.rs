@@ -18,8 +18,8 @@ use super::talk::Talk;
 use super::{Outcome, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
-    structures, try_all,
+    IntervalEstimate, Record, Structure, TriedStructure, dynamics, record, sampling_period_s,
+    select, structures, try_all,
 };
 use handstand::{Error, Result};
 use serde_json::{Value, json};
@@ -121,8 +121,8 @@ fn data(args: &Args) -> Result<Data> {
     })
 }
 
-fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
-    let trial = |trial: &Candidate| match &trial.outcome {
+fn found_json(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> Value {
+    let trial = |trial: &TriedStructure| match &trial.outcome {
         Ok(fitted) => json!({
             "orders": trial.structure.to_string(),
             "coefficients": trial.structure.count(),
@@ -142,7 +142,7 @@ fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value
             let halves = estimate.half_widths();
             let coefficients: Vec<Value> = (0..names.len())
                 .map(|k| {
-                    let known = Interval::around(values[k], halves[k]);
+                    let known = IntervalEstimate::around(values[k], halves[k]);
                     json!({ "name": names[k], "value": known.value, "low": known.low, "high": known.high })
                 })
                 .collect();

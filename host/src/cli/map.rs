@@ -18,7 +18,7 @@ use super::talk::Talk;
 use super::{Outcome, input, show};
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
-use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
+use handstand::sysid::{BlockMean, DeadZoneMap, IntervalEstimate, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
 use serde_json::{Value, json};
 
@@ -131,7 +131,7 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
         return Ok(Outcome::Done);
     }
     let per_v = line.error_per_v;
-    let percent = Interval {
+    let percent = IntervalEstimate {
         value: 100.0 * per_v.value,
         low: 100.0 * per_v.low,
         high: 100.0 * per_v.high,
@@ -162,7 +162,7 @@ fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
     Ok(Outcome::Refused)
 }
 
-fn known(known: &Interval) -> String {
+fn known(known: &IntervalEstimate) -> String {
     format!(
         "{} ({} to {})",
         exact(known.value),

@@ -10,7 +10,7 @@ use crate::synth::{
 };
 use crate::sysid::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
 use crate::sysid::polynomial::{at_one, roots};
-use crate::sysid::{Estimate, Interval, Record, Structure, estimate, settling_samples};
+use crate::sysid::{Estimate, IntervalEstimate, Record, Structure, estimate, settling_samples};
 use nalgebra::{Complex, DMatrix};
 
 /// Samples of the servo record.
@@ -38,7 +38,7 @@ pub struct Computed {
     /// Zeros from the two torques to two of the angles.
     pub zeros: Vec<Zeros>,
     /// Coefficients of the paper's BJ(2,1,2,1) found in data made with it, with their names.
-    pub servo: Vec<(String, Interval)>,
+    pub servo: Vec<(String, IntervalEstimate)>,
     /// What follows from the servo's model without being printed.
     pub servo_facts: ServoFacts,
 }
@@ -90,8 +90,8 @@ impl Computed {
 
     /// The value of a printed quantity in the print's unit; with its interval where it was
     /// estimated.
-    pub fn value(&self, quantity: Quantity) -> Interval {
-        let exact = |value: f64| Interval::around(value, 0.0);
+    pub fn value(&self, quantity: Quantity) -> IntervalEstimate {
+        let exact = |value: f64| IntervalEstimate::around(value, 0.0);
         match quantity {
             Quantity::Link(link, field) => {
                 let link = &self.model.links[link];
@@ -147,7 +147,7 @@ pub(super) fn servo_estimate(seed: u64) -> Option<(Record, Estimate)> {
     Some((record, found.ok()?))
 }
 
-fn servo() -> Vec<(String, Interval)> {
+fn servo() -> Vec<(String, IntervalEstimate)> {
     let Some((_, estimate)) = servo_estimate(1) else {
         return Vec::new();
     };
@@ -157,7 +157,7 @@ fn servo() -> Vec<(String, Interval)> {
         .names()
         .into_iter()
         .zip(values.iter().zip(estimate.half_widths()))
-        .map(|(name, (value, half))| (name, Interval::around(*value, half)))
+        .map(|(name, (value, half))| (name, IntervalEstimate::around(*value, half)))
         .collect()
 }
 

@@ -5,6 +5,7 @@
 
 use super::model::TransferModel;
 use super::record::Record;
+use super::score::prediction_errors;
 use super::start::{is_usable, starts};
 use super::structure::Structure;
 use nalgebra::{DMatrix, DVector};
@@ -101,8 +102,8 @@ pub fn estimate(structure: &Structure, records: &[Record]) -> Result<Estimate, U
     })
 }
 
-/// Squared error, and its normal equations.
-struct NormalEquations {
+/// Squared one-step error, and Gauss and Newton's equations for the step that lowers it.
+struct GaussNewton {
     cost: f64,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -110,7 +111,7 @@ struct NormalEquations {
 
 struct MinimumSearch {
     model: TransferModel,
-    normal: NormalEquations,
+    normal: GaussNewton,
     converged: bool,
 }
 
@@ -123,13 +124,8 @@ fn search(structure: &Structure, records: &[Record], start: TransferModel) -> Mi
         let Some(step) = damped_step(&normal, damping) else {
             break;
         };
-        let values: Vec<f64> = model
-            .values(structure)
-            .iter()
-            .zip(step.iter())
-            .map(|(value, step)| value - step)
-            .collect();
-        let trial = TransferModel::of(structure, &values);
+        let values = DVector::from_vec(model.values(structure)) - step;
+        let trial = TransferModel::of(structure, values.as_slice());
         let cost = match is_usable(&trial) {
             true => cost(records, &trial),
             false => f64::INFINITY,
@@ -156,14 +152,10 @@ fn search(structure: &Structure, records: &[Record], start: TransferModel) -> Mi
 }
 
 fn cost(records: &[Record], model: &TransferModel) -> f64 {
-    records
-        .iter()
-        .map(|r| {
-            model.errors(r)[r.scored.clone()]
-                .iter()
-                .map(|e| e * e)
-                .sum::<f64>()
-        })
+    let squares = |errors: Vec<f64>| errors.iter().map(|e| e * e).sum::<f64>();
+    prediction_errors(model, records)
+        .into_iter()
+        .map(squares)
         .sum()
 }
 
@@ -171,9 +163,9 @@ fn normal_equations(
     structure: &Structure,
     records: &[Record],
     model: &TransferModel,
-) -> NormalEquations {
+) -> GaussNewton {
     let count = structure.count();
-    let mut normal = NormalEquations {
+    let mut normal = GaussNewton {
         cost: 0.0,
         matrix: DMatrix::zeros(count, count),
         gradient: DVector::zeros(count),
@@ -190,7 +182,7 @@ fn normal_equations(
 }
 
 /// The step of Levenberg and Marquardt, each coefficient in its own scale.
-fn damped_step(normal: &NormalEquations, damping: f64) -> Option<DVector<f64>> {
+fn damped_step(normal: &GaussNewton, damping: f64) -> Option<DVector<f64>> {
     let mut matrix = normal.matrix.clone();
     for k in 0..matrix.nrows() {
         matrix[(k, k)] *= 1.0 + damping;

@@ -4,14 +4,15 @@ use super::super::show;
 use super::Data;
 use handstand::output::number::exact;
 use handstand::sysid::{
-    Candidate, Estimate, FittedModel, Interval, Pole, Record, dynamics, transfer_function,
+    Estimate, FittedModel, IntervalEstimate, Pole, Record, TriedStructure, dynamics,
+    transfer_function,
 };
 
 /// Rows of the table of orders.
 const SHOWN: usize = 12;
 
 /// The whole answer in words.
-pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String {
+pub fn text(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> String {
     let count = |records: &[Record]| records.iter().map(Record::count).sum::<usize>();
     let head = format!(
         "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
@@ -23,7 +24,7 @@ pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String 
     );
     let mut parts = vec![head, table(trials, chosen)];
     match chosen.map(|index| &trials[index]) {
-        Some(Candidate {
+        Some(TriedStructure {
             outcome: Ok(fitted),
             ..
         }) => parts.push(model(data, fitted)),
@@ -45,8 +46,8 @@ fn unit(unit: &str) -> &str {
 }
 
 /// Best first; the chosen one marked.
-fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
-    let mut rows: Vec<(usize, &Candidate, &FittedModel)> = trials
+fn table(trials: &[TriedStructure], chosen: Option<usize>) -> String {
+    let mut rows: Vec<(usize, &TriedStructure, &FittedModel)> = trials
         .iter()
         .enumerate()
         .filter_map(|(k, trial)| Some((k, trial, trial.outcome.as_ref().ok()?)))
@@ -113,7 +114,11 @@ fn model(data: &Data, fitted: &FittedModel) -> String {
         .zip(values)
         .zip(estimate.half_widths())
     {
-        coefficients.add_row([name, exact(value), ends(&Interval::around(value, half))]);
+        coefficients.add_row([
+            name,
+            exact(value),
+            ends(&IntervalEstimate::around(value, half)),
+        ]);
     }
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
@@ -168,6 +173,6 @@ fn pole_text(pole: &Pole) -> String {
     )
 }
 
-fn ends(known: &Interval) -> String {
+fn ends(known: &IntervalEstimate) -> String {
     format!("{} to {}", exact(known.low), exact(known.high))
 }
