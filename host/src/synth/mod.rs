@@ -20,7 +20,6 @@ mod omitted;
 mod operating_point;
 mod plan;
 mod pose;
-mod qr;
 mod quantise;
 mod request;
 mod riccati;
