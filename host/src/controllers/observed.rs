@@ -10,6 +10,7 @@ use super::plant::{continuous, plant};
 use super::sliding::Surface;
 use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, Gains, dlqr, rounding_variance, zoh};
 use nalgebra::{DMatrix, DVector};
@@ -267,9 +268,4 @@ impl Controller for Observed {
             *next = dot(a, room) + dot(b, command_nm);
         }
     }
-}
-
-#[inline]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -52,6 +52,7 @@ impl ControllerDesign for Paper {
         if self.0.speeds == Speeds::Differenced {
             return Ok(Box::new(Differencing {
                 inner,
+                joints: known.joints(),
                 driven: known.driven.clone(),
                 period_s: known.period_s,
             }));
@@ -70,6 +71,7 @@ pub(super) fn gain(known: &DesignModel) -> Result<DMatrix<f64>> {
 #[derive(Debug)]
 struct Differencing {
     inner: StateFeedback,
+    joints: usize,
     driven: Vec<usize>,
     period_s: f64,
 }
@@ -77,13 +79,12 @@ struct Differencing {
 impl Controller for Differencing {
     /// The angles before, whether there are any, and the speeds.
     fn memory_len(&self) -> usize {
-        self.inner.hold.len() + 1
+        2 * self.joints + 1
     }
 
     fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
-        let joints = measured.angle_rad.len();
-        let (before, rest) = memory.split_at_mut(joints);
-        let (speed_rad_s, started) = rest.split_at_mut(joints);
+        let (before, rest) = memory.split_at_mut(self.joints);
+        let (speed_rad_s, started) = rest.split_at_mut(self.joints);
         speed_rad_s.copy_from_slice(measured.speed_rad_s);
         for &joint in &self.driven {
             let moved = measured.angle_rad[joint] - before[joint];

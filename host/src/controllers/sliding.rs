@@ -7,10 +7,11 @@
 //! a boundary layer after Slotine, Li, Applied Nonlinear Control (1991), section 7.2).
 
 use super::best::BEST;
-use super::observed::{ObservedDesign, Options, by_rows, dot};
+use super::observed::{ObservedDesign, Options, by_rows};
 use super::plant::with_offsets;
 use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
 use crate::error::Result;
+use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
 use nalgebra::DMatrix;

@@ -2,6 +2,7 @@
 //! of it.
 
 use super::computed::Computed;
+use crate::controllers::KnownEquilibrium;
 use crate::effects;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
@@ -93,7 +94,7 @@ impl Case {
         }
     }
 
-    fn loop_and_controller(&self) -> Result<(ClosedLoop, StateFeedback, Vec<f64>)> {
+    fn loop_and_controller(&self) -> Result<(ClosedLoop, KnownEquilibrium<'static>, Vec<f64>)> {
         let model = self
             .drives
             .on(&eccentric(self.eccentric_rad)?, self.period_s);
@@ -102,10 +103,12 @@ impl Case {
         closed.plant.disturbance_nm[0] = self.disturbance_nm;
         closed.sensor = self.sensor;
         let balance = closed.plant.balanced_rad();
-        let mut controller = StateFeedback::new(balance.len(), rows(&self.gains));
-        if self.compensated {
-            controller = controller.holding(&balance);
-        }
+        let known_rad = match self.compensated {
+            true => balance.clone(),
+            false => vec![0.0; balance.len()],
+        };
+        let law = StateFeedback::new(balance.len(), rows(&self.gains));
+        let controller = KnownEquilibrium::new(Box::new(law), known_rad);
         Ok((closed, controller, balance))
     }
 

@@ -4,7 +4,7 @@
 use super::drive::DriveInput;
 use super::plant::Plant;
 use super::rows::Many;
-use super::stepper::Stepper;
+use super::stepper::{Stepper, steps};
 use crate::error::{Error, Result};
 use crate::model::{Drive, Model};
 
@@ -79,10 +79,9 @@ impl Live {
 
     /// Goes on for `span_s` under constant duties.
     pub fn advance(&mut self, span_s: f64) {
-        let steps = (span_s / self.plant.step_s - 1e-6).ceil().max(1.0);
-        for _ in 0..steps as usize {
-            self.stepper
-                .advance(&self.plant, &self.inputs, span_s / steps);
+        let (steps, h) = steps(span_s, self.plant.step_s);
+        for _ in 0..steps {
+            self.stepper.advance(&self.plant, &self.inputs, h);
         }
     }
 

@@ -56,7 +56,7 @@ pub(super) fn largest(poles: &[Complex<f64>]) -> f64 {
 }
 
 /// A mode and its controllability margin.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     /// Its eigenvalue, 1/s or per sample.
     pub pole: Complex<f64>,

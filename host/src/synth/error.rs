@@ -1,7 +1,7 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
+use super::eigen::Mode;
 use crate::error::{Error, Reason};
-use nalgebra::Complex;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -141,14 +141,10 @@ pub enum DesignError {
 /// A mode of a plant that a Riccati equation cannot move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantMode {
-    /// Its eigenvalue, 1/s, or per sample if `sampled`.
-    pub pole: Complex<f64>,
+    /// The mode.
+    pub mode: Mode,
     /// Whether the plant is sampled.
     pub sampled: bool,
-    /// The state in which it shows most.
-    pub state: usize,
-    /// Its distance from being uncontrollable, 0 to about 1: see [`Mode`](super::Mode).
-    pub margin: f64,
 }
 
 /// What a Riccati equation is solved for.
@@ -193,12 +189,13 @@ impl Role {
 impl fmt::Display for PlantMode {
     /// "the mode with pole 1.07+0.2i, strongest in state 3".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the mode with pole {:.6}", self.pole.re)?;
-        if self.pole.im != 0.0 {
-            write!(f, "{:+.6}i", self.pole.im)?;
+        let Mode { pole, state, .. } = self.mode;
+        write!(f, "the mode with pole {:.6}", pole.re)?;
+        if pole.im != 0.0 {
+            write!(f, "{:+.6}i", pole.im)?;
         }
         let unit = if self.sampled { "" } else { " 1/s" };
-        write!(f, "{unit}, strongest in state {}", self.state + 1)
+        write!(f, "{unit}, strongest in state {}", state + 1)
     }
 }
 
@@ -206,7 +203,7 @@ fn nearest(weakest: Option<&PlantMode>) -> String {
     weakest.map_or_else(String::new, |mode| {
         format!(
             "; {mode} is the hardest to control, {:.1e} from impossible",
-            mode.margin
+            mode.mode.margin
         )
     })
 }

@@ -22,9 +22,9 @@ const SETTLED_RAD: f64 = 1e-9;
 /// No equilibrium within reach of Newton's iteration.
 pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError> {
     check_size(model, pose_rad)?;
-    let passive: Vec<usize> = (0..model.link_count())
-        .filter(|&joint| !model.joints[joint].drive.is_driven())
-        .collect();
+    let driven = model.driven_joints();
+    let joints = 0..model.link_count();
+    let passive: Vec<usize> = joints.filter(|joint| !driven.contains(joint)).collect();
     let equations = equations(model);
     let mut angle_rad = model.relative_rad(pose_rad);
     for _ in 0..MOST_STEPS {
@@ -37,8 +37,9 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError
         let mut left = DVector::zeros(passive.len());
         let mut slope = slope.select_rows(&passive).select_columns(&passive);
         for (i, &joint) in passive.iter().enumerate() {
-            let own = JointAt::new(model, joint, &angle_rad, &pose_rad).torque(&mut Vec::new());
-            left[i] = gravity_nm[joint] - own.torque_nm;
+            let at = JointAt::new(model, joint, &angle_rad, &pose_rad);
+            let (own_nm, own) = at.torque(&mut Vec::new());
+            left[i] = gravity_nm[joint] - own_nm;
             slope[(i, i)] -= own.per_rad;
         }
         let Some(step) = slope.lu().solve(&left) else {

@@ -6,12 +6,14 @@
 
 use super::body::Body;
 use super::equations::{Absolute, Equations};
-use crate::dynamics::Dense;
+use crate::dynamics::{Dense, EquationsOfMotion};
 use crate::error::{Error, Result};
 use crate::log::Motion;
 use crate::model::{Drive, Model};
 use crate::sim::drive::DriveInput;
+use crate::sim::stepper::steps;
 use crate::sim::{Plant, bare_motors};
+use std::f64::consts::{PI, TAU};
 
 /// An upright robot is faster than the arms that models' own steps are made for, s.
 const LONGEST_STEP_S: f64 = 1e-3;
@@ -153,21 +155,14 @@ impl PosedPlant {
     /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
     /// masses in balance.
     pub fn balanced_rad(&self) -> Vec<f64> {
-        let chain = &self.plant.rig.chain;
-        let turn = self.plant.base_m_s2[0].atan2(self.plant.base_m_s2[1]);
-        let (mut beyond_kg, mut absolute) = (0.0, vec![0.0; chain.len()]);
-        for (i, link) in chain.links.iter().enumerate().rev() {
-            let (sin, cos) = link.com_angle_rad.sin_cos();
-            let moment = link.mass_kg * link.com_m;
-            let along = moment * cos + link.length_m * beyond_kg;
-            absolute[i] = std::f64::consts::PI - (moment * sin).atan2(along) - turn;
-            beyond_kg += link.mass_kg;
-        }
+        let rig = &self.plant.rig;
+        let moments = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad).moments_kg_m();
+        let upright = |[along, across]: &[f64; 2]| PI - across.atan2(*along) + rig.gravity_turn_rad;
+        let absolute: Vec<f64> = moments.iter().map(upright).collect();
         let relative = |i: usize| absolute[i] - if i > 0 { absolute[i - 1] } else { 0.0 };
         let off = (0..absolute.len()).map(|i| relative(i) - self.pose_rad[i]);
         // The nearest turn.
-        off.map(|a| a - std::f64::consts::TAU * (a / std::f64::consts::TAU).round())
-            .collect()
+        off.map(|a| a - TAU * (a / TAU).round()).collect()
     }
 
     /// Deviations of the joints, rad, as deviations in the model's convention of angles.
@@ -247,8 +242,7 @@ impl PosedPlant {
     /// Into how many steps of what length a span is cut, s.
     #[inline]
     pub(super) fn steps(&self, span_s: f64) -> (usize, f64) {
-        let steps = (span_s / self.step_s - 1e-6).ceil().max(1.0);
-        (steps as usize, span_s / steps)
+        steps(span_s, self.step_s)
     }
 
     /// Advances by `span_s` under constant inputs.

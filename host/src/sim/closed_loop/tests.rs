@@ -1,4 +1,5 @@
 use super::*;
+use crate::controllers::KnownEquilibrium;
 use crate::model::Model;
 use std::path::Path;
 
@@ -111,7 +112,8 @@ fn eccentric_masses_are_held_with_compensation_only_at_their_balance() {
     assert!(balance.iter().any(|a| a.abs() > 0.01), "{balance:?}");
     let closed = ClosedLoop::around(plant, 0.01);
     let start = InitialState::at(balance.clone());
-    let held = one(&closed, &paper_gains().holding(&balance), &start, 5.0);
+    let compensated = KnownEquilibrium::new(Box::new(paper_gains()), balance.clone());
+    let held = one(&closed, &compensated, &start, 5.0);
     assert!(held.rms_torque_nm < 1e-9, "{held:?}");
     let plain = one(&closed, &paper_gains(), &start, 5.0);
     assert!(plain.rms_torque_nm > 0.01, "{plain:?}");
