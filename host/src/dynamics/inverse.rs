@@ -29,8 +29,8 @@ impl Chain {
         });
     }
 
-    /// Calls `each` with every joint's index and what its bearing passes on, moment, N m, and force,
-    /// N, from the tip to the base. `joints` are angles, speeds and accelerations.
+    /// Calls `each` with every joint's index and what its bearing passes on, moment, N m, and
+    /// force, N, from the tip to the base. `joints` are angles, speeds and accelerations.
     pub fn newton_euler(
         &self,
         gravity_turn_rad: f64,

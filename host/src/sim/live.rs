@@ -46,7 +46,8 @@ impl Live {
                     "`{}` has a joint driven by a torque, not by a servo",
                     model.name
                 ),
-                "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, no_load_speed_rad_s",
+                "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, \
+                 no_load_speed_rad_s",
             ));
         }
         let model = bare_motors(model);

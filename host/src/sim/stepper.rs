@@ -110,7 +110,8 @@ impl<R: Rows> Stepper<R> {
     }
 
     fn stopped(&self, joint: usize) -> bool {
-        matches!(self.contact[joint], Contact::Sliding(direction) if direction * self.speed[joint] < 0.0)
+        let speed = self.speed[joint];
+        matches!(self.contact[joint], Contact::Sliding(direction) if direction * speed < 0.0)
     }
 
     /// The joint whose speed first crosses zero in the step just taken, and at which share of it.

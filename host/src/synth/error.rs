@@ -22,7 +22,8 @@ pub enum DesignError {
     #[error("the pose has an angle of {0}")]
     PoseAngle(f64),
     #[error(
-        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: the pose is no equilibrium",
+        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: \
+         the pose is no equilibrium",
         joint + 1
     )]
     NoEquilibrium {
@@ -32,7 +33,10 @@ pub enum DesignError {
     },
     #[error("no equilibrium was found near this pose")]
     EquilibriumNotFound,
-    #[error("joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give", joint + 1)]
+    #[error(
+        "joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give",
+        joint + 1
+    )]
     DriveTooWeak { joint: usize, torque_nm: f64 },
 
     #[error("a sampling time of {0} s")]
@@ -95,7 +99,10 @@ pub enum DesignError {
     Uncontrollable { mode: PlantMode, role: Role },
     #[error("{mode}: {}", role.unweighted().0)]
     Unweighted { mode: PlantMode, role: Role },
-    #[error("no stabilising solution was found within double precision{}", nearest(weakest.as_ref()))]
+    #[error(
+        "no stabilising solution was found within double precision{}",
+        nearest(weakest.as_ref())
+    )]
     NoSolution { weakest: Option<PlantMode> },
 
     #[error("a word of {0} bits")]
@@ -123,7 +130,8 @@ pub enum DesignError {
         word: f64,
     },
     #[error(
-        "the gains of input {} overflow {bits} bits: the sum over the declared ranges is too large for its step of {step}",
+        "the gains of input {} overflow {bits} bits: the sum over the declared ranges is too \
+         large for its step of {step}",
         input + 1
     )]
     Overflow { input: usize, bits: u32, step: f64 },
@@ -245,7 +253,8 @@ impl Reason for DesignError {
             }
             E::Indefinite { name, .. } => {
                 return format!(
-                    "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
+                    "no weight or variance is negative: raise the eigenvalues of {name} to 0 or \
+                     above"
                 )
                 .into();
             }

@@ -94,7 +94,8 @@ impl<'a> JointAt<'a> {
         }
     }
 
-    /// Torque of the smooth joint effects, N m, and its slope; those that are not smooth are added to `omitted`.
+    /// Torque of the smooth joint effects, N m, and its slope; those that are not smooth are added
+    /// to `omitted`.
     pub fn torque(&self, omitted: &mut Vec<OmittedEffect>) -> (f64, Slope) {
         let state = JointState::undriven(self.angle_rad, 0.0);
         let (mut torque_nm, mut sum) = (0.0, Slope::NONE);

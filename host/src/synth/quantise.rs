@@ -287,7 +287,12 @@ mod tests {
                 ts_s: 0.01,
                 delayed_inputs: 0,
             };
-            let exact = crate::synth::Gains { k: k.clone(), riccati: k.clone(), residual: 0.0, poles: Vec::new() };
+            let exact = crate::synth::Gains {
+                k: k.clone(),
+                riccati: k.clone(),
+                residual: 0.0,
+                poles: Vec::new(),
+            };
             let loss = law.loss(&plant, &exact, &x0, &u0, &range).unwrap();
             let off: Vec<f64> = (0..2).map(|j| share[j] * range[j]).collect();
             let x: Vec<f64> = (0..2).map(|j| x0[j] + off[j]).collect();

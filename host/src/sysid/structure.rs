@@ -163,7 +163,8 @@ pub enum StructureFault {
         names: &'static [&'static str],
     },
     #[error(
-        "'{field}' is no order {name} from 0 to {MOST}, or makes more than {MOST_STRUCTURES} structures"
+        "'{field}' is no order {name} from 0 to {MOST}, or makes more than {MOST_STRUCTURES} \
+         structures"
     )]
     Order { field: String, name: &'static str },
     #[error("B needs a coefficient: nb is 1 or more")]

@@ -5,7 +5,8 @@
 //! during a run is kept apart. A run allocates at its beginning only.
 //!
 //! ```text
-//! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay -> drives with their effects -> torque -> plant
+//! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay
+//!            -> drives with their effects -> torque -> plant
 //! ```
 
 mod body;

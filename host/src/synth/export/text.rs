@@ -231,7 +231,9 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
             true => format!("Ranges: {}", ranges.join("; ")),
             false => format!("Ranges: of {} states, see --json", ranges.len()),
         },
-        "No states whatever overflow the sum; errors are the most that is possible within the ranges.".to_string(),
+        "No states whatever overflow the sum; errors are the most that is possible within the \
+         ranges."
+            .to_string(),
         format!(
             "Spectral radius with these gains {:.6}; fingerprint {:08X}",
             loss.radius_fixed,

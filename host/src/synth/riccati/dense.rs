@@ -1,8 +1,8 @@
 //! Products and solutions of small and large dense matrices, faster than the general ones.
 //!
 //! Small matrices lose more to packing and calls than to arithmetic; large triangular solutions are
-//! mostly products. Measured against nalgebra: products of 6 x 6 save a quarter of a Riccati solution,
-//! triangular solutions 4 % of one of 6 states and 8 % of one of 20 or 60.
+//! mostly products. Measured against nalgebra: products of 6 x 6 save a quarter of a Riccati
+//! solution, triangular solutions 4 % of one of 6 states and 8 % of one of 20 or 60.
 
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, Dyn, LU, stack};
 
