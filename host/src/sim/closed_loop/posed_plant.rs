@@ -192,30 +192,32 @@ impl PosedPlant {
         (0..self.joints()).map(reading).collect()
     }
 
-    /// Input of a drive for a command.
+    /// Gives a drive its command: its input, and its torque at the state.
     #[inline]
-    pub(super) fn input(&self, drive: usize, command: f64) -> DriveInput {
+    pub(super) fn obey(
+        &self,
+        drive: usize,
+        command: f64,
+        inputs: &mut [DriveInput],
+        body: &mut Body,
+    ) {
         let driven = &self.drives[drive];
+        let joint = driven.joint;
         let input = driven.input_per_command * command;
-        DriveInput {
+        let input = DriveInput {
             input: input.clamp(-driven.largest_input, driven.largest_input),
-            disturbance_nm: self.disturbance_nm[driven.joint],
+            disturbance_nm: self.disturbance_nm[joint],
             ..DriveInput::ZERO
-        }
-    }
-
-    /// Torque of a drive at the state, N m.
-    #[inline]
-    pub(super) fn drive_torque_nm(&self, drive: usize, input: DriveInput, body: &Body) -> f64 {
-        let joint = self.drives[drive].joint;
+        };
+        inputs[joint] = input;
         let plan = &self.plant.joints[joint];
-        match &body.general {
+        body.drive_nm[drive] = match &body.general {
             None => plan.drive_torque_nm(input, 0.0, 0.0),
             Some(general) => {
                 let reading = self.plant.encoded_rad(joint, general.angle_rad());
                 plan.drive_torque_nm(input, reading, body.speed_rad_s[joint])
             }
-        }
+        };
     }
 
     /// Readings of the encoders as deviations from those of the pose, in the model's convention:

@@ -195,9 +195,10 @@ fn drives_are_as_far_from_ideal_as_their_effects_say() {
         };
         let closed = loop_of(&drives.on(&model(), 0.01));
         let torque = |command: f64| {
-            let body = body::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
-            let input = closed.plant.input(0, command);
-            closed.plant.drive_torque_nm(0, input, &body)
+            let mut body = body::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
+            let mut inputs = [crate::sim::drive::DriveInput::ZERO; 3];
+            closed.plant.obey(0, command, &mut inputs, &mut body);
+            body.drive_nm[0]
         };
         assert_eq!([torque(0.19), torque(-0.2)], [0.0, 0.0]);
         assert!((torque(0.21) - 0.21).abs() < 1e-12);
