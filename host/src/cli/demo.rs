@@ -66,25 +66,25 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk,
     )?;
     let model = match &found {
-        Some(effect) => {
+        Some((effect, horizon)) => {
             talk.say("\nThe model with it (`add` sets it beside the old model refitted without it), and the two files side by side as \
                  they are, on the motion held out:");
-            step(
-                &[
-                    "add",
-                    &nominal,
-                    effect,
-                    "--fit",
-                    a,
-                    b,
-                    "--holdout",
-                    c,
-                    "-o",
-                    &model,
-                ],
-                talk,
-            )?;
-            step(&["compare", &nominal, c, "--model", &model], talk)?;
+            let horizon: Vec<&str> = horizon.iter().map(String::as_str).collect();
+            let add = [
+                "add",
+                &nominal,
+                effect,
+                "--fit",
+                a,
+                b,
+                "--holdout",
+                c,
+                "-o",
+                &model,
+            ];
+            step(&[&add[..], &horizon].concat(), talk)?;
+            let compare = ["compare", &nominal, c, "--model", &model];
+            step(&[&compare[..], &horizon].concat(), talk)?;
             model
         }
         None => nominal,
@@ -114,14 +114,19 @@ fn step(words: &[&str], talk: &Talk) -> Result<Outcome> {
     command.run(&talk)
 }
 
-/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it.
-fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
+/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it, and
+/// the option that asks for the same horizon.
+fn missing(words: &[&str], talk: &Talk) -> Result<Option<(String, Vec<String>)>> {
     let (command, talk) = parsed(words, talk)?;
     let Command::Diagnose(args) = &command else {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found.effects.first().map(FittedEffect::address))
+    let horizon = found
+        .horizon_s
+        .map(|s| vec!["--horizon".to_string(), s.to_string()]);
+    let effect = found.effects.first().map(FittedEffect::address);
+    Ok(effect.map(|effect| (effect, horizon.unwrap_or_default())))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

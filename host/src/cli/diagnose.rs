@@ -13,8 +13,8 @@
 //! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
-//! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for
-//! `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
+//! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
+//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
 //! `docs/json.md`.
 
 use super::page::{self, Page, PageFile};
@@ -45,6 +45,9 @@ pub struct Args {
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Error that is good enough, mrad: a model as given that leaves no more is `adequate`
+    #[arg(long, value_name = "MRAD", value_parser = input::positive)]
+    tolerance: Option<f64>,
     #[command(flatten)]
     judging: input::Judging,
     #[command(flatten)]
@@ -141,6 +144,7 @@ fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis 
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         horizon: args.judging.run.horizon,
+        tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
     };
     let bar = talk.bar();

@@ -14,7 +14,7 @@
 
 use super::talk::Talk;
 use super::{Outcome, input, show};
-use handstand::fitting::{Candidate, Refitted, Undetermined, free_parameters, refit};
+use handstand::fitting::{Refitted, Undetermined, free_parameters, refit};
 use handstand::log::LogRequest;
 use handstand::{Model, Result, model::edit, output};
 use serde_json::json;
@@ -47,7 +47,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
     let before = "for the model as it was";
-    write(&refitted, &text, None, before, &args.fit, talk)
+    write(&refitted, &text, &[], before, &args.fit, talk)
 }
 
 /// Says why there is no new model.
@@ -64,7 +64,7 @@ pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<Outcome> {
 pub fn write(
     refitted: &Refitted,
     text: &str,
-    added: Option<Candidate>,
+    added: &[String],
     before: &str,
     args: &input::FitArgs,
     talk: &Talk,
@@ -73,8 +73,8 @@ pub fn write(
     if talk.json {
         let mut data = show::refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());
-        if let Some(added) = added {
-            data["effect"] = json!(added.to_string());
+        if !added.is_empty() {
+            data["effects"] = json!(added);
         }
         talk.data(&data)?;
     } else {

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 /// How long models run.
 #[derive(Debug, clap::Args)]
 pub struct RunLength {
-    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable
-    /// without it
+    /// Most seconds a model runs without correction, or `whole`; shorter in motions whose start
+    /// errors grow faster
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
 }
@@ -128,18 +128,24 @@ pub fn motions(model: &Model, logs: &[LogRequest], held_out: &[LogRequest]) -> R
     })
 }
 
-/// Refuses a log that is both learned from and judged by.
+/// Refuses rows that are both learned from and judged by.
 ///
 /// # Errors
-/// [`Error::Usage`] that names it.
+/// [`Error::Usage`] that names both logs.
 pub fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
-    match held_out.iter().find(|log| logs.contains(log)) {
-        Some(both) => Err(Error::usage(
-            format!("{both} is fitted and held out"),
-            "name it once: a log that was learned from proves nothing",
-        )),
-        None => Ok(()),
+    for held in held_out {
+        if let Some(fitted) = logs.iter().find(|log| log.overlaps(held)) {
+            let message = match fitted == held {
+                true => format!("{held} is fitted and held out"),
+                false => {
+                    format!("{held} is held out, and shares rows with {fitted}, which is fitted")
+                }
+            };
+            let remedy = "name each row once, a range includes its end: what was learned from proves nothing";
+            return Err(Error::usage(message, remedy));
+        }
     }
+    Ok(())
 }
 
 /// Name and SHA-256 of every file the motions came from, each once.

@@ -2,7 +2,7 @@
 
 use super::talk::Talk;
 use comfy_table::{ContentArrangement, Table};
-use handstand::fitting::{Horizon, Refitted, Undetermined};
+use handstand::fitting::{Refitted, Undetermined, in_windows};
 use handstand::output::number::exact;
 use handstand::report::plain_table;
 use handstand::synth::{linearise, upright};
@@ -50,9 +50,7 @@ pub fn refitted(refitted: &Refitted, before: &str) -> String {
              noise alone leaves {floor} mrad."
         ),
     ];
-    if let Horizon::Seconds(seconds) = refitted.horizon {
-        lines.push(format!("The model ran {} s at a time.", exact(seconds)));
-    }
+    lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));
     let warnings = warnings(refitted).into_iter();
     lines.extend(warnings.map(|line| format!("warning: {line}")));
     lines.join("\n")
@@ -76,6 +74,7 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
         "values": refitted.values,
         "error": refitted.error,
         "horizon_s": refitted.horizon.seconds(),
+        "windows": refitted.windows,
         "converged": refitted.converged,
         "warnings": warnings(refitted),
     })

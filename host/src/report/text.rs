@@ -1,11 +1,11 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, window, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_interval,
 };
-use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
-use crate::fitting::FittedValue;
+use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
+use crate::diagnose::{Alternative, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::fitting::{FittedValue, in_windows};
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
@@ -20,6 +20,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
     let sections = [
         Some(headline(diagnosis)),
         effects(&diagnosis.effects),
+        wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
         alternatives(&diagnosis.alternatives),
         ruled_out(diagnosis),
@@ -69,14 +70,24 @@ fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
     ]
 }
 
+fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
+    let line = |wrong: &WrongValue| format!("{}: {}", wrong.fitted.path, change(wrong));
+    let lines: Vec<String> = wrong.iter().map(line).collect();
+    list("Wrong values", &lines)
+}
+
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let (before, after) = (mrad(error.before_rad), mrad(error.after_rad));
-    let added = !diagnosis.effects.is_empty();
+    let added = !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty();
+    let refitted = error
+        .refitted_rad
+        .map(|rad| format!(", {} mrad refitted", mrad(rad)));
+    let refitted = refitted.unwrap_or_default();
     let change = if added {
-        format!(", refitted as it is -> {after} mrad;")
+        format!(" as given{refitted} -> {after} mrad;")
     } else {
-        ",".to_string()
+        format!(" as given{refitted};")
     };
     let mut lines = vec![
         format!(
@@ -85,7 +96,7 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
         ),
         format!(
             "RMS {}, on {}.",
-            window(diagnosis.horizon_s),
+            in_windows(&diagnosis.windows),
             measured_on(error)
         ),
     ];
@@ -94,7 +105,16 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
             .filter(|_| added)
             .map(|reduction| format!("So {reduction}.")),
     );
+    lines.extend(folds(&diagnosis.folds));
     error.before_rad.is_finite().then(|| lines.join("\n"))
+}
+
+/// "With other motions held out: 41.0 -> 6.2, 39.5 -> 6.4 mrad."
+fn folds(folds: &[Fold]) -> Option<String> {
+    let each = folds.iter();
+    let each = each.map(|fold| format!("{} -> {}", mrad(fold.before_rad), mrad(fold.after_rad)));
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| format!("With other motions held out: {} mrad.", each.join(", ")))
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Option<String> {
@@ -103,8 +123,11 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
             .effects
             .iter()
             .flat_map(|effect| &effect.parameters);
+        let wrong = alternative.wrong_values.iter().map(|wrong| &wrong.fitted);
+        let values = values.chain(wrong);
         let values = values.map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)));
-        let (effects, error) = (joined(&alternative.effects), in_mrad(alternative.error_rad));
+        let effects = explained_by(&alternative.effects, &alternative.wrong_values);
+        let error = in_mrad(alternative.error_rad);
         format!(
             "{effects}: {error}; {}",
             values.collect::<Vec<_>>().join(", ")

@@ -42,8 +42,13 @@ impl Row {
                 }
             }
             Verdict::Unexplained => self.unexplained += 1,
-            Verdict::Nominal if outcome.hidden.is_none() => self.right += 1,
-            Verdict::Nominal => self.nominal += 1,
+            Verdict::Nominal | Verdict::Adequate | Verdict::WrongValue => {
+                match outcome.hidden {
+                    // The owner's values are off, whether an effect is hidden or not.
+                    None => self.right += 1,
+                    Some(_) => self.nominal += 1,
+                }
+            }
             Verdict::Unfit => self.unfit += 1,
         }
     }
@@ -150,9 +155,7 @@ impl Tally {
                 Figure::of("named rightly", 0.9, hidden(), |o| o.is_right()),
                 Figure {
                     at_most: true,
-                    ..Figure::of("false alarms", 0.04, nominal, |o| {
-                        o.verdict != Verdict::Nominal
-                    })
+                    ..Figure::of("false alarms", 0.04, nominal, |o| o.names_effects())
                 },
                 Figure::of(
                     "held-out error within 1.3x of the true model's",

@@ -114,6 +114,8 @@ fn said(outcome: &Outcome) -> String {
     };
     match outcome.verdict {
         Verdict::Nominal => "nominal".to_owned(),
+        Verdict::Adequate => "adequate".to_owned(),
+        Verdict::WrongValue => "wrong values".to_owned(),
         Verdict::Named => format!("named {}", set(&outcome.effects)),
         Verdict::Unexplained => format!("unexplained, with {}", set(&outcome.effects)),
         Verdict::Unfit => "unfit".to_owned(),
@@ -140,13 +142,13 @@ fn miss(outcome: &Outcome) -> Option<String> {
     );
     let seed = outcome.seed;
     let Some(hidden) = &outcome.hidden else {
-        let alarm = outcome.verdict != Verdict::Nominal;
+        let alarm = outcome.names_effects();
         return alarm.then(|| format!("nothing hidden, seed {seed}: {said}; {errors}"));
     };
     if outcome.left_out {
         let sure = matches!(
             outcome.verdict,
-            Verdict::Named | Verdict::Nominal | Verdict::Unfit
+            Verdict::Named | Verdict::Nominal | Verdict::WrongValue | Verdict::Unfit
         );
         return sure.then(|| format!("{hidden} left out, seed {seed}: {said}; {errors}"));
     }

@@ -70,6 +70,14 @@ impl Outcome {
         self.verdict == Verdict::Named && self.effects.iter().eq(self.hidden.iter())
     }
 
+    /// Whether it says that an effect is missing.
+    pub fn names_effects(&self) -> bool {
+        matches!(
+            self.verdict,
+            Verdict::Named | Verdict::Ambiguous | Verdict::Unexplained
+        )
+    }
+
     /// Held-out error against the true model's.
     pub fn ratio(&self) -> f64 {
         self.after_rad / self.true_rad
@@ -137,10 +145,8 @@ fn true_error_rad(
     horizon_s: Option<f64>,
 ) -> f64 {
     let horizon = horizon_s.map_or(Horizon::Whole, Horizon::Seconds);
-    let data = FitData {
-        sigma_rad: FitData::new(truth, training, horizon).sigma_rad,
-        ..FitData::new(truth, held_out, horizon)
-    };
+    let data = FitData::new(truth, held_out, horizon)
+        .weighted_like(&FitData::new(truth, training, horizon));
     fit_start_states(truth, &data).rms_rad(&data)
 }
 

@@ -37,7 +37,7 @@ fn hidden_effects_are_named_and_none_is_invented() {
     let mut values = Vec::new();
     for outcome in outcomes {
         if outcome.hidden.is_none() {
-            assert_eq!(outcome.verdict, Verdict::Nominal, "{outcome:?}");
+            assert_eq!(outcome.verdict, Verdict::WrongValue, "{outcome:?}");
             continue;
         }
         assert!(outcome.is_right(), "{outcome:?}");
