@@ -13,6 +13,7 @@ mod body;
 mod clock;
 mod closed;
 mod controller;
+mod convention;
 mod drives;
 mod equations;
 mod general;

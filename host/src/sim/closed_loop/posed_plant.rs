@@ -6,14 +6,13 @@
 
 use super::body::Body;
 use super::equations::{Absolute, Equations};
-use crate::dynamics::{Dense, EquationsOfMotion};
+use crate::dynamics::Dense;
 use crate::error::{Error, Result};
 use crate::log::Motion;
 use crate::model::{Drive, Model};
 use crate::sim::drive::DriveInput;
 use crate::sim::stepper::steps;
 use crate::sim::{Plant, bare_motors};
-use std::f64::consts::{PI, TAU};
 
 /// An upright robot is faster than the arms that models' own steps are made for, s.
 const LONGEST_STEP_S: f64 = 1e-3;
@@ -150,46 +149,6 @@ impl PosedPlant {
     /// The driven joints from the base outwards, counted from 0.
     pub fn driven_joints(&self) -> impl Iterator<Item = usize> {
         self.drives.iter().map(|drive| drive.joint)
-    }
-
-    /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
-    /// masses in balance.
-    pub fn balanced_rad(&self) -> Vec<f64> {
-        let rig = &self.plant.rig;
-        let moments = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad).moments_kg_m();
-        let upright = |[along, across]: &[f64; 2]| PI - across.atan2(*along) + rig.gravity_turn_rad;
-        let absolute: Vec<f64> = moments.iter().map(upright).collect();
-        let relative = |i: usize| absolute[i] - if i > 0 { absolute[i - 1] } else { 0.0 };
-        let off = (0..absolute.len()).map(|i| relative(i) - self.pose_rad[i]);
-        // The nearest turn.
-        off.map(|a| a - TAU * (a / TAU).round()).collect()
-    }
-
-    /// Deviations of the joints, rad, as deviations in the model's convention of angles.
-    pub fn in_convention(&self, angle_rad: &[f64]) -> Vec<f64> {
-        let carry = if self.plant.absolute { 1.0 } else { 0.0 };
-        let sum = |sum: &mut f64, angle: &f64| {
-            *sum = carry * *sum + angle;
-            Some(*sum)
-        };
-        angle_rad.iter().scan(0.0, sum).collect()
-    }
-
-    /// Angles and speeds of the joints as deviations from the pose, each relative to the link
-    /// before, rad and rad/s, where the encoders read `reading_rad`, rad in the model's
-    /// convention, and their readings change by `rate_rad_s`.
-    pub fn deviations(&self, reading_rad: &[f64], rate_rad_s: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut angle_rad = self.plant.decode_rad(reading_rad);
-        for (angle, pose) in angle_rad.iter_mut().zip(&self.pose_rad) {
-            *angle -= pose;
-        }
-        (angle_rad, self.plant.decode_rad_s(rate_rad_s))
-    }
-
-    /// What the encoders read at the pose, rad in the model's convention.
-    pub fn pose_reading_rad(&self) -> Vec<f64> {
-        let reading = |joint| self.plant.encoded_rad(joint, &self.pose_rad);
-        (0..self.joints()).map(reading).collect()
     }
 
     /// Gives a drive its command: its input, and its torque at the state.
