@@ -22,7 +22,7 @@
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::controllers::{DESIGNS, Design};
+use handstand::controllers::{ControllerDesign, DESIGNS};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
 };
@@ -127,7 +127,7 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
 fn trials(
     args: &ControllersArgs,
     model: &Model,
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static LoopCondition],
     talk: &Talk,
 ) -> Result<Vec<ControllerTrial>> {
@@ -177,7 +177,7 @@ fn trials(
 ///
 /// # Errors
 /// An unknown name.
-pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
+pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn ControllerDesign>> {
     chosen("controller", names, DESIGNS.iter().copied(), |design| {
         design.info().id
     })

@@ -23,7 +23,7 @@
 
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::{ExitStatus, Talk, input, show};
-use handstand::controllers::{Design, DesignModel};
+use handstand::controllers::{ControllerDesign, DesignModel};
 use handstand::output::table::TableColumn;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
@@ -109,7 +109,7 @@ fn dead_times() -> impl Iterator<Item = f64> {
 fn search(
     args: &DelaysArgs,
     model: &Model,
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     talk: &Talk,
 ) -> Result<Vec<DelayMargins>> {
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;

@@ -18,8 +18,8 @@ use super::servo_columns::{ChosenColumns, ServoColumns};
 use super::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
-    structures, try_all,
+    IntervalEstimate, Record, Structure, TriedStructure, dynamics, record, sampling_period_s,
+    select, structures, try_all,
 };
 use handstand::{Error, Result};
 use serde_json::{Value, json};
@@ -121,8 +121,8 @@ fn data(args: &IdentifyArgs) -> Result<Data> {
     })
 }
 
-fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
-    let trial = |trial: &Candidate| match &trial.outcome {
+fn found_json(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> Value {
+    let trial = |trial: &TriedStructure| match &trial.outcome {
         Ok(fitted) => json!({
             "orders": trial.structure.to_string(),
             "coefficients": trial.structure.count(),
@@ -137,7 +137,7 @@ fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value
         .and_then(|index| trials[index].outcome.as_ref().ok())
         .map(|fitted| {
             let estimate = &fitted.estimate;
-            let coefficient = |(name, known): (String, Interval)| {
+            let coefficient = |(name, known): (String, IntervalEstimate)| {
                 let (value, low, high) = (known.value, known.low, known.high);
                 json!({ "name": name, "value": value, "low": low, "high": high })
             };

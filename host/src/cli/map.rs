@@ -19,7 +19,7 @@ use super::show::{self, known};
 use super::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
-use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
+use handstand::sysid::{BlockMean, DeadZoneMap, IntervalEstimate, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
 use serde_json::json;
 
@@ -91,7 +91,8 @@ fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> Str
         table.add_row([name.to_string(), of(&map.up), of(&map.down), unit]);
     };
     let slope = format!("{output_unit} per {input_unit}");
-    let limit = |limit: Option<Interval>| limit.map_or("none seen".into(), |limit| known(&limit));
+    let limit =
+        |limit: Option<IntervalEstimate>| limit.map_or("none seen".into(), |limit| known(&limit));
     row("dead zone ends at", &|s| known(&s.edge), input_unit.into());
     row("slope outside", &|s| known(&s.slope), slope);
     row("limit", &|s| limit(s.limit), output_unit.into());
@@ -130,7 +131,7 @@ fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
 
 fn supply_text(line: &SupplyLine) -> String {
     let per_v = line.error_per_v;
-    let percent = Interval {
+    let percent = IntervalEstimate {
         value: 100.0 * per_v.value,
         low: 100.0 * per_v.low,
         high: 100.0 * per_v.high,

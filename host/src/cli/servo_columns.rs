@@ -83,9 +83,7 @@ impl ServoColumns {
     }
 
     fn driven(&self, model: &Model) -> Result<usize> {
-        let driven: Vec<usize> = (0..model.link_count())
-            .filter(|joint| model.joints[*joint].drive.is_driven())
-            .collect();
+        let driven = model.driven_joints();
         let names: Vec<String> = driven.iter().map(|joint| (joint + 1).to_string()).collect();
         let remedy = match names.as_slice() {
             [] => "a model without a drive has no servo to identify".to_string(),

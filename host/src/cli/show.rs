@@ -6,7 +6,7 @@ use handstand::fitting::{FittedValue, Refitted, Undetermined, in_windows};
 use handstand::output::number::exact;
 use handstand::output::table::{self, TableColumn, plain_table};
 use handstand::synth::{linearise, upright};
-use handstand::sysid::Interval;
+use handstand::sysid::IntervalEstimate;
 use handstand::{Model, Result};
 use serde_json::{Value, json};
 
@@ -119,12 +119,12 @@ pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
 }
 
 /// The ends of an interval.
-pub fn ends(known: &Interval) -> String {
+pub fn ends(known: &IntervalEstimate) -> String {
     format!("{} to {}", exact(known.low), exact(known.high))
 }
 
 /// A value with its interval.
-pub fn known(known: &Interval) -> String {
+pub fn known(known: &IntervalEstimate) -> String {
     format!("{} ({})", exact(known.value), ends(known))
 }
 

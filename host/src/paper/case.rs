@@ -1,7 +1,7 @@
 //! The robot's closed loop under the paper's circumstances: what a run is made of, and what is seen
 //! of it.
 
-use crate::controllers::{ControllerInfo, DEFAULT, Design, DesignModel, Speeds};
+use crate::controllers::{ControllerDesign, ControllerInfo, DEFAULT, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{
     Controller, Drives, Gyro, InitialState, Outcome, StateFeedback, stream,
@@ -35,7 +35,7 @@ static LQR: ControllerInfo = ControllerInfo {
     reference: "the paper, section IV, Figure 12",
 };
 
-impl Design for ContinuousLqr {
+impl ControllerDesign for ContinuousLqr {
     fn info(&self) -> &ControllerInfo {
         &LQR
     }
@@ -121,7 +121,7 @@ pub(super) fn outcomes(case: &Case, spread_rad: f64) -> Result<Vec<Outcome>> {
 /// The robot with every centre of mass turned off its link's line by `eccentric_rad`, which the
 /// controller compensates if `known`.
 fn eccentric(
-    design: &'static dyn Design,
+    design: &'static dyn ControllerDesign,
     period_s: f64,
     eccentric_rad: f64,
     known: bool,

@@ -2,7 +2,7 @@
 
 use super::computed::Computed;
 use super::printed::{Printed, PrintedQuantity, printed};
-use crate::sysid::Interval;
+use crate::sysid::IntervalEstimate;
 use std::fmt;
 
 /// Most digits that may differ for a misprint to be one of digits.
@@ -27,7 +27,7 @@ pub struct CheckedNumber {
     /// As printed.
     pub printed: Printed,
     /// As computed.
-    pub computed: Interval,
+    pub computed: IntervalEstimate,
     /// How they compare.
     pub verdict: Agreement,
 }
@@ -73,7 +73,7 @@ fn decimals(text: &str) -> usize {
     text.split_once('.').map_or(0, |(_, behind)| behind.len())
 }
 
-fn verdict(printed: &Printed, computed: &Interval) -> Agreement {
+fn verdict(printed: &Printed, computed: &IntervalEstimate) -> Agreement {
     let Ok(value) = printed.text.parse::<f64>() else {
         return Agreement::Differs;
     };
@@ -109,7 +109,7 @@ mod tests {
             text,
             in_paper: true,
         };
-        verdict(&printed, &Interval::around(computed, 0.0))
+        verdict(&printed, &IntervalEstimate::around(computed, 0.0))
     }
 
     #[test]

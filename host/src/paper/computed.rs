@@ -11,7 +11,7 @@ use crate::synth::{
 };
 use crate::sysid::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
 use crate::sysid::polynomial::{at_one, roots};
-use crate::sysid::{Estimate, Interval, Record, Structure, estimate, settling_samples};
+use crate::sysid::{Estimate, IntervalEstimate, Record, Structure, estimate, settling_samples};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ pub struct Computed {
     /// Zeros from the two torques to two of the angles.
     pub zeros: Vec<Zeros>,
     /// Coefficients of the paper's BJ(2,1,2,1) found in data made with it, with their names.
-    pub servo: Vec<(String, Interval)>,
+    pub servo: Vec<(String, IntervalEstimate)>,
     /// What follows from the servo's model without being printed.
     pub servo_facts: ServoFacts,
 }
@@ -92,8 +92,8 @@ impl Computed {
 
     /// The value of a printed quantity in the print's unit; with its interval where it was
     /// estimated.
-    pub fn value(&self, quantity: PrintedQuantity) -> Interval {
-        let exact = |value: f64| Interval::around(value, 0.0);
+    pub fn value(&self, quantity: PrintedQuantity) -> IntervalEstimate {
+        let exact = |value: f64| IntervalEstimate::around(value, 0.0);
         match quantity {
             PrintedQuantity::Link(link, field) => {
                 let link = &self.model.links[link];
@@ -141,7 +141,7 @@ pub(super) fn servo_estimate(seed: u64) -> Option<(Record, Estimate)> {
     Some((record, found.ok()?))
 }
 
-fn servo() -> Vec<(String, Interval)> {
+fn servo() -> Vec<(String, IntervalEstimate)> {
     let Some((_, estimate)) = servo_estimate(1) else {
         return Vec::new();
     };

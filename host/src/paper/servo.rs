@@ -11,7 +11,7 @@ use crate::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
-    BlockMean, DeadZoneMap, Interval, OutputQuantity, Side, SupplyLine, blocks, score,
+    BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks, score,
     supply_errors,
 };
 use handstand_shared::raw::Position;
@@ -164,7 +164,7 @@ fn line(map: &DeadZoneMap, most: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) -> String {
+fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<IntervalEstimate>, scale: f64) -> String {
     let text = |side: &Side| match of(side) {
         Some(known) => within(&known, scale),
         None => "none".to_string(),
@@ -173,7 +173,7 @@ fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) 
 }
 
 /// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
-fn within(known: &Interval, scale: f64) -> String {
+fn within(known: &IntervalEstimate, scale: f64) -> String {
     let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
     format!("{value} ({low} to {high})")
 }
@@ -267,7 +267,8 @@ fn torque(model: &Model) -> Result<FittedFigure, String> {
         sides(&map, |side| Some(side.slope), 1.0),
         100.0 * map.inverse().input(1.0)
     );
-    let near = |limit: Option<Interval>| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02);
+    let near =
+        |limit: Option<IntervalEstimate>| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02);
     let is_found = near(map.up.limit) && near(map.down.limit);
     Ok((chart, Holds::at_least_in_part(is_found), sentence))
 }

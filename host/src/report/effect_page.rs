@@ -112,7 +112,7 @@ fn range((low, high): (f64, f64)) -> String {
 }
 
 fn confusions(info: &EffectInfo) -> String {
-    let lines = info.confused_with.iter().map(|confusion| {
+    let lines = info.confusions().map(|confusion| {
         let id = confusion.with;
         wrapped(&format!("{} ({id}): {}", title(id), confusion.why))
     });

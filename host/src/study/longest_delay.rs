@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::judge::{Judging, STABILISED_SHARE, judge};
 use super::quantity::Uncertain;
-use crate::controllers::{Design, DesignModel, LinearLaw};
+use crate::controllers::{ControllerDesign, DesignModel, LinearLaw};
 use crate::error::{Error, Result};
 use serde::Serialize;
 
@@ -69,7 +69,7 @@ impl Longest {
 /// # Errors
 /// A controller that cannot be made.
 pub fn longest_linear(
-    design: &dyn Design,
+    design: &dyn ControllerDesign,
     model: &DesignModel,
     known_s: Option<f64>,
     step_s: f64,

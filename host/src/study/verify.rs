@@ -9,7 +9,7 @@ use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
 };
-use crate::synth::{Design, Request, Time, continuous_period_s};
+use crate::synth::{Design, Request, Time, continuous_period_s, rows};
 use serde::Serialize;
 
 /// Runs from random starts behind each figure.
@@ -164,8 +164,7 @@ impl Tested<'_> {
     /// From random starts within a spread.
     fn figures(&self, closed: &ClosedLoop, spread_rad: f64) -> Figures {
         let (joints, u0) = (self.model.link_count(), &self.design.u0);
-        let rows = self.design.gains.k.row_iter();
-        let rows = rows.map(|row| row.iter().copied().collect()).collect();
+        let rows = rows(&self.design.gains.k);
         let controller = StateFeedback::new(joints, rows).feeding(u0);
         let start = |run| InitialState {
             command: u0.clone(),

@@ -114,10 +114,10 @@ fn measured(args: &Args) -> Result<bool, String> {
     let (new, failed) = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
         bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
-        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome)) {
-            if let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}")) {
-                bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
-            }
+        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
+            && let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}"))
+        {
+            bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
         }
     });
     bar.finish_and_clear();

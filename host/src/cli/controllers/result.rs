@@ -2,7 +2,7 @@
 
 use super::ControllerTrial;
 use crate::cli::show;
-use handstand::controllers::Design;
+use handstand::controllers::ControllerDesign;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::plot::heat_map;
 use handstand::study::LoopCondition;
@@ -10,7 +10,7 @@ use handstand::study::LoopCondition;
 /// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(
     trials: &[ControllerTrial],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static LoopCondition],
 ) -> String {
     let mut parts = vec![format!(
@@ -53,7 +53,7 @@ pub fn text(
 /// A line for each controller, a column for each condition.
 fn matrix(
     trials: &[ControllerTrial],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static LoopCondition],
     cell: impl Fn(&ControllerTrial) -> String,
 ) -> String {
@@ -88,7 +88,7 @@ fn region(trial: &ControllerTrial) -> String {
 /// The shares as a heat map.
 pub fn plot(
     trials: &[ControllerTrial],
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static LoopCondition],
 ) -> String {
     let ids: Vec<&str> = designs.iter().map(|design| design.info().id).collect();

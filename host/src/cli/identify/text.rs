@@ -5,14 +5,15 @@ use crate::cli::show::{self, ends, known};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::sysid::{
-    Candidate, Estimate, FittedModel, Interval, Pole, Record, dynamics, transfer_function,
+    Estimate, FittedModel, IntervalEstimate, Pole, Record, TriedStructure, dynamics,
+    transfer_function,
 };
 
 /// Rows of the table of orders.
 const SHOWN: usize = 12;
 
 /// The whole answer in words.
-pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String {
+pub fn text(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> String {
     let count = |records: &[Record]| records.iter().map(Record::count).sum::<usize>();
     let head = format!(
         "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
@@ -24,7 +25,7 @@ pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String 
     );
     let mut parts = vec![head, table(trials, chosen)];
     match chosen.map(|index| &trials[index]) {
-        Some(Candidate {
+        Some(TriedStructure {
             outcome: Ok(fitted),
             ..
         }) => parts.push(model(data, fitted)),
@@ -46,8 +47,8 @@ fn unit(unit: &str) -> &str {
 }
 
 /// Best first; the chosen one marked.
-fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
-    let mut rows: Vec<(usize, &Candidate, &FittedModel)> = trials
+fn table(trials: &[TriedStructure], chosen: Option<usize>) -> String {
+    let mut rows: Vec<(usize, &TriedStructure, &FittedModel)> = trials
         .iter()
         .enumerate()
         .filter_map(|(k, trial)| Some((k, trial, trial.outcome.as_ref().ok()?)))
@@ -75,7 +76,7 @@ fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
         None => "-".to_string(),
     };
     let kept = |k: usize| if Some(k) == chosen { "kept" } else { "" };
-    let columns: &[TableColumn<(usize, &Candidate, &FittedModel)>] = &[
+    let columns: &[TableColumn<(usize, &TriedStructure, &FittedModel)>] = &[
         ("Orders", &|(_, trial, _)| trial.structure.to_string()),
         ("p", &|(_, trial, _)| trial.structure.count().to_string()),
         ("Error", &|(.., fitted)| exact(fitted.validation.error_rms)),
@@ -114,7 +115,7 @@ fn percent(percent: f64) -> String {
 fn model(data: &Data, fitted: &FittedModel) -> String {
     let estimate = &fitted.estimate;
     let (model, structure) = (&estimate.model, &estimate.structure);
-    let columns: &[TableColumn<(String, Interval)>] = &[
+    let columns: &[TableColumn<(String, IntervalEstimate)>] = &[
         ("Coefficient", &|(name, _)| name.clone()),
         ("Value", &|(_, known)| exact(known.value)),
         ("95 % interval", &|(_, known)| ends(known)),
