@@ -71,8 +71,9 @@ impl Laws {
         // A joint turns all links from its own on: torques and inertias add up from the end.
         for k in (0..LINKS - 1).rev() {
             needed[k] += needed[k + 1];
-            for l in 0..LINKS {
-                mass[k][l] += mass[k + 1][l];
+            let outer = mass[k + 1];
+            for (sum, outer) in mass[k].iter_mut().zip(outer) {
+                *sum += outer;
             }
         }
         for row in &mut mass {
