@@ -24,12 +24,12 @@ mod truth;
 mod tests;
 
 pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench};
-pub use error::{ChallengeError, SealError};
+pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use bench_arm::{BenchArm, STALL_NM};
 use hidden_effect::HiddenEffect;
 use motion::{ArmRecording, record};
@@ -130,15 +130,11 @@ fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [A
 
 /// Whether fewer than 3 % of the samples ask for more than the limit, N m.
 fn spared(recordings: &[ArmRecording], limit_nm: f64) -> bool {
-    let duties = || {
-        recordings
-            .iter()
-            .flat_map(|recording| &recording.commands.duty)
-    };
-    let beyond = duties()
-        .filter(|duty| STALL_NM * duty.abs() > limit_nm)
-        .count();
-    (beyond as f64) < 0.03 * duties().count() as f64
+    let recordings = recordings.iter();
+    let duties = recordings.flat_map(|recording| &recording.commands.duty);
+    let all = duties.clone().count();
+    let beyond = duties.filter(|duty| STALL_NM * duty.abs() > limit_nm);
+    (beyond.count() as f64) < 0.03 * all as f64
 }
 
 /// Independent random numbers for each purpose, so that one seed is one rig whatever it hides.
@@ -152,20 +148,21 @@ fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
 ///
 /// # Errors
 /// The folder is not empty, or the system refuses a file.
-pub fn write(challenge: &Challenge, dir: &Path) -> Result<(), ChallengeError> {
+pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
     match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
-        Ok(true) => return Err(ChallengeError::NotEmpty(dir.to_path_buf())),
+        Ok(true) => {
+            let taken = ChallengeError::NotEmpty(dir.to_path_buf());
+            return Err(Error::Usage(Box::new(taken)));
+        }
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(Error::file(dir, "read", error).into());
+            return Err(Error::file(dir, "read", error));
         }
         _ => {}
     }
     fs::create_dir_all(dir).map_err(|error| Error::file(dir, "create", error))?;
     let sealed = seal(&challenge.answer);
-    let logs = challenge
-        .logs
-        .iter()
-        .map(|(name, log)| (name.as_str(), log.as_str()));
+    let logs = challenge.logs.iter();
+    let logs = logs.map(|(name, log)| (name.as_str(), log.as_str()));
     let others = [
         ("nominal.toml", challenge.model_toml.as_str()),
         ("answer.sealed", &sealed),

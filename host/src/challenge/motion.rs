@@ -5,7 +5,7 @@ use super::bench_arm::NOMINAL_SUPPLY_V;
 use super::physics::{Mount, Physics};
 use super::reference::{MOTION_S, Reference};
 use super::rounding::rounded;
-use super::truth::{Arm, Commands};
+use super::truth::{Arm, ArmCommands};
 use handstand_shared::raw::Position;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +33,7 @@ const MOST_CLIPPED: f64 = 0.04;
 #[derive(Debug, Clone)]
 pub struct ArmRecording {
     /// Times, duty, torque on, and the true supply.
-    pub commands: Commands,
+    pub commands: ArmCommands,
     /// Rounded readings, rad.
     pub position: Vec<f64>,
     /// Conditions.
@@ -75,7 +75,7 @@ fn attempt(
 ) -> ArmRecording {
     let times = sample_times(rng);
     let mut arm = Arm::settled(truth, mount);
-    let mut commands = Commands::default();
+    let mut commands = ArmCommands::default();
     let mut position = Vec::with_capacity(times.len());
     let mut noise = NOISE.0 * normal(rng);
     for (k, &time_s) in times.iter().enumerate() {
@@ -149,7 +149,8 @@ impl ArmRecording {
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
             "# {title}\n\
-             # Time is when the sample was taken and its duty sent; duty is the share of full range.\n\
+             # Time is when the sample was taken and its duty sent; duty is the share of full \
+             range.\n\
              # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
              time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned\n"
         );

@@ -72,8 +72,8 @@ impl Laws {
         for k in (0..LINKS - 1).rev() {
             needed[k] += needed[k + 1];
             let outer = mass[k + 1];
-            for (sum, outer) in mass[k].iter_mut().zip(outer) {
-                *sum += outer;
+            for (sum, part) in mass[k].iter_mut().zip(outer) {
+                *sum += part;
             }
         }
         for row in &mut mass {

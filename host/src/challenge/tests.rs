@@ -3,7 +3,7 @@ use super::regulator::Regulator;
 use super::robot::{Laws, Robot};
 use super::truth::Arm;
 use super::*;
-use std::path::PathBuf;
+use crate::error::Place;
 
 const RELEASED: DriveCommand = DriveCommand {
     duty: 0.0,
@@ -130,11 +130,10 @@ fn a_sealed_answer_opens_and_a_changed_one_does_not() {
     let other = if &text[at..=at] == "0" { "1" } else { "0" };
     changed.replace_range(at..=at, other);
     let error = unseal(&changed).unwrap_err();
-    assert_eq!(error, SealError::Changed);
-    let file = PathBuf::from("answer.sealed");
-    let error = Error::from(ChallengeError::Sealed { file, what: error });
+    assert_eq!(error, ChallengeError::Changed);
+    let error = Error::refused(Place::file("answer.sealed"), error);
     assert_eq!(error.exit_code(), 3);
-    assert_eq!(unseal("{}").unwrap_err(), SealError::NotSealed);
+    assert_eq!(unseal("{}").unwrap_err(), ChallengeError::NotSealed);
 }
 
 #[test]
@@ -179,7 +178,7 @@ fn files_are_written_once() {
     ] {
         assert!(inside.join(name).is_file(), "{name}");
     }
-    let again = Error::from(write(&challenge, &inside).unwrap_err());
+    let again = write(&challenge, &inside).unwrap_err();
     assert_eq!(again.exit_code(), 2);
     assert!(!challenge.model_toml.contains("backlash"));
     assert!(challenge.answer.true_model_toml.contains("backlash"));

@@ -159,7 +159,8 @@ nominal.toml   what its owner believes; the friction is up to 30 % off, everythi
 a.csv          bare arm
 b.csv          with a payload, the rig turned by 180 degrees about the vertical
 c.csv          with another payload; keep it for the last check
-answer.sealed  the answer; sealed so that nobody reads it by accident, not against anybody who wants to
+answer.sealed  the answer; sealed so that nobody reads it by accident, not against anybody who \
+               wants to
 
 Name the effect and its values. In this folder:
 

@@ -99,9 +99,9 @@ impl<'a> Arm<'a> {
     }
 }
 
-/// Commands as they were logged: each holds from its time to the next.
+/// ArmCommands as they were logged: each holds from its time to the next.
 #[derive(Debug, Clone, Default)]
-pub struct Commands {
+pub struct ArmCommands {
     /// When each is given, s.
     pub time_s: Vec<f64>,
     /// Duty, -1 to 1.
@@ -112,7 +112,7 @@ pub struct Commands {
     pub supply_v: Vec<f64>,
 }
 
-impl Commands {
+impl ArmCommands {
     /// Duty that arrives at `time_s` by a wire that delays by `delay_s`; 0 before the first
     /// command.
     fn arriving(&self, time_s: f64, delay_s: f64, last: usize) -> f64 {

@@ -15,8 +15,7 @@
 //! motions held out is not reduced. `--json` prints what `handstand fit` prints, and `effects`, as
 //! `["delay@1"]`.
 
-use super::talk::Talk;
-use super::{Outcome, fit, input};
+use super::{ExitStatus, Talk, fit, input};
 use handstand::fitting::{Candidate, CandidateError, Refitted, refit_with};
 use handstand::log::LogRequest;
 use handstand::model::edit;
@@ -27,21 +26,22 @@ use std::path::PathBuf;
 
 /// Add effects to a model, their parameters fitted to logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct AddArgs {
     /// Model file
     model: PathBuf,
     /// The effects: `delay`, or `coulomb@2` where there are several joints
     #[arg(required = true, value_name = "EFFECT")]
     effects: Vec<String>,
     /// Logs to fit
-    #[arg(long = "fit", required = true, num_args = 1.., value_name = "LOG", value_parser = input::log)]
+    #[arg(long = "fit", required = true, num_args = 1..)]
+    #[arg(value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
     #[command(flatten)]
-    fit: input::FitArgs,
+    fit: input::RefitArgs,
 }
 
 /// Fits, writes, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let mut candidates: Vec<Candidate> = Vec::new();
@@ -56,13 +56,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
     let bar = talk
-        .bar()
+        .bar(0)
         .with_message(format!("starts of {}", names.join(", ")));
     let refitted = refit_with(&model, &candidates, &split, horizon, &|done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });
-    bar.finish_and_clear();
+    drop(bar);
     let refitted = match refitted {
         Ok(refitted) => refitted,
         Err(why) => return fit::refuse(&why, talk),
@@ -80,7 +80,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
 }
 
 /// Says that the effects do not help, and writes nothing.
-fn refuse(refitted: &Refitted, names: &[String], talk: &Talk) -> Result<Outcome> {
+fn refuse(refitted: &Refitted, names: &[String], talk: &Talk) -> Result<ExitStatus> {
     let error = &refitted.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after] = [error.before_rad, error.after_rad].map(mrad);
@@ -95,5 +95,5 @@ fn refuse(refitted: &Refitted, names: &[String], talk: &Talk) -> Result<Outcome>
             "refused: {why}; nothing is written. `handstand diagnose` says which effect the logs ask for."
         ))?;
     }
-    Ok(Outcome::Refused)
+    Ok(ExitStatus::Refused)
 }

@@ -13,8 +13,7 @@
 //!
 //! `--json` prints what `handstand challenge score --json` prints.
 
-use super::talk::Talk;
-use super::{Cli, Command, Outcome, challenge, diagnose};
+use super::{Cli, Command, ExitStatus, Talk, challenge, diagnose};
 use clap::Parser as _;
 use handstand::diagnose::FittedEffect;
 use handstand::{Error, Model, Result};
@@ -22,7 +21,7 @@ use std::path::PathBuf;
 
 /// Watch the whole loop on a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DemoArgs {
     /// Folder to make [default: a new one among the temporary files]
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -35,7 +34,7 @@ pub struct Args {
 }
 
 /// Runs the loop.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
     let output = match &args.output {
         Some(output) => output.clone(),
         None => temporary()?,
@@ -67,8 +66,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     )?;
     let model = match &found {
         Some((effect, horizon)) => {
-            talk.say("\nThe model with it (`add` sets it beside the old model refitted without it), and the two files side by side as \
-                 they are, on the motion held out:");
+            talk.say(
+                "\nThe model with it (`add` sets it beside the old model refitted without it), and \
+                 the two files side by side as they are, on the motion held out:",
+            );
             let horizon: Vec<&str> = horizon.iter().map(String::as_str).collect();
             let add = [
                 "add",
@@ -98,7 +99,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk.print(&challenge::text(&score))?;
     }
     talk.say(&format!("The page with the pictures: {page}"));
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// A place for a folder that nobody else uses; it stays for the user to look into.
@@ -109,7 +110,7 @@ fn temporary() -> Result<PathBuf> {
 }
 
 /// Says a command line and runs it.
-fn step(words: &[&str], talk: &Talk) -> Result<Outcome> {
+fn step(words: &[&str], talk: &Talk) -> Result<ExitStatus> {
     let (command, talk) = parsed(words, talk)?;
     command.run(&talk)
 }
@@ -125,7 +126,10 @@ fn missing(words: &[&str], talk: &Talk) -> Result<Option<(String, Vec<String>)>>
     let horizon = found
         .horizon_s
         .map(|s| vec!["--horizon".to_string(), s.to_string()]);
-    let effect = found.effects.first().map(FittedEffect::address);
+    // Where a wrong value does as well as an effect, the bench hides the effect.
+    let sets = found.alternatives.iter().map(|rival| &rival.effects);
+    let mut effects = std::iter::once(&found.effects).chain(sets).flatten();
+    let effect = effects.next().map(FittedEffect::address);
     Ok(effect.map(|effect| (effect, horizon.unwrap_or_default())))
 }
 

@@ -40,6 +40,7 @@ pub fn compare(
     Comparison {
         model: name.to_string(),
         horizon_s: horizon.seconds(),
+        windows: data.motion_windows(horizon),
         horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
         failures: failures(model, &data.motions, &residuals, &signals),
         traces: traces(&data, &predicted),

@@ -38,6 +38,7 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
         motions: motions(evidence),
+        folds: evidence.folds.clone(),
         collinear,
         summary: Vec::new(),
         next: Vec::new(),
@@ -96,6 +97,13 @@ fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
             "a placebo regressor gains as much as the best effect: nothing may be named"
                 .to_string(),
         );
+    }
+    let lost = evidence.folds.iter().filter(|fold| !fold.gains).count();
+    if lost > 0 {
+        warnings.push(format!(
+            "with other motions held out the explanation gains nothing in {lost} of {} cases",
+            evidence.folds.len()
+        ));
     }
     if evidence.values_vary() {
         warnings.push(format!(

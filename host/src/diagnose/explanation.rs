@@ -1,7 +1,7 @@
 //! The simplest explanation that the evidence allows, and its rivals.
 
 use super::evaluator::Evaluator;
-use super::findings::{ResidualStructure, Verdict};
+use super::findings::{Fold, ResidualStructure, Verdict};
 use super::hypothesis::Hypothesis;
 use super::verdict::{Kind, Signs};
 
@@ -19,6 +19,8 @@ pub(super) struct Evidence<'a> {
     pub residual_structure: Option<ResidualStructure>,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: Option<f64>,
+    /// The explanation with other motions held out.
+    pub folds: Vec<Fold>,
     pub seed: u64,
 }
 
@@ -156,20 +158,28 @@ impl Evidence<'_> {
         self.signs(!rivals.is_empty()).verdict()
     }
 
+    /// What the explanation improves on: the model as given, or the refitted one.
+    pub fn reference(&self) -> &Hypothesis {
+        match self.explanation() {
+            Explanation::Given(given) => given,
+            Explanation::Value(_) | Explanation::Refit(_) => &self.evaluator.given,
+            Explanation::ValueAndRefit(_) | Explanation::Effects(_) => &self.evaluator.base,
+        }
+    }
+
     fn signs(&self, rivals: bool) -> Signs {
         let (evaluator, explanation) = (self.evaluator, self.explanation());
         let chosen = explanation.hypothesis();
         let structure = self.residual_structure.as_ref();
         let tolerance = evaluator.tolerance_rad.unwrap_or(0.0);
-        let (kind, before) = match explanation {
-            Explanation::Given(given) => (Kind::Given, given),
-            Explanation::Value(_) | Explanation::Refit(_) => (Kind::Values, &evaluator.given),
-            Explanation::ValueAndRefit(_) => (Kind::Values, &evaluator.base),
-            Explanation::Effects(_) => (Kind::Effects, &evaluator.base),
+        let kind = match explanation {
+            Explanation::Given(_) => Kind::Given,
+            Explanation::Effects(_) => Kind::Effects,
+            _ => Kind::Values,
         };
         Signs {
             kind,
-            before: before.deciding_mean(),
+            before: self.reference().deciding_mean(),
             left: chosen.deciding_mean(),
             at_noise_floor: evaluator.at_noise_floor(chosen),
             held_out: evaluator.held_out.is_some(),

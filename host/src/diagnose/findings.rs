@@ -100,6 +100,19 @@ pub struct MotionError {
     pub after_rad: f64,
 }
 
+/// What the explanation gains where these motions are held out and the others fitted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fold {
+    /// The motions held out.
+    pub held_out: Vec<String>,
+    /// Root-mean-square error without the explanation, rad.
+    pub before_rad: f64,
+    /// With it.
+    pub after_rad: f64,
+    /// Whether it gains log-likelihood, each motion with its own noise.
+    pub gains: bool,
+}
+
 /// Everything a diagnosis says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnosis {
@@ -124,6 +137,9 @@ pub struct Diagnosis {
     pub residual_structure: Option<ResidualStructure>,
     /// Per motion.
     pub motions: Vec<MotionError>,
+    /// The explanation fitted and judged anew with other motions held out; empty where there are
+    /// fewer than three, and where the model as given explains the measurement.
+    pub folds: Vec<Fold>,
     /// Pairs of parameters the data hardly tell apart: addresses and correlation.
     pub collinear: Vec<(String, String, f64)>,
     /// Sentences for a student: what is missing, its size, how the error falls.
@@ -198,6 +214,7 @@ impl Diagnosis {
             ruled_out: Vec::new(),
             residual_structure: None,
             motions: Vec::new(),
+            folds: Vec::new(),
             collinear: Vec::new(),
             summary: std::iter::once(said)
                 .chain(refused().map(LogFinding::statement))

@@ -19,6 +19,7 @@ mod residual_structure;
 mod restarts;
 mod search;
 mod selection;
+mod stability;
 mod step_size;
 mod terms;
 mod values;
@@ -27,7 +28,7 @@ pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
-    Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
+    Alternative, Diagnosis, FittedEffect, Fold, MotionError, ResidualStructure, RuledOut, Verdict,
     WrongValue,
 };
 pub use options::DiagnoseOptions;

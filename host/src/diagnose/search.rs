@@ -13,12 +13,13 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
-use super::explanation::Evidence;
+use super::explanation::{Evidence, Explanation};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
+use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;
@@ -53,9 +54,13 @@ pub fn diagnose(
         values,
         values_refitted,
         best,
+        folds: Vec::new(),
         seed: options.seed,
     };
     evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
+    if !matches!(evidence.explanation(), Explanation::Given(_)) {
+        evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
+    }
     evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
     let diagnosis = conclude(&evidence);
     evaluator.steps.step(STRUCTURE_STEPS);

@@ -174,6 +174,11 @@ fn error_line(diagnosis: &Diagnosis) -> String {
 fn next(diagnosis: &Diagnosis) -> Vec<String> {
     match diagnosis.verdict {
         Verdict::Named => commands(diagnosis),
+        Verdict::Ambiguous if diagnosis.effects.is_empty() => {
+            let mut next = experiments(diagnosis);
+            next.extend(refit(diagnosis));
+            next
+        }
         Verdict::Ambiguous => experiments(diagnosis),
         Verdict::Unexplained => vec![
             format!("See where it fails: handstand compare {MODEL} {LOGS}"),

@@ -2,10 +2,10 @@
 
 use super::growth::stable_horizon;
 use super::noise::noise_rad;
+use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::ops::Range;
 
 /// How long the model runs at most before it starts again from a state fitted to the measurement.
@@ -37,15 +37,6 @@ impl Horizon {
         let seconds = [self, other].into_iter().filter_map(Horizon::seconds);
         Horizon::from_seconds(seconds.min_by(f64::total_cmp))
     }
-}
-
-/// How long the windows of a motion are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MotionWindow {
-    /// The motion.
-    pub motion: String,
-    /// Seconds of a window; absent where the model runs over the whole motion.
-    pub window_s: Option<f64>,
 }
 
 /// A stretch of one motion that is simulated without a restart.
@@ -109,15 +100,36 @@ impl FitData {
 
     /// One of the motions, cut as it is here.
     pub fn only(&self, motion: usize) -> FitData {
-        let windows = self.windows_of(motion).map(|(_, window)| Window {
-            motion: 0,
+        self.part(|m| m == motion)
+    }
+
+    /// The motions of both, with the weights of this one.
+    pub fn joined(&self, other: &FitData) -> FitData {
+        let mut joined = self.clone();
+        let moved = other.windows.iter().map(|window| Window {
+            motion: window.motion + self.motions.len(),
             samples: window.samples.clone(),
         });
+        joined.windows.extend(moved);
+        joined.motions.extend(other.motions.iter().cloned());
+        joined.stable.extend(&other.stable);
+        joined
+    }
+
+    /// Some of the motions, cut as they are here.
+    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
+        let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();
+        let windows = kept.iter().enumerate().flat_map(|(index, &motion)| {
+            self.windows_of(motion).map(move |(_, window)| Window {
+                motion: index,
+                samples: window.samples.clone(),
+            })
+        });
         FitData {
-            motions: vec![self.motions[motion].clone()],
             windows: windows.collect(),
+            motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             sigma_rad: self.sigma_rad.clone(),
-            stable: vec![self.stable[motion]],
+            stable: kept.iter().map(|&m| self.stable[m]).collect(),
         }
     }
 

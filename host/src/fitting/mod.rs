@@ -29,10 +29,11 @@ mod solve;
 mod staged;
 mod step;
 mod student;
+mod windows;
 
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
-pub use data::{FitData, Horizon, MotionWindow, Window};
+pub use data::{FitData, Horizon, Window};
 pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
 pub use fitted_value::{FittedValue, fitted_values};
@@ -46,3 +47,4 @@ pub use residual::{Residuals, predicted_rad, residuals};
 pub use solve::{fit, fit_start_states};
 pub use staged::fit_staged;
 pub(crate) use student::quantile_975;
+pub use windows::{MotionWindow, in_windows};

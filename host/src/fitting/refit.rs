@@ -11,6 +11,7 @@ use super::fitted_value::{FittedValue, fitted_values};
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
+use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
@@ -36,8 +37,10 @@ pub struct Refitted {
     pub values: Vec<FittedValue>,
     /// Error before and after.
     pub error: ErrorReduction,
-    /// How long the model ran without correction.
+    /// How long the model ran without correction at most.
     pub horizon: Horizon,
+    /// How long the windows of each motion are, those held out last.
+    pub windows: Vec<MotionWindow>,
     /// Whether the search met its tolerance before its iterations ran out.
     pub converged: bool,
 }
@@ -166,6 +169,10 @@ fn finish(
         [] => data.clone(),
         held_out => FitData::new(before, held_out.to_vec(), horizon),
     };
+    let mut windows = data.motion_windows(horizon);
+    if !split.held_out.is_empty() {
+        windows.extend(judged.motion_windows(horizon));
+    }
     let rms_rad = |model: &Model| fit_start_states(model, &judged).rms_rad(&judged);
     Ok(Refitted {
         values,
@@ -178,6 +185,7 @@ fn finish(
             reduction: None,
         },
         free: found.free,
+        windows,
         converged: found.converged,
         model: found.model,
         horizon,

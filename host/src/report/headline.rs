@@ -1,10 +1,11 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word, window};
+use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
+use crate::fitting::in_windows;
 use crate::output::number::{mrad, short};
 use crate::plot::Tone;
 use maud::{Markup, html};
@@ -49,7 +50,7 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
     html! {
         (figures(&shown))
         p.note {
-            "Typical (RMS) angle error in milliradians, " (window(&diagnosis.windows))
+            "Typical (RMS) angle error in milliradians, " (in_windows(&diagnosis.windows))
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."

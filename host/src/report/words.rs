@@ -3,8 +3,8 @@
 use crate::diagnose::words::{at_joint, headline, listed};
 use crate::diagnose::{Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
-use crate::fitting::{ErrorReduction, FittedValue, MotionWindow};
-use crate::output::number::{given, measured, mrad, percent};
+use crate::fitting::{ErrorReduction, FittedValue};
+use crate::output::number::{measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
@@ -88,22 +88,4 @@ pub(super) fn sentences(diagnosis: &Diagnosis) -> impl Iterator<Item = &String> 
         .summary
         .iter()
         .filter(move |line| **line != headline)
-}
-
-/// What limits the judgement in time, as a clause.
-pub(crate) fn window(windows: &[MotionWindow]) -> String {
-    let seconds = windows.iter().filter_map(|window| window.window_s);
-    let whole = windows.iter().any(|window| window.window_s.is_none());
-    let shortest = seconds.clone().reduce(f64::min);
-    let longest = seconds.reduce(f64::max);
-    match (shortest, longest) {
-        (Some(short), Some(_)) if whole => {
-            format!("in windows from {} s to whole motions", given(short))
-        }
-        (Some(short), Some(long)) if given(short) != given(long) => {
-            format!("in windows of {} to {} s", given(short), given(long))
-        }
-        (Some(short), _) => format!("in windows of {} s", given(short)),
-        _ => "over whole motions".into(),
-    }
 }

@@ -6,9 +6,9 @@
 //! `--truth mujoco`, MuJoCo's. A line goes to stderr as each diagnosis ends, whichever ends first;
 //! the tables go to stdout. Fails when a target is missed or a case cannot be made.
 //!
-//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is
-//! not tried again: a run that was stopped goes on, and the files of shards, put together, make
-//! one table.
+//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is not
+//! tried again: a run that was stopped goes on, and the files of shards, put together, make one
+//! table.
 
 use super::page::Page;
 use clap::builder::PossibleValuesParser;
@@ -20,10 +20,9 @@ use handstand_tests::hidden::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
-use std::fs::{File, OpenOptions};
+use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 /// Measure how often hidden effects are named, missed and invented.
 #[derive(Debug, clap::Args)]
@@ -109,13 +108,15 @@ fn measured(args: &Args) -> Result<bool, String> {
     cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
 
     let mut file = args.outcomes.as_deref().map(appended).transpose()?;
-    let journal = Mutex::new(file.as_mut());
+    let journal = std::sync::Mutex::new(file.as_mut());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let bar = ProgressBar::new(cases.len() as u64).with_style(style());
     let (new, failed) = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
         bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
-        if let Err(why) = keep(&journal, outcome) {
+        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
+            && let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}"))
+        {
             bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
         }
     });
@@ -139,17 +140,6 @@ fn measured(args: &Args) -> Result<bool, String> {
     Ok(tally.is_met() && failed.is_empty() && written)
 }
 
-/// Appends an outcome to the file, if there is one.
-fn keep(file: &Mutex<Option<&mut File>>, outcome: &Outcome) -> std::io::Result<()> {
-    let text = serde_json::to_string(outcome)?;
-    match file.lock() {
-        Ok(mut file) => file
-            .as_mut()
-            .map_or(Ok(()), |file| writeln!(file, "{text}")),
-        Err(_) => Ok(()),
-    }
-}
-
 /// The outcomes of a file of JSON lines; none where there is no file yet.
 fn outcomes(path: &Path) -> Result<Vec<Outcome>, String> {
     let said = |why: String| format!("{}: {why}", path.display());
@@ -167,7 +157,7 @@ fn outcomes(path: &Path) -> Result<Vec<Outcome>, String> {
         .collect()
 }
 
-fn appended(path: &Path) -> Result<File, String> {
+fn appended(path: &Path) -> Result<std::fs::File, String> {
     let file = OpenOptions::new().append(true).create(true).open(path);
     file.map_err(|error| format!("{}: {error}", path.display()))
 }

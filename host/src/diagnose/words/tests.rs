@@ -46,6 +46,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
         ruled_out: Vec::new(),
         residual_structure: None,
         motions: Vec::new(),
+        folds: Vec::new(),
         collinear: Vec::new(),
         summary: Vec::new(),
         next: Vec::new(),
