@@ -127,7 +127,7 @@ OUTSIDE = {
     "viscoelastic": (
         ANY,
         {
-            "stiffness_nm_rad": (within(0.08, 0.2), within(0.3, 0.8)),
+            "stiffness_nm_rad": (within(0.04, 0.1), within(0.2, 0.6)),
             "time_constant_s": (within(0.15, 0.5), within(0.15, 0.5)),
         },
     ),

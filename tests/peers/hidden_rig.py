@@ -27,7 +27,7 @@ PAYLOAD_AT_M = 0.15
 PENDULUM = (0.05, 2e-5)
 # Effects that have a derivative at rest and act on the motion, not on what is read of it.
 LINEAR = (
-    "viscous base_tilt com_angle com_shift mass armature cable_spring delay torque_scale speed_limit"
+    "viscous base_tilt com_angle mass armature cable_spring delay torque_scale speed_limit"
 ).split()
 
 
@@ -91,7 +91,6 @@ class Rig:
         for j, (length, com, mass, inertia) in enumerate(links):
             value = lambda kind, key, otherwise, j=j: self.value(j, kind, key, otherwise)
             share = 1.0 + value("mass", "added_kg", 0.0) / mass
-            com += value("com_shift", "shift_m", 0.0)
             side = value("com_angle", "angle_rad", 0.0)
             viscous, coulomb = self.friction[j]
             viscous += value("viscous", "coefficient_nm_s_rad", 0.0)
@@ -110,7 +109,9 @@ class Rig:
                 f' armature="{value("armature", "inertia_kg_m2", 0.0)!r}"'
                 f' frictionloss="{loss!r}" solreffriction="{2 * STEP_S!r} 1"'
                 f' solimpfriction="0.9999 0.9999 0.001 0.5 2"/>'
-                + inertial((com * math.sin(side), -com * math.cos(side)), share * mass, share * inertia)
+                + inertial(
+                    (com * math.sin(side), -com * math.cos(side)), share * mass, share * inertia
+                )
             )
             end = ""
             if j == self.n - 1 and self.payload_kg > 0.0:

@@ -87,7 +87,8 @@ impl RobotRecording {
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
             "# {title}\n\
-             # Time is when the sample was taken and its duties sent; duty is the share of full range.\n\
+             # Time is when the sample was taken and its duties sent.\n\
+             # Duty is the share of full range.\n\
              # Angles from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
              time_s,q1_rad,q2_rad,q3_rad,duty2,duty3,supply_v,torque_on,payload_kg,turned\n"
         );
