@@ -2,7 +2,7 @@
 
 use super::{App, State, Torque};
 use crate::board::Board;
-use crate::design::SILENT_TICKS;
+use crate::design::SILENT_US;
 use crate::panel::{button, leds};
 use handstand_shared::message::Mode;
 
@@ -18,7 +18,7 @@ impl App {
         let lit = leds(
             self.condition(),
             self.ticks,
-            self.silent <= SILENT_TICKS,
+            self.life.us() <= SILENT_US,
             all_answer,
         );
         board.set_leds(lit);
