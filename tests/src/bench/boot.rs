@@ -4,6 +4,7 @@ use super::balance::{plan, upload};
 use super::loss::try_arm;
 use super::{SimulatedCm5, VirtualCm5};
 use handstand_cm5_sim::{Bus, STARTED_MS};
+use handstand_shared::control_table::STATUS_LEVEL;
 use handstand_shared::message::{Command, Hello, Report, VERSION};
 use handstand_simavr::ElfCm5;
 use std::path::Path;
@@ -90,6 +91,10 @@ pub fn noise(elf: &Path, every_us: u64, watchdog_us: u32, ms: f64) -> (usize, f6
     rig.core.set_watchdog_us(watchdog_us);
     assert_eq!(try_arm(&mut rig), Ok(()), "arming");
     let now_ns = (rig.now_ms() * 1e6) as u64;
+    // They do what they are told and answer nothing: noise fills each wait for their answers.
+    for servo in rig.bus.servos.iter_mut().filter(|servo| servo.id() > 6) {
+        servo.set(STATUS_LEVEL, 0);
+    }
     rig.bus.set_noise(now_ns, Some(every_us * 1000));
     rig.core.longest_unfed_ms();
     let until_ms = rig.now_ms() + ms;

@@ -13,6 +13,7 @@ fn noise_holds_no_tick() {
         let mut cm5 = VirtualCm5::new();
         arm(&mut cm5);
         let now_ns = cm5.board.now_ns();
+        silence_most(&mut cm5);
         cm5.bus().set_noise(now_ns, Some(every_us * 1000));
         cm5.board.longest_unfed_ns = 0;
         say(&mut cm5, &Command::KeepAlive, 500);

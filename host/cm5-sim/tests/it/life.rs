@@ -56,7 +56,8 @@ fn silence_is_counted_in_time_however_long_ticks_last() {
         arm(&mut cm5);
         say(&mut cm5, &Command::KeepAlive, 10 * phase);
         let now_ns = cm5.board.now_ns();
-        cm5.bus().set_noise(now_ns, Some(200_000));
+        silence_most(&mut cm5);
+        cm5.bus().set_noise(now_ns, Some(240_000));
         cm5.board.longest_unfed_ns = 0;
         say(&mut cm5, &Command::KeepAlive, 200);
         if cm5.app.condition() != Condition::StreamArmed {

@@ -1,7 +1,7 @@
 //! A CM-5 in process, and what a PC says to it.
 
 use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
-use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
+use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, STATUS_LEVEL};
 use handstand_shared::crc::crc32;
 use handstand_shared::gains::GainTable;
 use handstand_shared::message::*;
@@ -230,4 +230,12 @@ pub fn times_to_off(cm5: &mut VirtualCm5, say: Option<&Command>) -> (Option<f64>
         }
     }
     (soft_ms, None)
+}
+
+/// From now on the servos from 7 on do what they are told and answer nothing: noise then fills each
+/// wait for their answers.
+pub fn silence_most(cm5: &mut VirtualCm5) {
+    for servo in cm5.bus().servos.iter_mut().filter(|servo| servo.id() > 6) {
+        servo.set(STATUS_LEVEL, 0);
+    }
 }

@@ -136,3 +136,28 @@ fn an_adapter_s_user_ends_the_repetitions() {
     cm5.run_ms(300.0);
     assert!(cm5.bus().servo(4).unwrap().torque_is_on());
 }
+
+#[test]
+fn any_button_ends_an_adapter() {
+    use handstand_firmware::panel::button;
+    let on = [0xff, 0xff, 4, 4, 3, 24, 1, 0xff - 36];
+    for (down, after) in [
+        (button::START, Condition::Balance),
+        (button::UP, Condition::Stream),
+        (button::LEFT, Condition::Stream),
+    ] {
+        let mut cm5 = VirtualCm5::new();
+        cm5.run_ms(250.0);
+        cm5.send_bytes(&on);
+        cm5.run_ms(20.0);
+        assert!(cm5.bus().any_torque());
+        cm5.board.buttons = down;
+        // Its user goes on, and reaches nobody.
+        for _ in 0..40 {
+            cm5.send_bytes(&on);
+            cm5.run_ms(10.0);
+        }
+        assert!(!cm5.bus().any_torque(), "button {down}");
+        assert_eq!(cm5.app.condition(), after);
+    }
+}
