@@ -8,7 +8,7 @@
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Outcome, StateFeedback, stream,
 };
-use handstand::synth::{Design, Format, Request, Time, Weight, upright};
+use handstand::synth::{Design, Format, Request, Time, Weight, rows, upright};
 use handstand::{Model, Result};
 use std::path::Path;
 
@@ -46,9 +46,7 @@ pub fn held_from(degrees: f64) -> Result<Outcome> {
     // simulation.
     assert_eq!(design.omitted.len(), 2);
 
-    let rows = design.gains.k.row_iter();
-    let rows = rows.map(|row| row.iter().copied().collect()).collect();
-    let controller = StateFeedback::new(robot.link_count(), rows);
+    let controller = StateFeedback::new(robot.link_count(), rows(&design.gains.k));
     let closed = ClosedLoop::new(&robot, &upright(&robot), Commands::Own, PERIOD_S)?;
     let start = InitialState::at(vec![degrees.to_radians(); robot.link_count()]);
     // Nothing is random in this loop; sensors with noise would draw from this stream.

@@ -36,8 +36,8 @@ pub struct BenchArm {
 }
 
 impl BenchArm {
-    /// Draws a rig for `secret`.
-    pub fn random(rng: &mut ChaCha8Rng, secret: Option<&HiddenEffect>) -> BenchArm {
+    /// Draws a rig for what is to be hidden in it.
+    pub fn random(rng: &mut ChaCha8Rng, secrets: &[HiddenEffect]) -> BenchArm {
         let com_m = rounded(rng.random_range(0.08..0.1), 4);
         let mass_kg = rounded(rng.random_range(0.21..0.29), 4);
         let inertia_kg_m2 = rounded(rng.random_range(4.8e-4..7.2e-4), 7);
@@ -45,7 +45,7 @@ impl BenchArm {
         let coulomb = rounded(rng.random_range(0.015..0.035), 5);
         let mut off = |value: f64| rounded(value * rng.random_range(0.7..1.3), 4);
         let believed = [off(viscous), off(coulomb)];
-        let hides = |kind| secret.is_some_and(|secret| secret.kind == kind);
+        let hides = |kind| secrets.iter().any(|secret| secret.kind == kind);
         let friction = |[viscous, coulomb]: [f64; 2]| Friction {
             viscous: (!hides("viscous")).then_some(viscous),
             coulomb: (!hides("coulomb")).then_some(coulomb),
@@ -59,8 +59,8 @@ impl BenchArm {
         }
     }
 
-    /// The laws of the arm with its friction, and with the secret if there is one.
-    pub fn physics(&self, secret: Option<&HiddenEffect>) -> Physics {
+    /// The laws of the arm with its friction and these secrets.
+    pub fn physics(&self, secrets: &[HiddenEffect]) -> Physics {
         let mut physics = Physics::ideal(
             self.com_m,
             self.mass_kg,
@@ -76,10 +76,9 @@ impl BenchArm {
                 physics.switch_on(kind, &[value]);
             }
         }
-        if let Some(secret) = secret {
-            let values: Vec<f64> = secret.parameters.iter().map(|(_, value)| *value).collect();
+        for secret in secrets {
             assert!(
-                physics.switch_on(secret.kind, &values),
+                physics.switch_on(secret.kind, &secret.values()),
                 "{} has no law here",
                 secret.kind
             );

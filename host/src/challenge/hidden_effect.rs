@@ -98,6 +98,45 @@ const EFFECTS: [(&str, Parameters); 23] = [
     ("torque_scale", &[("factor", Factor(0.08, 0.25))]),
 ];
 
+/// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.
+const ROBOT_EFFECTS: [(&str, Parameters); 10] = [
+    (
+        "stribeck",
+        &[
+            ("excess_nm", Within(0.03, 0.08)),
+            ("speed_rad_s", Within(0.1, 0.5)),
+        ],
+    ),
+    (
+        "dead_zone",
+        &[("width", Within(0.02, 0.05)), ("punch", Fixed(0.0))],
+    ),
+    ("delay", &[("delay_s", Within(0.008, 0.03))]),
+    ("supply_sag", &[("drop_share", Within(0.2, 0.5))]),
+    ("torque_saturation", &[("limit_nm", Within(0.4, 0.8))]),
+    ("mass", &[("added_kg", Signed(0.05, 0.15))]),
+    ("armature", &[("inertia_kg_m2", Within(1e-3, 4e-3))]),
+    (
+        "cable_spring",
+        &[
+            ("stiffness_nm_rad", Within(0.1, 0.4)),
+            ("rest_angle_rad", Within(-0.5, 0.5)),
+        ],
+    ),
+    (
+        "air_drag",
+        &[("coefficient_nm_s2_rad2", Within(0.002, 0.008))],
+    ),
+    (
+        "cogging",
+        &[
+            ("amplitude_nm", Within(0.03, 0.08)),
+            ("periods_per_turn", Whole(6.0, 25.0)),
+            ("phase_rad", Within(-PI, PI)),
+        ],
+    ),
+];
+
 /// Ids of the effects that can be hidden.
 pub const KINDS: [&str; EFFECTS.len()] = {
     let mut kinds = [""; EFFECTS.len()];
@@ -115,6 +154,28 @@ pub fn kind_named(name: &str) -> Option<&'static str> {
 }
 
 impl HiddenEffect {
+    /// The same effect at four fifths of its strength.
+    pub fn weaker(&self) -> HiddenEffect {
+        let parameters = self.parameters.iter().map(|&(key, value)| {
+            let value = match (self.kind, key) {
+                (_, "limit_nm" | "no_load_speed_rad_s") => 1.25 * value,
+                (_, "factor") if self.kind != "load_friction" => 1.0 + 0.8 * (value - 1.0),
+                (_, "rest_angle_rad" | "periods_per_turn" | "phase_rad" | "speed_rad_s") => value,
+                _ => 0.8 * value,
+            };
+            (key, rounded(value, 6))
+        });
+        HiddenEffect {
+            kind: self.kind,
+            parameters: parameters.collect(),
+        }
+    }
+
+    /// Its values in the order of its parameters.
+    pub fn values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|(_, value)| *value).collect()
+    }
+
     /// Draws which effect is hidden; `None` if none is, or if `hidden` names no effect of
     /// [`KINDS`].
     pub fn kind(rng: &mut ChaCha8Rng, hidden: Hidden) -> Option<&'static str> {
@@ -126,8 +187,23 @@ impl HiddenEffect {
         }
     }
 
-    /// Draws the values of this effect.
+    /// Draws the values of this effect at the arm.
     pub fn random(rng: &mut ChaCha8Rng, kind: &'static str) -> HiddenEffect {
+        let known = EFFECTS.iter().find(|(id, _)| *id == kind);
+        Self::drawn(rng, kind, known)
+    }
+
+    /// Draws the values of this effect at a joint of the robot.
+    pub fn of_robot(rng: &mut ChaCha8Rng, kind: &'static str) -> HiddenEffect {
+        let mut known = ROBOT_EFFECTS.iter().chain(&EFFECTS);
+        Self::drawn(rng, kind, known.find(|(id, _)| *id == kind))
+    }
+
+    fn drawn(
+        rng: &mut ChaCha8Rng,
+        kind: &'static str,
+        known: Option<&(&str, Parameters)>,
+    ) -> HiddenEffect {
         let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let mut within = |low: f64, high: f64| rounded(rng.random_range(low..high), 6);
         let mut draw = |draw: &Draw| match *draw {
@@ -137,7 +213,6 @@ impl HiddenEffect {
             Factor(low, high) => rounded(1.0 + sign * within(low, high), 6),
             Whole(low, high) => within(low, high).floor(),
         };
-        let known = EFFECTS.iter().find(|(id, _)| *id == kind);
         let parameters = known.map_or(&[][..], |(_, parameters)| parameters);
         HiddenEffect {
             kind,

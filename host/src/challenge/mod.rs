@@ -3,12 +3,17 @@
 //! The truth has its own equations and its own integrator and calls nothing of the library: a
 //! mistake in the library's laws shows up as an effect that isn't found, instead of cancelling out.
 
+mod bench;
 mod bench_arm;
+mod encoder;
 mod error;
 mod hidden_effect;
 mod motion;
 mod physics;
 mod reference;
+mod regulator;
+mod robot;
+mod robot_motion;
 mod rounding;
 mod score;
 mod seal;
@@ -18,12 +23,13 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use error::{ChallengeError, SealError};
+pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench};
+pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use bench_arm::{BenchArm, STALL_NM};
 use hidden_effect::HiddenEffect;
 use motion::{ArmRecording, record};
@@ -47,37 +53,39 @@ pub struct Challenge {
 
 /// Makes the challenge of this seed; equal arguments give equal bytes.
 pub fn generate(seed: u64, hidden: Hidden) -> Challenge {
-    let (rig, secret, recordings) = stage(seed, hidden);
-    let logs = ["a", "b", "c"]
-        .iter()
-        .zip(&recordings)
-        .map(|(name, recording)| {
-            (
-                format!("{name}.csv"),
-                recording.csv(&format!("Bench arm, motion {name}.")),
-            )
-        })
-        .collect();
-    let parameters = secret.iter().flat_map(|secret| &secret.parameters);
+    let secret = HiddenEffect::kind(&mut stream(seed, 0), hidden);
+    let kinds: Vec<&'static str> = secret.into_iter().collect();
+    let (rig, secrets, recordings) = stage(seed, &kinds);
+    let parameters = secrets.iter().flat_map(|secret| &secret.parameters);
     Challenge {
-        model_toml: text::model_toml(&rig, rig.believed, None),
-        logs,
+        model_toml: text::model_toml(&rig, rig.believed, &[]),
+        logs: arm_logs(&recordings),
         answer: ChallengeAnswer {
             seed,
-            kind: secret.as_ref().map(|secret| secret.kind.to_owned()),
+            kind: secrets.first().map(|secret| secret.kind.to_owned()),
             joint: 1,
             parameters: parameters
                 .map(|(key, value)| ((*key).to_owned(), *value))
                 .collect(),
-            true_model_toml: text::model_toml(&rig, rig.friction, secret.as_ref()),
+            true_model_toml: text::model_toml(&rig, rig.friction, &secrets),
         },
     }
 }
 
-/// The rig, what it hides, and its three motions.
-fn stage(seed: u64, hidden: Hidden) -> (BenchArm, Option<HiddenEffect>, [ArmRecording; 3]) {
-    let mut secret = secret(seed, hidden);
-    let rig = BenchArm::random(&mut stream(seed, 1), secret.as_ref());
+/// File name and content of the log of each motion of the arm.
+fn arm_logs(recordings: &[ArmRecording; 3]) -> Vec<(String, String)> {
+    let names = ["a", "b", "c"].iter().zip(recordings);
+    let log = |(name, recording): (&&str, &ArmRecording)| {
+        let title = format!("Bench arm, motion {name}.");
+        (format!("{name}.csv"), recording.csv(&title))
+    };
+    names.map(log).collect()
+}
+
+/// The arm, what it hides, and its three motions.
+fn stage(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>, [ArmRecording; 3]) {
+    let mut secrets: Vec<HiddenEffect> = kinds.iter().map(|kind| secret(seed, kind)).collect();
+    let rig = BenchArm::random(&mut stream(seed, 1), &secrets);
     let mut payload = stream(seed, 2);
     let mounts = [
         (0.0, false),
@@ -86,29 +94,25 @@ fn stage(seed: u64, hidden: Hidden) -> (BenchArm, Option<HiddenEffect>, [ArmReco
     ]
     .map(|(payload_kg, turned)| Mount { payload_kg, turned });
     loop {
-        let truth = rig.physics(secret.as_ref());
+        let truth = rig.physics(&secrets);
         let recordings = motions(seed, &truth, &rig, mounts);
-        match &mut secret {
-            Some(HiddenEffect {
-                kind: "torque_saturation",
-                parameters,
-            }) if spared(&recordings, parameters[0].1) => {
+        let saturation = secrets
+            .iter_mut()
+            .find(|secret| secret.kind == "torque_saturation");
+        match saturation {
+            Some(HiddenEffect { parameters, .. }) if spared(&recordings, parameters[0].1) => {
                 parameters[0].1 = rounded(0.9 * parameters[0].1, 6);
             }
-            _ => return (rig, secret, recordings),
+            _ => return (rig, secrets, recordings),
         }
     }
 }
 
-/// What this seed hides. Each kind draws its values from a stream of its own: at one seed they lie
-/// at different places of their ranges.
-fn secret(seed: u64, hidden: Hidden) -> Option<HiddenEffect> {
-    let kind = HiddenEffect::kind(&mut stream(seed, 0), hidden)?;
-    let place = KINDS.iter().position(|known| *known == kind)?;
-    Some(HiddenEffect::random(
-        &mut stream(seed, SECRETS + place as u64),
-        kind,
-    ))
+/// What is hidden of this kind at this seed. Each kind draws its values from a stream of its own:
+/// at one seed they lie at different places of their ranges.
+fn secret(seed: u64, kind: &'static str) -> HiddenEffect {
+    let place = KINDS.iter().position(|known| *known == kind).unwrap_or(0);
+    HiddenEffect::random(&mut stream(seed, SECRETS + place as u64), kind)
 }
 
 /// First of the streams from which the values of hidden effects are drawn; those of the rig lie
@@ -116,7 +120,7 @@ fn secret(seed: u64, hidden: Hidden) -> Option<HiddenEffect> {
 const SECRETS: u64 = 100;
 
 fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [ArmRecording; 3] {
-    let believed = rig.physics(None);
+    let believed = rig.physics(&[]);
     let mut number = 2;
     mounts.map(|mount| {
         number += 1;
@@ -126,15 +130,11 @@ fn motions(seed: u64, truth: &Physics, rig: &BenchArm, mounts: [Mount; 3]) -> [A
 
 /// Whether fewer than 3 % of the samples ask for more than the limit, N m.
 fn spared(recordings: &[ArmRecording], limit_nm: f64) -> bool {
-    let duties = || {
-        recordings
-            .iter()
-            .flat_map(|recording| &recording.commands.duty)
-    };
-    let beyond = duties()
-        .filter(|duty| STALL_NM * duty.abs() > limit_nm)
-        .count();
-    (beyond as f64) < 0.03 * duties().count() as f64
+    let recordings = recordings.iter();
+    let duties = recordings.flat_map(|recording| &recording.commands.duty);
+    let all = duties.clone().count();
+    let beyond = duties.filter(|duty| STALL_NM * duty.abs() > limit_nm);
+    (beyond.count() as f64) < 0.03 * all as f64
 }
 
 /// Independent random numbers for each purpose, so that one seed is one rig whatever it hides.
@@ -148,20 +148,21 @@ fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
 ///
 /// # Errors
 /// The folder is not empty, or the system refuses a file.
-pub fn write(challenge: &Challenge, dir: &Path) -> Result<(), ChallengeError> {
+pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
     match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
-        Ok(true) => return Err(ChallengeError::NotEmpty(dir.to_path_buf())),
+        Ok(true) => {
+            let taken = ChallengeError::NotEmpty(dir.to_path_buf());
+            return Err(Error::Usage(Box::new(taken)));
+        }
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(Error::file(dir, "read", error).into());
+            return Err(Error::file(dir, "read", error));
         }
         _ => {}
     }
     fs::create_dir_all(dir).map_err(|error| Error::file(dir, "create", error))?;
     let sealed = seal(&challenge.answer);
-    let logs = challenge
-        .logs
-        .iter()
-        .map(|(name, log)| (name.as_str(), log.as_str()));
+    let logs = challenge.logs.iter();
+    let logs = logs.map(|(name, log)| (name.as_str(), log.as_str()));
     let others = [
         ("nominal.toml", challenge.model_toml.as_str()),
         ("answer.sealed", &sealed),

@@ -5,7 +5,7 @@ use super::bench_arm::NOMINAL_SUPPLY_V;
 use super::physics::{Mount, Physics};
 use super::reference::{MOTION_S, Reference};
 use super::rounding::rounded;
-use super::truth::{Arm, Commands};
+use super::truth::{Arm, ArmCommands};
 use handstand_shared::raw::Position;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -13,11 +13,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Time between samples, s, but for the jitter.
-const PERIOD_S: f64 = 0.01;
+pub const PERIOD_S: f64 = 0.01;
 /// Standard deviation of a sample's time, s.
 const JITTER_S: f64 = 0.2e-3;
 /// Standard deviation, rad, and correlation time, s, of the encoder's noise.
-const NOISE: (f64, f64) = (0.5e-3, 0.03);
+pub const NOISE: (f64, f64) = (0.5e-3, 0.03);
 /// Largest duty the controller sends.
 const MOST_DUTY: f64 = 0.6;
 /// Beyond this reading, rad, the motion is repeated more gently.
@@ -33,7 +33,7 @@ const MOST_CLIPPED: f64 = 0.04;
 #[derive(Debug, Clone)]
 pub struct ArmRecording {
     /// Times, duty, torque on, and the true supply.
-    pub commands: Commands,
+    pub commands: ArmCommands,
     /// Rounded readings, rad.
     pub position: Vec<f64>,
     /// Conditions.
@@ -73,13 +73,10 @@ fn attempt(
     mut controller: PdController,
     rng: &mut ChaCha8Rng,
 ) -> ArmRecording {
-    let samples = (MOTION_S / PERIOD_S) as usize + 1;
-    let times: Vec<f64> = (0..samples)
-        .map(|k| rounded((k as f64 * PERIOD_S + JITTER_S * normal(rng)).max(0.0), 6))
-        .collect();
+    let times = sample_times(rng);
     let mut arm = Arm::settled(truth, mount);
-    let mut commands = Commands::default();
-    let mut position = Vec::with_capacity(samples);
+    let mut commands = ArmCommands::default();
+    let mut position = Vec::with_capacity(times.len());
     let mut noise = NOISE.0 * normal(rng);
     for (k, &time_s) in times.iter().enumerate() {
         let reading = quantised(arm.sensed() + noise);
@@ -102,6 +99,14 @@ fn attempt(
         position,
         mount,
     }
+}
+
+/// When the samples of a motion are taken, s: at 100 Hz, with jitter.
+pub fn sample_times(rng: &mut ChaCha8Rng) -> Vec<f64> {
+    let samples = (MOTION_S / PERIOD_S) as usize + 1;
+    (0..samples)
+        .map(|k| rounded((k as f64 * PERIOD_S + JITTER_S * normal(rng)).max(0.0), 6))
+        .collect()
 }
 
 /// Time since the sample before `k`, s.
@@ -144,7 +149,8 @@ impl ArmRecording {
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
             "# {title}\n\
-             # Time is when the sample was taken and its duty sent; duty is the share of full range.\n\
+             # Time is when the sample was taken and its duty sent; duty is the share of full \
+             range.\n\
              # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
              time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned\n"
         );
@@ -201,14 +207,14 @@ impl<'a> PdController<'a> {
 }
 
 /// A battery or a bench supply that drifts.
-struct SupplyDrift {
+pub struct SupplyDrift {
     ends: [f64; 2],
     wobble: [f64; 2],
 }
 
 impl SupplyDrift {
     /// From 8.3 to 11.3 V, at least 1 V apart from end to end.
-    fn random(rng: &mut ChaCha8Rng) -> SupplyDrift {
+    pub fn random(rng: &mut ChaCha8Rng) -> SupplyDrift {
         loop {
             let ends = [rng.random_range(8.5..11.1), rng.random_range(8.5..11.1)];
             if f64::abs(ends[0] - ends[1]) >= 1.0 {
@@ -218,7 +224,8 @@ impl SupplyDrift {
         }
     }
 
-    fn at(&self, time_s: f64) -> f64 {
+    /// Supply, V.
+    pub fn at(&self, time_s: f64) -> f64 {
         let share = time_s / MOTION_S;
         let line = self.ends[0] + share * (self.ends[1] - self.ends[0]);
         (line + self.wobble[0] * (2.0 * TAU * share + self.wobble[1]).sin())
@@ -231,9 +238,14 @@ fn quantised(angle: f64) -> f64 {
     (angle / Position::LSB_RAD).round().clamp(-512.0, 511.0) * Position::LSB_RAD + 0.0
 }
 
+/// To the encoder's steps, without an end of its range; never a negative zero.
+pub fn stepped(angle: f64) -> f64 {
+    (angle / Position::LSB_RAD).round() * Position::LSB_RAD + 0.0
+}
+
 /// A draw from the standard normal distribution (Box and Muller): another method, as in the crate
 /// `rand_distr`, would change every bench and with it the figures of the benchmark.
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
+pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()
 }

@@ -19,7 +19,8 @@ pub struct Physics {
     pub stall_nm: f64,
     /// Supply at which the stall torque holds, V.
     pub nominal_supply_v: f64,
-    viscous: f64,
+    /// Viscous friction, N m s/rad.
+    pub viscous: f64,
     drag: f64,
     coulomb: f64,
     excess: f64,
@@ -35,11 +36,14 @@ pub struct Physics {
     torque_factor: f64,
     no_load_speed: f64,
     torque_limit: f64,
-    com_angle: f64,
-    armature: f64,
+    /// Angle by which the centre of mass is turned about the joint, rad.
+    pub com_angle: f64,
+    /// Inertia of the rotor at the joint, kg m^2.
+    pub armature: f64,
     stiffness: f64,
     rest_angle: f64,
-    tilt: f64,
+    /// Tilt of the base, rad.
+    pub tilt: f64,
     ripple: f64,
     ripple_periods: f64,
     ripple_phase: f64,

@@ -1,8 +1,7 @@
 //! A model against the answer of its challenge.
 
-use super::error::ChallengeError;
 use super::seal::{ChallengeAnswer, unseal};
-use crate::error::Error;
+use crate::error::{Error, Place, Result};
 use crate::fitting::{Candidate, FitData, Horizon, fit_start_states};
 use crate::log::{LogRequest, read};
 use crate::model::{EffectInstance, Model};
@@ -43,13 +42,10 @@ pub struct ScoredValue {
 ///
 /// # Errors
 /// Files of the challenge that are missing or were changed.
-pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore, ChallengeError> {
+pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore> {
     let file = dir.join("answer.sealed");
     let text = std::fs::read_to_string(&file).map_err(|error| Error::file(&file, "read", error))?;
-    let answer = unseal(&text).map_err(|what| ChallengeError::Sealed {
-        file: file.clone(),
-        what,
-    })?;
+    let answer = unseal(&text).map_err(|why| Error::refused(Place::file(&file), why))?;
     let nominal = Model::load(&dir.join("nominal.toml"))?;
     let truth = Model::parse(&answer.true_model_toml, &file)?;
     let added = beyond(model, &nominal);
@@ -57,7 +53,7 @@ pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore, ChallengeError
     let names: Vec<String> = added.iter().map(name).collect();
     let hidden = beyond(&truth, &nominal).first().map(name);
     let last = LogRequest::whole(dir.join("c.csv"));
-    let error = |model: &Model| -> Result<f64, Error> {
+    let error = |model: &Model| -> Result<f64> {
         let motions = read(std::slice::from_ref(&last), &model.log)?;
         let data = FitData::new(model, motions, Horizon::Whole);
         Ok(fit_start_states(model, &data).rms_rad(&data))

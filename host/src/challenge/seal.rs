@@ -3,7 +3,7 @@
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can
 //! open it.
 
-use super::error::SealError;
+use super::error::ChallengeError;
 use crate::output::number::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -51,14 +51,14 @@ pub fn seal(answer: &ChallengeAnswer) -> String {
 ///
 /// # Errors
 /// It was changed, or is no sealed answer.
-pub fn unseal(text: &str) -> Result<ChallengeAnswer, SealError> {
-    let sealed: Sealed = serde_json::from_str(text).map_err(|_| SealError::NotSealed)?;
-    let bytes = unhex(&sealed.sealed).ok_or(SealError::NotHexadecimal)?;
+pub fn unseal(text: &str) -> Result<ChallengeAnswer, ChallengeError> {
+    let sealed: Sealed = serde_json::from_str(text).map_err(|_| ChallengeError::NotSealed)?;
+    let bytes = unhex(&sealed.sealed).ok_or(ChallengeError::NotHexadecimal)?;
     let plain = masked(&bytes);
     if hex(Sha256::digest(&plain)) != sealed.sha256 {
-        return Err(SealError::Changed);
+        return Err(ChallengeError::Changed);
     }
-    serde_json::from_slice(&plain).map_err(|_| SealError::OtherVersion)
+    serde_json::from_slice(&plain).map_err(|_| ChallengeError::OtherVersion)
 }
 
 /// `bytes` xor SHA-256 of a counter; undoes itself.

@@ -1,7 +1,9 @@
 use super::physics::{DriveCommand, Mount, Physics};
+use super::regulator::Regulator;
+use super::robot::{Laws, Robot};
 use super::truth::Arm;
 use super::*;
-use std::path::PathBuf;
+use crate::error::Place;
 
 const RELEASED: DriveCommand = DriveCommand {
     duty: 0.0,
@@ -63,8 +65,8 @@ fn a_stuck_arm_stays_put() {
 #[test]
 fn every_effect_changes_the_motion() {
     for kind in KINDS {
-        let (rig, secret, recordings) = stage(3, Hidden::Effect(kind));
-        let (with, without) = (rig.physics(secret.as_ref()), rig.physics(None));
+        let (rig, secrets, recordings) = stage(3, &[kind]);
+        let (with, without) = (rig.physics(&secrets), rig.physics(&[]));
         let mut worst = 0.0_f64;
         for recording in &recordings {
             let replay = |physics| recording.commands.replay(physics, recording.mount);
@@ -86,8 +88,8 @@ fn every_effect_changes_the_motion() {
 
 #[test]
 fn the_replay_of_the_truth_is_the_log() {
-    let (rig, secret, recordings) = stage(5, Hidden::Effect("delay"));
-    let truth = rig.physics(secret.as_ref());
+    let (rig, secrets, recordings) = stage(5, &["delay"]);
+    let truth = rig.physics(&secrets);
     for recording in &recordings {
         let sensed = recording.commands.replay(&truth, recording.mount);
         for (sensed, read) in sensed.iter().zip(&recording.position) {
@@ -100,7 +102,7 @@ fn the_replay_of_the_truth_is_the_log() {
 fn the_arm_stays_clear_of_upright_and_moves_enough() {
     for kind in KINDS {
         for seed in 0..5 {
-            let (_, secret, recordings) = stage(seed, Hidden::Effect(kind));
+            let (_, secret, recordings) = stage(seed, &[kind]);
             let duty = |r: &ArmRecording| {
                 r.commands
                     .duty
@@ -128,26 +130,26 @@ fn a_sealed_answer_opens_and_a_changed_one_does_not() {
     let other = if &text[at..=at] == "0" { "1" } else { "0" };
     changed.replace_range(at..=at, other);
     let error = unseal(&changed).unwrap_err();
-    assert_eq!(error, SealError::Changed);
-    let file = PathBuf::from("answer.sealed");
-    let error = Error::from(ChallengeError::Sealed { file, what: error });
+    assert_eq!(error, ChallengeError::Changed);
+    let error = Error::refused(Place::file("answer.sealed"), error);
     assert_eq!(error.exit_code(), 3);
-    assert_eq!(unseal("{}").unwrap_err(), SealError::NotSealed);
+    assert_eq!(unseal("{}").unwrap_err(), ChallengeError::NotSealed);
 }
 
 #[test]
 fn nothing_hidden_is_said_so() {
     let answer = generate(2, Hidden::Nothing).answer;
     assert_eq!((answer.kind, answer.parameters.len()), (None, 0));
-    let kinds: Vec<_> = (0..200).map(|seed| secret(seed, Hidden::Random)).collect();
-    let nothing = kinds.iter().filter(|secret| secret.is_none()).count();
+    let kind = |seed| HiddenEffect::kind(&mut stream(seed, 0), Hidden::Random);
+    let kinds: Vec<_> = (0..200).map(kind).collect();
+    let nothing = kinds.iter().filter(|kind| kind.is_none()).count();
     assert!((5..40).contains(&nothing), "{nothing}");
 }
 
 #[test]
 fn kinds_draw_their_values_apart() {
     let share = |kind, low: f64, high: f64| {
-        let secret = secret(9, Hidden::Effect(kind)).unwrap();
+        let secret = secret(9, kind);
         (secret.parameters[0].1 - low) / (high - low)
     };
     let shares = [
@@ -176,8 +178,106 @@ fn files_are_written_once() {
     ] {
         assert!(inside.join(name).is_file(), "{name}");
     }
-    let again = Error::from(write(&challenge, &inside).unwrap_err());
+    let again = write(&challenge, &inside).unwrap_err();
     assert_eq!(again.exit_code(), 2);
     assert!(!challenge.model_toml.contains("backlash"));
     assert!(challenge.answer.true_model_toml.contains("backlash"));
+}
+
+/// Three links without friction, hip and shoulder driven.
+fn robot_laws() -> Laws {
+    let joint =
+        |com_m, mass_kg, inertia, stall| Physics::ideal(com_m, mass_kg, inertia, stall, 9.8);
+    Laws {
+        joints: [
+            joint(0.07, 0.37, 8e-4, 0.0),
+            joint(0.06, 0.98, 3.3e-3, 3.0),
+            joint(0.12, 0.58, 1.1e-3, 3.0),
+        ],
+        length_m: [0.14, 0.12, 0.18],
+        turned: false,
+    }
+}
+
+#[test]
+fn a_robot_without_friction_keeps_its_energy() {
+    let mut laws = robot_laws();
+    laws.joints[1].switch_on("com_angle", &[0.2]);
+    let mut robot = Robot::new(&laws, [1.5, -0.7, 0.4], [0.0, 2.0, -3.0]);
+    let before = robot.energy_j();
+    for _ in 0..200 {
+        robot.advance(0.01, |_| [RELEASED; 3]);
+        let change = robot.energy_j() - before;
+        assert!(change.abs() < 1e-4, "{change} J");
+    }
+}
+
+#[test]
+fn a_robot_stuck_by_friction_stays_put_and_a_pushed_joint_moves() {
+    let mut laws = robot_laws();
+    for joint in &mut laws.joints {
+        joint.switch_on("coulomb", &[0.2]);
+    }
+    // Gravity asks less of every joint than friction holds.
+    let stuck = [0.02, 0.01, -0.02];
+    let mut robot = Robot::new(&laws, stuck, [0.0; 3]);
+    robot.advance(2.0, |_| [RELEASED; 3]);
+    for (angle, start) in robot.angle.iter().zip(stuck) {
+        assert!((angle - start).abs() < 1e-9, "{angle}");
+    }
+    let pushed = DriveCommand {
+        duty: 0.2,
+        torque_on: true,
+        ..RELEASED
+    };
+    robot.advance(0.3, |_| [RELEASED, RELEASED, pushed]);
+    assert!(robot.angle[2] > 0.1, "{:?}", robot.angle);
+}
+
+#[test]
+fn a_regulator_holds_the_robot_upright_where_it_leans_and_where_drives_are_late() {
+    let mut laws = robot_laws();
+    laws.joints[2].switch_on("com_angle", &[0.1]);
+    laws.joints[1].switch_on("delay", &[0.013]);
+    let mut regulator = Regulator::upright(&laws).unwrap();
+    let start = regulator.pose.map(|angle| angle + 0.002);
+    assert!((start[0] - std::f64::consts::PI).abs() > 0.01);
+    let mut robot = Robot::new(&laws, start, [0.0; 3]);
+    let mut past = [regulator.holding; 2];
+    for _ in 0..300 {
+        let duty = regulator.duty(&robot.angle, &robot.speed, &[0.0; 2]);
+        let sent = |duty| DriveCommand {
+            duty,
+            supply_v: 9.8,
+            torque_on: true,
+        };
+        robot.advance(0.01, |since_s| {
+            let late = if since_s < 0.003 { past[0] } else { past[1] };
+            [RELEASED, sent(late[0]), sent(duty[1])]
+        });
+        past = [past[1], duty];
+    }
+    for (angle, pose) in robot.angle.iter().zip(&regulator.pose) {
+        assert!((angle - pose).abs() < 1e-3, "{:?}", robot.angle);
+    }
+}
+
+#[test]
+fn a_bench_hides_what_it_is_told_and_its_owner_does_not_know() {
+    let arm = bench(Motions::Arm, 4, &["delay", "viscous"]).unwrap();
+    assert_eq!(arm, bench(Motions::Arm, 4, &["delay", "viscous"]).unwrap());
+    let kinds: Vec<&str> = arm.effects.iter().map(|effect| effect.kind).collect();
+    assert_eq!(kinds, ["delay", "viscous"]);
+    assert!(!arm.model_toml.contains("delay") && arm.true_model_toml.contains("delay"));
+    let robot = bench(Motions::Balancing, 4, &["viscous"]).unwrap();
+    let held_out = robot.logs.iter().filter(|log| log.held_out).count();
+    assert_eq!((robot.logs.len(), held_out), (5, 2));
+    let joint = robot.effects[0].joint.unwrap();
+    let lines = |toml: &str| toml.matches("\"viscous\"").count();
+    let known = if joint == 1 { 2 } else { 1 };
+    assert_eq!(lines(&robot.model_toml), known);
+    assert_eq!(
+        lines(&robot.true_model_toml),
+        if joint == 1 { 3 } else { 2 }
+    );
 }

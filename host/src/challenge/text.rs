@@ -6,8 +6,8 @@ use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
 use handstand_shared::raw::Position;
 use std::fmt::Write;
 
-/// The rig as a model file, with `friction` and, if given, the secret.
-pub fn model_toml(rig: &BenchArm, friction: Friction, secret: Option<&HiddenEffect>) -> String {
+/// The rig as a model file, with `friction` and these secrets.
+pub fn model_toml(rig: &BenchArm, friction: Friction, secrets: &[HiddenEffect]) -> String {
     let (com_m, mass_kg, inertia_kg_m2) = (rig.com_m, rig.mass_kg, rig.inertia_kg_m2);
     let mut text = format!(
         r#"[rig]
@@ -33,7 +33,7 @@ nominal_supply_v = {NOMINAL_SUPPLY_V:?}
     if let Some(coulomb) = friction.coulomb {
         effect(&mut text, "coulomb", &[("torque_nm", coulomb)]);
     }
-    if let Some(secret) = secret {
+    for secret in secrets {
         effect(&mut text, secret.kind, &secret.parameters);
     }
     let _ = write!(
@@ -55,13 +55,97 @@ input = {{ column = "duty", unit = "1" }}
     text
 }
 
-fn effect(text: &mut String, kind: &str, parameters: &[(&str, f64)]) {
+/// An effect as a model file has it.
+pub struct EffectLine<'a> {
+    /// Id in the library of effects.
+    pub kind: &'a str,
+    /// Joint, counted from 1.
+    pub joint: usize,
+    /// Keys and values.
+    pub parameters: &'a [(&'static str, f64)],
+}
+
+/// The robot of three links as a model file with these effects. Links are length, joint to centre
+/// of mass, mass and inertia; a stall torque of 0 is a passive joint.
+pub fn robot_toml(
+    links: &[(f64, f64, f64, f64)],
+    stall_nm: &[f64],
+    supply_v: f64,
+    effects: &[EffectLine],
+) -> String {
+    let mut text = format!(
+        r#"[rig]
+name = "robot on a bar"
+angle_zero = "hanging"
+gravity_m_s2 = {GRAVITY_M_S2}
+"#
+    );
+    for (length_m, com_m, mass_kg, inertia_kg_m2) in links {
+        let _ = write!(
+            text,
+            "\n[[link]]\nlength_m = {length_m}\ncom_m = {com_m}\nmass_kg = {mass_kg}\n\
+             inertia_kg_m2 = {inertia_kg_m2}\n"
+        );
+    }
+    for stall_nm in stall_nm {
+        text += "\n[[joint]]\n";
+        let _ = match *stall_nm > 0.0 {
+            true => write!(
+                text,
+                "drive = \"duty\"\nstall_torque_nm = {stall_nm:?}\n\
+                 nominal_supply_v = {supply_v:?}\n"
+            ),
+            false => writeln!(text, "drive = \"passive\""),
+        };
+    }
+    for line in effects {
+        effect_at(&mut text, line);
+    }
+    let _ = write!(
+        text,
+        r#"
+[log]
+time = {{ column = "time_s", unit = "s" }}
+supply = {{ column = "supply_v", unit = "V" }}
+torque_on = "torque_on"
+payload = {{ column = "payload_kg", unit = "kg", at_m = {PAYLOAD_AT_M} }}
+turned = "turned"
+"#
+    );
+    for (k, stall_nm) in stall_nm.iter().enumerate() {
+        let (joint, lsb_rad) = (k + 1, Position::LSB_RAD);
+        let _ = write!(
+            text,
+            "\n[[log.joint]]\nposition = {{ column = \"q{joint}_rad\", unit = \"rad\", \
+             resolution_rad = {lsb_rad:.7} }}\n"
+        );
+        if *stall_nm > 0.0 {
+            let _ = writeln!(text, "input = {{ column = \"duty{joint}\", unit = \"1\" }}");
+        }
+    }
+    text
+}
+
+fn effect(text: &mut String, kind: &str, parameters: &[(&'static str, f64)]) {
+    let joint = 1;
+    effect_at(
+        text,
+        &EffectLine {
+            kind,
+            joint,
+            parameters,
+        },
+    );
+}
+
+fn effect_at(text: &mut String, effect: &EffectLine) {
+    let kind = effect.kind;
     let _ = write!(text, "\n[[effect]]\nkind = \"{kind}\"\n");
     // A tilt is of the whole rig.
     if kind != "base_tilt" {
-        text.push_str("joint = 1\n");
+        let _ = writeln!(text, "joint = {}", effect.joint);
     }
-    for (key, value) in parameters {
+    for (key, value) in effect.parameters {
         let _ = writeln!(text, "{key} = {value:?}");
     }
 }
@@ -75,7 +159,8 @@ nominal.toml   what its owner believes; the friction is up to 30 % off, everythi
 a.csv          bare arm
 b.csv          with a payload, the rig turned by 180 degrees about the vertical
 c.csv          with another payload; keep it for the last check
-answer.sealed  the answer; sealed so that nobody reads it by accident, not against anybody who wants to
+answer.sealed  the answer; sealed so that nobody reads it by accident, not against anybody who \
+               wants to
 
 Name the effect and its values. In this folder:
 

@@ -5,6 +5,7 @@
 //! stop the arm but never reverse it, so that an arm at rest stays there until it is pushed harder
 //! than the breakaway torque.
 
+use super::encoder::Encoder;
 use super::physics::{DriveCommand, Mount, Physics};
 
 /// Longest integration step, s.
@@ -20,22 +21,19 @@ pub struct Arm<'a> {
     pub angle: f64,
     /// Speed, rad/s.
     pub speed: f64,
-    follower: f64,
-    lagged: f64,
+    encoder: Encoder,
 }
 
 impl<'a> Arm<'a> {
     /// At rest at `angle` rad, the encoder in the middle of its play.
     pub fn at_rest(physics: &'a Physics, mount: Mount, angle: f64) -> Self {
-        let encoded = physics.encoded(angle);
         Arm {
             physics,
             mount,
             inertia: physics.inertia_at_joint(mount),
             angle,
             speed: 0.0,
-            follower: encoded,
-            lagged: encoded,
+            encoder: Encoder::at_rest(physics.encoded(angle)),
         }
     }
 
@@ -67,7 +65,8 @@ impl<'a> Arm<'a> {
         let halfway = self.kicked(0.5 * h, push, self.speed);
         self.speed = self.kicked(h, push, halfway);
         self.angle += 0.5 * h * self.speed;
-        self.sense(h);
+        let encoded = self.physics.encoded(self.angle);
+        self.encoder.follow(self.physics, encoded, h);
     }
 
     /// Speed after all torques have acted for `h` seconds, as they are at this angle and
@@ -83,23 +82,9 @@ impl<'a> Arm<'a> {
         direction * (pushed.abs() - h / self.inertia * friction).max(0.0)
     }
 
-    fn sense(&mut self, h: f64) {
-        let half = self.physics.gap / 2.0;
-        let follower = self.follower;
-        let encoded = self.physics.encoded(self.angle);
-        self.follower = follower.clamp(encoded - half, encoded + half);
-        let lag_s = self.physics.lag_s;
-        if lag_s > 0.0 {
-            let middle = 0.5 * (follower + self.follower);
-            self.lagged += (middle - self.lagged) * h / (lag_s + h / 2.0);
-        } else {
-            self.lagged = self.follower;
-        }
-    }
-
     /// The encoder's value before noise and rounding, rad.
     pub fn sensed(&self) -> f64 {
-        self.lagged
+        self.encoder.sensed()
     }
 
     /// Kinetic and potential energy in gravity, J, of an arm without tilt; tests only look at its
@@ -114,9 +99,9 @@ impl<'a> Arm<'a> {
     }
 }
 
-/// Commands as they were logged: each holds from its time to the next.
+/// ArmCommands as they were logged: each holds from its time to the next.
 #[derive(Debug, Clone, Default)]
-pub struct Commands {
+pub struct ArmCommands {
     /// When each is given, s.
     pub time_s: Vec<f64>,
     /// Duty, -1 to 1.
@@ -127,7 +112,7 @@ pub struct Commands {
     pub supply_v: Vec<f64>,
 }
 
-impl Commands {
+impl ArmCommands {
     /// Duty that arrives at `time_s` by a wire that delays by `delay_s`; 0 before the first
     /// command.
     fn arriving(&self, time_s: f64, delay_s: f64, last: usize) -> f64 {

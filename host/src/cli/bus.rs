@@ -20,41 +20,40 @@ mod registers;
 mod scan;
 mod setup;
 
-use super::Outcome;
-use super::talk::Talk;
+use super::{ExitStatus, Talk};
 use handstand::Result;
 
 /// What to do with servos.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum BusCommand {
     /// Scan the bus for servos
-    Scan(scan::Args),
+    Scan(scan::ScanArgs),
     /// Read registers of a servo
     Read(registers::ReadArgs),
     /// Write a register of a servo, and read it back
     Write(registers::WriteArgs),
     /// Configure servos for 100 Hz (return delay 0, status level 1), or set one servo's id
-    Setup(setup::Args),
+    Setup(setup::SetupArgs),
     /// Monitor position, load, supply and temperature
-    Monitor(monitor::Args),
+    Monitor(monitor::MonitorArgs),
     /// Back up the servos' settings to a file
     Backup(backup::BackupArgs),
     /// Restore saved settings to the servos
     Restore(backup::RestoreArgs),
     /// Diagnose why a servo returns no status packet
-    Doctor(doctor::Args),
+    Doctor(doctor::DoctorArgs),
 }
 
 /// Does it.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &BusCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::Scan(args) => scan::run(args, talk),
-        Command::Read(args) => registers::read(args, talk),
-        Command::Write(args) => registers::write(args, talk),
-        Command::Setup(args) => setup::run(args, talk),
-        Command::Monitor(args) => monitor::run(args, talk),
-        Command::Backup(args) => backup::backup(args, talk),
-        Command::Restore(args) => backup::restore(args, talk),
-        Command::Doctor(args) => doctor::run(args, talk),
+        BusCommand::Scan(args) => scan::run(args, talk),
+        BusCommand::Read(args) => registers::read(args, talk),
+        BusCommand::Write(args) => registers::write(args, talk),
+        BusCommand::Setup(args) => setup::run(args, talk),
+        BusCommand::Monitor(args) => monitor::run(args, talk),
+        BusCommand::Backup(args) => backup::backup(args, talk),
+        BusCommand::Restore(args) => backup::restore(args, talk),
+        BusCommand::Doctor(args) => doctor::run(args, talk),
     }
 }

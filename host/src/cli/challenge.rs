@@ -13,8 +13,7 @@
 //! `added`, `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`,
 //! `true_error_rad`.
 
-use super::talk::Talk;
-use super::{Outcome, show};
+use super::{ExitStatus, Talk, show};
 use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
 use handstand::fitting::effect_named;
 use handstand::output::number::exact;
@@ -24,7 +23,7 @@ use std::path::PathBuf;
 
 /// What can be done with challenges.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum ChallengeCommand {
     /// Create a virtual bench with a hidden effect
     New(New),
     /// Score a model against the hidden effect
@@ -55,25 +54,18 @@ pub struct ScoreArgs {
 }
 
 /// Makes or scores.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &ChallengeCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::New(args) => new(args, talk),
-        Command::Score(args) => {
+        ChallengeCommand::New(args) => new(args, talk),
+        ChallengeCommand::Score(args) => {
             let score = challenge::score(&args.folder, &Model::load(&args.model)?)?;
-            if talk.json {
-                talk.data(&score)?;
-            } else {
-                talk.print(&text(&score))?;
-            }
-            Ok(match score.solved {
-                true => Outcome::Done,
-                false => Outcome::Refused,
-            })
+            talk.result(&score, || text(&score))?;
+            Ok(ExitStatus::answer(score.solved))
         }
     }
 }
 
-fn new(args: &New, talk: &Talk) -> Result<Outcome> {
+fn new(args: &New, talk: &Talk) -> Result<ExitStatus> {
     let made = challenge::generate(args.seed, hidden(args.effect.as_deref())?);
     challenge::write(&made, &args.output)?;
     if talk.json {
@@ -88,7 +80,7 @@ fn new(args: &New, talk: &Talk) -> Result<Outcome> {
             args.output.display()
         ));
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 fn hidden(named: Option<&str>) -> Result<Hidden> {
@@ -115,21 +107,18 @@ pub fn text(score: &ChallengeScore) -> String {
         [] => nothing(),
         added => added.join(", "),
     };
-    table.add_row([
-        "effect".into(),
-        score.hidden.clone().unwrap_or_else(nothing),
-        found,
-    ]);
+    let hidden = score.hidden.clone().unwrap_or_else(nothing);
+    table.add_row(["effect".into(), hidden, found]);
     for value in &score.values {
         let estimate = value.estimate.map_or("-".to_string(), exact);
         table.add_row([value.key.clone(), exact(value.true_value), estimate]);
     }
-    let truth = exact(1e3 * score.true_error_rad);
-    table.add_row([
-        "error on c.csv, mrad".into(),
-        truth,
-        exact(1e3 * score.error_rad),
-    ]);
+    let errors = [score.true_error_rad, score.error_rad].map(|rad| exact(1e3 * rad));
+    table.add_row(
+        ["error on c.csv, mrad"]
+            .into_iter()
+            .chain(errors.iter().map(String::as_str)),
+    );
     let said = match score.solved {
         true => "Solved: the model names what was hidden.",
         false => "Not solved: the model does not name what was hidden.",

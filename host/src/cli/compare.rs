@@ -21,18 +21,17 @@
 //! `--json` prints the report: `comparisons` (`model`, `horizon_s`, `signals`, `horizons`,
 //! `failures`, `traces`, `closed_loop`) and `provenance`.
 
-use super::page::{self, Page, PageFile};
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::page::{self, PageFile};
+use super::{ExitStatus, Talk, input};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
-use handstand::report::{html, json};
+use handstand::report::{Report, html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
 /// Compare a model's simulation with measured logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct CompareArgs {
     /// Model file
     model: PathBuf,
     /// Logs
@@ -50,7 +49,7 @@ pub struct Args {
 }
 
 /// Compares, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
     let mut horizon = args.run.horizon;
     let mut comparisons = Vec::new();
@@ -68,21 +67,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         comparisons.push(comparison);
     }
     let text = compare::text(&comparisons);
-    let report = page::report(
-        Page {
-            title: format!("{} against measured motions", comparisons[0].model),
-            comparisons,
-            diagnosis: None,
-            models: &files,
-            split: &split,
-        },
-        talk,
-    )?;
-    if talk.json {
-        talk.data(&json(&report))?;
-    } else {
-        talk.print(&text)?;
-    }
+    let report = Report {
+        title: format!("{} against measured motions", comparisons[0].model),
+        comparisons,
+        diagnosis: None,
+        provenance: page::provenance(&files, &split, talk)?,
+    };
+    talk.result(&json(&report), || text)?;
     args.page.write(|| Ok(html(&report)), talk)?;
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

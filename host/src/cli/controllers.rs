@@ -21,14 +21,13 @@
 //! `controller`, `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
-use super::talk::Talk;
-use super::{Outcome, input, show};
-use handstand::controllers::{DESIGNS, Design, design};
+use super::{ExitStatus, Talk, input, show};
+use handstand::controllers::{ControllerDesign, DESIGNS};
 use handstand::study::{
-    CONDITIONS, Case, Condition, Figures, Judging, REGION_JUDGEMENTS, Region, STABILISED_SHARE,
-    condition, judge, region,
+    CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
 };
 use handstand::{Error, Model, Result, output};
+use serde::Serialize;
 use std::path::PathBuf;
 
 mod list;
@@ -36,7 +35,7 @@ mod result;
 
 /// Simulate controllers in closed loop with the robot's non-idealities.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ControllersArgs {
     /// Model file; without it, what there is
     model: Option<PathBuf>,
     /// A controller to try, by name; all without it
@@ -46,7 +45,8 @@ pub struct Args {
     #[arg(long = "condition", value_name = "NAME")]
     conditions: Vec<String>,
     /// Robots let go in each trial
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     robots: u32,
     /// Robots in each step of the search for the region; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]
@@ -75,70 +75,62 @@ pub struct Args {
 }
 
 /// A controller under a condition.
-struct Row {
-    design: &'static dyn Design,
-    condition: &'static Condition,
-    figures: Figures,
-    region: Option<Region>,
+#[derive(Serialize)]
+struct ControllerTrial {
+    controller: &'static str,
+    condition: &'static str,
+    robots: usize,
+    stabilised: f64,
+    fallen: f64,
+    rms_angle_rad: Option<f64>,
+    limit_cycle_rad: Option<f64>,
+    rms_torque_nm: Option<f64>,
+    region_rad: Option<f64>,
+    region_open: Option<bool>,
 }
 
 /// Lists or tries.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
     let Some(file) = &args.model else {
         return list::run(talk);
     };
-    let (designs, conditions) = (
-        chosen_designs(&args.controllers)?,
-        chosen_conditions(&args.conditions)?,
-    );
+    let designs = chosen_designs(&args.controllers)?;
+    let conditions = chosen_conditions(&args.conditions)?;
     if args.seconds <= 2.0 {
+        let seconds = args.seconds;
         return Err(Error::usage(
-            format!(
-                "--seconds {}: a robot is judged by its last 2 s",
-                args.seconds
-            ),
+            format!("--seconds {seconds}: a robot is judged by its last 2 s"),
             "give more than 2",
         ));
     }
     for file in args.csv.iter().chain(&args.plot) {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
     show::omitted(&model, talk)?;
-    let rows = trials(args, &model, &designs, &conditions, talk)?;
+    let trials = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
-        output::write_new(file, &result::csv(&rows), args.force)?;
+        output::write_new(file, &result::csv(&trials), args.force)?;
     }
     if let Some(file) = &args.plot {
-        output::write_new(
-            file,
-            &result::plot(&rows, &designs, &conditions),
-            args.force,
-        )?;
+        let plot = result::plot(&trials, &designs, &conditions);
+        output::write_new(file, &plot, args.force)?;
     }
-    if talk.json {
-        talk.data(&rows.iter().map(result::data).collect::<Vec<_>>())?;
-    } else {
-        talk.print(&result::text(&rows, &designs, &conditions))?;
-    }
-    let answered = |condition: &&Condition| {
-        rows.iter().any(|row| {
-            row.condition.id == condition.id && row.figures.stabilised_share >= STABILISED_SHARE
-        })
+    talk.result(&trials, || result::text(&trials, &designs, &conditions))?;
+    let answered = |condition: &&LoopCondition| {
+        let mut own = trials.iter().filter(|t| t.condition == condition.id);
+        own.any(|trial| trial.stabilised >= STABILISED_SHARE)
     };
-    Ok(match conditions.iter().all(answered) {
-        true => Outcome::Done,
-        false => Outcome::Refused,
-    })
+    Ok(ExitStatus::answer(conditions.iter().all(answered)))
 }
 
 fn trials(
-    args: &Args,
+    args: &ControllersArgs,
     model: &Model,
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    designs: &[&'static dyn ControllerDesign],
+    conditions: &[&'static LoopCondition],
     talk: &Talk,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<ControllerTrial>> {
     let judging = Judging {
         runs: args.robots as usize,
         start_rad: args.spread_deg.to_radians(),
@@ -149,69 +141,77 @@ fn trials(
         runs: args.region_robots as usize,
         ..judging
     };
-    let bar = talk.bar();
     let each = judging.runs + REGION_JUDGEMENTS * few.runs;
-    bar.set_length((each * designs.len() * conditions.len()) as u64);
-    let mut rows = Vec::new();
+    let bar = talk.bar((each * designs.len() * conditions.len()) as u64);
+    let mut trials = Vec::new();
     for condition in conditions {
         for design in designs {
             bar.set_message(format!("{} under {}", design.info().title, condition.title));
             let done = || bar.inc(1);
             let mut case = Case::ideal(model.clone(), *design, args.ts);
             let uncertain = condition.apply(&mut case);
-            rows.push(Row {
-                design: *design,
-                condition,
-                figures: judge(&case, &uncertain, &judging, &done)?,
-                region: match few.runs {
-                    0 => None,
-                    _ => Some(region(&case, &uncertain, &few, &done)?),
-                },
+            let figures = judge(&case, &uncertain, &judging, &done)?;
+            let region = match few.runs {
+                0 => None,
+                _ => Some(region(&case, &uncertain, &few, &done)?),
+            };
+            trials.push(ControllerTrial {
+                controller: design.info().id,
+                condition: condition.id,
+                robots: figures.runs,
+                stabilised: figures.stabilised_share,
+                fallen: figures.fallen_share,
+                rms_angle_rad: figures.rms_angle_rad,
+                limit_cycle_rad: figures.limit_cycle_rad,
+                rms_torque_nm: figures.rms_torque_nm,
+                region_rad: region.map(|region| region.spread_rad),
+                region_open: region.map(|region| region.open),
             });
-            bar.set_position((each * rows.len()) as u64);
+            bar.set_position((each * trials.len()) as u64);
         }
     }
-    bar.finish_and_clear();
-    Ok(rows)
+    Ok(trials)
 }
 
-/// The controllers of these names, all without any.
-pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn Design>> {
-    if names.is_empty() {
-        return Ok(DESIGNS.to_vec());
-    }
+/// The controllers of these names; all where none is named.
+///
+/// # Errors
+/// An unknown name.
+pub fn chosen_designs(names: &[String]) -> Result<Vec<&'static dyn ControllerDesign>> {
+    chosen("controller", names, DESIGNS.iter().copied(), |design| {
+        design.info().id
+    })
+}
+
+/// The conditions of these names; all where none is named.
+///
+/// # Errors
+/// An unknown name.
+pub fn chosen_conditions(names: &[String]) -> Result<Vec<&'static LoopCondition>> {
+    chosen("condition", names, CONDITIONS.iter(), |condition| {
+        condition.id
+    })
+}
+
+fn chosen<T: Copy>(
+    what: &str,
+    names: &[String],
+    all: impl Iterator<Item = T>,
+    id: impl Fn(T) -> &'static str,
+) -> Result<Vec<T>> {
+    let all: Vec<T> = all.collect();
     let one = |name: &String| {
-        design(name).ok_or_else(|| {
-            unknown(
-                "controller",
-                name,
-                DESIGNS.iter().map(|design| design.info().id),
+        let found = all.iter().copied().find(|one| id(*one) == name);
+        found.ok_or_else(|| {
+            let known: Vec<&str> = all.iter().map(|one| id(*one)).collect();
+            Error::usage(
+                format!("there is no {what} `{name}`"),
+                format!("one of these: {}", known.join(", ")),
             )
         })
     };
-    names.iter().map(one).collect()
-}
-
-/// The conditions of these names, all without any.
-pub fn chosen_conditions(names: &[String]) -> Result<Vec<&'static Condition>> {
-    if names.is_empty() {
-        return Ok(CONDITIONS.iter().collect());
+    match names {
+        [] => Ok(all),
+        names => names.iter().map(one).collect(),
     }
-    let one = |name: &String| {
-        condition(name).ok_or_else(|| {
-            unknown(
-                "condition",
-                name,
-                CONDITIONS.iter().map(|condition| condition.id),
-            )
-        })
-    };
-    names.iter().map(one).collect()
-}
-
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> Error {
-    Error::usage(
-        format!("there is no {what} `{name}`"),
-        format!("one of these: {}", known.collect::<Vec<_>>().join(", ")),
-    )
 }

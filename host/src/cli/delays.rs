@@ -22,21 +22,22 @@
 //! that tolerate the total).
 
 use super::controllers::{chosen_conditions, chosen_designs};
-use super::talk::Talk;
-use super::{Outcome, input, show};
-use handstand::controllers::{Design, DesignModel};
+use super::{ExitStatus, Talk, input, show};
+use handstand::controllers::{ControllerDesign, DesignModel};
+use handstand::output::table::TableColumn;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
     longest_stabilised,
 };
 use handstand::synth::upright;
 use handstand::{Model, Result};
+use serde::Serialize;
 use serde_json::json;
 use std::path::PathBuf;
 
 /// Find the delay margin of each controller.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DelaysArgs {
     /// Model file
     model: PathBuf,
     /// A controller, by name; all without it
@@ -63,49 +64,54 @@ pub struct Args {
 }
 
 /// The delays that a controller tolerates.
-struct Row {
-    design: &'static dyn Design,
+#[derive(Serialize)]
+struct DelayMargins {
+    controller: &'static str,
     uncompensated: Longest,
+    #[serde(rename = "compensated_one_sample")]
     one_sample: Longest,
     compensated: Longest,
     stabilised: Option<Longest>,
 }
 
+/// A way from sample to torque, what it takes, and the compensated controllers that tolerate it.
+#[derive(Serialize)]
+struct PathBudget {
+    path: String,
+    bus_s: f64,
+    line_s: f64,
+    servo_s: f64,
+    total_s: f64,
+    stable: Vec<&'static str>,
+    stabilised: Vec<&'static str>,
+}
+
 /// Searches and prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DelaysArgs, talk: &Talk) -> Result<ExitStatus> {
     let designs = chosen_designs(&args.controllers)?;
     let model = Model::load(&args.model)?;
-    let rows = search(args, &model, &designs, talk)?;
-    if talk.json {
-        let paths: Vec<_> = SIGNAL_PATHS
-            .iter()
-            .flat_map(|path| path_data(path, &rows))
-            .collect();
-        let controllers: Vec<_> = rows
-            .iter()
-            .map(|row| {
-                json!({
-                    "controller": row.design.info().id,
-                    "uncompensated": row.uncompensated,
-                    "compensated_one_sample": row.one_sample,
-                    "compensated": row.compensated,
-                    "stabilised": row.stabilised,
-                })
-            })
-            .collect();
-        talk.data(&json!({ "controllers": controllers, "paths": paths }))?;
-    } else {
-        talk.print(&text(&rows, args))?;
-    }
-    Ok(Outcome::Done)
+    let margins = search(args, &model, &designs, talk)?;
+    let budget = |path| dead_times().map(move |servo_s| (path, servo_s));
+    let ways = SIGNAL_PATHS.iter().flat_map(budget);
+    let paths: Vec<_> = ways
+        .map(|(path, s)| PathBudget::of(path, s, &margins))
+        .collect();
+    let data = json!({ "controllers": margins, "paths": paths });
+    talk.result(&data, || text(&margins, &paths, args))?;
+    Ok(ExitStatus::Done)
+}
+
+/// Dead times of a servo, s: none, and as measured.
+fn dead_times() -> impl Iterator<Item = f64> {
+    std::iter::once(0.0).chain(SERVO_DEAD_TIME_S)
 }
 
 fn search(
-    args: &Args,
+    args: &DelaysArgs,
     model: &Model,
-    designs: &[&'static dyn Design],
+    designs: &[&'static dyn ControllerDesign],
     talk: &Talk,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<DelayMargins>> {
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let conditions = chosen_conditions(std::slice::from_ref(&args.condition))?;
     let judging = Judging {
@@ -115,99 +121,86 @@ fn search(
         seed: args.seed,
     };
     let (step_s, until_s) = (1e-3 * args.step_ms, 1e-3 * args.until_ms);
-    let bar = talk.bar();
-    bar.set_length(designs.len() as u64);
-    let mut rows = Vec::new();
+    let bar = talk.bar(designs.len() as u64);
+    let mut margins = Vec::new();
     for design in designs {
         bar.set_message(design.info().title.to_string());
         let linear =
             |known_s: Option<f64>| longest_linear(*design, &nominal, known_s, step_s, until_s);
         let mut case = Case::ideal(model.clone(), *design, args.ts);
         let uncertain = conditions[0].apply(&mut case);
-        rows.push(Row {
-            design: *design,
+        let simulated = || longest_stabilised(&case, &uncertain, &judging, 5.0 * step_s, until_s);
+        margins.push(DelayMargins {
+            controller: design.info().id,
             uncompensated: linear(Some(0.0))?,
             one_sample: linear(Some(args.ts))?,
             compensated: linear(None)?,
-            stabilised: match args.robots {
-                0 => None,
-                _ => Some(longest_stabilised(
-                    &case,
-                    &uncertain,
-                    &judging,
-                    5.0 * step_s,
-                    until_s,
-                )?),
-            },
+            stabilised: (args.robots > 0).then(simulated).transpose()?,
         });
         bar.inc(1);
     }
-    bar.finish_and_clear();
-    Ok(rows)
+    Ok(margins)
 }
 
-fn text(rows: &[Row], args: &Args) -> String {
-    let mut table = show::table([
-        "Controller",
-        "uncompensated",
-        "one sample compensated",
-        "compensated",
-        "stabilised, compensated",
-    ]);
-    for row in rows {
-        table.add_row([
-            row.design.info().id.to_string(),
-            ms(row.uncompensated),
-            ms(row.one_sample),
-            ms(row.compensated),
-            row.stabilised.map_or(String::new(), ms),
-        ]);
-    }
-    let mut paths = show::table([
-        "From sample to torque",
-        "ms",
-        "stable",
-        "stabilised, compensated",
-    ]);
-    for path in SIGNAL_PATHS {
-        for dead_s in std::iter::once(0.0).chain(SERVO_DEAD_TIME_S) {
-            let total_s = path.total_s() + dead_s;
-            let title = match dead_s {
-                0.0 => path.title.to_string(),
-                dead_s => format!("  and a servo's dead time of {:.0} ms", 1e3 * dead_s),
-            };
-            let stable = tolerant(rows, total_s, |row| Some(row.compensated)).len();
-            paths.add_row([
-                title,
-                format!("{:.1}", 1e3 * total_s),
-                format!("{stable} of {}", rows.len()),
-                names(tolerant(rows, total_s, |row| row.stabilised)),
-            ]);
+impl PathBudget {
+    fn of(path: &SignalPath, servo_s: f64, margins: &[DelayMargins]) -> PathBudget {
+        let total_s = path.total_s() + servo_s;
+        let tolerant = |longest: fn(&DelayMargins) -> Option<Longest>| {
+            let tolerates =
+                |own: &&DelayMargins| longest(own).is_some_and(|l| l.tolerates(total_s));
+            let own = margins.iter().filter(tolerates);
+            own.map(|own| own.controller).collect()
+        };
+        PathBudget {
+            path: path.title(),
+            bus_s: path.bus_s(),
+            line_s: path.line_s(),
+            servo_s,
+            total_s,
+            stable: tolerant(|own| Some(own.compensated)),
+            stabilised: tolerant(|own| own.stabilised),
         }
     }
-    format!(
-        "Longest delay tolerated, ms; the linear loop, and 95 % of robots stabilised under `{}`:\n{table}\n\n{paths}",
-        args.condition
-    )
-}
 
-fn tolerant(
-    rows: &[Row],
-    delay_s: f64,
-    longest: impl Fn(&Row) -> Option<Longest>,
-) -> Vec<&'static str> {
-    let tolerates = |row: &&Row| longest(row).is_some_and(|longest| longest.tolerates(delay_s));
-    rows.iter()
-        .filter(tolerates)
-        .map(|row| row.design.info().id)
-        .collect()
-}
-
-fn names(names: Vec<&str>) -> String {
-    match names.as_slice() {
-        [] => "none".into(),
-        names => names.join(", "),
+    fn title(&self) -> String {
+        match self.servo_s {
+            0.0 => self.path.clone(),
+            dead_s => format!("  and a servo's dead time of {:.0} ms", 1e3 * dead_s),
+        }
     }
+}
+
+fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &DelaysArgs) -> String {
+    let longest: &[TableColumn<DelayMargins>] = &[
+        ("Controller", &|o| o.controller.to_string()),
+        ("uncompensated", &|o| ms(o.uncompensated)),
+        ("one sample compensated", &|o| ms(o.one_sample)),
+        ("compensated", &|o| ms(o.compensated)),
+        ("stabilised, compensated", &|o| {
+            o.stabilised.map_or(String::new(), ms)
+        }),
+    ];
+    let budget: &[TableColumn<PathBudget>] = &[
+        ("From sample to torque", &|p| p.title()),
+        ("ms", &|p| format!("{:.1}", 1e3 * p.total_s)),
+        ("stable", &|p| {
+            format!("{} of {}", p.stable.len(), margins.len())
+        }),
+        (
+            "stabilised, compensated",
+            &|path| match path.stabilised.len() {
+                0 => "none".into(),
+                _ => path.stabilised.join(", "),
+            },
+        ),
+    ];
+    format!(
+        "Longest delay tolerated, ms; the linear loop, and 95 % of robots stabilised under \
+         `{}`:\n{}\n\n{}",
+        args.condition,
+        show::table_of(margins, longest),
+        show::table_of(paths, budget)
+    )
 }
 
 fn ms(longest: Longest) -> String {
@@ -219,23 +212,4 @@ fn ms(longest: Longest) -> String {
         0.0 => format!("{sign}{:.1}", 1e3 * most),
         least => format!("{:.1} to {sign}{:.1}", 1e3 * least, 1e3 * most),
     }
-}
-
-fn path_data(path: &SignalPath, rows: &[Row]) -> Vec<serde_json::Value> {
-    let with = |dead_s: f64| {
-        let total_s = path.total_s() + dead_s;
-        json!({
-            "path": path.title,
-            "bus_s": path.bus_s(),
-            "line_s": path.line_s(),
-            "servo_s": dead_s,
-            "total_s": total_s,
-            "stable": tolerant(rows, total_s, |row| Some(row.compensated)),
-            "stabilised": tolerant(rows, total_s, |row| row.stabilised),
-        })
-    };
-    std::iter::once(0.0)
-        .chain(SERVO_DEAD_TIME_S)
-        .map(with)
-        .collect()
 }

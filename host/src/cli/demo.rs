@@ -13,8 +13,7 @@
 //!
 //! `--json` prints what `handstand challenge score --json` prints.
 
-use super::talk::Talk;
-use super::{Cli, Command, Outcome, challenge, diagnose};
+use super::{Cli, Command, ExitStatus, Talk, challenge, diagnose};
 use clap::Parser as _;
 use handstand::diagnose::FittedEffect;
 use handstand::{Error, Model, Result};
@@ -22,7 +21,7 @@ use std::path::PathBuf;
 
 /// Watch the whole loop on a virtual bench with a hidden effect.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DemoArgs {
     /// Folder to make [default: a new one among the temporary files]
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -35,7 +34,7 @@ pub struct Args {
 }
 
 /// Runs the loop.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
     let output = match &args.output {
         Some(output) => output.clone(),
         None => temporary()?,
@@ -66,25 +65,27 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk,
     )?;
     let model = match &found {
-        Some(effect) => {
-            talk.say("\nThe model with it (`add` sets it beside the old model refitted without it), and the two files side by side as \
-                 they are, on the motion held out:");
-            step(
-                &[
-                    "add",
-                    &nominal,
-                    effect,
-                    "--fit",
-                    a,
-                    b,
-                    "--holdout",
-                    c,
-                    "-o",
-                    &model,
-                ],
-                talk,
-            )?;
-            step(&["compare", &nominal, c, "--model", &model], talk)?;
+        Some((effect, horizon)) => {
+            talk.say(
+                "\nThe model with it (`add` sets it beside the old model refitted without it), and \
+                 the two files side by side as they are, on the motion held out:",
+            );
+            let horizon: Vec<&str> = horizon.iter().map(String::as_str).collect();
+            let add = [
+                "add",
+                &nominal,
+                effect,
+                "--fit",
+                a,
+                b,
+                "--holdout",
+                c,
+                "-o",
+                &model,
+            ];
+            step(&[&add[..], &horizon].concat(), talk)?;
+            let compare = ["compare", &nominal, c, "--model", &model];
+            step(&[&compare[..], &horizon].concat(), talk)?;
             model
         }
         None => nominal,
@@ -98,7 +99,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         talk.print(&challenge::text(&score))?;
     }
     talk.say(&format!("The page with the pictures: {page}"));
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// A place for a folder that nobody else uses; it stays for the user to look into.
@@ -109,19 +110,27 @@ fn temporary() -> Result<PathBuf> {
 }
 
 /// Says a command line and runs it.
-fn step(words: &[&str], talk: &Talk) -> Result<Outcome> {
+fn step(words: &[&str], talk: &Talk) -> Result<ExitStatus> {
     let (command, talk) = parsed(words, talk)?;
     command.run(&talk)
 }
 
-/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it.
-fn missing(words: &[&str], talk: &Talk) -> Result<Option<String>> {
+/// Says a diagnosis's command line and runs it; the first effect it finds, as `add` takes it, and
+/// the option that asks for the same horizon.
+fn missing(words: &[&str], talk: &Talk) -> Result<Option<(String, Vec<String>)>> {
     let (command, talk) = parsed(words, talk)?;
     let Command::Diagnose(args) = &command else {
         return Ok(None);
     };
     let found = diagnose::find(args, &talk)?;
-    Ok(found.effects.first().map(FittedEffect::address))
+    let horizon = found
+        .horizon_s
+        .map(|s| vec!["--horizon".to_string(), s.to_string()]);
+    // Where a wrong value does as well as an effect, the bench hides the effect.
+    let sets = found.alternatives.iter().map(|rival| &rival.effects);
+    let mut effects = std::iter::once(&found.effects).chain(sets).flatten();
+    let effect = effects.next().map(FittedEffect::address);
+    Ok(effect.map(|effect| (effect, horizon.unwrap_or_default())))
 }
 
 fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {

@@ -13,19 +13,18 @@
 //! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
-//! The verdict is `nominal`, `named`, `ambiguous`, `unexplained` or `unfit`; exit code 1 for
-//! `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
+//! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
+//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
 //! `docs/json.md`.
 
-use super::page::{self, Page, PageFile};
-use super::talk::Talk;
-use super::{Outcome, input, log};
+use super::page::{self, PageFile};
+use super::{ExitStatus, Talk, input, log};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
 use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
 use handstand::fitting::{Horizon, effect_named};
 use handstand::log::{LogFinding, LogRequest, Motion, Severity, Split, read, split};
-use handstand::report::{diagnosis_json, diagnosis_text, html};
+use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};
 use serde_json::json;
@@ -33,7 +32,7 @@ use std::path::PathBuf;
 
 /// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DiagnoseArgs {
     /// Model file
     model: PathBuf,
     /// Logs to learn from
@@ -45,15 +44,18 @@ pub struct Args {
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Error that is good enough, mrad: a model as given that leaves no more is `adequate`
+    #[arg(long, value_name = "MRAD", value_parser = input::positive)]
+    tolerance: Option<f64>,
     #[command(flatten)]
-    judging: input::Judging,
+    judging: input::HoldoutArgs,
     #[command(flatten)]
     plan: input::PlanFile,
     #[command(flatten)]
     page: PageFile,
 }
 
-impl Args {
+impl DiagnoseArgs {
     /// The logs to learn from, then those to judge by.
     fn all_logs(&self) -> Vec<LogRequest> {
         [self.logs.as_slice(), &self.judging.holdout].concat()
@@ -61,16 +63,13 @@ impl Args {
 }
 
 /// Diagnoses, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
     let diagnosis = find(args, talk)?;
-    Ok(match diagnosis.verdict {
-        Verdict::Unfit => Outcome::Refused,
-        _ => Outcome::Done,
-    })
+    Ok(ExitStatus::answer(diagnosis.verdict != Verdict::Unfit))
 }
 
 /// The diagnosis itself, printed and written as by [`run`].
-pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
+pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     args.page.vacant()?;
     for effect in &args.without {
         effect_named(effect)?;
@@ -83,7 +82,7 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
         print(&diagnosis, &[], talk)?;
         return Ok(diagnosis);
     }
-    let named = input::motions(&model, &args.logs, &args.judging.holdout)?;
+    let named = input::motions(&model.log, &args.logs, &args.judging.holdout)?;
     let split = split(named.training, named.held_out);
     let mut diagnosis = try_all(&model, &split, args, talk);
     let warned = findings
@@ -96,21 +95,19 @@ pub fn find(args: &Args, talk: &Talk) -> Result<Diagnosis> {
     let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
     print(&diagnosis, &compared.named_loops(), talk)?;
     let page = || {
-        let page = Page {
+        Ok(html(&Report {
             title: format!("What {} is missing", model.name),
             comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
-            models: &[&args.model],
-            split: &split,
-        };
-        Ok(html(&page::report(page, talk)?))
+            provenance: page::provenance(&[&args.model], &split, talk)?,
+        }))
     };
     args.page.write(page, talk)?;
     Ok(diagnosis)
 }
 
 /// A command line to be copied: the files' names in place of what stands for them.
-fn with_names(line: &str, args: &Args) -> String {
+fn with_names(line: &str, args: &DiagnoseArgs) -> String {
     let words = |logs: &[LogRequest]| {
         let words: Vec<String> = logs.iter().map(|log| quoted(&log.to_string())).collect();
         words.join(" ")
@@ -135,23 +132,22 @@ fn quoted(word: &str) -> String {
     }
 }
 
-fn try_all(model: &Model, split: &Split, args: &Args, talk: &Talk) -> Diagnosis {
+fn try_all(model: &Model, split: &Split, args: &DiagnoseArgs, talk: &Talk) -> Diagnosis {
     let defaults = DiagnoseOptions::default();
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         horizon: args.judging.run.horizon,
+        tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
     };
-    let bar = talk.bar();
+    let bar = talk.bar(0);
     let (training, held_out) = (split.training.clone(), split.held_out.clone());
-    let diagnosis = diagnose(model, training, held_out, &options, &|progress| {
+    diagnose(model, training, held_out, &options, &|progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.what);
-    });
-    bar.finish_and_clear();
-    diagnosis
+    })
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.
@@ -183,7 +179,7 @@ impl Compared {
         model: &Model,
         diagnosis: &Diagnosis,
         plan: Option<&StateFeedbackPlan>,
-        args: &Args,
+        args: &DiagnoseArgs,
     ) -> Result<Compared> {
         let motions = read(&args.all_logs(), &model.log)?;
         let mut named = vec![("the model as it is".to_string(), model.clone())];
@@ -208,7 +204,7 @@ impl Compared {
     }
 
     /// The comparisons of the page, all over the first one's horizon.
-    fn comparisons(&self, judged_over_s: Option<f64>, args: &Args) -> Vec<Comparison> {
+    fn comparisons(&self, judged_over_s: Option<f64>, args: &DiagnoseArgs) -> Vec<Comparison> {
         let judged_over = judged_over_s.map(Horizon::Seconds);
         let mut horizon = args.judging.run.horizon.or(judged_over);
         let mut comparisons = Vec::new();

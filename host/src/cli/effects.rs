@@ -11,8 +11,7 @@
 //! `reference`, `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`),
 //! `confused_with` (`with`, `why`).
 
-use super::Outcome;
-use super::talk::Talk;
+use super::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::effects::EFFECTS;
 use handstand::fitting::effect_named;
@@ -20,13 +19,13 @@ use handstand::report::effect_page;
 
 /// List and explain the physical effects of the library.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct EffectsArgs {
     /// One effect, such as `coulomb`; all of them without it
     name: Option<String>,
 }
 
 /// Prints the table or the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &EffectsArgs, talk: &Talk) -> Result<ExitStatus> {
     match &args.name {
         Some(name) => {
             let effect = effect_named(name)?;
@@ -45,5 +44,5 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             talk.say("`handstand effects NAME` explains one of them");
         }
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

@@ -12,9 +12,8 @@
 //! (`before_rad`, `after_rad`, `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or
 //! `refused` and `blind`.
 
-use super::talk::Talk;
-use super::{Outcome, input, show};
-use handstand::fitting::{Candidate, Refitted, Undetermined, free_parameters, refit};
+use super::{ExitStatus, Talk, input, show};
+use handstand::fitting::{Refitted, Undetermined, free_parameters, refit};
 use handstand::log::LogRequest;
 use handstand::{Model, Result, model::edit, output};
 use serde_json::json;
@@ -22,7 +21,7 @@ use std::path::PathBuf;
 
 /// Fit a model's free parameters to logs.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct FitArgs {
     /// Model file
     model: PathBuf,
     /// Logs to fit
@@ -32,11 +31,11 @@ pub struct Args {
     #[arg(long, value_name = "PATH")]
     free: Vec<String>,
     #[command(flatten)]
-    fit: input::FitArgs,
+    fit: input::RefitArgs,
 }
 
 /// Fits, writes, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
@@ -47,39 +46,36 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     };
     let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
     let before = "for the model as it was";
-    write(&refitted, &text, None, before, &args.fit, talk)
+    write(&refitted, &text, &[], before, &args.fit, talk)
 }
 
 /// Says why there is no new model.
-pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "refused": why.to_string(), "blind": why.blind }))?;
-    } else {
-        talk.print(&show::undetermined(why))?;
-    }
-    Ok(Outcome::Refused)
+pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<ExitStatus> {
+    let data = json!({ "refused": why.to_string(), "blind": why.blind });
+    talk.result(&data, || show::undetermined(why))?;
+    Ok(ExitStatus::Refused)
 }
 
 /// Writes the new model and says what it holds; `before` says which model left the error before.
 pub fn write(
     refitted: &Refitted,
     text: &str,
-    added: Option<Candidate>,
+    added: &[String],
     before: &str,
-    args: &input::FitArgs,
+    args: &input::RefitArgs,
     talk: &Talk,
-) -> Result<Outcome> {
+) -> Result<ExitStatus> {
     output::write_new(&args.output, text, args.force)?;
     if talk.json {
         let mut data = show::refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());
-        if let Some(added) = added {
-            data["effect"] = json!(added.to_string());
+        if !added.is_empty() {
+            data["effects"] = json!(added);
         }
         talk.data(&data)?;
     } else {
         talk.print(&show::refitted(refitted, before))?;
         talk.say(&format!("wrote {}", args.output.display()));
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

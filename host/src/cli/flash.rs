@@ -17,10 +17,7 @@
 //! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with
 //! `--dry-run` or `--isp` `command` or less.
 
-use super::Outcome;
-use super::interrupt::Interrupt;
-use super::port::Port;
-use super::talk::Talk;
+use super::{ExitStatus, Talk, interrupt::Interrupt, port::Port};
 use handstand::link::boot_loader::{BootLoader, Image};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -31,7 +28,7 @@ use std::time::Duration;
 
 /// Flash firmware into the CM-5.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct FlashArgs {
     /// Raw binary; for --isp also HEX or ELF
     image: PathBuf,
     #[command(flatten)]
@@ -56,7 +53,8 @@ pub struct Args {
 #[derive(Debug, Clone, clap::Args)]
 pub struct Loader {
     /// Pause after every byte, for a line that loses some
-    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000))]
+    #[arg(long, value_name = "MICROSECONDS", default_value_t = 0)]
+    #[arg(value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pace_us: u64,
     /// Seconds to wait for the reset
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=600))]
@@ -70,7 +68,7 @@ pub struct Loader {
 }
 
 /// Checks the image, then writes it.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(programmer) = &args.isp {
         return isp(args, programmer, talk);
     }
@@ -107,12 +105,10 @@ pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) ->
     let mut loader = BootLoader::enter(link, pace, patience, || !interrupt.has_come())?;
     // A write that is interrupted leaves half a program: it must not start.
     loader.stay_at_power_on()?;
-    let bar = talk.bar();
-    bar.set_length(image.bytes().len() as u64);
+    let bar = talk.bar(image.bytes().len() as u64);
     bar.set_message("bytes; do not switch off");
-    let loaded = loader.load(image, |sent| bar.set_position(sent as u64));
-    bar.finish_and_clear();
-    loaded?;
+    loader.load(image, |sent| bar.set_position(sent as u64))?;
+    drop(bar);
     let said = loader.verify()?;
     talk.say(&format!("verify: the boot loader says `{said}`"));
     if !how.no_app {
@@ -125,7 +121,7 @@ pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) ->
     Ok(said)
 }
 
-fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<Outcome> {
+fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<ExitStatus> {
     if talk.json {
         talk.data(&json!({
             "bytes": image.bytes().len(),
@@ -135,7 +131,7 @@ fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Resul
             "starts_at_power_on": starts,
         }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// avrdude's letter for a kind of file.
@@ -151,7 +147,7 @@ fn format_of(path: &Path) -> Result<&'static str> {
     }
 }
 
-fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
+fn isp(args: &FlashArgs, programmer: &str, talk: &Talk) -> Result<ExitStatus> {
     let kind = format_of(&args.image)?;
     if let Err(error) = std::fs::metadata(&args.image) {
         return Err(Error::file(&args.image, "read", error));
@@ -160,7 +156,10 @@ fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
     // Fuses and lock bits are never written.
     let words = ["-p", "m128", "-c", programmer, "-U", &target];
     let line = format!("avrdude {}", words.join(" "));
-    talk.say("This erases the whole chip, the CM-5's boot loader included: afterwards only a programmer can write it.");
+    talk.say(
+        "This erases the whole chip, the CM-5's boot loader included: afterwards only a \
+         programmer can write it.",
+    );
     if args.dry_run {
         talk.say(&format!("{line}; not run"));
     } else {
@@ -184,7 +183,7 @@ fn isp(args: &Args, programmer: &str, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&json!({ "command": line, "run": !args.dry_run }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// Asks on the terminal, unless it was answered beforehand.

@@ -20,22 +20,21 @@
 //! `fixed`, `verification`, `provenance`. `--state-space FILE.json` writes the same; `FILE.m` a
 //! script for MATLAB and Octave.
 
-use super::talk::Talk;
 use super::weight_arg::{WeightArg, weight};
-use super::{Outcome, input, page};
+use super::{ExitStatus, Talk, page};
 use handstand::model::Model;
-use handstand::output::write_new;
-use handstand::study::{left_out, verify};
+use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
-use handstand::{Error, Result};
+use handstand::{Error, Result, output};
+use handstand_shared::raw::Position;
 use std::path::{Path, PathBuf};
 
 mod verification;
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Args {
+pub struct GainsArgs {
     /// Model file
     model: PathBuf,
     /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
@@ -45,18 +44,15 @@ pub struct Args {
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     r: Option<WeightArg>,
     /// Sampling time, s
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value_t = 0.01,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
+    #[arg(allow_negative_numbers = true)]
     ts: f64,
     /// Delay of the inputs, s; the model's own without it
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     delay: Option<f64>,
     /// Angles in rad, the model's way, or `upright`
-    #[arg(long, value_name = "ANGLES", default_value = "upright", value_parser = pose, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLES", default_value = "upright")]
+    #[arg(value_parser = pose, allow_hyphen_values = true)]
     pose: Pose,
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
@@ -78,7 +74,8 @@ pub struct Args {
     gyro_step: Option<f64>,
     /// Covariance of the process noise, as a weight [default: inputs err by a hundredth of their
     /// limit]
-    #[arg(long, value_name = "WEIGHT", requires = "lqg", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(long, value_name = "WEIGHT", requires = "lqg")]
+    #[arg(value_parser = weight, allow_hyphen_values = true)]
     process: Option<WeightArg>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
@@ -134,28 +131,26 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 }
 
 /// Designs, prints, writes the files.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let (part, request, made) = requested(args, talk)?;
     let design = Design::of(&part, &request)?;
     let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
-    let verified = verify(&whole, &design, &request, &left_out)?;
+    let bar = talk.bar(verification_steps(&left_out) as u64);
+    bar.set_message("simulations of the loop");
+    let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
+    drop(bar);
     let mut data = export::json(&design, &made);
     data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
-    if talk.json {
-        talk.data(&data)?;
-    } else {
-        talk.print(&export::text(&design))?;
-        talk.print(&verification::text(&verified))?;
-    }
+    talk.result(&data, || {
+        let design = export::text(&design);
+        format!("{}\n{}", design.trim_end(), verification::text(&verified))
+    })?;
     write(args, &design, &made, &data, talk)?;
-    Ok(match verified.stabilised {
-        true => Outcome::Done,
-        false => Outcome::Refused,
-    })
+    Ok(ExitStatus::answer(verified.stabilised))
 }
 
-impl Args {
+impl GainsArgs {
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
@@ -182,10 +177,8 @@ impl Args {
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
         ];
-        given
-            .into_iter()
-            .find(|(given, _)| *given)
-            .map(|(_, name)| name)
+        let mut names = given.into_iter().filter(|(given, _)| *given);
+        names.next().map(|(_, name)| name)
     }
 
     /// Whether files are replaced.
@@ -195,10 +188,10 @@ impl Args {
 }
 
 /// The model without the effects left out, what is asked of its design, and where it came from.
-pub(super) fn requested(args: &Args, talk: &Talk) -> Result<(Model, Request, Provenance)> {
+pub(super) fn requested(args: &GainsArgs, talk: &Talk) -> Result<(Model, Request, Provenance)> {
     let files = [&args.rust, &args.c, &args.csv, &args.state_space];
     for file in files.into_iter().flatten() {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     let mut model = Model::load(&args.model)?;
     for id in leave_out(&mut model, &args.without)? {
@@ -218,12 +211,13 @@ fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String
         model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
             let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            let held = match held.as_slice() {
+                [] => "none at all".to_string(),
+                held => held.join(", "),
+            };
             return Err(Error::usage(
                 format!("`{}` holds no effect `{id}`", model.name),
-                match held.is_empty() {
-                    true => "it holds none at all".to_string(),
-                    false => format!("it holds {}", held.join(", ")),
-                },
+                format!("it holds {held}"),
             ));
         }
     }
@@ -231,7 +225,7 @@ fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String
 }
 
 /// The request, and where the pose was moved to if it was.
-fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
+fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)> {
     let mut pose_rad = match &args.pose {
         Pose::Upright => upright(model),
         Pose::Angles(angles) => angles.clone(),
@@ -250,38 +244,29 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         },
     };
     let joints = model.link_count();
-    let inputs = model
-        .joints
-        .iter()
-        .filter(|joint| joint.drive.is_driven())
-        .count();
+    let driven = model.joints.iter().filter(|joint| joint.drive.is_driven());
+    let inputs = driven.count();
     let list = |given: &Option<WeightArg>, name, size| {
-        given
-            .as_ref()
-            .map(|given| given.list(name, size))
-            .transpose()
+        let list = given.as_ref().map(|given| given.list(name, size));
+        list.transpose()
     };
-    let process = args.process.as_ref().map(WeightArg::read).transpose()?;
-    let degree = std::f64::consts::PI / 180.0;
+    let read = |given: &Option<WeightArg>| given.as_ref().map(WeightArg::read).transpose();
+    let ranges = Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat());
+    let sensors = Sensors {
+        position_step_rad: args.position_step.unwrap_or(Position::LSB_RAD),
+        gyro_step_rad_s: args
+            .gyro_step
+            .unwrap_or(10.0 * std::f64::consts::PI / 180.0),
+        process: read(&args.process)?,
+    };
     let request = Request {
         pose_rad,
-        q: weighed(&args.q, 100.0)?,
-        r: weighed(&args.r, 1.0)?,
+        q: read(&args.q)?.unwrap_or(Weight::Scalar(100.0)),
+        r: read(&args.r)?.unwrap_or(Weight::Scalar(1.0)),
         time,
-        sensors: args.lqg.then_some(Sensors {
-            position_step_rad: args
-                .position_step
-                .unwrap_or(handstand_shared::raw::Position::LSB_RAD),
-            gyro_step_rad_s: args.gyro_step.unwrap_or(10.0 * degree),
-            process,
-        }),
-        state_range: match &args.range {
-            Some(range) => range.read()?,
-            // Half a radian, ten radians per second: more than a balancing robot ever comes back
-            // from.
-            None => Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
-        },
-        input_range: args.limit.as_ref().map(WeightArg::read).transpose()?,
+        sensors: args.lqg.then_some(sensors),
+        state_range: read(&args.range)?.unwrap_or(ranges),
+        input_range: read(&args.limit)?,
         format: Format {
             bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
@@ -289,12 +274,6 @@ fn request(args: &Args, model: &Model) -> Result<(Request, Option<String>)> {
         },
     };
     Ok((request, moved))
-}
-
-fn weighed(given: &Option<WeightArg>, default: f64) -> Result<Weight> {
-    given
-        .as_ref()
-        .map_or(Ok(Weight::Scalar(default)), WeightArg::read)
 }
 
 fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
@@ -308,17 +287,13 @@ fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
 
 /// Writes the files that the options ask for; `data` is what the JSON file holds.
 pub(super) fn write(
-    args: &Args,
+    args: &GainsArgs,
     design: &Design,
     made: &Provenance,
     data: &serde_json::Value,
     talk: &Talk,
 ) -> Result<()> {
-    let put = |file: &Path, text: &str| -> Result<()> {
-        write_new(file, text, args.force)?;
-        talk.say(&format!("wrote {}", file.display()));
-        Ok(())
-    };
+    let put = |file: &Path, text: &str| talk.write(file, text, args.force);
     if let Some(fixed) = &design.fixed {
         if let Some(file) = &args.rust {
             put(file, &export::rust_file(design, fixed, made))?;

@@ -5,7 +5,8 @@
 //! as the best one. From a measured angle the speed is estimated as (theta(t) - theta(t - 1)) / Ts.
 //!
 //! ```console
-//! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg --validate other.csv
+//! $ handstand identify run.csv --time t=s --input goal=rad/s --output angle=deg \
+//!     --validate other.csv
 //! ```
 //!
 //! Orders are written as in MATLAB: `arx:na,nb,nk`, `armax:na,nb,nc,nk`, `oe:nb,nf,nk`,
@@ -13,13 +14,12 @@
 //! of each motion is held out. `docs/identify.md` explains the output; its keys as `--json` are in
 //! `docs/json.md`. Exit code 1: no model could be fitted.
 
-use super::servo_columns::{self, ChosenColumns, ServoColumns};
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::servo_columns::{ChosenColumns, ServoColumns};
+use super::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, Motion};
 use handstand::sysid::{
-    Candidate, Interval, Record, Structure, dynamics, record, sampling_period_s, select,
-    structures, try_all,
+    IntervalEstimate, Record, Structure, TriedStructure, dynamics, record, sampling_period_s,
+    select, structures, try_all,
 };
 use handstand::{Error, Result};
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ const DEFAULT: [&str; 4] = [
 
 /// Identify a servo as a black box.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct IdentifyArgs {
     /// Logs to learn from
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
@@ -44,7 +44,8 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_name = "LOG", value_parser = input::log)]
     validate: Vec<LogRequest>,
     /// Share of each motion to learn from where no logs are held out
-    #[arg(long, value_name = "SHARE", default_value_t = 2.0 / 3.0, hide_default_value = true, conflicts_with = "validate")]
+    #[arg(long, value_name = "SHARE", default_value_t = 2.0 / 3.0)]
+    #[arg(hide_default_value = true, conflicts_with = "validate")]
     split: f64,
     /// Orders to try, with ranges: bj:1,2,1,2,1 or oe:1-2,1-3,1
     #[arg(long, value_name = "ORDERS", value_parser = orders)]
@@ -70,7 +71,7 @@ struct Data {
 }
 
 /// Fits, selects, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &IdentifyArgs, talk: &Talk) -> Result<ExitStatus> {
     let data = data(args)?;
     let mut grid: Vec<Structure> = args.orders.iter().flat_map(|g| g.0.clone()).collect();
     if grid.is_empty() {
@@ -78,23 +79,17 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             grid.extend(structures(text)?);
         }
     }
-    let bar = talk.bar();
-    bar.set_length(grid.len() as u64);
+    let bar = talk.bar(grid.len() as u64);
     let trials = try_all(&grid, &data.training, &data.validation, &|| bar.inc(1));
-    bar.finish_and_clear();
+    drop(bar);
     let chosen = select(&trials, &data.validation);
-    if talk.json {
-        talk.data(&found_json(&data, &trials, chosen))?;
-    } else {
-        talk.print(&text::text(&data, &trials, chosen))?;
-    }
-    Ok(match chosen {
-        Some(_) => Outcome::Done,
-        None => Outcome::Refused,
-    })
+    talk.result(&found_json(&data, &trials, chosen), || {
+        text::text(&data, &trials, chosen)
+    })?;
+    Ok(ExitStatus::answer(chosen.is_some()))
 }
 
-fn data(args: &Args) -> Result<Data> {
+fn data(args: &IdentifyArgs) -> Result<Data> {
     if !(args.split > 0.0 && args.split < 1.0) {
         return Err(Error::usage(
             format!("a share of {} to learn from", args.split),
@@ -102,14 +97,19 @@ fn data(args: &Args) -> Result<Data> {
         ));
     }
     let chosen = args.columns.chosen()?;
-    let (logs, held_out) = servo_columns::motions(&chosen, &args.logs, &args.validate)?;
-    let all: Vec<Motion> = logs.iter().chain(&held_out).cloned().collect();
+    let split = input::motions(&chosen.columns, &args.logs, &args.validate)?;
+    let all: Vec<Motion> = split
+        .training
+        .iter()
+        .chain(&split.held_out)
+        .cloned()
+        .collect();
     let ts_s = sampling_period_s(&all);
     let records = |motions: &[Motion]| -> Result<Vec<Record>> {
         let of = |motion| record(motion, chosen.joint, chosen.output, ts_s);
         motions.iter().map(of).collect()
     };
-    let (mut training, mut validation) = (records(&logs)?, records(&held_out)?);
+    let (mut training, mut validation) = (records(&split.training)?, records(&split.held_out)?);
     if validation.is_empty() {
         (training, validation) = training.iter().map(|r| r.split(args.split)).unzip();
     }
@@ -121,8 +121,8 @@ fn data(args: &Args) -> Result<Data> {
     })
 }
 
-fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value {
-    let trial = |trial: &Candidate| match &trial.outcome {
+fn found_json(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> Value {
+    let trial = |trial: &TriedStructure| match &trial.outcome {
         Ok(fitted) => json!({
             "orders": trial.structure.to_string(),
             "coefficients": trial.structure.count(),
@@ -137,18 +137,14 @@ fn found_json(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> Value
         .and_then(|index| trials[index].outcome.as_ref().ok())
         .map(|fitted| {
             let estimate = &fitted.estimate;
-            let names = estimate.structure.names();
-            let values = estimate.model.values(&estimate.structure);
-            let halves = estimate.half_widths();
-            let coefficients: Vec<Value> = (0..names.len())
-                .map(|k| {
-                    let known = Interval::around(values[k], halves[k]);
-                    json!({ "name": names[k], "value": known.value, "low": known.low, "high": known.high })
-                })
-                .collect();
+            let coefficient = |(name, known): (String, IntervalEstimate)| {
+                let (value, low, high) = (known.value, known.low, known.high);
+                json!({ "name": name, "value": value, "low": low, "high": high })
+            };
+            let coefficients = estimate.coefficients().into_iter().map(coefficient);
             json!({
                 "orders": estimate.structure.to_string(),
-                "coefficients": coefficients,
+                "coefficients": coefficients.collect::<Vec<Value>>(),
                 "polynomials": estimate.model,
                 "dynamics": dynamics(estimate, data.ts_s),
                 "converged": estimate.converged,

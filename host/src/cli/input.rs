@@ -1,8 +1,11 @@
 //! Arguments that several commands take.
 
+use super::page::file_name;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, Split, read};
+use handstand::model::LogColumns;
+use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
@@ -10,8 +13,8 @@ use std::path::{Path, PathBuf};
 /// How long models run.
 #[derive(Debug, clap::Args)]
 pub struct RunLength {
-    /// Seconds a model runs without correction, or `whole`; as long as the first model is stable
-    /// without it
+    /// Most seconds a model runs without correction, or `whole`; shorter in motions whose start
+    /// errors grow faster
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
 }
@@ -50,7 +53,7 @@ pub fn closed_loop(
 
 /// How models are judged.
 #[derive(Debug, clap::Args)]
-pub struct Judging {
+pub struct HoldoutArgs {
     /// Logs to judge by, which are not fitted
     #[arg(long, num_args = 1.., value_name = "LOG", value_parser = log)]
     pub holdout: Vec<LogRequest>,
@@ -61,10 +64,10 @@ pub struct Judging {
 
 /// How a fit is judged, and where the new model goes.
 #[derive(Debug, clap::Args)]
-pub struct FitArgs {
+pub struct RefitArgs {
     /// How it is judged
     #[command(flatten)]
-    pub judging: Judging,
+    pub judging: HoldoutArgs,
     /// New model file
     #[arg(long, short, value_name = "NEW.toml")]
     pub output: PathBuf,
@@ -73,7 +76,7 @@ pub struct FitArgs {
     pub force: bool,
 }
 
-impl FitArgs {
+impl RefitArgs {
     /// Reads the motions to fit and those to judge by; the new model's name is checked before that
     /// work.
     ///
@@ -81,7 +84,7 @@ impl FitArgs {
     /// As [`vacant`] and [`motions`].
     pub fn motions(&self, model: &Model, logs: &[LogRequest]) -> Result<Split> {
         vacant(&self.output, self.force)?;
-        motions(model, logs, &self.judging.holdout)
+        motions(&model.log, logs, &self.judging.holdout)
     }
 }
 
@@ -119,54 +122,47 @@ pub fn said(error: Error) -> String {
 /// from.
 ///
 /// # Errors
-/// Logs that cannot be read, or a motion in both.
-pub fn motions(model: &Model, logs: &[LogRequest], held_out: &[LogRequest]) -> Result<Split> {
+/// Logs that cannot be read, or rows in both.
+pub fn motions(
+    columns: &LogColumns,
+    logs: &[LogRequest],
+    held_out: &[LogRequest],
+) -> Result<Split> {
     told_apart(logs, held_out)?;
     Ok(Split {
-        training: read(logs, &model.log)?,
-        held_out: read(held_out, &model.log)?,
+        training: read(logs, columns)?,
+        held_out: read(held_out, columns)?,
     })
 }
 
-/// Refuses a log that is both learned from and judged by.
-///
-/// # Errors
-/// [`Error::Usage`] that names it.
-pub fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
-    match held_out.iter().find(|log| logs.contains(log)) {
-        Some(both) => Err(Error::usage(
-            format!("{both} is fitted and held out"),
-            "name it once: a log that was learned from proves nothing",
-        )),
-        None => Ok(()),
+/// Refuses rows that are both learned from and judged by.
+fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
+    for held in held_out {
+        if let Some(fitted) = logs.iter().find(|log| log.overlaps(held)) {
+            let message = match fitted == held {
+                true => format!("{held} is fitted and held out"),
+                false => {
+                    format!("{held} is held out, and shares rows with {fitted}, which is fitted")
+                }
+            };
+            let remedy = "name each row once, a range includes its end: what was learned from \
+                          proves nothing";
+            return Err(Error::usage(message, remedy));
+        }
     }
+    Ok(())
 }
 
 /// Name and SHA-256 of every file the motions came from, each once.
 pub fn files(motions: &[Motion]) -> Vec<(String, String)> {
     let mut files: Vec<(String, String)> = Vec::new();
     for source in motions.iter().map(|motion| &motion.source) {
-        let name = source.path.file_name().unwrap_or(source.path.as_os_str());
-        let file = (name.to_string_lossy().into_owned(), source.sha256.clone());
+        let file = (file_name(&source.path), source.sha256.clone());
         if !files.contains(&file) {
             files.push(file);
         }
     }
     files
-}
-
-/// Refuses a name that is taken before the work begins, not after it.
-///
-/// # Errors
-/// [`Error::Usage`] if the file exists and may not be replaced.
-pub fn vacant(path: &Path, force: bool) -> Result<()> {
-    if !force && path.symlink_metadata().is_ok() {
-        return Err(Error::usage(
-            format!("{} exists", path.display()),
-            "choose another name or pass --force",
-        ));
-    }
-    Ok(())
 }
 
 /// The text of a file.

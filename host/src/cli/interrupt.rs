@@ -61,7 +61,7 @@ impl Interrupt {
         match emergency_off {
             Some(emergency_off) => {
                 emergency_off();
-                std::process::exit(i32::from(super::Outcome::Stopped.exit_code()));
+                std::process::exit(i32::from(super::ExitStatus::Stopped.exit_code()));
             }
             // As the shell counts a program that a signal ended.
             None => std::process::exit(130),

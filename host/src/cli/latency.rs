@@ -13,15 +13,14 @@
 //! `fits`, `missing`; each measured time with `min`, `median`, `p99`, `max`.
 
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, interrupt::Interrupt};
+use super::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::link::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
 /// Measure round trips.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct LatencyArgs {
     #[command(flatten)]
     robot: Robot,
     /// Rounds to measure
@@ -33,7 +32,7 @@ pub struct Args {
 }
 
 /// Measures, judges.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
     if !(0.1..=10_000.0).contains(&args.period_ms) {
         return Err(Error::usage(
             format!("--period-ms {} is no sampling time", args.period_ms),
@@ -41,8 +40,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         ));
     }
     let interrupt = Interrupt::listen();
-    let bar = talk.bar();
-    bar.set_length(args.rounds);
+    let bar = talk.bar(args.rounds);
     let goes_on = || {
         bar.inc(1);
         !interrupt.has_come()
@@ -59,21 +57,13 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let mut adapter = Adapter::new(servos, ids, Duration::ZERO);
         trip.budget(&mut adapter, rounds, period_us, goes_on)
     };
-    bar.finish_and_clear();
+    drop(bar);
     let answer = budget?;
-    if talk.json {
-        talk.data(&answer)?;
-    } else {
-        talk.print(&text(&answer, args))?;
-    }
-    Ok(if answer.fits {
-        Outcome::Done
-    } else {
-        Outcome::Refused
-    })
+    talk.result(&answer, || text(&answer, args))?;
+    Ok(ExitStatus::answer(answer.fits))
 }
 
-fn text(answer: &LatencyBudget, args: &Args) -> String {
+fn text(answer: &LatencyBudget, args: &LatencyArgs) -> String {
     let times = |times: &Quantiles| {
         format!(
             "{:.0} us median, {:.0} to {:.0}, 99 % below {:.0}",
@@ -95,7 +85,8 @@ fn text(answer: &LatencyBudget, args: &Args) -> String {
         false => format!("does not fit: {}", remedy(answer, args)),
     };
     format!(
-        "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\nround of {} servos: {}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
+        "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\n\
+         round of {} servos: {}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
         times(&answer.round_trip_us),
         answer.line_us,
         answer.bus_us,
@@ -107,14 +98,15 @@ fn text(answer: &LatencyBudget, args: &Args) -> String {
     )
 }
 
-fn remedy(answer: &LatencyBudget, args: &Args) -> &'static str {
+fn remedy(answer: &LatencyBudget, args: &LatencyArgs) -> &'static str {
     let largest = answer.line_us.max(answer.bus_us).max(answer.rest_us);
     if args.robot.stream {
         "fewer servos, or return delay 0: handstand bus setup"
     } else if answer.bus_us == largest {
         "return delay 0: handstand bus setup"
     } else if answer.line_us == largest {
-        "the PC's line is the slowest part: --stream, or an adapter on the servos' bus at 1000000 baud"
+        "the PC's line is the slowest part: --stream, or an adapter on the servos' bus at \
+         1000000 baud"
     } else {
         "the adapter is the slowest part: --stream, or an FTDI latency timer of 1 ms"
     }

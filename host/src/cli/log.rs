@@ -11,9 +11,9 @@
 //! (`clean`, `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`,
 //! `what`, `remedy`).
 
-use super::Outcome;
+use super::ExitStatus;
+use super::Talk;
 use super::input;
-use super::talk::Talk;
 use handstand::log::{LogFinding, LogRequest, Severity};
 use handstand::{Model, Result};
 use serde_json::{Value, json};
@@ -21,14 +21,14 @@ use std::path::PathBuf;
 
 /// What can be done with logs.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum LogCommand {
     /// Check logs before a model is fitted to them
-    Check(Args),
+    Check(LogCheckArgs),
 }
 
 /// Check logs before a model is fitted to them.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct LogCheckArgs {
     /// Model file: it names the logs' columns and units
     model: PathBuf,
     /// Logs
@@ -37,7 +37,7 @@ pub struct Args {
 }
 
 /// Prints the findings.
-pub fn check(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::load(&args.model)?;
     let findings = handstand::log::check(&args.logs, &model)?;
     let (verdict, sentence) = match findings.iter().map(|finding| finding.severity).max() {
@@ -48,18 +48,14 @@ pub fn check(args: &Args, talk: &Talk) -> Result<Outcome> {
         Some(Severity::Warn) => ("warned", "fit for use, with the warnings above"),
         Some(Severity::Note) | None => ("clean", "fit for use"),
     };
-    if talk.json {
-        let findings: Vec<Value> = findings.iter().map(finding).collect();
-        talk.data(&json!({ "verdict": verdict, "findings": findings }))?;
-    } else {
-        let mut lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
-        lines.push(sentence.to_string());
-        talk.print(&lines.join("\n"))?;
-    }
-    Ok(match refused(&findings) {
-        true => Outcome::Refused,
-        false => Outcome::Done,
-    })
+    let data: Vec<Value> = findings.iter().map(finding).collect();
+    let data = json!({ "verdict": verdict, "findings": data });
+    talk.result(&data, || {
+        let lines = findings.iter().map(ToString::to_string);
+        let lines: Vec<String> = lines.chain([sentence.to_string()]).collect();
+        lines.join("\n")
+    })?;
+    Ok(ExitStatus::answer(!refused(&findings)))
 }
 
 /// Whether any finding makes the logs useless.

@@ -7,33 +7,34 @@
 //!
 //! ```console
 //! $ handstand map dead-zone ramp.csv --time t=s --input command=% --output angle=deg
-//! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg --supply volts=V
+//! $ handstand map supply runs.csv --time t=s --input goal=rad/s --output angle=deg \
+//!     --supply volts=V
 //! ```
 //!
 //! Both work on means over blocks of time, so record slowly: an input that changes within a block
 //! blurs the edge.
 
-use super::servo_columns::{self, ServoColumns};
-use super::talk::Talk;
-use super::{Outcome, input, show};
-use handstand::log::LogRequest;
+use super::servo_columns::ServoColumns;
+use super::show::{self, known};
+use super::{ExitStatus, Talk, input};
+use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
-use handstand::sysid::{BlockMean, DeadZoneMap, Interval, Side, SupplyLine, blocks};
+use handstand::sysid::{BlockMean, DeadZoneMap, IntervalEstimate, Side, SupplyLine, blocks};
 use handstand::{Error, Result};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What can be mapped.
 #[derive(Debug, clap::Subcommand)]
-pub enum Command {
+pub enum MapCommand {
     /// Estimate dead zone, slope and limit from command to speed or torque, and the inverse map
-    DeadZone(Args),
+    DeadZone(MapArgs),
     /// Estimate the relative speed error over the supply voltage
-    Supply(Args),
+    Supply(MapArgs),
 }
 
 /// What to map.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MapArgs {
     /// Logs
     #[arg(required = true, value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
@@ -45,15 +46,15 @@ pub struct Args {
 }
 
 /// Fits and prints.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &MapCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::DeadZone(args) => dead_zone(args, talk),
-        Command::Supply(args) => supply(args, talk),
+        MapCommand::DeadZone(args) => dead_zone(args, talk),
+        MapCommand::Supply(args) => supply(args, talk),
     }
 }
 
 /// Means of the logs, and the units of input and output.
-fn measured(args: &Args) -> Result<(Vec<BlockMean>, &'static str, &'static str)> {
+fn measured(args: &MapArgs) -> Result<(Vec<BlockMean>, &'static str, &'static str)> {
     if !(args.block > 0.0 && args.block.is_finite()) {
         return Err(Error::usage(
             format!("blocks of {} s", args.block),
@@ -61,77 +62,76 @@ fn measured(args: &Args) -> Result<(Vec<BlockMean>, &'static str, &'static str)>
         ));
     }
     let chosen = args.columns.chosen()?;
-    let (motions, _) = servo_columns::motions(&chosen, &args.logs, &[])?;
+    let motions = read(&args.logs, &chosen.columns)?;
     let blocks = blocks(&motions, chosen.joint, chosen.output, args.block);
     Ok((blocks, chosen.input_unit, chosen.output_unit))
 }
 
-fn dead_zone(args: &Args, talk: &Talk) -> Result<Outcome> {
+fn dead_zone(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
         Err(why) => return refused(&why.to_string(), talk),
     };
+    let data = json!({
+        "input_unit": input_unit,
+        "output_unit": output_unit,
+        "up": map.up,
+        "down": map.down,
+        "inverse": map.inverse(),
+    });
+    talk.result(&data, || dead_zone_text(&map, input_unit, output_unit))?;
+    Ok(ExitStatus::Done)
+}
+
+fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> String {
     let inverse = map.inverse();
-    if talk.json {
-        talk.data(&json!({
-            "input_unit": input_unit,
-            "output_unit": output_unit,
-            "up": map.up,
-            "down": map.down,
-            "inverse": inverse,
-        }))?;
-        return Ok(Outcome::Done);
-    }
     let mut table = show::table(["", "Above zero", "Below zero", "Unit"]);
     let mut row = |name: &str, of: &dyn Fn(&Side) -> String, unit: String| {
         table.add_row([name.to_string(), of(&map.up), of(&map.down), unit]);
     };
+    let slope = format!("{output_unit} per {input_unit}");
+    let limit =
+        |limit: Option<IntervalEstimate>| limit.map_or("none seen".into(), |limit| known(&limit));
     row("dead zone ends at", &|s| known(&s.edge), input_unit.into());
-    row(
-        "slope outside",
-        &|s| known(&s.slope),
-        format!("{output_unit} per {input_unit}"),
-    );
-    let limit = |side: &Side| {
-        side.limit
-            .map_or("none seen".to_string(), |limit| known(&limit))
-    };
-    row("limit", &limit, output_unit.into());
+    row("slope outside", &|s| known(&s.slope), slope);
+    row("limit", &|s| limit(s.limit), output_unit.into());
     row("left over, RMS", &|s| exact(s.rms), output_unit.into());
     row("blocks", &|s| s.blocks.to_string(), String::new());
     let most = match inverse.limit {
         Some(limit) => format!(", |y| up to {} {output_unit}", exact(limit)),
         None => String::new(),
     };
-    talk.print(&format!(
-        "{table}\n\nTurned round, the command u for an output y{most}:\n  y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
+    format!(
+        "{table}\n\nTurned round, the command u for an output y{most}:\n  \
+         y > 0:  u =  {} + {} y\n  y < 0:  u = -{} + {} y",
         exact(inverse.edge_up),
         exact(inverse.per_output_up),
         exact(inverse.edge_down),
         exact(inverse.per_output_down),
-    ))?;
-    Ok(Outcome::Done)
+    )
 }
 
-fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
+fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     if input_unit != output_unit {
         return Err(Error::usage(
             format!("the command is in {input_unit} and the output in {output_unit}"),
-            "a speed error needs a commanded speed: give --input as a speed and --output as an angle or a speed",
+            "a speed error needs a commanded speed: give --input as a speed and --output as an \
+             angle or a speed",
         ));
     }
     let line = match SupplyLine::fit(&blocks) {
         Ok(line) => line,
         Err(why) => return refused(&why.to_string(), talk),
     };
-    if talk.json {
-        talk.data(&line)?;
-        return Ok(Outcome::Done);
-    }
+    talk.result(&line, || supply_text(&line))?;
+    Ok(ExitStatus::Done)
+}
+
+fn supply_text(line: &SupplyLine) -> String {
     let per_v = line.error_per_v;
-    let percent = Interval {
+    let percent = IntervalEstimate {
         value: 100.0 * per_v.value,
         low: 100.0 * per_v.low,
         high: 100.0 * per_v.high,
@@ -141,32 +141,21 @@ fn supply(args: &Args, talk: &Talk) -> Result<Outcome> {
     } else {
         "The speed error follows the supply."
     };
-    talk.print(&format!(
-        "speed error per volt  {} % of the command\nright at              {} V\nsupply seen           {} to {} V, {} blocks\nleft over, RMS        {} % of the command\n{seen}",
+    format!(
+        "speed error per volt  {} % of the command\n\
+         right at              {} V\n\
+         supply seen           {} to {} V, {} blocks\n\
+         left over, RMS        {} % of the command\n{seen}",
         known(&percent),
         known(&line.right_at_v),
         exact(line.range_v.0),
         exact(line.range_v.1),
         line.blocks,
         exact(100.0 * line.rms),
-    ))?;
-    Ok(Outcome::Done)
-}
-
-fn refused(why: &str, talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "refused": why }) as &Value)?;
-    } else {
-        talk.print(&format!("refused: {why}"))?;
-    }
-    Ok(Outcome::Refused)
-}
-
-fn known(known: &Interval) -> String {
-    format!(
-        "{} ({} to {})",
-        exact(known.value),
-        exact(known.low),
-        exact(known.high)
     )
+}
+
+fn refused(why: &str, talk: &Talk) -> Result<ExitStatus> {
+    talk.result(&json!({ "refused": why }), || format!("refused: {why}"))?;
+    Ok(ExitStatus::Refused)
 }

@@ -76,58 +76,58 @@ impl Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Compare a model's simulation with measured logs
-    Compare(compare::Args),
+    Compare(compare::CompareArgs),
     /// Diagnose which physical effect a model lacks, from logs
-    Diagnose(diagnose::Args),
+    Diagnose(diagnose::DiagnoseArgs),
     /// List and explain the physical effects of the library
-    Effects(effects::Args),
+    Effects(effects::EffectsArgs),
     /// Check logs before a model is fitted to them
     #[command(subcommand)]
-    Log(log::Command),
+    Log(log::LogCommand),
     /// Fit a model's free parameters to logs
-    Fit(fit::Args),
+    Fit(fit::FitArgs),
     /// Add an effect to a model, its parameters fitted to logs
-    Add(add::Args),
+    Add(add::AddArgs),
     /// Synthesise LQR gains that balance a model, and export them for firmware
     Gains(Box<deploy::GainsCommand>),
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
-    Study(study::Command),
+    Study(study::StudyCommand),
     /// Identify a servo's discrete-time black-box model by prediction error
-    Identify(identify::Args),
+    Identify(identify::IdentifyArgs),
     /// Estimate a servo's static maps: dead zone, saturation, supply
     #[command(subcommand)]
-    Map(map::Command),
+    Map(map::MapCommand),
     /// Animate a motion on an HTML page
-    View(view::Args),
+    View(view::ViewArgs),
     /// Recompute the paper's numbers, figures and findings, and compare
-    Paper(paper::Args),
+    Paper(paper::PaperArgs),
     /// Practise diagnosis on a virtual bench with a hidden effect
     #[command(subcommand)]
-    Challenge(challenge::Command),
+    Challenge(challenge::ChallengeCommand),
     /// Simulate controllers in closed loop with the robot's non-idealities
-    Controllers(controllers::Args),
+    Controllers(controllers::ControllersArgs),
     /// Find the delay margin of each controller
-    Delays(delays::Args),
+    Delays(delays::DelaysArgs),
     /// Verify the robustness of gains to errors of the masses
-    Robust(robust::Args),
+    Robust(robust::RobustArgs),
     /// Demonstrate compare, diagnose and add on a virtual bench
-    Demo(demo::Args),
+    Demo(demo::DemoArgs),
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
-    Bus(bus::Command),
+    Bus(bus::BusCommand),
     /// Record servo states to a log
-    Record(record::Args),
+    Record(record::RecordArgs),
     /// Replay a recording on servos
-    Replay(replay::Args),
+    Replay(replay::ReplayArgs),
     /// Measure the latency between PC and servos, stage by stage
-    Latency(latency::Args),
+    Latency(latency::LatencyArgs),
     /// Deploy a model's gains to the CM-5, and read them back
-    Deploy(Box<deploy::Args>),
+    Deploy(Box<deploy::DeployArgs>),
     /// Flash firmware into the CM-5
-    Flash(flash::Args),
+    Flash(flash::FlashArgs),
     /// Simulate servos behind a virtual serial port
-    Virtual(virtual_robot::Args),
+    Virtual(virtual_robot::VirtualArgs),
 }
 
 impl Command {
@@ -135,12 +135,12 @@ impl Command {
     ///
     /// # Errors
     /// Requests that make no sense, files that cannot be read or are refused.
-    pub fn run(&self, talk: &Talk) -> Result<Outcome> {
+    pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
         match self {
             Command::Compare(args) => compare::run(args, talk),
             Command::Diagnose(args) => diagnose::run(args, talk),
             Command::Effects(args) => effects::run(args, talk),
-            Command::Log(log::Command::Check(args)) => log::check(args, talk),
+            Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
@@ -167,7 +167,7 @@ impl Command {
 
 /// How a command that ran to its end came out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum ExitStatus {
     /// It has done what was asked.
     Done,
     /// It ran, and the answer is no: the data cannot be used, the values cannot be determined.
@@ -176,13 +176,21 @@ pub enum Outcome {
     Stopped,
 }
 
-impl Outcome {
+impl ExitStatus {
+    /// The answer to what was asked: yes or no.
+    pub fn answer(yes: bool) -> Self {
+        match yes {
+            true => ExitStatus::Done,
+            false => ExitStatus::Refused,
+        }
+    }
+
     /// The process's exit code.
     pub fn exit_code(self) -> u8 {
         match self {
-            Outcome::Done => 0,
-            Outcome::Refused => 1,
-            Outcome::Stopped => 5,
+            ExitStatus::Done => 0,
+            ExitStatus::Refused => 1,
+            ExitStatus::Stopped => 5,
         }
     }
 }

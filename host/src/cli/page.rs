@@ -1,12 +1,9 @@
 //! Pages: what they were made from, and writing them.
 
-use super::input;
-use super::talk::Talk;
-use handstand::compare::Comparison;
-use handstand::diagnose::Diagnosis;
+use super::Talk;
 use handstand::log::{Motion, Split};
 use handstand::output::number::hex;
-use handstand::report::{LogFile, ModelFile, Provenance, Report};
+use handstand::report::{LogFile, ModelFile, ReportProvenance};
 use handstand::{Error, Result, output};
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
@@ -31,11 +28,10 @@ impl PageFile {
     /// Refuses a name that is taken before the work begins, not after it.
     ///
     /// # Errors
-    /// As [`input::vacant`].
+    /// As [`output::vacant`].
     pub fn vacant(&self) -> Result<()> {
-        self.file
-            .as_ref()
-            .map_or(Ok(()), |file| input::vacant(file, self.force))
+        let vacant = |file: &PathBuf| output::vacant(file, self.force);
+        self.file.as_ref().map_or(Ok(()), vacant)
     }
 
     /// Writes what `page` makes, if a page is wanted.
@@ -43,47 +39,27 @@ impl PageFile {
     /// # Errors
     /// Those of `page`, and as [`output::write_new`].
     pub fn write(&self, page: impl FnOnce() -> Result<String>, talk: &Talk) -> Result<()> {
-        if let Some(file) = &self.file {
-            output::write_new(file, &page()?, self.force)?;
-            talk.say(&format!("wrote {}", file.display()));
+        match &self.file {
+            Some(file) => talk.write(file, &page()?, self.force),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
-/// What a report is made of.
-pub struct Page<'a> {
-    /// Heading.
-    pub title: String,
-    /// Models against the motions.
-    pub comparisons: Vec<Comparison>,
-    /// What is missing, where that was asked.
-    pub diagnosis: Option<Diagnosis>,
-    /// Model files.
-    pub models: &'a [&'a PathBuf],
-    /// The motions.
-    pub split: &'a Split,
-}
-
-/// The report with its provenance.
+/// What a report was made from: files with their hashes, and the command line.
 ///
 /// # Errors
 /// A model file that cannot be read again.
-pub fn report(page: Page, talk: &Talk) -> Result<Report> {
+pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<ReportProvenance> {
     let mut logs = Vec::new();
-    add_logs(&mut logs, &page.split.training, false);
-    add_logs(&mut logs, &page.split.held_out, true);
-    let model_files: Result<Vec<ModelFile>> = page.models.iter().map(|file| hashed(file)).collect();
-    Ok(Report {
-        title: page.title,
-        comparisons: page.comparisons,
-        diagnosis: page.diagnosis,
-        provenance: Provenance {
-            program_version: env!("CARGO_PKG_VERSION").to_string(),
-            model_files: model_files?,
-            logs,
-            command: talk.command.clone(),
-        },
+    add_logs(&mut logs, &split.training, false);
+    add_logs(&mut logs, &split.held_out, true);
+    let model_files: Result<Vec<ModelFile>> = models.iter().map(|file| hashed(file)).collect();
+    Ok(ReportProvenance {
+        program_version: env!("CARGO_PKG_VERSION").to_string(),
+        model_files: model_files?,
+        logs,
+        command: talk.command.clone(),
     })
 }
 
@@ -102,10 +78,8 @@ pub fn hashed(file: &Path) -> Result<ModelFile> {
 fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
     for motion in motions {
         let name = file_name(&motion.source.path);
-        match logs
-            .iter_mut()
-            .find(|log| log.name == name && log.held_out == held_out)
-        {
+        let same = |log: &&mut LogFile| log.name == name && log.held_out == held_out;
+        match logs.iter_mut().find(same) {
             Some(log) => log.samples += motion.len(),
             None => logs.push(LogFile {
                 name,

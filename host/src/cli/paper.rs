@@ -14,15 +14,17 @@
 //! with `--findings` or `--report` also `figures` and `findings` (`docs/json.md`).
 
 use super::page::PageFile;
-use super::talk::Talk;
-use super::{Outcome, show};
+use super::{ExitStatus, Talk, show};
 use handstand::Result;
-use handstand::paper::{Computed, Row, STEPS, Study, Verdict, check, html, study};
+use handstand::output::table::TableColumn;
+use handstand::paper::{
+    Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, html, reproduce,
+};
 use serde_json::{Value, json};
 
 /// Recompute the paper's numbers, figures and findings, and compare.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct PaperArgs {
     /// Also judge the figures and all that the paper found
     #[arg(long)]
     findings: bool,
@@ -31,7 +33,7 @@ pub struct Args {
 }
 
 /// Computes, prints, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &PaperArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
     let whole = match args.findings || args.page.is_wanted() {
         true => Some(worked(talk)?),
@@ -44,61 +46,44 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             (check(&computed), computed)
         }
     };
-    if talk.json {
-        talk.data(&data(&rows, &computed, whole.as_ref()))?;
-    } else {
+    talk.result(&data(&rows, &computed, whole.as_ref()), || {
         let mut parts = vec![numbers(&rows), follows(&computed)];
-        if let Some(study) = whole.as_ref().filter(|_| args.findings) {
-            parts.push(judged(study));
-        }
-        talk.print(&parts.join("\n\n"))?;
-    }
+        parts.extend(whole.as_ref().filter(|_| args.findings).map(judged));
+        parts.join("\n\n")
+    })?;
     if let Some(study) = &whole {
         let page = || Ok(html(study, &talk.command));
         args.page.write(page, talk)?;
     }
-    let differs = rows.iter().any(|row| row.verdict == Verdict::Differs);
-    Ok(if differs {
-        Outcome::Refused
-    } else {
-        Outcome::Done
+    let differs = rows.iter().any(|row| row.verdict == Agreement::Differs);
+    Ok(ExitStatus::answer(!differs))
+}
+
+fn worked(talk: &Talk) -> Result<Reproduction> {
+    let bar = talk.bar(STEPS);
+    reproduce(&|what| {
+        bar.set_message(what.to_string());
+        bar.inc(1);
     })
 }
 
-fn worked(talk: &Talk) -> Result<Study> {
-    let bar = talk.bar();
-    bar.set_length(STEPS);
-    let whole = study(&|what| {
-        bar.set_message(what.to_string());
-        bar.inc(1);
-    });
-    bar.finish_and_clear();
-    whole
-}
-
-fn numbers(rows: &[Row]) -> String {
-    let mut table = show::table(["Where", "Quantity", "Stated", "Computed", "Verdict"]);
-    for row in rows {
-        table.add_row([
-            row.printed.place.to_string(),
-            row.printed.quantity.name(),
-            row.printed.text.to_string(),
-            row.computed_text(),
-            row.verdict.to_string(),
-        ]);
-    }
-    let agree = rows
-        .iter()
-        .filter(|row| row.verdict == Verdict::Agrees)
-        .count();
-    let misprints = rows
-        .iter()
-        .filter(|row| matches!(row.verdict, Verdict::Sign | Verdict::Digits(..)));
+fn numbers(rows: &[CheckedNumber]) -> String {
+    let columns: &[TableColumn<CheckedNumber>] = &[
+        ("Where", &|r| r.printed.place.to_string()),
+        ("Quantity", &|r| r.printed.quantity.name()),
+        ("Stated", &|r| r.printed.text.to_string()),
+        ("Computed", &|r| r.computed_text()),
+        ("Verdict", &|r| r.verdict.to_string()),
+    ];
+    let count = |of: fn(&Agreement) -> bool| rows.iter().filter(|row| of(&row.verdict)).count();
     format!(
-        "{table}\n{} numbers: {agree} agree to the last digit, {} misprints. `recomputed`: not printed; found from \
-         Table 1\nwith SciPy. servo: found by `identify` in data made with eq. (2), half of 95 %.",
+        "{}\n{} numbers: {} agree to the last digit, {} misprints. `recomputed`: not printed; \
+         found from Table 1\nwith SciPy. servo: found by `identify` in data made with eq. (2), \
+         half of 95 %.",
+        show::table_of(rows, columns),
         rows.len(),
-        misprints.count()
+        count(|verdict| *verdict == Agreement::Agrees),
+        count(|verdict| matches!(verdict, Agreement::Sign | Agreement::Digits(..)))
     )
 }
 
@@ -137,84 +122,42 @@ fn follows(computed: &Computed) -> String {
     lines.join("\n")
 }
 
-fn judged(study: &Study) -> String {
+fn judged(study: &Reproduction) -> String {
     let figures = study.figures.iter().map(|figure| {
-        format!(
-            "Figure {}, {}: {}. {}",
-            figure.number,
-            figure.title,
-            figure.holds.words(),
-            figure.sentence
-        )
+        let (number, title, holds) = (figure.number, figure.title, figure.holds.words());
+        format!("Figure {number}, {title}: {holds}. {}", figure.sentence)
     });
     let findings = study.findings.iter().map(|finding| {
-        format!(
-            "{}. {}\n   {}: {}\n   {}",
-            finding.number,
-            finding.found,
-            finding.command,
-            finding.verdict(),
-            finding.said
-        )
+        let (number, found, command) = (finding.number, finding.found, finding.command);
+        let (holds, said) = (finding.holds.words(), &finding.said);
+        format!("{number}. {found}\n   {command}: {holds}\n   {said}")
     });
     let all: Vec<String> = figures.chain(findings).collect();
     all.join("\n\n")
 }
 
-fn data(rows: &[Row], computed: &Computed, whole: Option<&Study>) -> Value {
+fn data(rows: &[CheckedNumber], computed: &Computed, whole: Option<&Reproduction>) -> Value {
     let facts = &computed.servo_facts;
-    let rows: Vec<Value> = rows
-        .iter()
-        .map(|row| {
-            json!({
-                "place": row.printed.place,
-                "quantity": row.printed.quantity.name(),
-                "unit": row.printed.quantity.unit(),
-                "in_paper": row.printed.in_paper,
-                "stated": row.printed.text,
-                "computed": row.computed.value,
-                "verdict": row.verdict.to_string(),
-            })
+    let row = |row: &CheckedNumber| {
+        json!({
+            "place": row.printed.place,
+            "quantity": row.printed.quantity.name(),
+            "unit": row.printed.quantity.unit(),
+            "in_paper": row.printed.in_paper,
+            "stated": row.printed.text,
+            "computed": row.computed.value,
+            "verdict": row.verdict.to_string(),
         })
-        .collect();
-    let zeros: Vec<Value> = computed
-        .zeros
-        .iter()
-        .map(|zeros| json!({ "outputs": zeros.outputs, "squared": zeros.squared }))
-        .collect();
-    let figures = whole.map(|study| {
-        let of = |figure: &handstand::paper::Figure| {
-            json!({
-                "number": figure.number,
-                "title": figure.title,
-                "claim": figure.claim,
-                "verdict": figure.holds.words(),
-                "sentence": figure.sentence,
-            })
-        };
-        study.figures.iter().map(of).collect::<Vec<_>>()
-    });
-    let findings = whole.map(|study| {
-        let of = |finding: &handstand::paper::Finding| {
-            json!({
-                "number": finding.number,
-                "found": finding.found,
-                "command": finding.command,
-                "verdict": finding.verdict(),
-                "sentence": finding.said,
-            })
-        };
-        study.findings.iter().map(of).collect::<Vec<_>>()
-    });
+    };
     json!({
-        "rows": rows,
+        "rows": rows.iter().map(row).collect::<Vec<Value>>(),
         "follows": {
-            "zeros": zeros,
+            "zeros": computed.zeros,
             "servo_gain": facts.gain,
             "servo_pole": facts.poles.first().map(|pole| [pole.re, pole.im]),
             "servo_settling_s": facts.settling_s,
         },
-        "figures": figures,
-        "findings": findings,
+        "figures": whole.map(|study| &study.figures),
+        "findings": whole.map(|study| &study.findings),
     })
 }

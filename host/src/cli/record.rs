@@ -15,16 +15,15 @@
 
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
-use handstand::{Error, Result};
+use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
 /// Record servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct RecordArgs {
     /// File to write, .csv or .mcap
     file: PathBuf,
     #[command(flatten)]
@@ -41,26 +40,24 @@ pub struct Args {
 }
 
 /// Samples until told to stop.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     FileFormat::of(&args.file)?;
-    input::vacant(&args.file, args.force)?;
+    output::vacant(&args.file, args.force)?;
     if let Some(from) = &args.from {
         return convert(args, from, talk);
     }
     let interrupt = Interrupt::listen();
     let mut source = args.robot.open()?;
     let mut recorder = RobotRecorder::create(&args.file, &args.robot.ids.0, args.force)?;
-    let bar = talk.bar();
-    bar.set_length(args.seconds.map_or(0, |seconds| {
-        (seconds / args.robot.period().map_or(0.01, |p| p.as_secs_f64())) as u64
-    }));
+    let period_s = args.robot.period().map_or(0.01, |p| p.as_secs_f64());
+    let bar = talk.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
     let mut tally = RecordingTally::default();
     let mut silent = 0;
-    while !interrupt.has_come()
-        && args
-            .seconds
-            .is_none_or(|seconds| tally.samples == 0 || tally.seconds() < seconds)
-    {
+    let goes_on = |tally: &RecordingTally| {
+        let within = |seconds| tally.samples == 0 || tally.seconds() < seconds;
+        !interrupt.has_come() && args.seconds.is_none_or(within)
+    };
+    while goes_on(&tally) {
         let Some(sample) = source.sample(None)? else {
             silent += 1;
             if silent == 20 {
@@ -78,12 +75,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         bar.inc(1);
         bar.set_message(format!("samples, {} answers missing", tally.missing));
     }
-    bar.finish_and_clear();
+    drop(bar);
     recorder.finish()?;
     report(args, &tally, None, talk)
 }
 
-fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> {
+fn convert(args: &RecordArgs, from: &std::path::Path, talk: &Talk) -> Result<ExitStatus> {
     let recording = read(from)?;
     let mut recorder = RobotRecorder::create(&args.file, &recording.ids, args.force)?;
     let mut tally = RecordingTally::default();
@@ -101,7 +98,12 @@ fn convert(args: &Args, from: &std::path::Path, talk: &Talk) -> Result<Outcome> 
     report(args, &tally, Some(recording.torn), talk)
 }
 
-fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) -> Result<Outcome> {
+fn report(
+    args: &RecordArgs,
+    tally: &RecordingTally,
+    torn: Option<bool>,
+    talk: &Talk,
+) -> Result<ExitStatus> {
     if talk.json {
         talk.data(&json!({
             "file": args.file.display().to_string(),
@@ -117,10 +119,8 @@ fn report(args: &Args, tally: &RecordingTally, torn: Option<bool>, talk: &Talk) 
         args.file.display(),
         tally.samples,
         tally.seconds(),
-        tally
-            .rate_hz()
-            .map_or("–".to_string(), |rate| format!("{rate:.1}")),
+        or_dash(tally.rate_hz(), |rate| format!("{rate:.1}")),
         tally.missing
     ));
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

@@ -16,18 +16,17 @@
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::robot::Robot;
-use super::talk::Talk;
-use super::{Outcome, input};
+use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
-    GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource, read,
+    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
 };
-use handstand::{Error, Result};
+use handstand::{Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
 /// Let the servos repeat a recording.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ReplayArgs {
     /// Recording to follow
     motion: PathBuf,
     #[command(flatten)]
@@ -43,28 +42,14 @@ pub struct Args {
     force: bool,
 }
 
-/// Speed on the way to the first pose, rad/s.
-const APPROACH_RAD_S: f64 = 0.5;
-
-/// What it needs while it runs.
-struct ReplayRun<'a> {
-    source: Box<dyn SampleSource>,
-    recorder: Option<RobotRecorder>,
-    interrupt: Interrupt,
-    tally: RecordingTally,
-    tracking: Rms,
-    repeat: Rms,
-    talk: &'a Talk,
-}
-
 /// Follows the motion.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let recording = read(&args.motion)?;
     let motion = GoalMotion::of(&recording, &args.motion)?;
     let mut robot = args.robot.clone();
     robot.ids.0 = recording.ids.clone();
     if let Some(file) = &args.record {
-        input::vacant(file, args.force)?;
+        output::vacant(file, args.force)?;
     }
     talk.say(&format!(
         "{}: {} servos, {:.1} s. The robot will move.",
@@ -74,147 +59,48 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     ));
     agreed(args.yes, "Is there room around it?")?;
     let interrupt = Interrupt::listen();
-    let source = robot.open()?;
-    let recorder = args
-        .record
-        .as_ref()
-        .map(|file| RobotRecorder::create(file, &recording.ids, args.force))
-        .transpose()?;
-    let mut run = ReplayRun {
-        source,
-        recorder,
-        interrupt,
-        tally: RecordingTally::default(),
-        tracking: Rms::default(),
-        repeat: Rms::default(),
-        talk,
-    };
-    run.interrupt.at_once(run.source.emergency_off());
-    run.source.arm()?;
-    // Whatever happens, torque goes off before anything is told.
-    let outcome = run.follow(&motion);
-    let off = run.source.disarm();
-    let stopped = outcome?;
-    off?;
-    if let Some(recorder) = run.recorder.take() {
+    let mut source = robot.open()?;
+    let create = |file: &PathBuf| RobotRecorder::create(file, &recording.ids, args.force);
+    let mut recorder = args.record.as_ref().map(create).transpose()?;
+    interrupt.at_once(source.emergency_off());
+    let bar = talk.bar(motion.time_s.len() as u64);
+    let followed = follow(
+        &motion,
+        &mut *source,
+        recorder.as_mut(),
+        &|| !interrupt.has_come(),
+        &|place| bar.set_position(place as u64),
+    )?;
+    drop(bar);
+    if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    run.report(stopped)
+    report(&followed, talk)
 }
 
-impl ReplayRun<'_> {
-    /// Why it was stopped, if it was.
-    fn follow(&mut self, motion: &GoalMotion) -> Result<Option<String>> {
-        let first = &motion.goals_rad[0];
-        let Some(here) = self.step(None)? else {
-            return Ok(self.why());
-        };
-        let from: Vec<f64> = here
-            .joints
-            .iter()
-            .zip(first)
-            .map(|(joint, goal)| joint.position_rad.unwrap_or(*goal))
-            .collect();
-        let farthest = from
-            .iter()
-            .zip(first)
-            .map(|(from, to)| (to - from).abs())
-            .fold(0.0, f64::max);
-        let (begin_s, approach_s) = (here.time_s, (farthest / APPROACH_RAD_S).max(0.01));
-        let mut now_s = begin_s;
-        while now_s - begin_s < approach_s {
-            let share = ((now_s - begin_s) / approach_s).clamp(0.0, 1.0);
-            let goals: Vec<f64> = from
-                .iter()
-                .zip(first)
-                .map(|(from, to)| from + share * (to - from))
-                .collect();
-            match self.step(Some(&goals))? {
-                Some(sample) => now_s = sample.time_s,
-                None => return Ok(self.why()),
-            }
-        }
-        let bar = self.talk.bar();
-        bar.set_length(motion.time_s.len() as u64);
-        let begin_s = now_s;
-        while let Some((at, goals)) = motion.at(now_s - begin_s) {
-            let Some(sample) = self.step(Some(&goals))? else {
-                bar.finish_and_clear();
-                return Ok(self.why());
-            };
-            now_s = sample.time_s;
-            self.tally.count(&sample);
-            self.judge(&sample, &goals, &motion.measured_rad[at]);
-            bar.set_position(at as u64);
-        }
-        bar.finish_and_clear();
-        Ok(None)
-    }
-
-    fn judge(&mut self, sample: &RobotSample, goals: &[f64], then: &[Option<f64>]) {
-        for ((joint, goal), then) in sample.joints.iter().zip(goals).zip(then) {
-            if let Some(now) = joint.position_rad {
-                self.tracking.add(now - goal);
-                then.iter().for_each(|then| self.repeat.add(now - then));
-            }
-        }
-    }
-
-    /// One sample; none if the robot must stop.
-    fn step(&mut self, goals: Option<&[f64]>) -> Result<Option<RobotSample>> {
-        for _ in 0..5 {
-            if self.interrupt.has_come() {
-                return Ok(None);
-            }
-            if let Some(sample) = self.source.sample(goals)? {
-                if let Some(recorder) = &mut self.recorder {
-                    recorder.write(&sample)?;
-                }
-                return Ok(if self.source.danger().is_some() {
-                    None
-                } else {
-                    Some(sample)
-                });
-            }
-        }
-        Err(Error::device(
-            "the CM-5 has sent nothing for half a second",
-            "it switches torque off by itself; check line and battery",
-        ))
-    }
-
-    fn why(&self) -> Option<String> {
-        Some(self.source.danger().unwrap_or_else(|| "Ctrl-C".to_string()))
-    }
-
-    fn report(&self, stopped: Option<String>) -> Result<Outcome> {
-        let (tracking, repeat) = (self.tracking.value(), self.repeat.value());
-        if self.talk.json {
-            self.talk.data(&json!({
-                "samples": self.tally.samples,
-                "seconds": self.tally.seconds(),
-                "tracking_rms_rad": tracking,
-                "repeat_rms_rad": repeat,
-                "stopped": stopped,
-            }))?;
-        } else {
-            let milli = |value: Option<f64>| {
-                value.map_or("–".to_string(), |value| {
-                    format!("{:.1} mrad", value * 1e3)
-                })
-            };
-            self.talk.print(&format!(
-                "to the goals: {} rms\nto the recording: {} rms",
-                milli(tracking),
-                milli(repeat)
-            ))?;
-        }
-        match stopped {
-            None => Ok(Outcome::Done),
-            Some(why) => {
-                self.talk.say(&format!("stopped, torque is off: {why}"));
-                Ok(Outcome::Stopped)
-            }
+fn report(followed: &FollowedMotion, talk: &Talk) -> Result<ExitStatus> {
+    let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
+    let stopped = followed.stopped.as_ref().map(|why| match why {
+        MotionStop::Interrupted => "Ctrl-C",
+        MotionStop::Danger(why) => why,
+    });
+    let data = json!({
+        "samples": followed.tally.samples,
+        "seconds": followed.tally.seconds(),
+        "tracking_rms_rad": tracking,
+        "repeat_rms_rad": repeat,
+        "stopped": stopped,
+    });
+    let milli = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} mrad", rad * 1e3));
+    talk.result(&data, || {
+        let (tracking, repeat) = (milli(tracking), milli(repeat));
+        format!("to the goals: {tracking} rms\nto the recording: {repeat} rms")
+    })?;
+    match stopped {
+        None => Ok(ExitStatus::Done),
+        Some(why) => {
+            talk.say(&format!("stopped, torque is off: {why}"));
+            Ok(ExitStatus::Stopped)
         }
     }
 }

@@ -14,15 +14,15 @@
 //! `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable)
 //! and `k`, by rows.
 
-use super::talk::Talk;
-use super::{Outcome, input, show};
+use super::{ExitStatus, Talk, input, show};
 use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::output::number::exact;
+use handstand::output::table::TableColumn;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
 use handstand::synth::{dlqr, upright, zoh};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;
-use serde_json::json;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Share of the robots that may be unstable under a robust gain.
@@ -30,7 +30,7 @@ const UNSTABLE: f64 = 0.02;
 
 /// Verify the robustness of gains to errors of the masses.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct RobustArgs {
     /// Model file
     model: PathBuf,
     /// Largest error of each mass, %
@@ -40,13 +40,15 @@ pub struct Args {
     #[arg(long)]
     with_inertia: bool,
     /// Error the multi-model gain is designed for, %
-    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * MASS_ERROR, value_parser = input::positive)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * MASS_ERROR)]
+    #[arg(value_parser = input::positive)]
     design: f64,
     /// Weight of every state in that design
     #[arg(long, value_name = "Q", default_value_t = WEIGHT, value_parser = input::positive)]
     q: f64,
     /// Robots drawn
-    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     draws: u32,
     /// Sampling time, s
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = input::positive)]
@@ -56,22 +58,19 @@ pub struct Args {
     seed: u64,
 }
 
-/// A gain and the loops of the drawn robots under it.
-struct Row {
+/// A gain, and the loops of the drawn robots under it.
+#[derive(Serialize)]
+struct GainRobustness {
     gain: String,
-    k: DMatrix<f64>,
-    radii: Vec<f64>,
+    unstable: f64,
+    median_radius: f64,
+    worst_radius: f64,
     largest_error: f64,
-}
-
-impl Row {
-    fn unstable(&self) -> f64 {
-        unstable_share(&self.radii)
-    }
+    k: Vec<Vec<f64>>,
 }
 
 /// Designs, draws, prints.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
     for (name, percent) in [("--masses", args.masses), ("--design", args.design)] {
         if percent >= 100.0 {
             return Err(Error::usage(
@@ -80,31 +79,15 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             ));
         }
     }
-    let rows = rows(args, &Model::load(&args.model)?, talk)?;
-    if talk.json {
-        let data = rows.iter().map(|row| {
-            json!({
-                "gain": row.gain,
-                "unstable": row.unstable(),
-                "median_radius": row.radii[row.radii.len() / 2],
-                "worst_radius": row.radii[row.radii.len() - 1],
-                "largest_error": row.largest_error,
-                "k": row.k.row_iter().map(|k| k.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
-            })
-        });
-        talk.data(&data.collect::<Vec<_>>())?;
-    } else {
-        talk.print(&text(args, &rows))?;
-    }
-    Ok(
-        match rows.last().is_some_and(|row| row.unstable() <= UNSTABLE) {
-            true => Outcome::Done,
-            false => Outcome::Refused,
-        },
-    )
+    let gains = judged(args, &Model::load(&args.model)?, talk)?;
+    talk.result(&gains, || text(args, &gains))?;
+    let last = gains.last();
+    Ok(ExitStatus::answer(
+        last.is_some_and(|gain| gain.unstable <= UNSTABLE),
+    ))
 }
 
-fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
+fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
     let case = Case::ideal(model.clone(), DEFAULT, args.ts);
     let errors = MassErrors {
         case: &case,
@@ -112,18 +95,14 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         draws: args.draws as usize,
         seed: args.seed,
     };
-    let bar = talk.bar();
-    bar.set_length(4);
+    let bar = talk.bar(4);
     bar.set_message("drawing robots");
     let plants = errors.plants(args.masses / 100.0)?;
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let sampled = zoh(&nominal.plant, args.ts, 0.0)?;
     let regulator = |q: f64| {
-        let (q, r) = DesignModel {
-            q,
-            ..nominal.clone()
-        }
-        .weights();
+        let own = nominal.clone();
+        let (q, r) = DesignModel { q, ..own }.weights();
         Ok::<_, Error>(dlqr(&sampled, &q, &r)?.k)
     };
     let multi = MultiModel {
@@ -131,66 +110,51 @@ fn rows(args: &Args, model: &Model, talk: &Talk) -> Result<Vec<Row>> {
         with_inertia: args.with_inertia,
         weight: args.q,
     };
+    let title = format!("multi-model, {} % of each mass", exact(args.design));
     let gains = [
         ("DLQR, Q = 100 I, R = I".to_string(), regulator(100.0)?),
         ("DLQR, Q = I, R = I".to_string(), regulator(1.0)?),
-        (
-            format!("multi-model, {} % of each mass", exact(args.design)),
-            multi.gain(&nominal)?,
-        ),
+        (title, multi.gain(&nominal)?),
     ];
     bar.inc(1);
-    let mut rows = Vec::new();
-    for (gain, k) in gains {
+    let judge = |(gain, k): (String, DMatrix<f64>)| {
         bar.set_message(gain.clone());
-        rows.push(Row {
-            radii: radii(&plants, &k),
-            largest_error: errors.largest(&k, UNSTABLE)?,
-            gain,
-            k,
-        });
+        let radii = radii(&plants, &k);
+        let largest_error = errors.largest(&k, UNSTABLE)?;
         bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok(rows)
+        Ok(GainRobustness {
+            gain,
+            unstable: unstable_share(&radii),
+            median_radius: radii[radii.len() / 2],
+            worst_radius: radii[radii.len() - 1],
+            largest_error,
+            k: k.row_iter()
+                .map(|row| row.iter().copied().collect())
+                .collect(),
+        })
+    };
+    gains.into_iter().map(judge).collect()
 }
 
-fn text(args: &Args, rows: &[Row]) -> String {
-    let mut table = show::table([
-        "Gain",
-        "unstable %",
-        "median radius",
-        "worst radius",
-        "2 % unstable at, %",
-    ]);
-    for row in rows {
-        table.add_row([
-            row.gain.clone(),
-            format!("{:.1}", 100.0 * row.unstable()),
-            format!("{:.4}", row.radii[row.radii.len() / 2]),
-            format!("{:.4}", row.radii[row.radii.len() - 1]),
-            format!("{:.1}", 100.0 * row.largest_error),
-        ]);
-    }
-    let mut lines = vec![
-        format!(
-            "{} robots, each mass within {} % of the model's:",
-            args.draws,
-            exact(args.masses)
-        ),
-        table.to_string(),
-        String::new(),
-        "The multi-model gain, u = -K x:".to_string(),
+fn text(args: &RobustArgs, gains: &[GainRobustness]) -> String {
+    let columns: &[TableColumn<GainRobustness>] = &[
+        ("Gain", &|g| g.gain.clone()),
+        ("unstable %", &|g| format!("{:.1}", 100.0 * g.unstable)),
+        ("median radius", &|g| format!("{:.4}", g.median_radius)),
+        ("worst radius", &|g| format!("{:.4}", g.worst_radius)),
+        ("2 % unstable at, %", &|g| {
+            format!("{:.1}", 100.0 * g.largest_error)
+        }),
     ];
-    if let Some(row) = rows.last() {
-        for k in row.k.row_iter() {
-            lines.push(
-                k.iter()
-                    .map(|k| format!("{k:>10.4}"))
-                    .collect::<Vec<_>>()
-                    .join(" "),
-            );
-        }
+    let mut text = format!(
+        "{} robots, each mass within {} % of the model's:\n{}\n\nThe multi-model gain, u = -K x:",
+        args.draws,
+        exact(args.masses),
+        show::table_of(gains, columns)
+    );
+    for row in gains.last().map_or(&[][..], |gain| &gain.k) {
+        let row: Vec<String> = row.iter().map(|k| format!("{k:>10.4}")).collect();
+        text += &format!("\n{}", row.join(" "));
     }
-    lines.join("\n")
+    text
 }

@@ -1,8 +1,6 @@
 //! Which columns of a log are a servo's input and output: by a model file, or by flags; never
 //! guessed.
 
-use super::input;
-use handstand::log::{LogRequest, Motion, read};
 use handstand::model::{Column, Dimension, JointColumns, LogColumns, Unit};
 use handstand::sysid::OutputQuantity;
 use handstand::{Error, Model, Result};
@@ -12,7 +10,8 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct ServoColumns {
     /// Model file whose [log] names the columns
-    #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["time", "input", "output", "supply"])]
+    #[arg(long, value_name = "MODEL.toml")]
+    #[arg(conflicts_with_all = ["time", "input", "output", "supply"])]
     model: Option<PathBuf>,
     /// Joint of the model, counted from 1; the driven one without it
     #[arg(long, value_name = "N", requires = "model")]
@@ -84,9 +83,7 @@ impl ServoColumns {
     }
 
     fn driven(&self, model: &Model) -> Result<usize> {
-        let driven: Vec<usize> = (0..model.link_count())
-            .filter(|joint| model.joints[*joint].drive.is_driven())
-            .collect();
+        let driven = model.driven_joints();
         let names: Vec<String> = driven.iter().map(|joint| (joint + 1).to_string()).collect();
         let remedy = match names.as_slice() {
             [] => "a model without a drive has no servo to identify".to_string(),
@@ -113,8 +110,8 @@ impl ServoColumns {
         else {
             return Err(Error::usage(
                 "the log's columns are not declared",
-                "give --model MODEL.toml, or all of --time, --input and --output, such as --time t=s --input \
-                 goal=rad/s --output angle=deg",
+                "give --model MODEL.toml, or all of --time, --input and --output, such as --time \
+                 t=s --input goal=rad/s --output angle=deg",
             ));
         };
         Ok(LogColumns {
@@ -135,32 +132,9 @@ impl ServoColumns {
     }
 }
 
-/// The motions of `logs`, refused if they are named twice.
-///
-/// # Errors
-/// As [`input::motions`].
-pub fn motions(
-    chosen: &ChosenColumns,
-    logs: &[LogRequest],
-    held_out: &[LogRequest],
-) -> Result<(Vec<Motion>, Vec<Motion>)> {
-    input::told_apart(logs, held_out)?;
-    Ok((
-        read(logs, &chosen.columns)?,
-        read(held_out, &chosen.columns)?,
-    ))
-}
-
+/// Name of the SI unit, which stands first among those that measure the same.
 fn si(dimension: Dimension) -> &'static str {
-    match dimension {
-        Dimension::Time => "s",
-        Dimension::Angle => "rad",
-        Dimension::Speed => "rad/s",
-        Dimension::Torque => "N m",
-        Dimension::Voltage => "V",
-        Dimension::Mass => "kg",
-        Dimension::Ratio => "1",
-    }
+    dimension.unit_names().next().unwrap_or("1")
 }
 
 /// `COLUMN=UNIT`, with `ticks/TURN` for counts.
@@ -187,7 +161,8 @@ fn column(text: &str) -> Result<Column, String> {
         }),
         Some(_) if !name.is_empty() => Err("say how many make a turn: ticks/1228.8".to_string()),
         _ => Err(format!(
-            "{}; units are those of a model file's [log]: rad deg turn rad/s deg/s rpm, N m, V, 1, % and so on",
+            "{}; units are those of a model file's [log]: rad deg turn rad/s deg/s rpm, N m, V, 1, \
+             % and so on",
             wrong()
         )),
     }

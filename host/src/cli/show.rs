@@ -1,17 +1,29 @@
 //! Tables and figures as every command shows them.
 
-use super::talk::Talk;
+use super::Talk;
 use comfy_table::{ContentArrangement, Table};
-use handstand::fitting::{Horizon, Refitted, Undetermined};
+use handstand::fitting::{FittedValue, Refitted, Undetermined, in_windows};
 use handstand::output::number::exact;
-use handstand::report::plain_table;
+use handstand::output::table::{self, TableColumn, plain_table};
 use handstand::synth::{linearise, upright};
+use handstand::sysid::IntervalEstimate;
 use handstand::{Model, Result};
 use serde_json::{Value, json};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = plain_table(header);
+    within_width(plain_table(header))
+}
+
+/// A plain table, a line for each of `rows`.
+pub fn table_of<'r, T: 'r>(
+    rows: impl IntoIterator<Item = &'r T>,
+    columns: &[TableColumn<T>],
+) -> Table {
+    within_width(table::table_of(rows, columns))
+}
+
+fn within_width(mut table: Table) -> Table {
     if table.width().is_none() {
         table.set_width(100);
     }
@@ -28,16 +40,17 @@ pub fn wide_table() -> Table {
 /// A refitted model for people: its values, then its errors; `before` says which model left the
 /// error before.
 pub fn refitted(refitted: &Refitted, before: &str) -> String {
-    let mut table = table(["Parameter", "Value", "95 % interval", "Unit", ""]);
-    for value in &refitted.values {
-        table.add_row([
-            value.path.clone(),
-            exact(value.value),
-            format!("{} to {}", exact(value.low), exact(value.high)),
-            value.unit.clone(),
-            if value.on_bound { "on its bound" } else { "" }.to_string(),
-        ]);
-    }
+    let on_bound = |on_bound: bool| if on_bound { "on its bound" } else { "" };
+    let columns: &[TableColumn<FittedValue>] = &[
+        ("Parameter", &|v| v.path.clone()),
+        ("Value", &|v| exact(v.value)),
+        ("95 % interval", &|v| {
+            format!("{} to {}", exact(v.low), exact(v.high))
+        }),
+        ("Unit", &|v| v.unit.clone()),
+        ("", &|v| on_bound(v.on_bound).to_string()),
+    ];
+    let table = table_of(&refitted.values, columns);
     let error = &refitted.error;
     let motions = if error.held_out { "held out" } else { "fitted" };
     let [old, new, floor] =
@@ -50,9 +63,7 @@ pub fn refitted(refitted: &Refitted, before: &str) -> String {
              noise alone leaves {floor} mrad."
         ),
     ];
-    if let Horizon::Seconds(seconds) = refitted.horizon {
-        lines.push(format!("The model ran {} s at a time.", exact(seconds)));
-    }
+    lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));
     let warnings = warnings(refitted).into_iter();
     lines.extend(warnings.map(|line| format!("warning: {line}")));
     lines.join("\n")
@@ -76,6 +87,7 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
         "values": refitted.values,
         "error": refitted.error,
         "horizon_s": refitted.horizon.seconds(),
+        "windows": refitted.windows,
         "converged": refitted.converged,
         "warnings": warnings(refitted),
     })
@@ -84,7 +96,8 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
 /// Values that cannot be had, for people.
 pub fn undetermined(refused: &Undetermined) -> String {
     format!(
-        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show them."
+        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show \
+         them."
     )
 }
 
@@ -103,4 +116,19 @@ pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
         ));
     }
     Ok(())
+}
+
+/// The ends of an interval.
+pub fn ends(known: &IntervalEstimate) -> String {
+    format!("{} to {}", exact(known.low), exact(known.high))
+}
+
+/// A value with its interval.
+pub fn known(known: &IntervalEstimate) -> String {
+    format!("{} ({})", exact(known.value), ends(known))
+}
+
+/// A value as `text` shows it, or a dash where there is none.
+pub fn or_dash<V>(value: Option<V>, text: impl Fn(V) -> String) -> String {
+    value.map_or("–".to_string(), text)
 }

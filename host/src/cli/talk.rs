@@ -1,9 +1,11 @@
 //! Console output: data to stdout, messages to stderr, progress only to a terminal.
 
+use handstand::output::write_new;
 use handstand::{Error, Result};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use serde::Serialize;
 use std::io::{ErrorKind, Write as _};
+use std::path::Path;
 
 /// Where the output of one run goes, and in which form.
 #[derive(Debug, Clone)]
@@ -77,31 +79,46 @@ impl Talk {
         self.print(&text)
     }
 
-    /// A bar that shows only on a terminal.
-    pub fn bar(&self) -> ProgressBar {
-        let bar = if self.quiet {
-            ProgressBar::hidden()
-        } else {
-            ProgressBar::new(0) // draws on stderr, and only where that is a terminal
+    /// A result: `data` for programs, `text` for people.
+    ///
+    /// # Errors
+    /// As [`Talk::print`].
+    pub fn result(&self, data: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
+        match self.json {
+            true => self.data(data),
+            false => self.print(&text()),
+        }
+    }
+
+    /// Writes a file whole, and says so.
+    ///
+    /// # Errors
+    /// As [`write_new`].
+    pub fn write(&self, file: &Path, text: &str, force: bool) -> Result<()> {
+        write_new(file, text, force)?;
+        self.say(&format!("wrote {}", file.display()));
+        Ok(())
+    }
+
+    /// A bar of `length` steps that shows only on a terminal, and no longer than it lives.
+    pub fn bar(&self, length: u64) -> ProgressBar {
+        let bar = match self.quiet {
+            true => ProgressBar::hidden(),
+            // Draws on stderr, and only where that is a terminal.
+            false => ProgressBar::new(length),
         };
         let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
         bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            .with_finish(ProgressFinish::AndClear)
     }
 
     /// An error with its remedy. Lines are not broken, so that `file:line:column` can be clicked
     /// and searched.
     pub fn error(&self, error: Error) {
-        let handler = miette::MietteHandlerOpts::new().wrap_lines(false).build();
-        let shown = Shown(&handler, &error);
-        let _ = write!(std::io::stderr(), "{shown}");
-    }
-}
-
-struct Shown<'a>(&'a miette::MietteHandler, &'a Error);
-
-impl std::fmt::Display for Shown<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        use miette::ReportHandler as _;
-        self.0.debug(self.1, f)
+        // Set once, and only here.
+        let _ = miette::set_hook(Box::new(|_| {
+            Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
+        }));
+        let _ = write!(std::io::stderr(), "{:?}", miette::Report::new(error));
     }
 }

@@ -12,8 +12,7 @@
 //! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
 //! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
-use super::talk::Talk;
-use super::{Outcome, input, page};
+use super::{ExitStatus, Talk, input, page};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::playback::{Scene, html};
@@ -22,7 +21,7 @@ use std::path::PathBuf;
 
 /// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ViewArgs {
     /// Model file: lengths to draw, columns of the log
     model: PathBuf,
     /// Logs to play
@@ -45,8 +44,8 @@ pub struct Args {
 }
 
 /// Reads, runs the models, writes the page.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    input::vacant(&args.output, args.force)?;
+pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
+    output::vacant(&args.output, args.force)?;
     let model = Model::load(&args.model)?;
     let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
     for file in &args.others {
@@ -70,13 +69,12 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     scene.add_overlay(&model, &read(&args.overlay, &model.log)?);
     let page = html(&scene, &talk.command)
         .map_err(|error| Error::file(&args.output, "write", error.into()))?;
-    output::write_new(&args.output, &page, args.force)?;
-    talk.say(&format!("wrote {}", args.output.display()));
+    talk.write(&args.output, &page, args.force)?;
     if talk.json {
         talk.data(&serde_json::json!({
             "page": args.output.to_string_lossy(),
             "motions": scene.motions.iter().map(|m| &m.name).collect::<Vec<_>>(),
         }))?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }

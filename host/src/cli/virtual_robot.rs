@@ -20,8 +20,7 @@
 //!
 //! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`, `robot`.
 
-use super::Outcome;
-use super::talk::Talk;
+use super::{ExitStatus, Talk};
 #[cfg(feature = "virtual-cm5")]
 use handstand::Error;
 use handstand::Result;
@@ -29,7 +28,7 @@ use std::path::PathBuf;
 
 /// Offer simulated servos to any program.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct VirtualArgs {
     /// Servos and faults: ids=1-18,delay=0,drop=0.01,dead=3,...
     #[arg(default_value = "")]
     words: String,
@@ -55,13 +54,13 @@ pub struct Args {
 
 /// Serves until told to stop.
 #[cfg(not(feature = "virtual-cm5"))]
-pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
+pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
     Err(super::simulated::absent())
 }
 
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", not(unix)))]
-pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
+pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
     Err(Error::usage(
         "this system has no pseudo terminals",
         "use --port sim with the command itself",
@@ -70,7 +69,7 @@ pub fn run(_: &Args, _: &Talk) -> Result<Outcome> {
 
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", unix))]
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &VirtualArgs, talk: &Talk) -> Result<ExitStatus> {
     use handstand::link::virtual_cm5::{StateLog, serve, set_up, spec_with_robot};
 
     let spec = spec_with_robot(&args.words, args.robot.as_deref())?;
@@ -90,22 +89,19 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         .as_deref()
         .map(|path| Alias::new(path, pty.name()))
         .transpose()?;
-    if talk.json {
-        talk.data(&serde_json::json!({
-            "port": pty.name(),
-            "ids": spec.ids,
-            "cm5": args.cm5,
-            "robot": spec.robot.as_ref().map(|robot| &robot.model),
-        }))?;
-    } else {
-        talk.print(pty.name())?;
-    }
+    let data = serde_json::json!({
+        "port": pty.name(),
+        "ids": spec.ids,
+        "cm5": args.cm5,
+        "robot": spec.robot.as_ref().map(|robot| &robot.model),
+    });
+    talk.result(&data, || pty.name().to_string())?;
     let speed = if args.cm5 { 57_600 } else { 1_000_000 };
     talk.say(&format!(
         "{} simulated servos at {speed} baud; Ctrl-C ends it",
         spec.ids.len(),
     ));
-    let bar = talk.bar();
+    let bar = talk.bar(0);
     serve(&mut device, &pty, |elapsed| {
         if let Some(state) = states.newest()? {
             bar.set_message(state);
@@ -113,9 +109,8 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         let is_over = args.seconds.is_some_and(|s| elapsed.as_secs_f64() > s);
         Ok(!interrupt.has_come() && !is_over)
     })?;
-    bar.finish_and_clear();
     drop(alias);
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 /// A symbolic link that goes with the port.

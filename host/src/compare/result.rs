@@ -1,6 +1,7 @@
 //! What a comparison found, as plain values for every writer.
 
 use super::closed_loop::ClosedLoopComparison;
+use crate::fitting::MotionWindow;
 use serde::Serialize;
 
 /// One model against a set of motions.
@@ -8,8 +9,10 @@ use serde::Serialize;
 pub struct Comparison {
     /// Name of the model's file.
     pub model: String,
-    /// Window length, s, where the plant can't run freely for a whole motion; absent in free run.
+    /// Longest windows asked for, s; absent where none were.
     pub horizon_s: Option<f64>,
+    /// How long the windows of each motion are: no longer than its start errors stay small.
+    pub windows: Vec<MotionWindow>,
     /// Per joint, all motions together.
     pub signals: Vec<SignalError>,
     /// How the error grows with the time the model runs without correction, all joints together.

@@ -4,7 +4,7 @@ use super::failure::failures;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
-use crate::fitting::{FitData, Horizon, fit_start_states, longest_stable};
+use crate::fitting::{FitData, Horizon, fit_start_states};
 use crate::log::Motion;
 use crate::model::Model;
 
@@ -26,9 +26,8 @@ pub fn compare(
     motions: &[Motion],
     horizon: Option<Horizon>,
 ) -> Comparison {
-    let whole = FitData::new(model, motions.to_vec(), Horizon::Whole);
-    let horizon = horizon.unwrap_or_else(|| longest_stable(model, &whole));
-    let data = whole.recut(horizon);
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let data = FitData::new(model, motions.to_vec(), horizon);
     let settled = fit_start_states(model, &data);
     let predicted = predicted(model, &data, &settled.nodes);
     let joints = 0..model.link_count();
@@ -41,6 +40,7 @@ pub fn compare(
     Comparison {
         model: name.to_string(),
         horizon_s: horizon.seconds(),
+        windows: data.motion_windows(horizon),
         horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
         failures: failures(model, &data.motions, &residuals, &signals),
         traces: traces(&data, &predicted),

@@ -2,6 +2,7 @@
 
 use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
+use crate::fitting::in_windows;
 use crate::output::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
@@ -113,15 +114,9 @@ fn table(comparisons: &[Comparison]) -> Table {
     let mut table = empty_table();
     let names = comparisons.iter().map(|c| c.model.clone());
     table.set_header(std::iter::once(String::new()).chain(names));
-    row(
-        &mut table,
-        comparisons,
-        "runs uncorrected for",
-        |c| match c.horizon_s {
-            None => "whole motions".to_string(),
-            Some(seconds) => format!("{} s", short(seconds)),
-        },
-    );
+    row(&mut table, comparisons, "runs uncorrected", |c| {
+        in_windows(&c.windows)
+    });
     let joints = comparisons.iter().map(|c| c.signals.len()).max();
     for joint in 0..joints.unwrap_or(0) {
         signal_rows(&mut table, comparisons, joint);

@@ -6,9 +6,10 @@
 //! first-order sigma-delta modulator, whose error lies at frequencies the robot's inertia swallows.
 
 use super::paper;
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
+use crate::synth::rows;
 
 /// Commands this much beyond the nominal zone pass every robot's own zone, which may differ by a
 /// fifth.
@@ -16,17 +17,17 @@ const SURELY: f64 = 1.21;
 
 /// The drive as a controller believes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Drive {
+pub(super) struct AssumedDrive {
     /// Least command that surely passes, N m; 0 without a dead zone.
     pub least_nm: f64,
     /// Largest torque, N m.
     pub limit_nm: f64,
 }
 
-impl Drive {
+impl AssumedDrive {
     /// From what is known.
     pub fn of(known: &DesignModel) -> Self {
-        Drive {
+        AssumedDrive {
             least_nm: SURELY * known.dead_zone_nm,
             limit_nm: known.limit_nm,
         }
@@ -58,7 +59,7 @@ impl Drive {
 #[derive(Debug)]
 struct Inverted<C> {
     inner: C,
-    drive: Drive,
+    drive: AssumedDrive,
     drives: usize,
 }
 
@@ -92,18 +93,19 @@ static INFO: ControllerInfo = ControllerInfo {
     law: "u = inverse(-K (x - x_balance))",
     speeds: Speeds::True,
     known_equilibrium: true,
-    reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996)",
+    reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor \
+                Nonlinearities (1996)",
 };
 
-impl Design for DeadZoneInverse {
+impl ControllerDesign for DeadZoneInverse {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }
 
     fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         Ok(Box::new(Inverted {
-            inner: StateFeedback::new(known.joints(), paper::rows(&paper::gain(known)?)),
-            drive: Drive::of(known),
+            inner: StateFeedback::new(known.joints(), rows(&paper::gain(known)?)),
+            drive: AssumedDrive::of(known),
             drives: known.drives(),
         }))
     }
@@ -113,7 +115,7 @@ impl Design for DeadZoneInverse {
 mod tests {
     use super::*;
 
-    const DRIVE: Drive = Drive {
+    const DRIVE: AssumedDrive = AssumedDrive {
         least_nm: 0.25,
         limit_nm: 2.0,
     };

@@ -53,9 +53,7 @@ impl DesignModel {
     /// A pose that is no equilibrium, or nothing driven.
     pub fn new(model: &Model, pose_rad: &[f64], period_s: f64) -> Result<DesignModel> {
         let model = bare_motors(model);
-        let driven: Vec<usize> = (0..model.link_count())
-            .filter(|&joint| model.joints[joint].drive.is_driven())
-            .collect();
+        let driven = model.driven_joints();
         let full_nm = |joint: usize| model.joints[joint].drive.motor().map(|m| m.stall_torque_nm);
         let linearised = linearise(&model, pose_rad)?;
         let mut plant = linearised.plant;

@@ -36,7 +36,7 @@ pub struct ControllerInfo {
 }
 
 /// A way to make a controller from what is known.
-pub trait Design: Sync + fmt::Debug {
+pub trait ControllerDesign: Sync + fmt::Debug {
     /// What it is.
     fn info(&self) -> &ControllerInfo;
 

@@ -5,11 +5,10 @@
 //! of all angles, or a washout of the offset, would have nothing to tell an offset from a fall: a
 //! plant with an odd number of unstable poles isn't stabilised through a stable washout.)
 
-use super::paper;
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement};
-use crate::synth::{Discrete, dlqr, zoh};
+use crate::synth::{Discrete, dlqr, rows, zoh};
 use nalgebra::DMatrix;
 
 /// Weight of a driven joint's integral, 1/(rad s)^2; the angles weigh 100.
@@ -28,7 +27,7 @@ static INFO: ControllerInfo = ControllerInfo {
     reference: "Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 4.5",
 };
 
-impl Design for Integral {
+impl ControllerDesign for Integral {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }
@@ -53,7 +52,7 @@ impl Design for Integral {
             q[(sum, sum)] = INTEGRAL_WEIGHT;
         }
         Ok(Box::new(Summing {
-            gains: paper::rows(&dlqr(&wide, &q, &r)?.k),
+            gains: rows(&dlqr(&wide, &q, &r)?.k),
             driven: known.driven.clone(),
             period_s: known.period_s,
             limit_nm: known.limit_nm,

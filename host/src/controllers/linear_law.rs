@@ -7,7 +7,7 @@ use super::DesignModel;
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{self, zoh};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, stack};
 
 /// Samples after which every controller's filter is stationary.
 const STATIONARY: usize = 1200;
@@ -33,59 +33,42 @@ impl LinearLaw {
         let step = |memory: &mut [f64], measured: &[f64]| {
             let (angle_rad, speed_rad_s) = measured.split_at(joints);
             let mut torque = vec![0.0; drives];
-            controller.control(
-                memory,
-                Measurement {
-                    angle_rad,
-                    speed_rad_s,
-                },
-                &mut torque,
-            );
+            let measured = Measurement {
+                angle_rad,
+                speed_rad_s,
+            };
+            controller.control(memory, measured, &mut torque);
             torque
         };
         let still = vec![0.0; 2 * joints];
         for _ in 0..STATIONARY {
             step(&mut rest, &still);
         }
-        let deviated = |place: Option<usize>, measured: &[f64]| {
+        // Change of memory and command, per unit of deviation.
+        let deviated = |memory: &mut [f64], measured: &[f64]| {
+            let torque = step(memory, measured);
+            let memory = memory.iter().zip(&rest).map(|(new, old)| new - old);
+            let change = memory.chain(torque).collect::<Vec<f64>>();
+            DVector::from_vec(change) / DEVIATION
+        };
+        let height = rest.len() + drives;
+        let mut from_memory = DMatrix::zeros(height, rest.len());
+        for place in 0..rest.len() {
             let mut memory = rest.clone();
-            if let Some(place) = place {
-                memory[place] += DEVIATION;
-            }
-            let torque = step(&mut memory, measured);
-            let memory = memory
-                .iter()
-                .zip(&rest)
-                .map(|(new, old)| (new - old) / DEVIATION);
-            (
-                memory.collect::<Vec<f64>>(),
-                torque.iter().map(|t| t / DEVIATION).collect::<Vec<f64>>(),
-            )
-        };
-        let from_memory: Vec<_> = (0..rest.len()).map(|i| deviated(Some(i), &still)).collect();
-        let from_seen: Vec<_> = (0..2 * joints)
-            .map(|i| {
-                let mut measured = still.clone();
-                measured[i] = DEVIATION;
-                deviated(None, &measured)
-            })
-            .collect();
-        let columns = |all: &[(Vec<f64>, Vec<f64>)], torque: bool| {
-            let height = if torque { drives } else { rest.len() };
-            let column = |one: &(Vec<f64>, Vec<f64>)| {
-                DVector::from_vec(if torque { one.1.clone() } else { one.0.clone() })
-            };
-            let mut matrix = DMatrix::zeros(height, all.len());
-            for (j, one) in all.iter().enumerate() {
-                matrix.set_column(j, &column(one));
-            }
-            matrix
-        };
+            memory[place] += DEVIATION;
+            from_memory.set_column(place, &deviated(&mut memory, &still));
+        }
+        let mut from_measured = DMatrix::zeros(height, 2 * joints);
+        for place in 0..2 * joints {
+            let mut measured = still.clone();
+            measured[place] = DEVIATION;
+            from_measured.set_column(place, &deviated(&mut rest.clone(), &measured));
+        }
         LinearLaw {
-            a: columns(&from_memory, false),
-            b: columns(&from_seen, false),
-            c: columns(&from_memory, true),
-            d: columns(&from_seen, true),
+            a: from_memory.rows(0, rest.len()).into_owned(),
+            b: from_measured.rows(0, rest.len()).into_owned(),
+            c: from_memory.rows(rest.len(), drives).into_owned(),
+            d: from_measured.rows(rest.len(), drives).into_owned(),
         }
     }
 
@@ -95,21 +78,9 @@ impl LinearLaw {
     /// Delays that the sampled plant cannot hold.
     pub fn spectral_radius(&self, model: &DesignModel, delay_s: f64) -> Result<f64> {
         let plant = zoh(&model.plant, model.period_s, delay_s)?;
-        let (n, memory, measured) = (plant.a.nrows(), self.a.nrows(), self.d.ncols());
-        let mut closed = DMatrix::zeros(n + memory, n + memory);
-        let mut c = DMatrix::zeros(measured, n);
-        c.view_mut((0, 0), (measured, measured))
-            .fill_with_identity();
-        closed
-            .view_mut((0, 0), (n, n))
-            .copy_from(&(&plant.a + &plant.b * &self.d * &c));
-        closed
-            .view_mut((0, n), (n, memory))
-            .copy_from(&(&plant.b * &self.c));
-        closed
-            .view_mut((n, 0), (memory, n))
-            .copy_from(&(&self.b * &c));
-        closed.view_mut((n, n), (memory, memory)).copy_from(&self.a);
+        let measured = DMatrix::identity(self.d.ncols(), plant.a.nrows());
+        let driven = &plant.a + &plant.b * &self.d * &measured;
+        let closed = stack![driven, &plant.b * &self.c; &self.b * &measured, self.a];
         Ok(synth::spectral_radius(&closed))
     }
 }

@@ -17,40 +17,43 @@ mod offset;
 mod on_board;
 mod paper;
 mod plant;
+mod reason;
 mod regulator;
 mod robust;
 mod servo;
 mod sliding;
 
 pub use design_model::DesignModel;
-pub use info::{ControllerInfo, Design, Speeds};
+pub use info::{ControllerDesign, ControllerInfo, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;
-pub use on_board::{OnBoard, Timing};
+pub use observed::ObservedDesign;
+pub use on_board::{BoardTiming, OnBoard};
+pub use reason::ControllerReason;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, Through};
 
 /// Every controller, plainest first.
-pub const DESIGNS: &[&dyn Design] = &[
+pub const DESIGNS: &[&dyn ControllerDesign] = &[
     &paper::PLAIN,
     &paper::DIFFERENCED,
     &paper::COMPENSATED,
     DEFAULT,
     &dead_zone::DeadZoneInverse,
     &integral::Integral,
-    &offset::OffsetObserver,
-    &lqg::Lqg,
-    &servo::ServoModel,
-    &sliding::PLAIN,
+    &offset::OFFSET_OBSERVER,
+    &lqg::LQG,
+    &servo::SERVO_MODEL,
+    &sliding::Sliding,
     &sliding::OBSERVED,
     &robust::Robust,
-    &best::Best,
+    &best::BEST,
 ];
 
 /// The controller of a study that names none.
-pub const DEFAULT: &dyn Design = &regulator::Regulator;
+pub const DEFAULT: &dyn ControllerDesign = &regulator::Regulator;
 
 /// The controller of this name.
-pub fn design(id: &str) -> Option<&'static dyn Design> {
+pub fn design(id: &str) -> Option<&'static dyn ControllerDesign> {
     DESIGNS.iter().copied().find(|d| d.info().id == id)
 }

@@ -5,14 +5,15 @@
 //! they stand still. Rounding to a step counts as noise of step / sqrt(12) (Widrow, Kollar,
 //! Quantization Noise (2008)).
 
-use super::DesignModel;
-use super::dead_zone::Drive;
-use super::plant::{Parts, plant};
+use super::dead_zone::AssumedDrive;
+use super::plant::{continuous, plant};
 use super::sliding::Surface;
-use crate::error::{Error, Result};
+use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
+use crate::error::Result;
+use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
-use crate::synth::{Discrete, Gains, dlqr};
-use nalgebra::DMatrix;
+use crate::synth::{Discrete, Gains, dlqr, rounding_variance, zoh};
+use nalgebra::{DMatrix, DVector};
 
 /// Samples after which the filter's gains stand still at the latest.
 const LONGEST_START: usize = 1000;
@@ -28,11 +29,17 @@ const START_RAD: f64 = 0.05;
 const START_RAD_S: f64 = 0.05;
 const START_OFFSET_RAD: f64 = 0.03;
 
+/// A controller with a Kalman filter. It reads all speeds if its speeds are the true ones, else the
+/// gyro's only.
+#[derive(Debug)]
+pub struct ObservedDesign {
+    pub(super) info: ControllerInfo,
+    pub(super) options: Options,
+}
+
 /// How the estimate is made and used.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Options {
-    /// Whether all true speeds are read; else the gyro's only.
-    pub true_speeds: bool,
     /// Whether the angles of balance are estimated.
     pub offsets: bool,
     /// Whether the delay is in the model.
@@ -51,111 +58,88 @@ pub(super) struct Options {
     pub speed_noise_rad_s: f64,
     /// Wander of the angles of balance in a sample, rad.
     pub offset_walk_rad: f64,
-    /// The law.
-    pub law: Law,
-}
-
-/// What becomes of the estimate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Law {
-    /// u = -K z.
-    Regulator,
-    /// Sliding mode with a boundary layer.
-    Sliding,
+    /// Whether the law is sliding mode with a boundary layer; else it is u = -K z.
+    pub sliding: bool,
 }
 
 impl Options {
-    /// A filter and the paper's weights; of the robot's troubles only resolution is thought of.
-    pub fn paper() -> Self {
-        Options {
-            true_speeds: false,
-            offsets: false,
-            delay: false,
-            servo: false,
-            inverse: false,
-            weights: [&[100.0], &[100.0]],
-            torque_noise_nm: 0.1,
-            speed_noise_rad_s: 1e-3,
-            offset_walk_rad: 2e-4,
-            law: Law::Regulator,
-        }
-    }
+    /// A filter and the paper's weights; of the robot's non-idealities only resolution is in it.
+    pub const PAPER: Options = Options {
+        offsets: false,
+        delay: false,
+        servo: false,
+        inverse: false,
+        weights: [&[100.0], &[100.0]],
+        torque_noise_nm: 0.1,
+        speed_noise_rad_s: 1e-3,
+        offset_walk_rad: 2e-4,
+        sliding: false,
+    };
 }
 
 /// The filter, the law on it, and the drives behind.
 #[derive(Debug)]
-pub(super) struct Observed {
+struct Observed {
     /// z(k+1) = A z + B u, by rows.
     a: Vec<f64>,
     b: Vec<f64>,
-    /// Place in z of each reading.
-    reads: Vec<usize>,
+    /// How many numbers of z are read, its first: the angles, then speeds.
+    readings: usize,
     /// Filter gains of sample 0, 1, ..; the last one stays. States x readings, by rows.
     filter: Vec<Vec<f64>>,
     law: Surface,
-    drive: Drive,
-    joints: usize,
+    drive: AssumedDrive,
     states: usize,
     drives: usize,
 }
 
-impl Observed {
-    /// Designs filter and law.
-    ///
-    /// # Errors
-    /// Plants that cannot be held, or not be observed.
-    pub fn new(known: &DesignModel, options: &Options) -> Result<Self> {
-        let parts = Parts {
-            offsets: options.offsets,
-            delay: options.delay,
-            servo: options.servo,
+impl ControllerDesign for ObservedDesign {
+    fn info(&self) -> &ControllerInfo {
+        &self.info
+    }
+
+    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
+        let options = &self.options;
+        let known = &DesignModel {
+            delay_s: if options.delay { known.delay_s } else { 0.0 },
+            servo: known.servo.filter(|_| options.servo),
+            ..known.clone()
         };
-        let believed = plant(known, parts)?;
+        let believed = plant(known, options.offsets)?;
         let joints = known.joints();
-        let readings = if options.true_speeds {
-            2 * joints
-        } else {
-            joints + 1
+        let readings = match self.info.speeds {
+            Speeds::True => 2 * joints,
+            _ => joints + 1,
         };
-        let reads: Vec<usize> = (0..readings).collect();
-        let mut drive = Drive::of(known);
+        let mut drive = AssumedDrive::of(known);
         if !options.inverse {
             drive.least_nm = 0.0;
         }
-        Ok(Observed {
-            a: rows(&believed.a),
-            b: rows(&believed.b),
-            filter: filter(known, options, &believed, &reads)?,
-            law: law(known, options, parts)?,
+        Ok(Box::new(Observed {
+            a: by_rows(&believed.a),
+            b: by_rows(&believed.b),
+            filter: filter(known, options, &believed, readings)?,
+            law: law(known, options)?,
             drive,
-            joints,
             states: believed.a.nrows(),
             drives: known.drives(),
-            reads,
-        })
+            readings,
+        }))
     }
 }
 
 /// The law on the state without offsets, spread over the whole state: the offsets act as the
 /// angles' negatives.
-fn law(known: &DesignModel, options: &Options, parts: Parts) -> Result<Surface> {
-    let without = plant(
-        known,
-        Parts {
-            offsets: false,
-            ..parts
-        },
-    )?;
+fn law(known: &DesignModel, options: &Options) -> Result<Surface> {
+    let without = plant(known, false)?;
     let gains = regulator(known, options, &without)?;
-    let joints = known.joints();
-    let surface = match options.law {
-        Law::Regulator => Surface::regulator(gains.k),
-        Law::Sliding => Surface::sliding(&without, &gains.riccati)?,
+    let surface = match options.sliding {
+        false => Surface::regulator(gains.k),
+        true => Surface::sliding(&without, &gains.riccati)?,
     };
-    Ok(if parts.offsets {
-        surface.with_offsets(joints)
-    } else {
-        surface
+    Ok(match options.offsets {
+        true => surface.with_offsets(known.joints()),
+        false => surface,
     })
 }
 
@@ -176,80 +160,78 @@ pub(super) fn regulator(
     Ok(dlqr(without, &q, &DMatrix::identity(m, m))?)
 }
 
+/// Covariance of what is not known of the `size` states, per sample; what comes behind angles,
+/// speeds and offsets is known.
+pub(super) fn process_noise(
+    known: &DesignModel,
+    options: &Options,
+    size: usize,
+) -> Result<DMatrix<f64>> {
+    let held = zoh(&continuous(known, options.offsets), known.period_s, 0.0)?;
+    let torque = &held.b * held.b.transpose() * options.torque_noise_nm.powi(2);
+    let mut process = torque.resize(size, size, 0.0);
+    let joints = known.joints();
+    for i in 0..joints {
+        // A whiff on each angle and speed keeps the filter from believing its model blindly.
+        process[(i, i)] += 1e-10;
+        process[(joints + i, joints + i)] += options.speed_noise_rad_s.powi(2);
+        if options.offsets {
+            process[(2 * joints + i, 2 * joints + i)] += options.offset_walk_rad.powi(2);
+        }
+    }
+    Ok(process)
+}
+
 /// The Kalman filter's gains from the first sample on.
 fn filter(
     known: &DesignModel,
     options: &Options,
     believed: &Discrete,
-    reads: &[usize],
+    readings: usize,
 ) -> Result<Vec<Vec<f64>>> {
     let (size, joints) = (believed.a.nrows(), known.joints());
-    let held = plant(
-        known,
-        Parts {
-            offsets: options.offsets,
-            delay: false,
-            servo: false,
-        },
-    )?;
-    let inner = held.a.nrows();
-    let mut process = DMatrix::zeros(size, size);
-    let torque = &held.b * held.b.transpose() * options.torque_noise_nm.powi(2);
-    process.view_mut((0, 0), (inner, inner)).copy_from(&torque);
+    let process = process_noise(known, options, size)?;
     let mut p = DMatrix::zeros(size, size);
     for i in 0..joints {
         p[(i, i)] = START_RAD.powi(2);
         p[(joints + i, joints + i)] = START_RAD_S.powi(2);
-        // A whiff on each angle and speed keeps the filter from believing its model blindly.
-        process[(i, i)] += 1e-10;
-        process[(joints + i, joints + i)] += options.speed_noise_rad_s.powi(2);
         if options.offsets {
             p[(2 * joints + i, 2 * joints + i)] = START_OFFSET_RAD.powi(2);
-            process[(2 * joints + i, 2 * joints + i)] = options.offset_walk_rad.powi(2);
         }
     }
-    let rounding = |step: f64, exact: f64| (step * step / 12.0).max(exact * exact);
-    let noise = reads.iter().map(|&place| match place {
+    let rounding = |step: f64, exact: f64| rounding_variance(step).max(exact * exact);
+    let noise = DVector::from_fn(readings, |place, _| match place {
         angle if angle < joints => rounding(known.position_step_rad, EXACT_RAD),
         gyro if gyro == joints => rounding(known.gyro_step_rad_s, EXACT_RAD_S),
         _ => EXACT_RAD_S.powi(2),
     });
-    let noise = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(reads.len(), noise));
+    let noise = DMatrix::from_diagonal(&noise);
     let mut gains: Vec<Vec<f64>> = Vec::new();
     for _ in 0..LONGEST_START {
-        let crossed = p.select_columns(reads);
-        let measured = crossed.select_rows(reads) + &noise;
-        let inverse = measured.cholesky().ok_or_else(unobserved)?;
+        let crossed = p.columns(0, readings).into_owned();
+        let measured = crossed.rows(0, readings) + &noise;
+        let inverse = measured.cholesky().ok_or(ControllerReason::Unobserved)?;
         let gain = inverse.solve(&crossed.transpose()).transpose();
         p -= &gain * crossed.transpose();
         p = &believed.a * &p * believed.a.transpose() + &process;
         p = (&p + p.transpose()) / 2.0;
-        let gain = rows(&gain);
-        let still = gains.last().is_some_and(|last| {
-            last.iter()
-                .zip(&gain)
-                .all(|(old, new)| (old - new).abs() <= 1e-7 * (1.0 + new.abs()))
-        });
+        let gain = by_rows(&gain);
+        let near = |(old, new): (&f64, &f64)| (old - new).abs() <= 1e-7 * (1.0 + new.abs());
+        let last = gains.last();
+        let still = last.is_some_and(|last| last.iter().zip(&gain).all(near));
         gains.push(gain);
         if still {
             break;
         }
     }
     if gains.iter().flatten().any(|gain| !gain.is_finite()) {
-        return Err(unobserved());
+        return Err(ControllerReason::Unobserved.into());
     }
     Ok(gains)
 }
 
-fn unobserved() -> Error {
-    Error::design(
-        "the readings do not tell the state",
-        "read finer, or sample faster",
-    )
-}
-
 /// A matrix row by row.
-pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<f64> {
+pub(super) fn by_rows(matrix: &DMatrix<f64>) -> Vec<f64> {
     matrix.transpose().as_slice().to_vec()
 }
 
@@ -266,15 +248,11 @@ impl Controller for Observed {
         let sample = (count[0] as usize).min(self.filter.len() - 1);
         count[0] = (sample + 1) as f64;
         let filter = &self.filter[sample];
-        let readings = self.reads.len();
         room.copy_from_slice(state);
-        for (reading, &place) in self.reads.iter().enumerate() {
-            let value = match place.checked_sub(self.joints) {
-                None => measured.angle_rad[place],
-                Some(joint) => measured.speed_rad_s[joint],
-            };
-            let innovation = value - state[place];
-            for (estimate, gains) in room.iter_mut().zip(filter.chunks_exact(readings)) {
+        let readings = measured.angle_rad.iter().chain(measured.speed_rad_s);
+        for (reading, value) in readings.take(self.readings).enumerate() {
+            let innovation = value - state[reading];
+            for (estimate, gains) in room.iter_mut().zip(filter.chunks_exact(self.readings)) {
                 *estimate += gains[reading] * innovation;
             }
         }
@@ -290,9 +268,4 @@ impl Controller for Observed {
             *next = dot(a, room) + dot(b, command_nm);
         }
     }
-}
-
-#[inline]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

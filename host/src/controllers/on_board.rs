@@ -12,21 +12,22 @@
 //! next        = A (s + L innovation) + B applied
 //! ```
 
-use super::observed::{Options, regulator};
-use super::plant::{Parts, continuous, plant};
-use super::{DesignModel, best};
-use crate::error::{Error, Result};
+use super::best::BEST;
+use super::observed::{Options, process_noise, regulator};
+use super::plant::{continuous, plant, with_offsets};
+use super::{ControllerReason, DesignModel};
+use crate::error::Result;
 use crate::sim::closed_loop::GYRO_STEP_RAD_S;
 use crate::synth::{Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
 use handstand_shared::raw::Position;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, stack};
 
 /// When things happen in a period, and how well the readings tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timing {
+pub struct BoardTiming {
     /// From the law's moment until its inputs act, s.
     pub effect_s: f64,
     /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
@@ -46,13 +47,13 @@ const EXACT_RAD: f64 = 1e-4;
 const POSITION_RAD: f64 = Position::LSB_RAD * 0.288_675_134_594_812_9;
 const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
 
-impl Timing {
+impl BoardTiming {
     /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the
     /// last answer; measured by `cargo xtask bench-firmware --only "age of readings"`. What is read
     /// first is oldest. The host says the first link's attitude every period, as it hears a report.
     /// Its rate counts no more than a gyro's of 10 deg/s: trusted more, what the linear model makes
     /// of one so old fells the robot from 2 deg.
-    pub const HOST_ATTITUDE: Timing = Timing {
+    pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
         effect_s: 0.8e-3,
         age_s: [8.7e-3, 4.1e-3, 1.8e-3, 8.7e-3],
         deviation: [EXACT_RAD, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
@@ -60,10 +61,10 @@ impl Timing {
 
     /// The same with a gyro on the CM-5, read at the law's moment; nothing tells the first link's
     /// angle.
-    pub const GYRO: Timing = Timing {
+    pub const GYRO: BoardTiming = BoardTiming {
         age_s: [0.0, 4.1e-3, 1.8e-3, 0.1e-3],
         deviation: [f64::INFINITY, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
-        ..Timing::HOST_ATTITUDE
+        ..BoardTiming::HOST_ATTITUDE
     };
 }
 
@@ -84,43 +85,34 @@ impl OnBoard {
     /// # Errors
     /// Robots of other than three joints, two of them driven; effects or readings later than three
     /// periods; plants that cannot be held or are not seen.
-    pub fn new(known: &DesignModel, timing: &Timing) -> Result<OnBoard> {
-        if (known.joints(), known.drives()) != (JOINTS, INPUTS) {
-            return Err(Error::design(
-                format!(
-                    "{} joints, {} of them driven",
-                    known.joints(),
-                    known.drives()
-                ),
-                "the CM-5 balances three joints of which two are driven",
-            ));
+    pub fn new(known: &DesignModel, timing: &BoardTiming) -> Result<OnBoard> {
+        let (joints, drives) = (known.joints(), known.drives());
+        if (joints, drives) != (JOINTS, INPUTS) {
+            return Err(ControllerReason::BoardSize { joints, drives }.into());
         }
-        let known = DesignModel {
+        let known = &DesignModel {
             delay_s: timing.effect_s,
+            servo: None,
             ..known.clone()
         };
-        let options = Options {
-            servo: false,
-            ..best::options()
-        };
-        let believed = widened(&known)?;
-        let seen = outputs(&known, timing)?;
-        let with_outputs = Discrete {
-            c: seen.clone(),
-            ..believed.clone()
+        let options = &BEST.options;
+        let predict = outputs(known, timing)?;
+        let believed = Discrete {
+            c: predict.clone(),
+            ..widened(known)?
         };
         let variance = timing.deviation.map(|sd| sd.min(NONE).powi(2));
         let filter = kalman(
-            &with_outputs,
-            &process(&known, &options)?,
+            &believed,
+            &process_noise(known, options, ESTIMATED + PAST)?,
             &DMatrix::from_diagonal(&variance.to_vec().into()),
         )?;
-        let gains = gains(&known, &options)?;
+        let gains = gains(known, options)?;
         let (a, b, l) = (&believed.a, &believed.b, &filter.gain);
         Ok(OnBoard {
-            feedback: -beside(&[&gains, &(&gains * l)]),
-            update: beside(&[a, &(a * l), b]).rows(0, ESTIMATED).into_owned(),
-            predict: seen,
+            feedback: -stack![gains, &gains * l],
+            update: stack![a, a * l, b].rows(0, ESTIMATED).into_owned(),
+            predict,
         })
     }
 
@@ -151,41 +143,30 @@ fn times(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
     products.iter().zip(vector).map(|(k, x)| k * x).sum()
 }
 
-const OFFSETS: Parts = Parts {
-    offsets: true,
-    delay: true,
-    servo: false,
-};
-
 /// The regulator's gains; offsets act as the angles' negatives.
 fn gains(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
-    let without = plant(
-        known,
-        Parts {
-            offsets: false,
-            ..OFFSETS
-        },
-    )?;
-    let narrow = regulator(known, options, &without)?.k;
-    let angles = -narrow.columns(0, JOINTS);
-    let mut gains = narrow.insert_columns(2 * JOINTS, JOINTS, 0.0);
-    gains.columns_mut(2 * JOINTS, JOINTS).copy_from(&angles);
-    Ok(gains.resize_horizontally(ESTIMATED + PAST, 0.0))
+    let narrow = regulator(known, options, &plant(known, false)?)?.k;
+    Ok(with_offsets(&narrow, JOINTS).resize_horizontally(ESTIMATED + PAST, 0.0))
 }
 
 /// The sampled plant with offsets and as many past inputs as the CM-5 keeps.
 fn widened(known: &DesignModel) -> Result<Discrete> {
-    let late = plant(known, OFFSETS)?;
+    let late = plant(known, true)?;
     if late.delayed_inputs > DELAYS {
-        return Err(too_late(known.delay_s));
+        let delay_s = known.delay_s;
+        return Err(ControllerReason::TooLate { delay_s }.into());
     }
     let size = ESTIMATED + PAST;
-    let (mut a, mut b) = (DMatrix::zeros(size, size), DMatrix::zeros(size, INPUTS));
-    let columns = late.a.ncols();
-    a.view_mut((0, 0), (ESTIMATED, columns))
-        .copy_from(&late.a.rows(0, ESTIMATED));
-    b.view_mut((0, 0), (ESTIMATED, INPUTS))
-        .copy_from(&late.b.rows(0, ESTIMATED));
+    let mut a = late
+        .a
+        .rows(0, ESTIMATED)
+        .into_owned()
+        .resize(size, size, 0.0);
+    let mut b = late
+        .b
+        .rows(0, ESTIMATED)
+        .into_owned()
+        .resize(size, INPUTS, 0.0);
     b.view_mut((ESTIMATED, 0), (INPUTS, INPUTS))
         .fill_with_identity();
     a.view_mut(
@@ -202,17 +183,8 @@ fn widened(known: &DesignModel) -> Result<Discrete> {
     })
 }
 
-fn too_late(delay_s: f64) -> Error {
-    Error::design(
-        format!("inputs or readings {:.1} ms late", 1e3 * delay_s),
-        format!(
-            "the CM-5 keeps the inputs of {DELAYS} periods: shorten the delay, or sample more slowly"
-        ),
-    )
-}
-
 /// What each reading tells of [x, offsets, past inputs], given its age.
-fn outputs(known: &DesignModel, timing: &Timing) -> Result<DMatrix<f64>> {
+fn outputs(known: &DesignModel, timing: &BoardTiming) -> Result<DMatrix<f64>> {
     let mut c = DMatrix::zeros(READINGS, ESTIMATED + PAST);
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
         let ago = ago(known, timing.effect_s, age_s)?;
@@ -226,14 +198,7 @@ fn outputs(known: &DesignModel, timing: &Timing) -> Result<DMatrix<f64>> {
 /// Input u(k - n) begins to act at `effect_s` - n periods. Backwards over a span h under one input,
 /// x(t - h) = e^{-Ah} (x(t) - S(h) B u).
 fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
-    let now = plant(
-        known,
-        Parts {
-            delay: false,
-            ..OFFSETS
-        },
-    )?;
-    let mut ago = DMatrix::identity(now.a.nrows(), ESTIMATED + PAST);
+    let mut ago = DMatrix::identity(ESTIMATED, ESTIMATED + PAST);
     let wide = continuous(known, true);
     let (mut at_s, mut past) = (0.0, 1_usize);
     while at_s > -age_s + 1e-9 {
@@ -241,51 +206,18 @@ fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
         let span_s = at_s - begins_s.max(-age_s);
         if span_s > 1e-9 {
             if past > DELAYS {
-                return Err(too_late(effect_s + age_s));
+                let delay_s = effect_s + age_s;
+                return Err(ControllerReason::TooLate { delay_s }.into());
             }
             let held = zoh(&wide, span_s, 0.0)?;
             let from = ESTIMATED + INPUTS * (past - 1);
             let mut columns = ago.columns_mut(from, INPUTS);
             columns -= &held.b;
-            ago = held.a.lu().solve(&ago).ok_or_else(|| {
-                Error::design("the plant cannot be followed back", "sample faster")
-            })?;
+            let before = held.a.lu().solve(&ago);
+            ago = before.ok_or(ControllerReason::Irreversible)?;
             at_s -= span_s;
         }
         past += 1;
     }
     Ok(ago)
-}
-
-/// Covariance of what is not known, per sample; past inputs are known.
-fn process(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
-    let held = plant(
-        known,
-        Parts {
-            delay: false,
-            ..OFFSETS
-        },
-    )?;
-    let mut process = DMatrix::zeros(ESTIMATED + PAST, ESTIMATED + PAST);
-    let torque = &held.b * held.b.transpose() * options.torque_noise_nm.powi(2);
-    process
-        .view_mut((0, 0), (ESTIMATED, ESTIMATED))
-        .copy_from(&torque);
-    for i in 0..JOINTS {
-        process[(i, i)] += 1e-10;
-        process[(JOINTS + i, JOINTS + i)] += options.speed_noise_rad_s.powi(2);
-        process[(2 * JOINTS + i, 2 * JOINTS + i)] += options.offset_walk_rad.powi(2);
-    }
-    Ok(process)
-}
-
-fn beside(parts: &[&DMatrix<f64>]) -> DMatrix<f64> {
-    let width = parts.iter().map(|part| part.ncols()).sum();
-    let mut all = DMatrix::zeros(parts[0].nrows(), width);
-    let mut at = 0;
-    for part in parts {
-        all.columns_mut(at, part.ncols()).copy_from(part);
-        at += part.ncols();
-    }
-    all
 }

@@ -1,9 +1,9 @@
 //! The paper's sampled regulator (Q = 100 I, R = I), with and without its angle compensation.
 
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
-use crate::synth::{dlqr, zoh};
+use crate::synth::{dlqr, rows, zoh};
 use nalgebra::DMatrix;
 
 /// One of the paper's set-ups.
@@ -42,7 +42,7 @@ pub const COMPENSATED: Paper = Paper(ControllerInfo {
     ..INFO
 });
 
-impl Design for Paper {
+impl ControllerDesign for Paper {
     fn info(&self) -> &ControllerInfo {
         &self.0
     }
@@ -52,6 +52,7 @@ impl Design for Paper {
         if self.0.speeds == Speeds::Differenced {
             return Ok(Box::new(Differencing {
                 inner,
+                joints: known.joints(),
                 driven: known.driven.clone(),
                 period_s: known.period_s,
             }));
@@ -66,18 +67,11 @@ pub(super) fn gain(known: &DesignModel) -> Result<DMatrix<f64>> {
     Ok(dlqr(&zoh(&known.plant, known.period_s, 0.0)?, &q, &r)?.k)
 }
 
-/// A matrix as its rows.
-pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix
-        .row_iter()
-        .map(|row| row.iter().copied().collect())
-        .collect()
-}
-
 /// The driven joints' speeds as differences of angles; the arms' is the gyro's.
 #[derive(Debug)]
 struct Differencing {
     inner: StateFeedback,
+    joints: usize,
     driven: Vec<usize>,
     period_s: f64,
 }
@@ -85,13 +79,12 @@ struct Differencing {
 impl Controller for Differencing {
     /// The angles before, whether there are any, and the speeds.
     fn memory_len(&self) -> usize {
-        self.inner.hold.len() + 1
+        2 * self.joints + 1
     }
 
     fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
-        let joints = measured.angle_rad.len();
-        let (before, rest) = memory.split_at_mut(joints);
-        let (speed_rad_s, started) = rest.split_at_mut(joints);
+        let (before, rest) = memory.split_at_mut(self.joints);
+        let (speed_rad_s, started) = rest.split_at_mut(self.joints);
         speed_rad_s.copy_from_slice(measured.speed_rad_s);
         for &joint in &self.driven {
             let moved = measured.angle_rad[joint] - before[joint];

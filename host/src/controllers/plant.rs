@@ -6,24 +6,12 @@ use crate::error::Result;
 use crate::synth::{Continuous, Discrete, zoh};
 use nalgebra::DMatrix;
 
-/// What of the robot is in the model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Parts {
-    /// Unknown angles of balance, constant: eccentric masses shift the equilibrium, x' = A (x - [e,
-    /// 0]) + B u.
-    pub offsets: bool,
-    /// The inputs' delay.
-    pub delay: bool,
-    /// The servos.
-    pub servo: bool,
-}
-
-/// z(k+1) = A z + B u with z = [angles, speeds, offsets, past inputs, servos].
-pub(super) fn plant(known: &DesignModel, parts: Parts) -> Result<Discrete> {
-    let continuous = continuous(known, parts.offsets);
-    let delay_s = if parts.delay { known.delay_s } else { 0.0 };
-    let sampled = zoh(&continuous, known.period_s, delay_s)?;
-    Ok(match known.servo.filter(|_| parts.servo) {
+/// z(k+1) = A z + B u with z = [angles, speeds, offsets, past inputs, servos], of the delay and the
+/// servos that are known. The offsets, if they are wanted, are unknown angles of balance, constant:
+/// eccentric masses shift the equilibrium, x' = A (x - [e, 0]) + B u.
+pub(super) fn plant(known: &DesignModel, offsets: bool) -> Result<Discrete> {
+    let sampled = zoh(&continuous(known, offsets), known.period_s, known.delay_s)?;
+    Ok(match known.servo {
         Some(servo) => behind(&sampled, servo),
         None => sampled,
     })
@@ -34,30 +22,39 @@ pub(super) fn continuous(known: &DesignModel, offsets: bool) -> Continuous {
     let Continuous { a, b, .. } = &known.plant;
     let (n, m, joints) = (a.nrows(), b.ncols(), known.joints());
     let all = if offsets { n + joints } else { n };
-    let (mut wide, mut drive) = (DMatrix::zeros(all, all), DMatrix::zeros(all, m));
-    wide.view_mut((0, 0), (n, n)).copy_from(a);
-    drive.view_mut((0, 0), (n, m)).copy_from(b);
+    let mut wide = a.clone().resize(all, all, 0.0);
     if offsets {
-        wide.view_mut((0, n), (n, joints))
-            .copy_from(&-a.columns(0, joints));
+        let angles = -a.columns(0, joints);
+        wide.view_mut((0, n), (n, joints)).copy_from(&angles);
     }
     Continuous {
         a: wide,
-        b: drive,
+        b: b.clone().resize(all, m, 0.0),
         c: DMatrix::identity(all, all),
     }
+}
+
+/// Gains on [angles, speeds, ..] as gains on [angles, speeds, offsets, ..]: offsets act as the
+/// angles' negatives.
+pub(super) fn with_offsets(gains: &DMatrix<f64>, joints: usize) -> DMatrix<f64> {
+    let mut wide = gains.clone().insert_columns(2 * joints, joints, 0.0);
+    let angles = -gains.columns(0, joints);
+    wide.columns_mut(2 * joints, joints).copy_from(&angles);
+    wide
 }
 
 /// The plant with a servo before each input; their states come last.
 fn behind(plant: &Discrete, servo: ServoLag) -> Discrete {
     let (n, m) = plant.b.shape();
     let all = n + 2 * m;
-    let (mut a, mut b) = (DMatrix::zeros(all, all), DMatrix::zeros(all, m));
-    a.view_mut((0, 0), (n, n)).copy_from(&plant.a);
+    let (mut a, mut b) = (
+        plant.a.clone().resize(all, all, 0.0),
+        DMatrix::zeros(all, m),
+    );
     for drive in 0..m {
         let at = n + 2 * drive;
-        a.view_mut((0, at), (n, 1))
-            .copy_from(&plant.b.column(drive));
+        let mut torque = a.view_mut((0, at), (n, 1));
+        torque.copy_from(&plant.b.column(drive));
         a[(at, at)] = -servo.a[0];
         a[(at, at + 1)] = 1.0;
         a[(at + 1, at)] = -servo.a[1];
@@ -67,7 +64,6 @@ fn behind(plant: &Discrete, servo: ServoLag) -> Discrete {
         a,
         b,
         c: plant.c.clone().resize(plant.c.nrows(), all, 0.0),
-        ts_s: plant.ts_s,
-        delayed_inputs: plant.delayed_inputs,
+        ..*plant
     }
 }

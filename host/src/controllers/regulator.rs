@@ -1,10 +1,10 @@
 //! The sampled regulator with the delay in its model, in floating or fixed point.
 
-use super::{ControllerInfo, Design, DesignModel, Speeds, paper};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::state_feedback::remember;
 use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
-use crate::synth::{FixedLaw, Format, Ranges, dlqr, quantise, zoh};
+use crate::synth::{FixedLaw, Format, Ranges, dlqr, quantise, rows, zoh};
 use nalgebra::DMatrix;
 
 /// DLQR on angles, speeds and past torques.
@@ -27,7 +27,7 @@ const SPEED_RANGE_RAD_S: f64 = 20.0;
 /// Torque that they hold where the drives have no limit, N m.
 const TORQUE_RANGE_NM: f64 = 8.0;
 
-impl Design for Regulator {
+impl ControllerDesign for Regulator {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }
@@ -36,7 +36,7 @@ impl Design for Regulator {
         let (q, r) = model.weights();
         let k = dlqr(&zoh(&model.plant, model.period_s, model.delay_s)?, &q, &r)?.k;
         if model.word_bits == 0 {
-            let law = StateFeedback::new(model.joints(), paper::rows(&k));
+            let law = StateFeedback::new(model.joints(), rows(&k));
             return Ok(Box::new(law));
         }
         Ok(Box::new(FixedPoint::new(model, &k)?))

@@ -1,10 +1,9 @@
 //! One gain for robots whose masses are not the model's.
 
-use super::paper;
-use super::{ControllerInfo, Design, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{Controller, StateFeedback};
-use crate::synth::{Discrete, multi_model_continuation, zoh};
+use crate::synth::{Discrete, multi_model_continuation, rows, zoh};
 use nalgebra::DMatrix;
 
 /// Mass error the gain is designed for: a little more than the 10 % it is judged with.
@@ -90,7 +89,7 @@ impl MultiModel {
     }
 }
 
-impl Design for Robust {
+impl ControllerDesign for Robust {
     fn info(&self) -> &ControllerInfo {
         &INFO
     }
@@ -102,9 +101,6 @@ impl Design for Robust {
             weight: WEIGHT,
         };
         let k = design.gain(known)?;
-        Ok(Box::new(StateFeedback::new(
-            known.joints(),
-            paper::rows(&k),
-        )))
+        Ok(Box::new(StateFeedback::new(known.joints(), rows(&k))))
     }
 }

@@ -1,8 +1,7 @@
 //! The servo between command and torque, and the regulator that has it in its model.
 
-use super::observed::{Observed, Options};
-use super::{ControllerInfo, Design, DesignModel, Speeds};
-use crate::error::Result;
+use super::observed::{ObservedDesign, Options};
+use super::{ControllerInfo, Speeds};
 use crate::sim::closed_loop::{Controller, Measurement};
 
 /// A servo's answer to a command, sampled: y(k) = sum b_i u(k-i) - sum a_i y(k-i), of gain 1 at
@@ -70,30 +69,19 @@ impl Controller for Through<'_> {
 }
 
 /// The regulator with servo, delay and offsets in its model.
-#[derive(Debug)]
-pub struct ServoModel;
-
-static INFO: ControllerInfo = ControllerInfo {
-    id: "servo-model",
-    title: "LQG with the servo in its model",
-    law: "u = -K [x, servo, past u], all estimated",
-    speeds: Speeds::Estimated,
-    known_equilibrium: false,
-    reference: "the paper, equation 2 and section V (future work)",
+pub const SERVO_MODEL: ObservedDesign = ObservedDesign {
+    info: ControllerInfo {
+        id: "servo-model",
+        title: "LQG with the servo in its model",
+        law: "u = -K [x, servo, past u], all estimated",
+        speeds: Speeds::Estimated,
+        known_equilibrium: false,
+        reference: "the paper, equation 2 and section V (future work)",
+    },
+    options: Options {
+        offsets: true,
+        delay: true,
+        servo: true,
+        ..Options::PAPER
+    },
 };
-
-impl Design for ServoModel {
-    fn info(&self) -> &ControllerInfo {
-        &INFO
-    }
-
-    fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
-        let options = Options {
-            offsets: true,
-            delay: true,
-            servo: true,
-            ..Options::paper()
-        };
-        Ok(Box::new(Observed::new(known, &options)?))
-    }
-}

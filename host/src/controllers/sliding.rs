@@ -1,14 +1,17 @@
 //! Sliding mode with a boundary layer, sampled.
 //!
-//! The surface is s = D B'P z = 0 with P the regulator's Riccati matrix and D = (B'PB)^-1, so that s counts in N m.
-//! On it the plant's remaining modes are stable. The law reaches it as
+//! The surface is s = D B'P z = 0 with P the regulator's Riccati matrix and D = (B'PB)^-1, so that
+//! s counts in N m. On it the plant's remaining modes are stable. The law reaches it as
 //! s(k+1) = (1 - q) s(k) - e sat(s(k) / width): u = -(D B'P A z - (1 - q) s) - e sat(s / width)
-//! (Gao, Wang, Homaifa, IEEE Trans. Industrial Electronics 42 (1995) 117, with the sign smoothed to a boundary layer
-//! after Slotine, Li, Applied Nonlinear Control (1991), section 7.2).
+//! (Gao, Wang, Homaifa, IEEE Trans. Industrial Electronics 42 (1995) 117, with the sign smoothed to
+//! a boundary layer after Slotine, Li, Applied Nonlinear Control (1991), section 7.2).
 
-use super::observed::{Law, Observed, Options, dot, rows};
-use super::{ControllerInfo, Design, DesignModel, Speeds};
-use crate::error::{Error, Result};
+use super::best::BEST;
+use super::observed::{ObservedDesign, Options, by_rows};
+use super::plant::with_offsets;
+use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
+use crate::error::Result;
+use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
 use nalgebra::DMatrix;
@@ -46,12 +49,8 @@ impl Surface {
     /// Inputs that do not reach the surface.
     pub fn sliding(plant: &Discrete, riccati: &DMatrix<f64>) -> Result<Self> {
         let bp = plant.b.transpose() * riccati;
-        let reach = (&bp * &plant.b).try_inverse().ok_or_else(|| {
-            Error::design(
-                "the inputs do not reach the sliding surface",
-                "drive other joints",
-            )
-        })?;
+        let reach = (&bp * &plant.b).try_inverse();
+        let reach = reach.ok_or(ControllerReason::SlidingSurface)?;
         let s = reach * bp;
         let k = &s * &plant.a - (1.0 - REACHING) * &s;
         Ok(Surface::new(k, Some(s)))
@@ -60,19 +59,14 @@ impl Surface {
     /// The same law on [angles, speeds, offsets, rest]: offsets act as the angles' negatives.
     #[must_use]
     pub fn with_offsets(self, joints: usize) -> Self {
-        let spread = |matrix: &DMatrix<f64>| {
-            let mut wide = matrix.clone().insert_columns(2 * joints, joints, 0.0);
-            let angles = -matrix.columns(0, joints);
-            wide.columns_mut(2 * joints, joints).copy_from(&angles);
-            wide
-        };
+        let spread = |matrix: &DMatrix<f64>| with_offsets(matrix, joints);
         Surface::new(spread(&self.k), self.s.as_ref().map(spread))
     }
 
     fn new(k: DMatrix<f64>, s: Option<DMatrix<f64>>) -> Self {
         Surface {
-            k_rows: rows(&k),
-            s_rows: s.as_ref().map(rows).unwrap_or_default(),
+            k_rows: by_rows(&k),
+            s_rows: s.as_ref().map(by_rows).unwrap_or_default(),
             k,
             s,
         }
@@ -96,43 +90,44 @@ impl Surface {
     }
 }
 
-/// Sliding mode on the true state, or on the estimated one.
+/// Sliding mode on angles and true speeds, given the equilibrium.
 #[derive(Debug)]
-pub struct Sliding(ControllerInfo);
+pub struct Sliding;
 
-/// On angles and true speeds, told where it balances.
-pub const PLAIN: Sliding = Sliding(ControllerInfo {
+static INFO: ControllerInfo = ControllerInfo {
     id: "sliding",
     title: "sliding mode with boundary layer",
     law: "u = -K x - e sat(S x / width)",
     speeds: Speeds::True,
     known_equilibrium: true,
-    reference: "Gao, Wang, Homaifa (1995); Slotine, Li (1991); the paper, section V (future work)",
-});
+    reference: REFERENCE,
+};
+
+const REFERENCE: &str =
+    "Gao, Wang, Homaifa (1995); Slotine, Li (1991); the paper, section V (future work)";
 
 /// On the estimate, with offsets, delay and dead-zone inverse.
-pub const OBSERVED: Sliding = Sliding(ControllerInfo {
-    id: "sliding-observed",
-    title: "sliding mode on the estimate",
-    law: "u = inverse(-K z - e sat(S z / width))",
-    speeds: Speeds::Estimated,
-    known_equilibrium: false,
-    ..PLAIN.0
-});
+pub const OBSERVED: ObservedDesign = ObservedDesign {
+    info: ControllerInfo {
+        id: "sliding-observed",
+        title: "sliding mode on the estimate",
+        law: "u = inverse(-K z - e sat(S z / width))",
+        speeds: Speeds::Estimated,
+        known_equilibrium: false,
+        reference: REFERENCE,
+    },
+    options: Options {
+        sliding: true,
+        ..BEST.options
+    },
+};
 
-impl Design for Sliding {
+impl ControllerDesign for Sliding {
     fn info(&self) -> &ControllerInfo {
-        &self.0
+        &INFO
     }
 
     fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
-        if self.0.speeds == Speeds::Estimated {
-            let options = Options {
-                law: Law::Sliding,
-                ..super::best::options()
-            };
-            return Ok(Box::new(Observed::new(known, &options)?));
-        }
         let plant = zoh(&known.plant, known.period_s, 0.0)?;
         let (q, r) = known.weights();
         let surface = Surface::sliding(&plant, &dlqr(&plant, &q, &r)?.riccati)?;

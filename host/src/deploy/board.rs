@@ -110,7 +110,8 @@ impl Board {
             Some(back) if back == plan => Ok(plan),
             _ => Err(Error::design(
                 "the firmware would refuse this plan",
-                "check the servos' ids, centres, dead zone, range and speed; the slew limit must exceed the dead zone",
+                "check the servos' ids, centres, dead zone, range and speed; the slew limit must \
+                 exceed the dead zone",
             )),
         }
     }
@@ -131,7 +132,8 @@ impl Board {
         if !(1.0..=65_535.0).contains(&gain) {
             return Err(Error::design(
                 format!(
-                    "a torque step of {input_step_nm} N m and a full torque of {} N m make {gain} / 65536 codes a step",
+                    "a torque step of {input_step_nm} N m and a full torque of {} N m make {gain} \
+                     / 65536 codes a step",
                     self.full_nm
                 ),
                 "that has to be 1 to 65535: give another step or another full torque",

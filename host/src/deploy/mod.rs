@@ -18,7 +18,7 @@ pub use rust_file::plan_file;
 pub use state::state_design;
 pub use transfer::{upload, verify};
 
-use crate::controllers::{DesignModel, OnBoard, Timing};
+use crate::controllers::{BoardTiming, DesignModel, OnBoard};
 use crate::error::Result;
 use crate::model::Model;
 use crate::synth::{Design, upright};
@@ -38,7 +38,7 @@ pub enum BoardLaw<'a> {
 ///
 /// # Errors
 /// Absolute angles; as [`OnBoard::new`].
-pub fn observer_design(model: &Model, board: &Board, timing: &Timing) -> Result<OnBoard> {
+pub fn observer_design(model: &Model, board: &Board, timing: &BoardTiming) -> Result<OnBoard> {
     state::relative(model)?;
     let known = DesignModel {
         limit_nm: board.most_nm,

@@ -124,7 +124,8 @@ fn table(law: &FixedLaw) -> Result<GainTable<INPUTS, STATES>> {
     GainTable::from_bytes(&law.bytes()).ok_or_else(|| {
         Error::design(
             format!(
-                "the firmware's law has {INPUTS} inputs and {STATES} states; this one has {} and {}",
+                "the firmware's law has {INPUTS} inputs and {STATES} states; this one has {} \
+                 and {}",
                 law.k.nrows(),
                 law.k.ncols()
             ),

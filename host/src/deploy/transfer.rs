@@ -88,7 +88,8 @@ pub fn verify<L: SerialLink>(
                 "the CM-5 says its gains are {:08X}, not {fingerprint:08X}",
                 session.hello.plan
             ),
-            "its firmware does not take this plan: flash the firmware that belongs to this program, docs/flash.md",
+            "its firmware does not take this plan: flash the firmware that belongs to this \
+             program, docs/flash.md",
         )),
     }
 }

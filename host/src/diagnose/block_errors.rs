@@ -8,12 +8,20 @@ use rand_chacha::ChaCha8Rng;
 /// Weighted squared errors of one fit, block by block.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlockErrors {
-    /// Sum of squared weighted residuals per block.
-    pub sums: Vec<f64>,
-    /// Residuals per block.
-    pub counts: Vec<usize>,
+    /// In order of motions and time.
+    blocks: Vec<Block>,
     /// Per motion: sum of squared residuals, rad^2, and their number.
     pub motions: Vec<(f64, usize)>,
+}
+
+/// A stretch of a motion.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    motion: usize,
+    /// Sum of squared weighted residuals.
+    sum: f64,
+    /// Residuals.
+    count: usize,
 }
 
 /// Longest block, s: longer than residuals stay correlated on a servo arm.
@@ -52,8 +60,11 @@ impl BlockErrors {
                     }
                 }
                 total.1 += (end - begin) * joints;
-                errors.sums.push(sum);
-                errors.counts.push((end - begin) * joints);
+                errors.blocks.push(Block {
+                    motion: window.motion,
+                    sum,
+                    count: (end - begin) * joints,
+                });
                 begin = end;
             }
         }
@@ -63,20 +74,33 @@ impl BlockErrors {
     /// Appends the blocks of other motions.
     pub fn extend<'a>(&mut self, others: impl IntoIterator<Item = &'a BlockErrors>) {
         for other in others {
-            self.sums.extend(&other.sums);
-            self.counts.extend(&other.counts);
+            let before = self.motions.len();
+            self.blocks.extend(other.blocks.iter().map(|block| Block {
+                motion: before + block.motion,
+                ..*block
+            }));
             self.motions.extend(&other.motions);
         }
     }
 
+    /// Sum of squared weighted residuals.
+    pub fn sum(&self) -> f64 {
+        self.blocks.iter().map(|block| block.sum).sum()
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
     /// Number of residuals.
     pub fn count(&self) -> usize {
-        self.counts.iter().sum()
+        self.blocks.iter().map(|block| block.count).sum()
     }
 
     /// Mean squared weighted residual; 1 is the noise.
     pub fn mean(&self) -> f64 {
-        self.sums.iter().sum::<f64>() / self.count().max(1) as f64
+        self.sum() / self.count().max(1) as f64
     }
 
     /// Root-mean-square error of all motions, rad.
@@ -92,43 +116,160 @@ impl BlockErrors {
     }
 }
 
-/// 95 % interval of a statistic of paired blocks by bootstrap: `statistic` gets the two sums of a
-/// resample.
+/// What a motion's blocks sum to in two fits, and their residuals.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct PairedSums {
+    pub before: f64,
+    pub after: f64,
+    pub count: f64,
+}
+
+impl PairedSums {
+    /// Gain of log-likelihood of residuals whose noise is this motion's own, one factor before and
+    /// one after. Counted in residuals, of which neighbours are alike: good to weigh motions against
+    /// each other, not as a number by itself.
+    fn gain(&self) -> f64 {
+        // No fit is better than the noise.
+        let mean = |sum: f64| (sum / self.count.max(1.0)).max(LEAST_MEAN);
+        0.5 * self.count * (mean(self.before) / mean(self.after)).ln()
+    }
+}
+
+/// Mean squared weighted residuals below this are noise that happened to be small.
+const LEAST_MEAN: f64 = 0.5;
+
+/// 95 % interval of a statistic of paired blocks by bootstrap, blocks resampled within their motion:
+/// motions differ in how large and how variable their errors are.
 pub(super) fn bootstrap(
-    a: &BlockErrors,
-    b: &BlockErrors,
+    before: &BlockErrors,
+    after: &BlockErrors,
     seed: u64,
-    statistic: impl Fn(f64, f64) -> f64,
+    statistic: impl Fn(&[PairedSums]) -> f64,
 ) -> [f64; 2] {
-    let blocks = a.sums.len();
-    if blocks == 0 {
+    let strata = strata(before, after);
+    if strata.is_empty() {
         return [f64::NEG_INFINITY, f64::INFINITY];
     }
     let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut drawn = |blocks: &Vec<PairedSums>| {
+        let draws = (0..blocks.len()).map(|_| blocks[random.random_range(0..blocks.len())]);
+        total(draws)
+    };
     let mut values: Vec<f64> = (0..RESAMPLES)
         .map(|_| {
-            let (mut sum_a, mut sum_b) = (0.0, 0.0);
-            for _ in 0..blocks {
-                let k = random.random_range(0..blocks);
-                sum_a += a.sums[k];
-                sum_b += b.sums[k];
-            }
-            statistic(sum_a, sum_b)
+            let sums: Vec<PairedSums> = strata.iter().map(&mut drawn).collect();
+            statistic(&sums)
         })
         .collect();
     values.sort_by(f64::total_cmp);
     [RESAMPLES / 40, RESAMPLES - 1 - RESAMPLES / 40].map(|k| values[k])
 }
 
+/// The paired blocks of each motion that has any.
+fn strata(before: &BlockErrors, after: &BlockErrors) -> Vec<Vec<PairedSums>> {
+    let mut strata = vec![Vec::new(); before.motions.len()];
+    for (before, after) in before.blocks.iter().zip(&after.blocks) {
+        strata[before.motion].push(PairedSums {
+            before: before.sum,
+            after: after.sum,
+            count: before.count as f64,
+        });
+    }
+    strata.retain(|blocks| !blocks.is_empty());
+    strata
+}
+
+fn total(sums: impl Iterator<Item = PairedSums>) -> PairedSums {
+    sums.fold(PairedSums::default(), |sum, block| PairedSums {
+        before: sum.before + block.before,
+        after: sum.after + block.after,
+        count: sum.count + block.count,
+    })
+}
+
+/// Per motion: what its blocks sum to in both fits.
+pub(super) fn paired(before: &BlockErrors, after: &BlockErrors) -> Vec<PairedSums> {
+    let strata = strata(before, after);
+    strata
+        .into_iter()
+        .map(|blocks| total(blocks.into_iter()))
+        .collect()
+}
+
+/// Log-likelihood gained from `before` to `after`, summed over motions, each with its own noise: a
+/// motion where nothing changes adds nothing, however large its errors.
+pub(super) fn gain(motions: &[PairedSums]) -> f64 {
+    motions.iter().map(PairedSums::gain).sum()
+}
+
+/// Largest relative reduction of the root-mean-square error among motions.
+pub(super) fn largest_reduction(motions: &[PairedSums]) -> f64 {
+    let reduction = |m: &PairedSums| 1.0 - (m.after / m.before.max(1e-300)).sqrt();
+    motions
+        .iter()
+        .map(reduction)
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// 95 % interval of the relative reduction of the root-mean-square error from `before` to `after`.
 pub(super) fn reduction(before: &BlockErrors, after: &BlockErrors, seed: u64) -> [f64; 2] {
-    bootstrap(before, after, seed, |before, after| {
-        1.0 - (after / before.max(1e-300)).sqrt()
+    bootstrap(before, after, seed, |motions| {
+        let all = total(motions.iter().copied());
+        1.0 - (all.after / all.before.max(1e-300)).sqrt()
     })
 }
 
 /// Whether `worse` is significantly worse than `better`: the lower 95 % limit of the difference is
 /// above zero.
 pub(super) fn significantly_worse(worse: &BlockErrors, better: &BlockErrors, seed: u64) -> bool {
-    bootstrap(worse, better, seed, |worse, better| worse - better)[0] > 0.0
+    bootstrap(worse, better, seed, gain)[0] > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One motion for each list of sums; each block has ten residuals.
+    fn errors(motions: &[&[f64]]) -> BlockErrors {
+        let mut errors = BlockErrors {
+            motions: vec![(0.0, 0); motions.len()],
+            ..BlockErrors::default()
+        };
+        for (motion, sums) in motions.iter().enumerate() {
+            let blocks = sums.iter().map(|sum| Block {
+                motion,
+                sum: *sum,
+                count: 10,
+            });
+            errors.blocks.extend(blocks);
+        }
+        errors
+    }
+
+    #[test]
+    fn a_motion_with_large_errors_does_not_swamp_another() {
+        let wild: Vec<f64> = (0..20).map(|k| 1e6 * f64::from(1 + k % 7)).collect();
+        let (calm, calmer) = (vec![100.0; 20], vec![20.0; 20]);
+        let before = errors(&[&wild, &calm]);
+        let after = errors(&[&wild, &calmer]);
+        assert!(significantly_worse(&before, &after, 1));
+        let alone = gain(&paired(&errors(&[&calm]), &errors(&[&calmer])));
+        assert!((gain(&paired(&before, &after)) - alone).abs() < 1e-9);
+    }
+
+    #[test]
+    fn blocks_are_resampled_within_their_motion() {
+        // Each motion gains the same in all of its blocks: nothing is left to chance.
+        let before = errors(&[&[1000.0; 8], &[40.0; 8]]);
+        let after = errors(&[&[500.0; 8], &[30.0; 8]]);
+        let [low, high] = bootstrap(&before, &after, 1, gain);
+        assert!((high - low).abs() < 1e-9, "{low} {high}");
+    }
+
+    #[test]
+    fn what_is_gained_in_some_blocks_and_lost_in_others_is_not_significant() {
+        let before = errors(&[&[100.0, 50.0, 100.0, 50.0, 100.0, 50.0, 100.0, 50.0]]);
+        let after = errors(&[&[50.0, 100.0, 50.0, 100.0, 50.0, 100.0, 50.0, 99.0]]);
+        assert!(!significantly_worse(&before, &after, 1));
+    }
 }

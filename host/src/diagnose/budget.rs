@@ -4,6 +4,8 @@
 pub(super) const LOOK: usize = 4;
 /// Iterations of a finalist.
 pub(super) const FINISH: usize = 25;
+/// Iterations over the evaluation horizon, from what the windows found.
+pub(super) const EVALUATE: usize = 12;
 /// Finalists of each size.
 pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.

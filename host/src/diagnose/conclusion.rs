@@ -2,11 +2,12 @@
 
 use super::block_errors::{BlockErrors, reduction};
 use super::evaluator::Evaluator;
-use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut};
+use super::explanation::{Evidence, Explanation};
+use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
-use super::verdict::Evidence;
+use super::values::{compared, contradicted};
 use super::words;
-use crate::fitting::{ErrorReduction, FitData, FittedValue, fitted_values};
+use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
 use crate::output::number::percent;
 
 /// Correlation from which two values are hardly told apart.
@@ -30,32 +31,57 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
     let mut diagnosis = Diagnosis {
         verdict: evidence.verdict(&rivals),
         effects: effects(chosen, added),
+        wrong_values: wrong_values(evidence, base),
         error: error(evidence),
         alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
         base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
         motions: motions(evidence),
+        folds: evidence.folds.clone(),
         collinear,
         summary: Vec::new(),
         next: Vec::new(),
         warnings: warnings(evidence, correlation.is_some()),
         horizon_s: evaluator.horizon.seconds(),
+        windows: windows(evaluator),
     };
     words::complete(&mut diagnosis);
     diagnosis
 }
 
 fn error(evidence: &Evidence) -> ErrorReduction {
-    let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
-    let blocks = base.deciding().zip(chosen.deciding());
+    let (given, chosen) = (&evidence.evaluator.given, evidence.chosen());
+    let blocks = given.deciding().zip(chosen.deciding());
     ErrorReduction {
-        before_rad: base.deciding_rms_rad(),
+        before_rad: given.deciding_rms_rad(),
+        refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),
         floor_rad: evidence.evaluator.training.floor_rad(),
         held_out: evidence.evaluator.held_out.is_some(),
         reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
     }
+}
+
+/// The values that are wrong: the one that explains all, or those that the refit contradicts; all of
+/// them where only together they differ.
+fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
+    let given = &evidence.evaluator.start;
+    let contradicted = contradicted(given, base);
+    match evidence.explanation() {
+        Explanation::Given(_) => Vec::new(),
+        Explanation::Value(_) => compared(given, base),
+        Explanation::Refit(_) if contradicted.is_empty() => compared(given, base),
+        _ => contradicted,
+    }
+}
+
+/// How long the windows of all motions are.
+fn windows(evaluator: &Evaluator) -> Vec<MotionWindow> {
+    let data = [Some(&evaluator.training), evaluator.held_out.as_ref()];
+    let data = data.into_iter().flatten();
+    data.flat_map(|data| data.motion_windows(evaluator.horizon))
+        .collect()
 }
 
 fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
@@ -71,6 +97,13 @@ fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
             "a placebo regressor gains as much as the best effect: nothing may be named"
                 .to_string(),
         );
+    }
+    let lost = evidence.folds.iter().filter(|fold| !fold.gains).count();
+    if lost > 0 {
+        warnings.push(format!(
+            "with other motions held out the explanation gains nothing in {lost} of {} cases",
+            evidence.folds.len()
+        ));
     }
     if evidence.values_vary() {
         warnings.push(format!(
@@ -100,20 +133,25 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
 fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
     let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
     let added = values.len() - hypothesis.added_values();
+    let own = match hypothesis.value {
+        Some(_) => &values[..],
+        None => &[],
+    };
     Alternative {
         effects: effects(hypothesis, &values[added..]),
+        wrong_values: compared(&evaluator.start, own),
         error_rad: hypothesis.deciding_rms_rad(),
     }
 }
 
 fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
-    let (base, best) = (&evidence.evaluator.base, evidence.best.as_ref());
+    let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
     let kept = |h: &Hypothesis| {
-        best.into_iter()
-            .chain(rivals.iter().copied())
-            .any(|k| k.adds(&h.set))
+        let mut kept = rivals.iter().copied().chain([chosen]);
+        kept.any(|k| k.value == h.value && k.adds(&h.set))
     };
-    let rest = evidence.hypotheses.iter().filter(|h| !kept(h));
+    let values = evidence.values.iter().chain(&evidence.values_refitted);
+    let rest = values.chain(&evidence.hypotheses).filter(|h| !kept(h));
     rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
@@ -129,7 +167,12 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
 }
 
 fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
-    let (evaluator, base) = (evidence.evaluator, &evidence.evaluator.base);
+    let evaluator = evidence.evaluator;
+    // A value refitted alone is compared with the model as given.
+    let base = match hypothesis.value {
+        Some(_) if hypothesis.search.free.len() == 1 => &evaluator.given,
+        _ => &evaluator.base,
+    };
     let why = if hypothesis.rests_on_bound() {
         "its best value is on a bound, where it vanishes or stops being physical"
     } else if hypothesis.search_mean > 0.99 * base.search_mean {
@@ -139,15 +182,15 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
         "it fits the training motions and makes the held-out ones worse"
     } else {
-        match &evidence.best {
-            Some(best) if hypothesis.set.len() > best.set.len() => {
+        match evidence.explanation() {
+            Explanation::Given(_) => "what it gains may be chance",
+            Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
                 "one more effect brings no significant reduction"
             }
-            Some(best) if evaluator.clearly_worse(hypothesis, best, base) => {
-                return format!("{} leaves significantly less", best.names().join(" + "));
+            explanation if evaluator.clearly_worse(hypothesis, explanation.hypothesis(), base) => {
+                return format!("{} leaves significantly less", explanation.name());
             }
-            Some(_) => "the chosen set does as well with fewer values",
-            None => "what it gains may be chance",
+            _ => "the chosen explanation does as well and is simpler",
         }
     };
     why.to_string()
@@ -155,7 +198,7 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
 
 fn motions(evidence: &Evidence) -> Vec<MotionError> {
     let evaluator = evidence.evaluator;
-    let evaluations = (&evaluator.base.evaluation, &evidence.chosen().evaluation);
+    let evaluations = (&evaluator.given.evaluation, &evidence.chosen().evaluation);
     let (Some(before), Some(after)) = evaluations else {
         return Vec::new();
     };

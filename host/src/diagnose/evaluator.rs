@@ -1,26 +1,22 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::block_errors::AT_NOISE_FLOOR;
-use super::budget::{FEW_SAMPLES, FINISH, planned_steps};
+use super::budget::{EVALUATE, FEW_SAMPLES, FINISH, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
-use super::horizon::{longest_useful, search_horizon};
+use super::horizon::search_horizon;
 use super::hypothesis::{Evaluation, Hypothesis};
 use super::initial_guess::{PredictionChange, changes};
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
-use crate::fitting::{Candidate, FitData, Horizon, longest_stable};
+use super::step_size::coarsened;
+use super::values::as_given;
+use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
-
-/// Iterations over the evaluation horizon, from what the windows found.
-const EVALUATE: usize = 12;
-/// The first windows to evaluate over where no model follows a whole motion, s.
-const LONGEST_WINDOW_S: f64 = 4.0;
 
 /// What every hypothesis is fitted to and judged by.
 pub(super) struct Evaluator<'a> {
@@ -30,10 +26,13 @@ pub(super) struct Evaluator<'a> {
     pub training: FitData,
     /// Held-out motions over the evaluation horizon.
     pub held_out: Option<FitData>,
+    /// The model as it came.
+    pub given: Hypothesis,
+    /// The model with its free values refitted.
     pub base: Hypothesis,
     pub horizon: Horizon,
     /// Whether the user has chosen it.
-    horizon_given: bool,
+    pub horizon_given: bool,
     /// How long the windows of `search` are.
     pub search_horizon: Horizon,
     pub placebos: Vec<Hypothesis>,
@@ -43,6 +42,8 @@ pub(super) struct Evaluator<'a> {
     /// The model as it came.
     pub start: Model,
     pub seed: u64,
+    /// Error that is good enough, rad.
+    pub tolerance_rad: Option<f64>,
     /// Most effects named together.
     pub most_effects: usize,
     pub steps: StepCounter<'a>,
@@ -65,29 +66,28 @@ impl<'a> Evaluator<'a> {
         };
         let steps = StepCounter::new(planned_steps(candidates.len(), most_effects), progress);
         let whole = FitData::new(model, training, Horizon::Whole);
-        let stable = || longest_stable(model, &whole);
-        let longest = options.horizon.unwrap_or_else(stable);
+        let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let search_horizon = search_horizon(&whole, longest, few);
         let search = whole.recut(search_horizon);
+        let model = &coarsened(model, &search);
         let fitted = base_fit(model, &search, few, options.seed);
         let mut base = Hypothesis::new(Vec::new(), fitted);
-        let (horizon, training) = match options.horizon {
-            Some(horizon) => (horizon, whole.recut(horizon)),
-            None => longest_useful(&base.search.model, &whole, longest),
-        };
-        let held_out = (!held_out.is_empty()).then(|| FitData {
-            sigma_rad: training.sigma_rad.clone(),
-            ..FitData::new(model, held_out, horizon)
-        });
+        let training = whole.recut(longest);
+        let held_out = (!held_out.is_empty())
+            .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
         base.evaluate(&training, held_out.as_ref(), FINISH);
+        let mut given = as_given(model, &search);
+        given.evaluate(&training, held_out.as_ref(), FINISH);
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
             training,
             held_out,
+            given,
             base,
-            horizon,
+            tolerance_rad: options.tolerance_rad,
+            horizon: longest,
             horizon_given: options.horizon.is_some(),
             search_horizon,
             placebos: Vec::new(),
@@ -120,50 +120,6 @@ impl<'a> Evaluator<'a> {
     pub fn at_noise_floor(&self, hypothesis: &Hypothesis) -> bool {
         let evaluation = hypothesis.evaluation.as_ref();
         evaluation.is_some_and(Evaluation::is_noise)
-    }
-
-    /// Shortens the evaluation horizon while the best hypothesis, which explains every short window
-    /// of the training motions, does not follow them over the whole horizon: an arm that sticks a
-    /// sample sooner or later takes another way, and no model predicts that from the start of the
-    /// run.
-    pub fn shorten(&mut self, best: &mut Hypothesis) {
-        if !best.follows_windows() {
-            return;
-        }
-        let mut shortened = false;
-        loop {
-            self.evaluate(best);
-            let evaluation = best.evaluation.as_ref();
-            let follows = evaluation.is_some_and(|e| e.training.rms() < AT_NOISE_FLOOR);
-            let Some(shorter) = self.shorter().filter(|_| !follows) else {
-                break;
-            };
-            shortened = true;
-            best.evaluation = None;
-            self.horizon = shorter;
-            self.training = self.training.recut(shorter);
-            self.held_out = self.held_out.as_ref().map(|data| data.recut(shorter));
-        }
-        if shortened {
-            let held_out = self.held_out.as_ref();
-            self.base.evaluation = None;
-            self.base.evaluate(&self.training, held_out, FINISH);
-            for placebo in &mut self.placebos {
-                placebo.evaluation = None;
-                placebo.evaluate(&self.training, held_out, EVALUATE);
-            }
-        }
-    }
-
-    /// The next shorter evaluation horizon, if it may be chosen and is not the shortest already.
-    fn shorter(&self) -> Option<Horizon> {
-        let least = self.search_horizon.seconds()?;
-        let next = match self.horizon {
-            Horizon::Whole => LONGEST_WINDOW_S,
-            Horizon::Seconds(seconds) if seconds > least => seconds / 2.0,
-            Horizon::Seconds(_) => return None,
-        };
-        (!self.horizon_given).then_some(Horizon::Seconds(next.min(LONGEST_WINDOW_S).max(least)))
     }
 
     /// Evaluates a hypothesis over the evaluation horizon.

@@ -1,7 +1,7 @@
 //! The result of a diagnosis, as plain values for every writer: text, JSON, HTML.
 
 use crate::effects;
-use crate::fitting::{Candidate, ErrorReduction, FittedValue};
+use crate::fitting::{Candidate, ErrorReduction, FittedValue, MotionWindow};
 use crate::log::{LogFinding, Severity};
 use crate::model::{Model, ParameterPath};
 use serde::Serialize;
@@ -10,8 +10,12 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The model already explains the measurement; no candidate gains anything worth naming.
+    /// The model as given explains the measurement; nothing but noise is left.
     Nominal,
+    /// The model as given leaves more than noise, but no more than the user tolerates.
+    Adequate,
+    /// Values in the model file are wrong; with right ones nothing is missing.
+    WrongValue,
     /// The missing effects are known.
     Named,
     /// Several sets of effects explain the measurement equally well.
@@ -35,11 +39,23 @@ pub struct FittedEffect {
     pub parameters: Vec<FittedValue>,
 }
 
+/// A value of the model file that the motions contradict.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WrongValue {
+    /// The value in the file.
+    pub given: f64,
+    /// The value that the motions ask for.
+    #[serde(flatten)]
+    pub fitted: FittedValue,
+}
+
 /// A rival explanation that the data do not rule out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Alternative {
     /// Its effects.
     pub effects: Vec<FittedEffect>,
+    /// Its values of the model file, where it explains the measurement by those.
+    pub wrong_values: Vec<WrongValue>,
     /// Root-mean-square error it leaves, rad, on the motions of [`Diagnosis::error`].
     pub error_rad: f64,
 }
@@ -84,6 +100,19 @@ pub struct MotionError {
     pub after_rad: f64,
 }
 
+/// What the explanation gains where these motions are held out and the others fitted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fold {
+    /// The motions held out.
+    pub held_out: Vec<String>,
+    /// Root-mean-square error without the explanation, rad.
+    pub before_rad: f64,
+    /// With it.
+    pub after_rad: f64,
+    /// Whether it gains log-likelihood, each motion with its own noise.
+    pub gains: bool,
+}
+
 /// Everything a diagnosis says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnosis {
@@ -92,7 +121,11 @@ pub struct Diagnosis {
     /// Effects that are missing: all of them when named, the best set when ambiguous, a partial set
     /// when unexplained.
     pub effects: Vec<FittedEffect>,
-    /// Error of the refitted base model, with the effects added, and of a perfect model.
+    /// Values of the model file that are wrong: all that is needed where the verdict says so; beside
+    /// the effects, those that the motions contradict.
+    pub wrong_values: Vec<WrongValue>,
+    /// Error of the model as given, of the same refitted, with what was found, and of a perfect
+    /// model.
     pub error: ErrorReduction,
     /// Sets that do as well, when ambiguous.
     pub alternatives: Vec<Alternative>,
@@ -104,6 +137,9 @@ pub struct Diagnosis {
     pub residual_structure: Option<ResidualStructure>,
     /// Per motion.
     pub motions: Vec<MotionError>,
+    /// The explanation fitted and judged anew with other motions held out; empty where there are
+    /// fewer than three, and where the model as given explains the measurement.
+    pub folds: Vec<Fold>,
     /// Pairs of parameters the data hardly tell apart: addresses and correlation.
     pub collinear: Vec<(String, String, f64)>,
     /// Sentences for a student: what is missing, its size, how the error falls.
@@ -112,8 +148,10 @@ pub struct Diagnosis {
     pub next: Vec<String>,
     /// Things to be wary of: values on bounds, placebos that rank, data warnings.
     pub warnings: Vec<String>,
-    /// Seconds of one window on which the judgement rests; absent for whole motions.
+    /// Seconds of the longest windows on which the judgement may rest; absent for whole motions.
     pub horizon_s: Option<f64>,
+    /// How long the windows of each motion are.
+    pub windows: Vec<MotionWindow>,
 }
 
 impl FittedEffect {
@@ -137,7 +175,11 @@ impl Diagnosis {
     /// The model with the effects added and the base values refitted.
     pub fn applied_to(&self, model: &Model) -> Model {
         let mut model = model.clone();
-        for value in &self.base {
+        for value in self
+            .base
+            .iter()
+            .chain(self.wrong_values.iter().map(|wrong| &wrong.fitted))
+        {
             if let Ok(path) = value.path.parse::<ParameterPath>() {
                 // A value that is not the model's is none to set.
                 let _ = path.set(&mut model, value.value);
@@ -158,8 +200,10 @@ impl Diagnosis {
         Diagnosis {
             verdict: Verdict::Unfit,
             effects: Vec::new(),
+            wrong_values: Vec::new(),
             error: ErrorReduction {
                 before_rad: f64::NAN,
+                refitted_rad: None,
                 after_rad: f64::NAN,
                 floor_rad: f64::NAN,
                 held_out: false,
@@ -170,6 +214,7 @@ impl Diagnosis {
             ruled_out: Vec::new(),
             residual_structure: None,
             motions: Vec::new(),
+            folds: Vec::new(),
             collinear: Vec::new(),
             summary: std::iter::once(said)
                 .chain(refused().map(LogFinding::statement))
@@ -177,6 +222,7 @@ impl Diagnosis {
             next: refused().map(|finding| finding.remedy.clone()).collect(),
             warnings: Vec::new(),
             horizon_s: None,
+            windows: Vec::new(),
         }
     }
 }

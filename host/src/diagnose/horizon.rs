@@ -1,14 +1,22 @@
 //! Over how long a run candidates are sought, and over how long they are judged.
 
-use crate::fitting::{FitData, Horizon, fit_start_states};
+use super::block_errors::{gain, paired};
+use super::budget::{EVALUATE, FINISH};
+use super::evaluator::Evaluator;
+use super::hypothesis::Hypothesis;
+use crate::fitting::{FitData, Horizon};
 use crate::log::Motion;
-use crate::model::Model;
+use rayon::prelude::*;
 
 /// Windows to search on, s.
 const SEARCH_S: f64 = 1.0;
+/// Longest windows to judge over, s, beside whole motions.
+const LADDER_S: [f64; 4] = [4.0, 1.0, 0.5, 0.25];
+/// Hypotheses whose gain decides which of them.
+const LEADERS: usize = 3;
 
-/// Short windows to search on: a second, or what holds forty samples; never longer than the plant
-/// is stable. Few samples are searched from many starts instead, over the horizon that counts.
+/// Short windows to search on: a second, or what holds forty samples; never longer than wanted. Few
+/// samples are searched from many starts instead, over the horizon that counts.
 pub(super) fn search_horizon(whole: &FitData, longest: Horizon, few: bool) -> Horizon {
     let samples: usize = whole.motions.iter().map(Motion::len).sum();
     let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
@@ -16,46 +24,66 @@ pub(super) fn search_horizon(whole: &FitData, longest: Horizon, few: bool) -> Ho
         return longest;
     }
     let wanted = SEARCH_S.max(40.0 * seconds / samples.max(1) as f64);
-    Horizon::Seconds(
-        longest
-            .seconds()
-            .map_or(wanted, |stable| stable.min(wanted)),
-    )
+    longest.shorter(Horizon::Seconds(wanted))
 }
 
-/// The longest windows over which the base model, as fitted on short ones, still follows the
-/// measurement: longer ones show more of a small effect, but where the simulation has lost the
-/// motion altogether they show nothing.
-pub(super) fn longest_useful(
-    model: &Model,
-    whole: &FitData,
-    longest: Horizon,
-) -> (Horizon, FitData) {
-    let mut horizon = longest;
-    let mut seconds = longest.seconds().unwrap_or_else(|| whole.longest_s());
-    loop {
-        let data = whole.recut(horizon);
-        let mean = fit_start_states(model, &data).residuals.mean_square();
-        if mean <= (0.25 * spread(&data)).powi(2) || seconds <= 1.0 {
-            return (horizon, data);
+impl Evaluator<'_> {
+    /// Chooses the horizon at which the leading hypotheses gain the most over the base model, where
+    /// the user has not chosen one, and evaluates the base there.
+    ///
+    /// Over a long run a small effect shows more; where a run is lost for other reasons, because
+    /// something else is missing or an arm sticks a sample sooner or later, a long run shows
+    /// nothing. The gain of log-likelihood on the motions that decide weighs one against the other.
+    pub fn choose_horizon(&mut self, leaders: &[Hypothesis]) {
+        let longest = self.training.longest_window_s();
+        let ladder = LADDER_S.into_iter().filter(|seconds| *seconds < longest);
+        let mut horizons = vec![Horizon::Whole];
+        horizons.extend(ladder.map(Horizon::Seconds));
+        if self.horizon_given || horizons.len() == 1 {
+            return;
         }
-        seconds = (seconds / 2.0).clamp(1.0, 4.0);
-        horizon = Horizon::Seconds(seconds);
+        let gains: Vec<f64> = horizons
+            .par_iter()
+            .map(|&horizon| self.most_gained(leaders, horizon))
+            .collect();
+        let mut best = 0;
+        for (index, gain) in gains.iter().enumerate() {
+            // A shorter horizon must gain something; where nothing is missing none does.
+            if *gain > gains[best].max(0.0) {
+                best = index;
+            }
+        }
+        if best > 0 {
+            self.recut(horizons[best]);
+        }
     }
-}
 
-/// Root-mean-square deviation of the measured positions from their mean, in units of sigma.
-fn spread(data: &FitData) -> f64 {
-    let (mut sum, mut count) = (0.0, 0usize);
-    for motion in &data.motions {
-        for (position, sigma) in motion.position_rad.iter().zip(&data.sigma_rad) {
-            let mean = position.iter().sum::<f64>() / position.len() as f64;
-            sum += position
-                .iter()
-                .map(|p| ((p - mean) / sigma).powi(2))
-                .sum::<f64>();
-            count += position.len();
+    /// Most log-likelihood that any of the leaders gains over the base model at a horizon.
+    fn most_gained(&self, leaders: &[Hypothesis], horizon: Horizon) -> f64 {
+        let training = self.training.recut(horizon);
+        let held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
+        let evaluated = |hypothesis: &Hypothesis| {
+            let mut hypothesis = hypothesis.clone();
+            hypothesis.evaluation = None;
+            hypothesis.evaluate(&training, held_out.as_ref(), EVALUATE);
+            hypothesis
+        };
+        let base = evaluated(&self.base);
+        let leaders = leaders.par_iter().take(LEADERS).map(evaluated);
+        let gains =
+            leaders.filter_map(|leader| Some(gain(&paired(base.deciding()?, leader.deciding()?))));
+        gains.reduce(|| f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Judges over another horizon.
+    fn recut(&mut self, horizon: Horizon) {
+        self.horizon = horizon;
+        self.training = self.training.recut(horizon);
+        self.held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
+        let placebos = self.placebos.iter_mut();
+        for hypothesis in placebos.chain([&mut self.base, &mut self.given]) {
+            hypothesis.evaluation = None;
+            hypothesis.evaluate(&self.training, self.held_out.as_ref(), FINISH);
         }
     }
-    (sum / count.max(1) as f64).sqrt()
 }

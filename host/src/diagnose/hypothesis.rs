@@ -2,6 +2,7 @@
 
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
 use crate::fitting::{Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals};
+use crate::model::ParameterPath;
 use std::cmp::Ordering;
 
 /// A fitted set of effects.
@@ -12,6 +13,9 @@ use std::cmp::Ordering;
 pub(super) struct Hypothesis {
     /// The effects added to the base, in the order they were added.
     pub set: Vec<Candidate>,
+    /// The value of the given model that is wrong, where that is the hypothesis: refitted alone, or
+    /// along with those that are free.
+    pub value: Option<ParameterPath>,
     /// The fit on short windows.
     pub search: Fit,
     /// Its mean squared weighted residual.
@@ -48,6 +52,7 @@ impl Hypothesis {
     pub fn new(set: Vec<Candidate>, search: Fit) -> Hypothesis {
         Hypothesis {
             set,
+            value: None,
             search_mean: search.residuals.mean_square(),
             search,
             evaluation: None,
@@ -64,9 +69,12 @@ impl Hypothesis {
         self.set.iter().map(|c| c.parameters().len()).sum()
     }
 
-    /// Names of the set.
+    /// Names of the set, or of the value.
     pub fn names(&self) -> Vec<String> {
-        self.set.iter().map(ToString::to_string).collect()
+        let value = self.value.iter().map(ToString::to_string);
+        value
+            .chain(self.set.iter().map(ToString::to_string))
+            .collect()
     }
 
     /// Whether this hypothesis adds the same effects as that set.
@@ -190,7 +198,10 @@ impl Hypothesis {
     /// stands in for another.
     pub fn rests_on_bound(&self) -> bool {
         let on_bound = self.fit().on_bound();
-        let added = on_bound.len() - self.added_values();
+        let added = match self.value {
+            Some(_) => on_bound.len() - 1,
+            None => on_bound.len() - self.added_values(),
+        };
         on_bound[added..].contains(&true)
     }
 }

@@ -7,6 +7,7 @@ mod candidates;
 mod conclusion;
 mod consistency;
 mod evaluator;
+mod explanation;
 mod findings;
 mod horizon;
 mod hypothesis;
@@ -18,13 +19,17 @@ mod residual_structure;
 mod restarts;
 mod search;
 mod selection;
+mod stability;
+mod step_size;
 mod terms;
+mod values;
 mod verdict;
 pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
-    Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
+    Alternative, Diagnosis, FittedEffect, Fold, MotionError, ResidualStructure, RuledOut, Verdict,
+    WrongValue,
 };
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

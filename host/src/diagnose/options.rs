@@ -13,6 +13,8 @@ pub struct DiagnoseOptions {
     pub horizon: Option<Horizon>,
     /// Most effects named together.
     pub most_effects: usize,
+    /// Error that is good enough for the user, rad.
+    pub tolerance_rad: Option<f64>,
 }
 
 impl Default for DiagnoseOptions {
@@ -22,6 +24,7 @@ impl Default for DiagnoseOptions {
             without: Vec::new(),
             horizon: None,
             most_effects: 3,
+            tolerance_rad: None,
         }
     }
 }

@@ -6,7 +6,7 @@
 //! on the linearised simulation, and judged on the held-out ones. What it gains there is structure,
 //! not noise.
 
-use super::block_errors::{AT_NOISE_FLOOR, BlockErrors, bootstrap};
+use super::block_errors::{AT_NOISE_FLOOR, BlockErrors, PairedSums, bootstrap, paired};
 use super::findings::ResidualStructure;
 use super::initial_guess::change;
 use super::terms::{Term, terms};
@@ -76,9 +76,13 @@ pub(super) fn residual_structure(
     }
     let after = BlockErrors::of(&split_like(&left, &elsewhere.residuals), held_out);
     let samples = before.count() as f64;
-    let share = |before: f64, after: f64| (before - after) / (before - samples).max(0.05 * samples);
+    let share = |motions: &[PairedSums]| {
+        let sum = |part: fn(&PairedSums) -> f64| motions.iter().map(part).sum::<f64>();
+        let (before, after) = (sum(|m| m.before), sum(|m| m.after));
+        (before - after) / (before - samples).max(0.05 * samples)
+    };
     Some(ResidualStructure {
-        explainable_share: share(before.sums.iter().sum(), after.sums.iter().sum()),
+        explainable_share: share(&paired(&before, &after)),
         explainable_low: bootstrap(&before, &after, seed, share)[0],
         shape: shape(&terms, &seen.probes, &weights),
     })

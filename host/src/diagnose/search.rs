@@ -13,12 +13,13 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
+use super::explanation::{Evidence, Explanation};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
-use super::verdict::Evidence;
+use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;
@@ -44,15 +45,23 @@ pub fn diagnose(
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
-    let chosen = best.as_ref().unwrap_or(&evaluator.base);
-    let evidence = Evidence {
+    let (values, values_refitted) = (evaluator.try_values(), evaluator.try_values_refitted());
+    let mut evidence = Evidence {
         evaluator: &evaluator,
-        residual_structure: evaluator.residual_structure(chosen),
-        per_motion_reduction: per_motion_reduction(chosen, &evaluator.training),
+        residual_structure: None,
+        per_motion_reduction: None,
         hypotheses,
+        values,
+        values_refitted,
         best,
+        folds: Vec::new(),
         seed: options.seed,
     };
+    evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
+    if !matches!(evidence.explanation(), Explanation::Given(_)) {
+        evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
+    }
+    evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
     let diagnosis = conclude(&evidence);
     evaluator.steps.step(STRUCTURE_STEPS);
     diagnosis
@@ -113,9 +122,7 @@ impl Evaluator<'_> {
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
         }
-        if let Some(best) = hypotheses.first_mut() {
-            self.shorten(best);
-        }
+        self.choose_horizon(&hypotheses);
         self.evaluated(hypotheses)
     }
 

@@ -1,9 +1,39 @@
 //! Model selection: which hypothesis earns its place, and which ones the data do not tell apart.
 
-use super::block_errors::{BlockErrors, reduction, significantly_worse};
+use super::block_errors::{
+    BlockErrors, bootstrap, gain, largest_reduction, paired, significantly_worse,
+};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use crate::fitting::Fit;
+
+/// A hypothesis that leaves up to this much more of the squared error may be as good.
+const NEAR: f64 = 1.1;
+
+/// What a larger explanation must bring to be preferred to a smaller one.
+#[derive(Debug, Clone, Copy)]
+struct Gate {
+    /// Lower end of the interval of the log-likelihood gained where it counts.
+    gain_low: f64,
+    /// Largest reduction of the error among the motions.
+    largest_reduction: f64,
+    /// Whether no value lies on its bound, and none of several effects may be nothing.
+    every_value_counts: bool,
+    /// Change of the Bayesian information criterion on the training motions.
+    bic_change: f64,
+    /// Whether motions that took no part in the fit decide.
+    held_out: bool,
+}
+
+impl Gate {
+    fn is_passed(self) -> bool {
+        let practical = if self.held_out { 0.03 } else { 0.10 };
+        self.every_value_counts
+            && self.gain_low > 0.0
+            && self.largest_reduction > practical
+            && self.bic_change < -10.0
+    }
+}
 
 impl Evaluator<'_> {
     /// The best hypothesis that is significantly and usefully better than `reference` where it
@@ -16,16 +46,18 @@ impl Evaluator<'_> {
         hypotheses: &'a [Hypothesis],
     ) -> Option<&'a Hypothesis> {
         let improving = hypotheses.iter().filter(|h| self.improves(reference, h));
+        let start = reference.pooled()?;
         let worthy: Vec<(&Hypothesis, f64)> = improving
-            .filter_map(|h| Some((h, h.pooled()?.mean())))
+            .filter_map(|h| Some((h, gain(&paired(&start, &h.pooled()?)))))
             .collect();
-        let (best, least) = *worthy.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let as_good = worthy.iter().filter(|(hypothesis, mean)| {
-            !self.clearly_worse(hypothesis, best, reference) && *mean <= 1.1 * least
+        let (best, most) = *worthy.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let near = 0.5 * start.count() as f64 * NEAR.ln();
+        let as_good = worthy.iter().filter(|(hypothesis, gained)| {
+            !self.clearly_worse(hypothesis, best, reference) && *gained >= most - near
         });
         let simplest = as_good.min_by(|a, b| {
             let values = a.0.added_values().cmp(&b.0.added_values());
-            values.then(a.1.total_cmp(&b.1))
+            values.then(b.1.total_cmp(&a.1))
         });
         simplest.map(|(hypothesis, _)| *hypothesis)
     }
@@ -36,12 +68,16 @@ impl Evaluator<'_> {
         else {
             return false;
         };
-        let [low, _] = reduction(before, evaluation.deciding(), self.seed);
-        let practical = if self.held_out.is_some() { 0.03 } else { 0.10 };
-        evaluation.significant
-            && !hypothesis.rests_on_bound()
-            && low > practical
-            && self.bic_change(reference, hypothesis) < -10.0
+        let after = evaluation.deciding();
+        let [low, _] = bootstrap(before, after, self.seed, gain);
+        let gate = Gate {
+            gain_low: low,
+            largest_reduction: largest_reduction(&paired(before, after)),
+            every_value_counts: evaluation.significant && !hypothesis.rests_on_bound(),
+            bic_change: self.bic_change(reference, hypothesis),
+            held_out: self.held_out.is_some(),
+        };
+        gate.is_passed()
     }
 
     /// Whether the data tell that `hypothesis` is worse than `best`; `reference` is what both
@@ -65,28 +101,30 @@ impl Evaluator<'_> {
         if self.at_noise_floor(best) {
             return significant;
         }
-        let gained = (start.mean() - better.mean()).max(0.0);
-        let unexplained = better.mean() - 1.0;
-        significant && worse.mean() - better.mean() > unexplained.min(0.1 * gained)
+        let gained = gain(&paired(&start, &better));
+        let lost = gain(&paired(&worse, &better));
+        let unexplained = 0.5 * better.count() as f64 * better.mean().ln();
+        significant && lost > unexplained.min(0.1 * gained)
     }
 
     /// Change of the Bayesian information criterion on the training motions; correlated residuals
     /// count fewer.
     pub fn bic_change(&self, reference: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
         let values = hypothesis.search.free.len() as f64 - reference.search.free.len() as f64;
-        let (n, ratio) = match (&reference.evaluation, &hypothesis.evaluation) {
-            (Some(before), Some(after)) => (
-                effective_samples(&after.training, &after.fit),
-                after.training.mean() / before.training.mean(),
-            ),
-            _ => {
-                let search = &hypothesis.search;
-                let errors = BlockErrors::of(&search.residuals, &self.search);
-                let ratio = hypothesis.search_mean / reference.search_mean;
-                (effective_samples(&errors, search), ratio)
+        let searched = |h: &Hypothesis| BlockErrors::of(&h.search.residuals, &self.search);
+        let (before, after, fit) = match (&reference.evaluation, &hypothesis.evaluation) {
+            (Some(before), Some(after)) => {
+                (before.training.clone(), after.training.clone(), &after.fit)
             }
+            _ => (
+                searched(reference),
+                searched(hypothesis),
+                &hypothesis.search,
+            ),
         };
-        n * ratio.ln() + values * n.max(2.0).ln()
+        let n = effective_samples(&after, fit);
+        let gained = gain(&paired(&before, &after)) * n / after.count().max(1) as f64;
+        -2.0 * gained + values * n.max(2.0).ln()
     }
 }
 
@@ -102,6 +140,49 @@ fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
     let correlation = (product / square).clamp(0.0, 0.999);
     let n = errors.count() as f64;
     (n * (1.0 - correlation) / (1.0 + correlation))
-        .max(2.0 * errors.sums.len() as f64)
+        .max(2.0 * errors.len() as f64)
         .min(n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_condition_of_the_gate_counts() {
+        let gate = Gate {
+            gain_low: 1.0,
+            largest_reduction: 0.05,
+            every_value_counts: true,
+            bic_change: -11.0,
+            held_out: true,
+        };
+        assert!(gate.is_passed());
+        let refused = [
+            Gate {
+                gain_low: -0.1,
+                ..gate
+            },
+            Gate {
+                largest_reduction: 0.02,
+                ..gate
+            },
+            Gate {
+                every_value_counts: false,
+                ..gate
+            },
+            Gate {
+                bic_change: -9.0,
+                ..gate
+            },
+            // The motions of the fit flatter it.
+            Gate {
+                held_out: false,
+                ..gate
+            },
+        ];
+        for gate in refused {
+            assert!(!gate.is_passed(), "{gate:?}");
+        }
+    }
 }

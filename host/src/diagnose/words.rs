@@ -3,7 +3,7 @@
 //! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for
 //! the files.
 
-use super::findings::{Diagnosis, FittedEffect, Verdict};
+use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 
 use crate::output::number::{measured, percent, short, with_unit};
 
@@ -18,9 +18,6 @@ pub const HELD_OUT: &str = "HELD_OUT...";
 pub(crate) const SHOWN: usize = 4;
 /// Pairs of values warned of; the rest are counted.
 const PAIRS: usize = 3;
-/// Errors below so many floors are no proof that something is missing.
-const NEAR: f64 = 2.0;
-
 /// Adds summary, next steps and warnings.
 pub(super) fn complete(diagnosis: &mut Diagnosis) {
     diagnosis.summary = summary(diagnosis);
@@ -37,29 +34,86 @@ pub(super) fn complete(diagnosis: &mut Diagnosis) {
 /// The verdict as a sentence.
 pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
     let names = joined(&diagnosis.effects);
-    let error = &diagnosis.error;
     match diagnosis.verdict {
-        Verdict::Nominal if error.before_rad > NEAR * error.floor_rad => {
-            "No known effect brings the model closer to the measurement.".into()
-        }
         Verdict::Nominal => "The model already explains the measurement.".into(),
+        Verdict::Adequate => {
+            "The model is as good as was asked, though not as good as the sensors.".into()
+        }
+        Verdict::WrongValue => wrong_values(&diagnosis.wrong_values),
         Verdict::Named => format!("The model lacks {names}."),
         Verdict::Ambiguous => format!("Equally good explanations: {}.", rivals(diagnosis)),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
-            "Something is missing, and no known effect explains it.".into()
+            match diagnosis.wrong_values.as_slice() {
+                [] => "Something is missing, and no known effect explains it.".into(),
+                wrong => format!(
+                    "{} That is not all{}.",
+                    wrong_values(wrong),
+                    share(diagnosis)
+                ),
+            }
         }
-        Verdict::Unexplained => format!("The model lacks more than {names}."),
+        Verdict::Unexplained => format!("The model lacks more than {names}{}.", share(diagnosis)),
         Verdict::Unfit => "These data can't answer the question.".into(),
+    }
+}
+
+/// "Your value of link1.mass_kg is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
+fn wrong_values(wrong: &[WrongValue]) -> String {
+    let changes: Vec<String> = wrong.iter().map(change).collect();
+    match wrong {
+        [one] => format!(
+            "Your value of {} is wrong: {}.",
+            one.fitted.path, changes[0]
+        ),
+        _ => {
+            let paths = wrong.iter().zip(&changes);
+            let all: Vec<String> = paths
+                .map(|(w, change)| format!("{}: {change}", w.fitted.path))
+                .collect();
+            format!("Values of the model are wrong: {}.", all.join("; "))
+        }
+    }
+}
+
+/// "0.2 -> 0.246 kg (0.244 to 0.248)".
+pub(crate) fn change(wrong: &WrongValue) -> String {
+    let fitted = &wrong.fitted;
+    let to = measured(fitted.value, fitted.low, fitted.high, &fitted.unit);
+    format!("{} -> {to}", short(wrong.given))
+}
+
+/// ": they remove 96 % of the squared error"; nothing where they remove none.
+fn share(diagnosis: &Diagnosis) -> String {
+    let error = &diagnosis.error;
+    let removed = 1.0 - (error.after_rad / error.before_rad).powi(2);
+    match removed > 0.0 {
+        true => format!(
+            ", which removes {} % of the squared error",
+            short(100.0 * removed)
+        ),
+        false => String::new(),
+    }
+}
+
+/// What an explanation changes: "A at joint 1 and B", "another value of link1.mass_kg".
+pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
+    match effects {
+        [] => {
+            let paths = wrong
+                .iter()
+                .map(|w| format!("another value of {}", w.fitted.path));
+            listed(paths.collect())
+        }
+        effects => joined(effects),
     }
 }
 
 /// "A at joint 1, or B and C, or 3 more".
 fn rivals(diagnosis: &Diagnosis) -> String {
-    let others = diagnosis.alternatives.iter().map(|rival| &rival.effects);
-    let mut sets: Vec<String> = std::iter::once(&diagnosis.effects)
-        .chain(others)
-        .map(|set| joined(set))
-        .collect();
+    let others = diagnosis.alternatives.iter();
+    let others = others.map(|rival| explained_by(&rival.effects, &rival.wrong_values));
+    let first = explained_by(&diagnosis.effects, &diagnosis.wrong_values);
+    let mut sets: Vec<String> = std::iter::once(first).chain(others).collect();
     let more = sets.len().saturating_sub(SHOWN);
     sets.truncate(SHOWN);
     match more {
@@ -70,12 +124,6 @@ fn rivals(diagnosis: &Diagnosis) -> String {
 
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = vec![headline(diagnosis)];
-    if diagnosis.verdict == Verdict::Nominal
-        && diagnosis.error.before_rad > NEAR * diagnosis.error.floor_rad
-    {
-        lines.push("What is left is far above the noise: the model fails in a way the library does not know, or the \
-                    motions to judge by differ from those learned from.".into());
-    }
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
         lines.push(
             "It comes closest and is not the whole of it: do not take it for the cause.".into(),
@@ -109,7 +157,7 @@ fn error_line(diagnosis: &Diagnosis) -> String {
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =
         [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(1e3 * rad));
-    if diagnosis.effects.is_empty() {
+    if diagnosis.effects.is_empty() && diagnosis.wrong_values.is_empty() {
         return format!(
             "The error on {motions} motions is {before} mrad; the floor is {floor} mrad."
         );
@@ -126,42 +174,74 @@ fn error_line(diagnosis: &Diagnosis) -> String {
 fn next(diagnosis: &Diagnosis) -> Vec<String> {
     match diagnosis.verdict {
         Verdict::Named => commands(diagnosis),
+        Verdict::Ambiguous if diagnosis.effects.is_empty() => {
+            let mut next = experiments(diagnosis);
+            next.extend(refit(diagnosis));
+            next
+        }
         Verdict::Ambiguous => experiments(diagnosis),
         Verdict::Unexplained => vec![
             format!("See where it fails: handstand compare {MODEL} {LOGS}"),
             "Record a motion that isolates those conditions, or write the missing effect as a file of its own."
                 .to_string(),
         ],
-        Verdict::Nominal => vec![
+        Verdict::WrongValue => refit(diagnosis),
+        Verdict::Nominal | Verdict::Adequate => vec![
             "To look closer, record with finer resolution or with motions that reach further.".to_string(),
         ],
         Verdict::Unfit => vec!["Mend the logs as said, and try again.".to_string()],
     }
 }
 
-/// Each effect added to the model before, then the first and the last side by side.
-fn commands(diagnosis: &Diagnosis) -> Vec<String> {
-    let (holdout, judged) = match diagnosis.error.held_out {
+/// The wrong values fitted, then both models side by side.
+fn refit(diagnosis: &Diagnosis) -> Vec<String> {
+    let (holdout, judged) = held_out(diagnosis);
+    let free: Vec<String> = diagnosis
+        .wrong_values
+        .iter()
+        .map(|wrong| format!(" --free {}", wrong.fitted.path))
+        .collect();
+    let (free, horizon) = (free.concat(), horizon(diagnosis));
+    vec![
+        format!("Mend it: handstand fit {MODEL} {LOGS}{free}{holdout}{horizon} -o better.toml"),
+        format!(
+            "See what it gains: handstand compare {MODEL} {judged} --model better.toml{horizon}"
+        ),
+    ]
+}
+
+/// The option that holds motions out, and the motions that are judged.
+fn held_out(diagnosis: &Diagnosis) -> (String, &'static str) {
+    match diagnosis.error.held_out {
         true => (format!(" --holdout {HELD_OUT}"), HELD_OUT),
         false => (String::new(), LOGS),
-    };
-    let mut from = MODEL.to_string();
-    let mut lines = Vec::new();
-    for (index, effect) in diagnosis.effects.iter().enumerate() {
-        let to = match index {
-            0 => "better.toml".to_string(),
-            index => format!("better{}.toml", index + 1),
-        };
-        let address = effect.address();
-        lines.push(format!(
-            "Add it: handstand add {from} {address} --fit {LOGS}{holdout} -o {to}"
-        ));
-        from = to;
     }
-    lines.push(format!(
-        "See what it gains: handstand compare {MODEL} {judged} --model {from}"
-    ));
-    lines
+}
+
+/// The option that asks for the horizon the verdict rests on.
+fn horizon(diagnosis: &Diagnosis) -> String {
+    diagnosis
+        .horizon_s
+        .map_or(String::new(), |seconds| format!(" --horizon {seconds}"))
+}
+
+/// The effects added to the model, then both models side by side.
+fn commands(diagnosis: &Diagnosis) -> Vec<String> {
+    let ((holdout, judged), horizon) = (held_out(diagnosis), horizon(diagnosis));
+    let effects: Vec<String> = diagnosis
+        .effects
+        .iter()
+        .map(FittedEffect::address)
+        .collect();
+    let effects = effects.join(" ");
+    vec![
+        format!(
+            "Add it: handstand add {MODEL} {effects} --fit {LOGS}{holdout}{horizon} -o better.toml"
+        ),
+        format!(
+            "See what it gains: handstand compare {MODEL} {judged} --model better.toml{horizon}"
+        ),
+    ]
 }
 
 /// One experiment for each effect that some of the first explanations have and others do not.

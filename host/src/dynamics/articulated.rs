@@ -216,7 +216,8 @@ mod tests {
             let mut torque = vec![0.0; n];
             chain.inverse(turn, q, w, a, &mut torque);
             let mut out = vec![0.0; n];
-            chain.forward(&mut Workspace::new(n), chain.base_m_s2(turn), q, w, &torque, &vec![false; n], &mut out);
+            let (mut work, base) = (Workspace::new(n), chain.base_m_s2(turn));
+            chain.forward(&mut work, base, q, w, &torque, &vec![false; n], &mut out);
             for i in 0..n {
                 prop_assert!((out[i] - a[i]).abs() < 1e-8, "{out:?} {a:?}");
             }

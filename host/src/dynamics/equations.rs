@@ -273,7 +273,8 @@ mod tests {
             for i in 0..n {
                 let rate = (momentum(i, &ahead(q, w, h), &ahead(w, a, h))
                     - momentum(i, &ahead(q, w, -h), &ahead(w, a, -h))) / (2.0 * h);
-                let force = (lagrangian(&with(q, i, h), w) - lagrangian(&with(q, i, -h), w)) / (2.0 * h);
+                let moved = |by: f64| lagrangian(&with(q, i, by), w);
+                let force = (moved(h) - moved(-h)) / (2.0 * h);
                 prop_assert!((torque[i] - (rate - force)).abs() < 2e-6, "{i}: {torque}");
             }
         }
@@ -283,7 +284,9 @@ mod tests {
             let equations = EquationsOfMotion::new(&chain(4), 0.2);
             let (q, w) = (&values[..4], &values[4..]);
             let h = 1e-5;
-            let moved = |by: f64| -> Vec<f64> { q.iter().zip(w).map(|(q, w)| q + by * w).collect() };
+            let moved = |by: f64| -> Vec<f64> {
+                q.iter().zip(w).map(|(q, w)| q + by * w).collect()
+            };
             let rate = (equations.mass(&moved(h)) - equations.mass(&moved(-h))) / (2.0 * h);
             let skew = rate - 2.0 * equations.coriolis(q, w);
             prop_assert!((&skew + skew.transpose()).amax() < 1e-7, "{skew}");

@@ -6,7 +6,7 @@ use super::link_motion::LinkMotion;
 /// Absolute angle, angular velocity and angular acceleration of a link, and the acceleration of its
 /// joint.
 #[derive(Clone, Copy)]
-struct Motion {
+struct LinkState {
     link: [f64; 3],
     joint_m_s2: [f64; 2],
 }
@@ -29,40 +29,26 @@ impl Chain {
         });
     }
 
-    /// Force each joint's bearing carries, N, into `out`, at these accelerations.
-    pub fn bearing_forces(
-        &self,
-        gravity_turn_rad: f64,
-        angle_rad: &[f64],
-        speed_rad_s: &[f64],
-        acceleration_rad_s2: &[f64],
-        out: &mut [f64],
-    ) {
-        let joints = [angle_rad, speed_rad_s, acceleration_rad_s2];
-        self.newton_euler(gravity_turn_rad, joints, |i, _, force| {
-            out[i] = force[0].hypot(force[1]);
-        });
-    }
-
-    /// Calls `each` with every joint's index, moment, N m, and force, N, from the tip to the base.
-    fn newton_euler(
+    /// Calls `each` with every joint's index and what its bearing passes on, moment, N m, and
+    /// force, N, from the tip to the base. `joints` are angles, speeds and accelerations.
+    pub fn newton_euler(
         &self,
         gravity_turn_rad: f64,
         joints: [&[f64]; 3],
         mut each: impl FnMut(usize, f64, [f64; 2]),
     ) {
-        let base = Motion {
+        let base = LinkState {
             link: [0.0; 3],
             joint_m_s2: self.base_m_s2(gravity_turn_rad),
         };
         self.newton_euler_from(0, base, joints, &mut each);
     }
 
-    /// Motion outwards, then moment and force that link `i` and all beyond it ask of its joint.
+    /// LinkState outwards, then moment and force that link `i` and all beyond it ask of its joint.
     fn newton_euler_from(
         &self,
         i: usize,
-        before: Motion,
+        before: LinkState,
         joints: [&[f64]; 3],
         each: &mut impl FnMut(usize, f64, [f64; 2]),
     ) -> (f64, [f64; 2]) {
@@ -73,7 +59,7 @@ impl Chain {
         let [angle, speed, acceleration] = own;
         let at = LinkMotion::new(link, angle, speed);
         let linear = before.joint_m_s2;
-        let next = Motion {
+        let next = LinkState {
             link: own,
             joint_m_s2: at.end_m_s2(linear, acceleration),
         };

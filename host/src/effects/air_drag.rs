@@ -1,8 +1,6 @@
 //! Air drag: resistance in proportion to the square of speed.
 
-use super::{
-    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -c w |w|.
 #[derive(Debug)]
@@ -24,23 +22,17 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 1.0),
         starts: &[0.001, 0.0001],
     }],
-    looks_like: "wide swings shrink fast and narrow ones hardly; the residual torque is a parabola over speed \
-     with the sign of the speed",
+    looks_like: "wide swings shrink fast and narrow ones hardly; the residual torque is a parabola \
+     over speed with the sign of the speed",
     confused_with: &[
-        Confusion {
-            with: "viscous",
-            why: "both grow with speed; viscous friction keeps its share in slow motion",
-        },
-        Confusion {
-            with: "load_friction",
-            why: "fast motion loads the gear too; repeat slowly, where only load friction remains",
-        },
-        Confusion {
-            with: "bearing_friction",
-            why: "both take more from a wide swing; the bearing also stops the last narrow swings",
-        },
+        "viscous: both grow with speed; viscous friction keeps its share in slow motion",
+        "load_friction: fast motion loads the gear too; repeat slowly, where only load friction \
+         remains",
+        "bearing_friction: both take more from a wide swing; the bearing also stops the last \
+         narrow swings",
     ],
-    experiment: "let the arm swing freely from a wide angle, bare and with a light card that catches the air",
+    experiment: "let the arm swing freely from a wide angle, bare and with a light card that \
+     catches the air",
     reference: "Nelson, Olsson, American Journal of Physics 54 (1986) 112",
 };
 

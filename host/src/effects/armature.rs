@@ -1,6 +1,6 @@
 //! Armature: the rotor, seen through the gear, adds inertia without weight.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// J + N^2 J_r at the joint, with gear ratio N and rotor inertia J_r.
 #[derive(Debug)]
@@ -22,22 +22,17 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 1.0),
         starts: &[0.002, 0.01],
     }],
-    looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is slower \
-     than the model says",
+    looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is \
+     slower than the model says",
     confused_with: &[
-        Confusion {
-            with: "mass",
-            why: "both make the arm sluggish; mass also adds gravity: hold still first",
-        },
-        Confusion {
-            with: "encoder_scale",
-            why: "both change the acceleration that is read; a scale also changes the angle between \
-             two stops",
-        },
+        "mass: both make the arm sluggish; mass also adds gravity: hold still first",
+        "encoder_scale: both change the acceleration that is read; a scale also changes the angle \
+         between two stops",
     ],
-    experiment: "hold still at several angles, then swing freely with and without the motor in gear",
-    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
-     chapter 7",
+    experiment: "hold still at several angles, then swing freely with and without the motor in \
+     gear",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control \
+     (2009), chapter 7",
 };
 
 impl Effect for Armature {

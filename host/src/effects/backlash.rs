@@ -1,6 +1,6 @@
 //! Backlash: play between joint and encoder.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
 /// 2 behind.
@@ -23,26 +23,18 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 0.5),
         starts: &[0.01, 0.03],
     }],
-    looks_like: "after each reversal the reading stands still over a fixed angle, whatever the amplitude, the \
-     load or the speed",
+    looks_like: "after each reversal the reading stands still over a fixed angle, whatever the \
+     amplitude, the load or the speed",
     confused_with: &[
-        Confusion {
-            with: "dead_zone",
-            why: "both leave a plateau; a dead zone has a fixed width in command and lets the arm \
-             drift in angle",
-        },
-        Confusion {
-            with: "stribeck",
-            why: "both halt the reading at reversal; stiction lasts until a fixed torque, not over a \
-             fixed angle",
-        },
-        Confusion {
-            with: "sensor_lag",
-            why: "both trail the motion; a lag is wider the faster the motion, backlash always the \
-             same",
-        },
+        "dead_zone: both leave a plateau; a dead zone has a fixed width in command and lets the \
+         arm drift in angle",
+        "stribeck: both halt the reading at reversal; stiction lasts until a fixed torque, not \
+         over a fixed angle",
+        "sensor_lag: both trail the motion; a lag is wider the faster the motion, backlash always \
+         the same",
     ],
-    experiment: "move in triangles of three amplitudes, slowly: the width of the loop must not change",
+    experiment: "move in triangles of three amplitudes, slowly: the width of the loop must not \
+     change",
     reference: "Nordin, Gutman, Automatica 38 (2002) 1633",
 };
 

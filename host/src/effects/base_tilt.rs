@@ -1,6 +1,6 @@
 //! Base tilt: the rig does not stand plumb.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands
 /// turned by 180 degrees about the vertical.
@@ -25,19 +25,13 @@ static INFO: EffectInfo = EffectInfo {
     }],
     looks_like: "a static error with the same phase in the world on every link",
     confused_with: &[
-        Confusion {
-            with: "com_angle",
-            why: "both shift the angle at which gravity vanishes; a centre of mass keeps its side of \
-             the body when the rig is turned, and belongs to one link",
-        },
-        Confusion {
-            with: "encoder_zero",
-            why: "both shift the angle at which gravity vanishes; an offset keeps its sign at the \
-             joint when the rig is turned",
-        },
+        "com_angle: both shift the angle at which gravity vanishes; a centre of mass keeps its \
+         side of the body when the rig is turned, and belongs to one link",
+        "encoder_zero: both shift the angle at which gravity vanishes; an offset keeps its sign \
+         at the joint when the rig is turned",
     ],
-    experiment: "repeat a slow motion with the rig turned by 180 degrees about the vertical: the error of a \
-     tilt changes sides",
+    experiment: "repeat a slow motion with the rig turned by 180 degrees about the vertical: the \
+     error of a tilt changes sides",
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 

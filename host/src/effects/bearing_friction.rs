@@ -1,6 +1,6 @@
 //! Load friction of a plain bearing: the weight it carries and the swing press on it.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
 #[derive(Debug)]
@@ -22,22 +22,16 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 0.05),
         starts: &[0.001, 0.0001],
     }],
-    looks_like: "a free swing loses more angle per period while it is wide, since the swing itself loads the \
-     bearing, and still stops off the bottom",
+    looks_like: "a free swing loses more angle per period while it is wide, since the swing itself \
+     loads the bearing, and still stops off the bottom",
     confused_with: &[
-        Confusion {
-            with: "coulomb",
-            why: "the same under one force; add mass at the joint, which loads the bearing without \
-             changing the swing",
-        },
-        Confusion {
-            with: "air_drag",
-            why: "both take more from a wide swing; air drag lets the swing fade slowly at the end, \
-             the bearing stops it",
-        },
+        "coulomb: the same under one force; add mass at the joint, which loads the bearing \
+         without changing the swing",
+        "air_drag: both take more from a wide swing; air drag lets the swing fade slowly at the \
+         end, the bearing stops it",
     ],
-    experiment: "let the chain swing freely from a wide angle until it stops, then repeat with a mass added \
-     close to the bearing",
+    experiment: "let the chain swing freely from a wide angle until it stops, then repeat with a \
+     mass added close to the bearing",
     reference: "Bowden, Tabor, The Friction and Lubrication of Solids (1950)",
 };
 

@@ -1,8 +1,6 @@
 //! Cable spring: a cable across the joint pulls it toward a rest angle.
 
-use super::{
-    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -k (q - q_0).
 #[derive(Debug)]
@@ -35,25 +33,17 @@ static INFO: EffectInfo = EffectInfo {
             starts: &[0.0, -1.0, 1.0],
         },
     ],
-    looks_like: "a static error that is a straight line over the joint angle, the same at every speed",
+    looks_like: "a static error that is a straight line over the joint angle, the same at every \
+     speed",
     confused_with: &[
-        Confusion {
-            with: "mass",
-            why: "near hanging, gravity is a straight line over angle too; turn the rig or add a mass, \
-             which leaves the cable alone",
-        },
-        Confusion {
-            with: "com_angle",
-            why: "both shift where the arm rests; the cable keeps its angle at the joint when the rig \
-             is turned",
-        },
-        Confusion {
-            with: "cogging",
-            why: "over a short range one ripple is a straight line too; go around a wider range",
-        },
+        "mass: near hanging, gravity is a straight line over angle too; turn the rig or add a \
+         mass, which leaves the cable alone",
+        "com_angle: both shift where the arm rests; the cable keeps its angle at the joint when \
+         the rig is turned",
+        "cogging: over a short range one ripple is a straight line too; go around a wider range",
     ],
-    experiment: "hold the joint still at many angles over its whole range, then repeat with the cable \
-     loosened",
+    experiment: "hold the joint still at many angles over its whole range, then repeat with the \
+     cable loosened",
     reference: "Hooke, Lectures de Potentia Restitutiva (1678)",
 };
 

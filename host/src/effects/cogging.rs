@@ -1,8 +1,6 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
-use super::{
-    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
 use crate::dynamics::Lane;
 use std::f64::consts::PI;
 
@@ -30,7 +28,8 @@ static INFO: EffectInfo = EffectInfo {
         Parameter {
             key: "periods_per_turn",
             unit: "1",
-            meaning: "ripples in one turn of the joint; one or two would be gravity, not teeth or poles",
+            meaning: "ripples in one turn of the joint; one or two would be gravity, not teeth or \
+             poles",
             off: None,
             typical: (4.0, 60.0),
             bounds: (3.0, 200.0),
@@ -48,25 +47,17 @@ static INFO: EffectInfo = EffectInfo {
             starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
         },
     ],
-    looks_like: "the residual torque repeats over the joint angle at every speed; in time its frequency grows \
-     with the speed",
+    looks_like: "the residual torque repeats over the joint angle at every speed; in time its \
+     frequency grows with the speed",
     confused_with: &[
-        Confusion {
-            with: "cable_spring",
-            why: "over a short range one ripple is a straight line too; go around a wider range",
-        },
-        Confusion {
-            with: "com_angle",
-            why: "one period per turn is a shifted centre of mass; more than one cannot be",
-        },
-        Confusion {
-            with: "encoder_scale",
-            why: "an angle read wrongly makes gravity look wrong periodically too; turn the axis \
-             upright, where only the ripple remains",
-        },
+        "cable_spring: over a short range one ripple is a straight line too; go around a wider \
+         range",
+        "com_angle: one period per turn is a shifted centre of mass; more than one cannot be",
+        "encoder_scale: an angle read wrongly makes gravity look wrong periodically too; turn the \
+         axis upright, where only the ripple remains",
     ],
-    experiment: "turn slowly at two constant speeds and plot the torque over the angle: the curves must lie \
-     on each other",
+    experiment: "turn slowly at two constant speeds and plot the torque over the angle: the curves \
+     must lie on each other",
     reference: "Holtz, Springob, IEEE Transactions on Industrial Electronics 43 (1996) 309",
 };
 

@@ -1,6 +1,6 @@
 //! Centre-of-mass angle: the centre of mass lies beside the line between the joints.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// m g l_c sin(q + a), for a link that hangs at q = 0.
 #[derive(Debug)]
@@ -22,35 +22,21 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (-3.2, 3.2),
         starts: &[0.05, -0.05],
     }],
-    looks_like: "a static error that follows the cosine of the angle from hanging; the arm hangs off its zero",
+    looks_like: "a static error that follows the cosine of the angle from hanging; the arm hangs \
+     off its zero",
     confused_with: &[
-        Confusion {
-            with: "encoder_zero",
-            why: "both shift the angle at which gravity vanishes; in a chain an encoder offset turns \
-             the outer links too",
-        },
-        Confusion {
-            with: "base_tilt",
-            why: "both shift the angle at which gravity vanishes; turn the rig by 180 degrees: a tilt \
-             keeps its side in the world, this one its side of the body",
-        },
-        Confusion {
-            with: "cable_spring",
-            why: "both shift where the arm rests; turn the rig, and the cable keeps its angle at the \
-             joint",
-        },
-        Confusion {
-            with: "cogging",
-            why: "a ripple of one period per turn looks the same; with the axis upright only the \
-             ripple remains",
-        },
-        Confusion {
-            with: "direction_asymmetry",
-            why: "both pull one way; the asymmetry is gone at rest",
-        },
+        "encoder_zero: both shift the angle at which gravity vanishes; in a chain an encoder \
+         offset turns the outer links too",
+        "base_tilt: both shift the angle at which gravity vanishes; turn the rig by 180 degrees: \
+         a tilt keeps its side in the world, this one its side of the body",
+        "cable_spring: both shift where the arm rests; turn the rig, and the cable keeps its \
+         angle at the joint",
+        "cogging: a ripple of one period per turn looks the same; with the axis upright only the \
+         ripple remains",
+        "direction_asymmetry: both pull one way; the asymmetry is gone at rest",
     ],
-    experiment: "let the arm hang freely and read its angle, then turn the rig by 180 degrees and read it \
-     again",
+    experiment: "let the arm hang freely and read its angle, then turn the rig by 180 degrees and \
+     read it again",
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 

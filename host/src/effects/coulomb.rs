@@ -1,6 +1,6 @@
 //! Coulomb friction: the same resistance at every speed, and a hold at rest.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
 #[derive(Debug)]
@@ -22,27 +22,17 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 10.0),
         starts: &[0.02, 0.1],
     }],
-    looks_like: "the residual torque is a square wave in step with the sign of the speed; a free swing loses the \
-                 same angle every half period (straight envelope) and stops off the bottom",
+    looks_like: "the residual torque is a square wave in step with the sign of the speed; a free \
+     swing loses the same angle every half period (straight envelope) and stops off the bottom",
     confused_with: &[
-        Confusion {
-            with: "dead_zone",
-            why: "both swallow small commands; with the torque off only friction remains",
-        },
-        Confusion {
-            with: "stribeck",
-            why: "both jump at reversal; Stribeck's part fades as speed grows",
-        },
-        Confusion {
-            with: "load_friction",
-            why: "the same at one load; change the mass or the arm's length",
-        },
-        Confusion {
-            with: "bearing_friction",
-            why: "the same under one force; add mass at the joint, which loads the bearing alone",
-        },
+        "dead_zone: both swallow small commands; with the torque off only friction remains",
+        "stribeck: both jump at reversal; Stribeck's part fades as speed grows",
+        "load_friction: the same at one load; change the mass or the arm's length",
+        "bearing_friction: the same under one force; add mass at the joint, which loads the \
+         bearing alone",
     ],
-    experiment: "let the arm swing freely with the torque off, or move it slowly up and down at two constant speeds",
+    experiment: "let the arm swing freely with the torque off, or move it slowly up and down at \
+     two constant speeds",
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 

@@ -1,6 +1,6 @@
 //! Dead zone: the drive swallows small commands.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full
 /// range.
@@ -34,27 +34,19 @@ static INFO: EffectInfo = EffectInfo {
             starts: &[0.0, 0.03],
         },
     ],
-    looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it hunts in a \
-     limit cycle; with the torque off nothing remains of it",
+    looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it \
+     hunts in a limit cycle; with the torque off nothing remains of it",
     confused_with: &[
-        Confusion {
-            with: "coulomb",
-            why: "both swallow small commands; with the torque off only friction remains",
-        },
-        Confusion {
-            with: "backlash",
-            why: "both leave a plateau; backlash has a fixed width in angle after each reversal, a \
-             dead zone a fixed width in command",
-        },
-        Confusion {
-            with: "stribeck",
-            why: "both leave small commands without motion; breakaway grows neither with the supply \
-             nor with the duty, and stays with the torque off",
-        },
+        "coulomb: both swallow small commands; with the torque off only friction remains",
+        "backlash: both leave a plateau; backlash has a fixed width in angle after each reversal, \
+         a dead zone a fixed width in command",
+        "stribeck: both leave small commands without motion; breakaway grows neither with the \
+         supply nor with the duty, and stays with the torque off",
     ],
-    experiment: "ramp the command slowly through zero at two loads, then drop the arm with the torque off",
-    reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996); \
-     ROBOTIS AX-12 manual, compliance margin and punch",
+    experiment: "ramp the command slowly through zero at two loads, then drop the arm with the \
+     torque off",
+    reference: "Tao, Kokotovic, Adaptive Control of Systems with Actuator and Sensor \
+     Nonlinearities (1996); ROBOTIS AX-12 manual, compliance margin and punch",
 };
 
 impl Effect for DeadZone {

@@ -1,6 +1,6 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// u(t - T).
 #[derive(Debug)]
@@ -22,17 +22,11 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 0.5),
         starts: &[0.02, 0.08],
     }],
-    looks_like: "the simulated motion runs ahead of the measured one by the same time at every speed; input and \
-                 residual correlate best at that lag",
+    looks_like: "the simulated motion runs ahead of the measured one by the same time at every \
+     speed; input and residual correlate best at that lag",
     confused_with: &[
-        Confusion {
-            with: "sensor_lag",
-            why: "both lag; a filter also flattens fast motion, and it lags a free swing too",
-        },
-        Confusion {
-            with: "viscous",
-            why: "both trail the input; friction trails less as the motion slows",
-        },
+        "sensor_lag: both lag; a filter also flattens fast motion, and it lags a free swing too",
+        "viscous: both trail the input; friction trails less as the motion slows",
     ],
     experiment: "drive a chirp: only a delay's phase grows in proportion to the frequency",
     reference: "Ljung, System Identification, 2nd ed., section 4.2",

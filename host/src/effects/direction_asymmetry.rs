@@ -1,6 +1,6 @@
 //! Direction asymmetry: one direction resists more than the other.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
 #[derive(Debug)]
@@ -22,22 +22,16 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (-5.0, 5.0),
         starts: &[0.01, -0.01],
     }],
-    looks_like: "the residual torque has one constant sign while the joint moves, whichever way it goes, and \
-     none while it rests",
+    looks_like: "the residual torque has one constant sign while the joint moves, whichever way it \
+     goes, and none while it rests",
     confused_with: &[
-        Confusion {
-            with: "encoder_zero",
-            why: "gravity at a shifted angle is a near constant torque too, but it is there at rest \
-             and changes with the angle",
-        },
-        Confusion {
-            with: "com_angle",
-            why: "a shifted centre of mass pulls one way too, also at rest; turn the arm to another \
-             angle",
-        },
+        "encoder_zero: gravity at a shifted angle is a near constant torque too, but it is there \
+         at rest and changes with the angle",
+        "com_angle: a shifted centre of mass pulls one way too, also at rest; turn the arm to \
+         another angle",
     ],
-    experiment: "move slowly both ways through the same angles, then mount the joint reversed and repeat: the \
-     sign must turn",
+    experiment: "move slowly both ways through the same angles, then mount the joint reversed and \
+     repeat: the sign must turn",
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 

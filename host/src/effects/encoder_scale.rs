@@ -1,6 +1,6 @@
 //! Encoder scale: the reading stretches the angle.
 
-use super::{AtRest, Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// s q.
 #[derive(Debug)]
@@ -22,27 +22,16 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.5, 2.0),
         starts: &[0.98, 1.02],
     }],
-    looks_like: "an error in proportion to the angle from the encoder's zero, the same at rest and in motion",
+    looks_like: "an error in proportion to the angle from the encoder's zero, the same at rest and \
+     in motion",
     confused_with: &[
-        Confusion {
-            with: "mass",
-            why: "both make gravity look wrong over the angle; mass leaves the angle between two stops \
-             alone",
-        },
-        Confusion {
-            with: "armature",
-            why: "both change the acceleration that is read; armature leaves the angle between two \
-             stops alone",
-        },
-        Confusion {
-            with: "encoder_zero",
-            why: "the same at one angle; read at two stops far apart",
-        },
-        Confusion {
-            with: "cogging",
-            why: "both make the torque wrong over the angle; a ripple leaves the angle between two \
-             stops alone",
-        },
+        "mass: both make gravity look wrong over the angle; mass leaves the angle between two \
+         stops alone",
+        "armature: both change the acceleration that is read; armature leaves the angle between \
+         two stops alone",
+        "encoder_zero: the same at one angle; read at two stops far apart",
+        "cogging: both make the torque wrong over the angle; a ripple leaves the angle between \
+         two stops alone",
     ],
     experiment: "move between two stops at a known angle from each other",
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",

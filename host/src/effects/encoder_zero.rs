@@ -1,6 +1,6 @@
 //! Encoder zero: the reading is off by a constant.
 
-use super::{AtRest, Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// q + o.
 #[derive(Debug)]
@@ -24,24 +24,12 @@ static INFO: EffectInfo = EffectInfo {
     }],
     looks_like: "a constant error of the angle; the torque of gravity peaks at the wrong reading",
     confused_with: &[
-        Confusion {
-            with: "com_angle",
-            why: "both shift the angle at which gravity vanishes; in a chain an encoder offset turns \
-             the outer links too",
-        },
-        Confusion {
-            with: "base_tilt",
-            why: "both shift the angle at which gravity vanishes; a tilt changes its sign at the joint \
-             when the rig is turned",
-        },
-        Confusion {
-            with: "encoder_scale",
-            why: "the same at one angle; read at two stops far apart",
-        },
-        Confusion {
-            with: "direction_asymmetry",
-            why: "both leave a torque of one sign; the asymmetry is gone at rest",
-        },
+        "com_angle: both shift the angle at which gravity vanishes; in a chain an encoder offset \
+         turns the outer links too",
+        "base_tilt: both shift the angle at which gravity vanishes; a tilt changes its sign at \
+         the joint when the rig is turned",
+        "encoder_scale: the same at one angle; read at two stops far apart",
+        "direction_asymmetry: both leave a torque of one sign; the asymmetry is gone at rest",
     ],
     experiment: "move against a stop at a known angle, then turn the rig by 180 degrees and repeat",
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",

@@ -1,6 +1,6 @@
 //! What an effect says of itself.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Where in the chain command -> drive -> joint -> body -> sensor an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,10 +101,27 @@ pub struct EffectInfo {
     pub parameters: &'static [Parameter],
     /// What a log shows.
     pub looks_like: &'static str,
-    /// What it is taken for.
-    pub confused_with: &'static [Confusion],
+    /// What it is taken for: `id: why they look alike; what tells them apart`.
+    #[serde(serialize_with = "as_confusions")]
+    pub confused_with: &'static [&'static str],
     /// The experiment that reveals it.
     pub experiment: &'static str,
     /// Where the law comes from.
     pub reference: &'static str,
+}
+
+impl EffectInfo {
+    /// What it is taken for.
+    pub fn confusions(&self) -> impl Iterator<Item = Confusion> {
+        confusions(self.confused_with)
+    }
+}
+
+fn confusions(texts: &[&'static str]) -> impl Iterator<Item = Confusion> {
+    let parts = texts.iter().filter_map(|text| text.split_once(": "));
+    parts.map(|(with, why)| Confusion { with, why })
+}
+
+fn as_confusions<S: Serializer>(texts: &[&'static str], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(confusions(texts))
 }

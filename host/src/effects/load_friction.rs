@@ -1,6 +1,6 @@
 //! Load friction: what the gear transmits presses its teeth together.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
@@ -22,21 +22,17 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 2.0),
         starts: &[0.05, 0.2],
     }],
-    looks_like: "the resistance grows where the arm is held level and falls where it hangs; a heavier load \
-     sticks harder",
+    looks_like: "the resistance grows where the arm is held level and falls where it hangs; a \
+     heavier load sticks harder",
     confused_with: &[
-        Confusion {
-            with: "coulomb",
-            why: "the same at one load; change the mass or the length of the arm",
-        },
-        Confusion {
-            with: "air_drag",
-            why: "fast motion loads the gear too; repeat slowly, where only load friction remains",
-        },
+        "coulomb: the same at one load; change the mass or the length of the arm",
+        "air_drag: fast motion loads the gear too; repeat slowly, where only load friction \
+         remains",
     ],
-    experiment: "lift and lower slowly with two masses, and compare the width between lifting and lowering",
-    reference: "Duclusaud, Passault, Padois, Ly, Extended Friction Models for the Physics Simulation of \
-     Servo Actuators, arXiv:2410.08650, model M3",
+    experiment: "lift and lower slowly with two masses, and compare the width between lifting and \
+     lowering",
+    reference: "Duclusaud, Passault, Padois, Ly, Extended Friction Models for the Physics \
+     Simulation of Servo Actuators, arXiv:2410.08650, model M3",
 };
 
 impl Effect for LoadFriction {

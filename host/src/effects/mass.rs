@@ -1,6 +1,6 @@
 //! Mass: the link is heavier or lighter than in the model.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
@@ -28,30 +28,19 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (-1.0, 5.0),
         starts: &[0.05, -0.05],
     }],
-    looks_like: "gravity and inertia are wrong by the same share: the arm holds at another duty, but swings \
-     freely with the right period",
+    looks_like: "gravity and inertia are wrong by the same share: the arm holds at another duty, \
+     but swings freely with the right period",
     confused_with: &[
-        Confusion {
-            with: "armature",
-            why: "both make the arm sluggish; armature adds no gravity: hold still first",
-        },
-        Confusion {
-            with: "encoder_scale",
-            why: "both make gravity look wrong over the angle; a scale also changes the angle between \
-             two stops",
-        },
-        Confusion {
-            with: "torque_scale",
-            why: "a weaker drive answers less too, and one log may not tell; weigh the link, or hold a \
-             known added mass",
-        },
-        Confusion {
-            with: "cable_spring",
-            why: "near hanging, a spring is like gravity; turn the rig or add a mass, which leaves the \
-             cable alone",
-        },
+        "armature: both make the arm sluggish; armature adds no gravity: hold still first",
+        "encoder_scale: both make gravity look wrong over the angle; a scale also changes the \
+         angle between two stops",
+        "torque_scale: a weaker drive answers less too, and one log may not tell; weigh the link, \
+         or hold a known added mass",
+        "cable_spring: near hanging, a spring is like gravity; turn the rig or add a mass, which \
+         leaves the cable alone",
     ],
-    experiment: "hold still at several angles, then swing freely, then repeat with a known mass added",
+    experiment: "hold still at several angles, then swing freely, then repeat with a known mass \
+     added",
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 

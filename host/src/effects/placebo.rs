@@ -31,7 +31,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "nothing: it has no cause",
     confused_with: &[],
     experiment: "none",
-    reference: "permutation control; Good, Permutation, Parametric and Bootstrap Tests of Hypotheses, 3rd ed. (2005)",
+    reference: "permutation control; Good, Permutation, Parametric and Bootstrap Tests of \
+     Hypotheses, 3rd ed. (2005)",
 };
 
 impl Effect for Placebo {

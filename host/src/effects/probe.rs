@@ -65,10 +65,7 @@ impl ProbeVariable {
 
     /// Index in [`ProbeVariable::ALL`], as a probe's second value.
     pub fn index(self) -> f64 {
-        ProbeVariable::ALL
-            .iter()
-            .position(|a| *a == self)
-            .unwrap_or(0) as f64
+        f64::from(self as u8)
     }
 
     /// What the term depends on, in words.
@@ -113,19 +110,16 @@ pub struct Probe {
     info: &'static EffectInfo,
 }
 
-macro_rules! probe {
-    ($name:ident, $info:ident, $id:literal, $site:expr) => {
-        static $info: EffectInfo = info($id, $site);
-        pub(super) static $name: Probe = Probe { info: &$info };
-    };
-}
+pub(super) static TIMING_PROBE: Probe = probe(&const { info("timing_probe", Site::Timing) });
+pub(super) static DRIVE_PROBE: Probe = probe(&const { info("drive_probe", Site::Drive) });
+pub(super) static JOINT_PROBE: Probe = probe(&const { info("joint_probe", Site::Joint) });
+pub(super) static BODY_PROBE: Probe = probe(&const { info("body_probe", Site::Body) });
+pub(super) static ENCODER_PROBE: Probe = probe(&const { info("encoder_probe", Site::Encoder) });
+pub(super) static SENSOR_PROBE: Probe = probe(&const { info("sensor_probe", Site::Sensor) });
 
-probe!(TIMING_PROBE, TIMING_INFO, "timing_probe", Site::Timing);
-probe!(DRIVE_PROBE, DRIVE_INFO, "drive_probe", Site::Drive);
-probe!(JOINT_PROBE, JOINT_INFO, "joint_probe", Site::Joint);
-probe!(BODY_PROBE, BODY_INFO, "body_probe", Site::Body);
-probe!(ENCODER_PROBE, ENCODER_INFO, "encoder_probe", Site::Encoder);
-probe!(SENSOR_PROBE, SENSOR_INFO, "sensor_probe", Site::Sensor);
+const fn probe(info: &'static EffectInfo) -> Probe {
+    Probe { info }
+}
 
 const fn info(id: &'static str, site: Site) -> EffectInfo {
     EffectInfo {

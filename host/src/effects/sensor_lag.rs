@@ -1,6 +1,6 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step.
@@ -23,24 +23,16 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 1.0),
         starts: &[0.02, 0.08],
     }],
-    looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a resting arm is \
-     read rightly",
+    looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a \
+     resting arm is read rightly",
     confused_with: &[
-        Confusion {
-            with: "delay",
-            why: "both trail; a delay shifts without rounding, and only what is driven",
-        },
-        Confusion {
-            with: "viscous",
-            why: "both make the reading trail; friction takes energy from a free swing, a lag does not",
-        },
-        Confusion {
-            with: "backlash",
-            why: "both trail the motion; backlash trails by the same angle at every speed",
-        },
+        "delay: both trail; a delay shifts without rounding, and only what is driven",
+        "viscous: both make the reading trail; friction takes energy from a free swing, a lag \
+         does not",
+        "backlash: both trail the motion; backlash trails by the same angle at every speed",
     ],
-    experiment: "drive a chirp: the reading of a filter shrinks and trails by at most a quarter of a period; \
-     then watch a free swing, which it trails too",
+    experiment: "drive a chirp: the reading of a filter shrinks and trails by at most a quarter of \
+     a period; then watch a free swing, which it trails too",
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 

@@ -100,12 +100,12 @@ fn over(range: &Range<f64>, y: impl Fn(f64) -> f64) -> Points {
 
 /// What to plot over what: labels of x and y, range of x, and y of the effect with its values at
 /// an x.
-type Law = (&'static str, &'static str, Range<f64>, Height);
+type PlotLaw = (&'static str, &'static str, Range<f64>, Height);
 type Height = fn(&dyn Effect, &[f64], f64) -> f64;
 
 /// Each site has its plot; where a law may depend on more than one quantity, the law itself is
 /// asked.
-fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> Law {
+fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
     let full = 0.0..FULL_TORQUE_NM;
     let over_delay: Height = |e, v, time_s| f64::from(time_s >= e.delay_s(v));
     let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);

@@ -1,8 +1,6 @@
 //! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
 
-use super::{
-    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// tau - tau_full w / w_0, with the no-load speed w_0.
 #[derive(Debug)]
@@ -24,30 +22,21 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.5, 10000.0),
         starts: &[8.0, 20.0],
     }],
-    looks_like: "at full duty the arm accelerates less the faster it turns; the residual torque is linear in \
-     speed, but only while the drive is energised",
+    looks_like: "at full duty the arm accelerates less the faster it turns; the residual torque is \
+     linear in speed, but only while the drive is energised",
     confused_with: &[
-        Confusion {
-            with: "viscous",
-            why: "both are linear in speed; repeat the drop with the torque on and off: back-EMF needs \
-             the energised drive",
-        },
-        Confusion {
-            with: "supply_sag",
-            why: "strong commands are fast ones too; hold a load at rest, where only sag remains",
-        },
-        Confusion {
-            with: "torque_saturation",
-            why: "both cap the acceleration at full duty; a torque limit acts at rest too",
-        },
-        Confusion {
-            with: "torque_scale",
-            why: "both weaken the drive; a scale acts at rest too",
-        },
+        "viscous: both are linear in speed; repeat the drop with the torque on and off: back-EMF \
+         needs the energised drive",
+        "supply_sag: strong commands are fast ones too; hold a load at rest, where only sag \
+         remains",
+        "torque_saturation: both cap the acceleration at full duty; a torque limit acts at rest \
+         too",
+        "torque_scale: both weaken the drive; a scale acts at rest too",
     ],
-    experiment: "drive at full duty from rest to the top speed, then drop the arm with the torque off",
-    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
-     chapter 5",
+    experiment: "drive at full duty from rest to the top speed, then drop the arm with the torque \
+     off",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control \
+     (2009), chapter 5",
 };
 
 impl Effect for SpeedLimit {

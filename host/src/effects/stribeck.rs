@@ -1,6 +1,6 @@
 //! Stiction and Stribeck friction: more resistance at rest than in motion.
 
-use super::{Confusion, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
@@ -36,27 +36,19 @@ static INFO: EffectInfo = EffectInfo {
             starts: &[0.15, 0.6],
         },
     ],
-    looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that fades as \
-     the speed grows",
+    looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that \
+     fades as the speed grows",
     confused_with: &[
-        Confusion {
-            with: "coulomb",
-            why: "both jump at reversal; Coulomb friction stays at every speed",
-        },
-        Confusion {
-            with: "dead_zone",
-            why: "both leave small commands without motion; a dead zone is gone with the torque off",
-        },
-        Confusion {
-            with: "backlash",
-            why: "both halt the reading at reversal; backlash halts it over a fixed angle, stiction \
-             until a fixed torque",
-        },
+        "coulomb: both jump at reversal; Coulomb friction stays at every speed",
+        "dead_zone: both leave small commands without motion; a dead zone is gone with the torque \
+         off",
+        "backlash: both halt the reading at reversal; backlash halts it over a fixed angle, \
+         stiction until a fixed torque",
     ],
-    experiment: "move slowly at several constant speeds from 0.05 rad/s up, and note the torque at which the \
-     resting arm breaks away",
-    reference: "Bo, Pavelescu, Wear 82 (1982) 277; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 \
-     (1994) 1083",
+    experiment: "move slowly at several constant speeds from 0.05 rad/s up, and note the torque at \
+     which the resting arm breaks away",
+    reference: "Bo, Pavelescu, Wear 82 (1982) 277; Armstrong-Helouvry, Dupont, Canudas de Wit, \
+     Automatica 30 (1994) 1083",
 };
 
 impl Effect for Stribeck {

@@ -1,8 +1,6 @@
 //! Supply sag: the source gives way under the current the drive draws.
 
-use super::{
-    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// tau (1 - d |u|).
 #[derive(Debug)]
@@ -24,30 +22,19 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 0.9),
         starts: &[0.1, 0.25],
     }],
-    looks_like: "strong commands give less than their share of torque; the torque bends over duty, alike in \
-     both directions",
+    looks_like: "strong commands give less than their share of torque; the torque bends over duty, \
+     alike in both directions",
     confused_with: &[
-        Confusion {
-            with: "supply_sensitivity",
-            why: "both weaken the torque as the volts fall; log the volts and repeat from a stiff \
-             source",
-        },
-        Confusion {
-            with: "torque_saturation",
-            why: "both bend the torque at strong commands; sag bends from zero on, a limit only above \
-             one torque",
-        },
-        Confusion {
-            with: "speed_limit",
-            why: "strong commands are fast ones too; hold a load at rest, where only sag remains",
-        },
-        Confusion {
-            with: "torque_scale",
-            why: "the same at one duty; compare weak and strong commands",
-        },
+        "supply_sensitivity: both weaken the torque as the volts fall; log the volts and repeat \
+         from a stiff source",
+        "torque_saturation: both bend the torque at strong commands; sag bends from zero on, a \
+         limit only above one torque",
+        "speed_limit: strong commands are fast ones too; hold a load at rest, where only sag \
+         remains",
+        "torque_scale: the same at one duty; compare weak and strong commands",
     ],
-    experiment: "hold a heavy and a light load at rest and compare the duties; then repeat from a supply with \
-     less resistance",
+    experiment: "hold a heavy and a light load at rest and compare the duties; then repeat from a \
+     supply with less resistance",
     reference: "Horowitz, Hill, The Art of Electronics, 3rd ed., chapter 1 (source resistance)",
 };
 

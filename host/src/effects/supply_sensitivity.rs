@@ -1,8 +1,6 @@
 //! Supply sensitivity: the torque follows the volts.
 
-use super::{
-    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// tau (1 + s (V / V_n - 1)).
 #[derive(Debug)]
@@ -24,21 +22,16 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 3.0),
         starts: &[1.0, 0.6],
     }],
-    looks_like: "the same command gives more motion on a full battery; the residual follows the logged volts",
+    looks_like: "the same command gives more motion on a full battery; the residual follows the \
+     logged volts",
     confused_with: &[
-        Confusion {
-            with: "supply_sag",
-            why: "both weaken the torque as the volts fall; sag follows the duty even where no volts \
-             are logged",
-        },
-        Confusion {
-            with: "torque_scale",
-            why: "the same at one supply; repeat at a second one",
-        },
+        "supply_sag: both weaken the torque as the volts fall; sag follows the duty even where no \
+         volts are logged",
+        "torque_scale: the same at one supply; repeat at a second one",
     ],
     experiment: "repeat one motion at two supplies a volt or more apart, with the volts logged",
-    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
-     chapter 5",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control \
+     (2009), chapter 5",
 };
 
 impl Effect for SupplySensitivity {

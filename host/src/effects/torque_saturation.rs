@@ -1,8 +1,6 @@
 //! Torque saturation: the drive gives no more than a limit.
 
-use super::{
-    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// max(-limit, min(limit, tau)).
 #[derive(Debug)]
@@ -24,19 +22,15 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.001, 100.0),
         starts: &[0.3, 1.0, 3.0],
     }],
-    looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is zero below it",
+    looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \
+     zero below it",
     confused_with: &[
-        Confusion {
-            with: "supply_sag",
-            why: "both bend the torque at strong commands; sag bends from zero on, a limit only above \
-             one torque",
-        },
-        Confusion {
-            with: "speed_limit",
-            why: "both cap the acceleration at full duty; a torque limit acts at rest too",
-        },
+        "supply_sag: both bend the torque at strong commands; sag bends from zero on, a limit \
+         only above one torque",
+        "speed_limit: both cap the acceleration at full duty; a torque limit acts at rest too",
     ],
-    experiment: "hold a load that grows step by step until the arm gives way, then repeat at another supply",
+    experiment: "hold a load that grows step by step until the arm gives way, then repeat at \
+     another supply",
     reference: "ROBOTIS AX-12 manual, stall torque and torque limit",
 };
 

@@ -1,8 +1,6 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
-use super::{
-    AtRest, Confusion, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
 
 /// s tau.
 #[derive(Debug)]
@@ -24,31 +22,19 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.05, 10.0),
         starts: &[0.85, 1.15],
     }],
-    looks_like: "every response to the drive is too strong or too weak by one share, at every speed and in \
-     both directions",
+    looks_like: "every response to the drive is too strong or too weak by one share, at every \
+     speed and in both directions",
     confused_with: &[
-        Confusion {
-            with: "mass",
-            why: "a heavier arm answers the drive less too, and one log may not tell; weigh the link, \
-             or hold a known added mass",
-        },
-        Confusion {
-            with: "supply_sag",
-            why: "the same at one duty; compare weak and strong commands",
-        },
-        Confusion {
-            with: "supply_sensitivity",
-            why: "the same at one supply; repeat at a second one",
-        },
-        Confusion {
-            with: "speed_limit",
-            why: "a wrong no-load speed also weakens the drive; hold a load at rest, where only the \
-             scale remains",
-        },
+        "mass: a heavier arm answers the drive less too, and one log may not tell; weigh the \
+         link, or hold a known added mass",
+        "supply_sag: the same at one duty; compare weak and strong commands",
+        "supply_sensitivity: the same at one supply; repeat at a second one",
+        "speed_limit: a wrong no-load speed also weakens the drive; hold a load at rest, where \
+         only the scale remains",
     ],
     experiment: "hold a known mass at a known arm and compare the duty with the model",
-    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), \
-     chapter 5",
+    reference: "Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control \
+     (2009), chapter 5",
 };
 
 impl Effect for TorqueScale {

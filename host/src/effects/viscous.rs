@@ -1,8 +1,6 @@
 //! Viscous friction: resistance in proportion to speed.
 
-use super::{
-    AtRest, Confusion, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope,
-};
+use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
 
 /// -c w.
 #[derive(Debug)]
@@ -24,30 +22,18 @@ static INFO: EffectInfo = EffectInfo {
         bounds: (0.0, 10.0),
         starts: &[0.01, 0.05],
     }],
-    looks_like: "the residual torque is a straight line over speed; a free swing shrinks by the same share \
-     every period",
+    looks_like: "the residual torque is a straight line over speed; a free swing shrinks by the \
+     same share every period",
     confused_with: &[
-        Confusion {
-            with: "speed_limit",
-            why: "both are linear in speed; repeat the drop with the torque on and off: friction \
-             remains with it off",
-        },
-        Confusion {
-            with: "air_drag",
-            why: "both grow with speed; drag is weak while slow and grows with the square",
-        },
-        Confusion {
-            with: "delay",
-            why: "both trail the input; friction trails less as the motion slows",
-        },
-        Confusion {
-            with: "sensor_lag",
-            why: "both make the reading trail; a lag in the sensor leaves the loss of energy of a free \
-             swing unchanged",
-        },
+        "speed_limit: both are linear in speed; repeat the drop with the torque on and off: \
+         friction remains with it off",
+        "air_drag: both grow with speed; drag is weak while slow and grows with the square",
+        "delay: both trail the input; friction trails less as the motion slows",
+        "sensor_lag: both make the reading trail; a lag in the sensor leaves the loss of energy \
+         of a free swing unchanged",
     ],
-    experiment: "let the arm swing freely with the torque off and plot the logarithm of its amplitude over \
-     time: a straight line",
+    experiment: "let the arm swing freely with the torque off and plot the logarithm of its \
+     amplitude over time: a straight line",
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 

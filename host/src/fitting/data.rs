@@ -1,16 +1,20 @@
 //! Motions cut into windows, with the weight of each joint's residual.
 
+use super::growth::stable_horizon;
 use super::noise::noise_rad;
+use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::Model;
+use rayon::prelude::*;
 use std::ops::Range;
 
-/// How long the model runs before it starts again from a state fitted to the measurement.
+/// How long the model runs at most before it starts again from a state fitted to the measurement.
+/// Where start errors grow fast, it starts again earlier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Horizon {
-    /// From the first sample of a motion to the last: free run.
+    /// From the first sample of a motion to the last where that motion is stable: free run.
     Whole,
-    /// Windows of about this many seconds: multiple shooting.
+    /// Windows of about this many seconds, or shorter: multiple shooting.
     Seconds(f64),
 }
 
@@ -26,6 +30,12 @@ impl Horizon {
     /// Windows of this many seconds; whole motions without.
     pub fn from_seconds(seconds: Option<f64>) -> Self {
         seconds.map_or(Horizon::Whole, Horizon::Seconds)
+    }
+
+    /// The shorter of two.
+    pub fn shorter(self, other: Horizon) -> Self {
+        let seconds = [self, other].into_iter().filter_map(Horizon::seconds);
+        Horizon::from_seconds(seconds.min_by(f64::total_cmp))
     }
 }
 
@@ -47,42 +57,93 @@ pub struct FitData {
     pub windows: Vec<Window>,
     /// Per joint: standard deviation of the measurement, rad, by which residuals are divided.
     pub sigma_rad: Vec<f64>,
+    /// Per motion: the longest windows in which start errors stay small.
+    stable: Vec<Horizon>,
 }
 
 impl FitData {
-    /// Cuts motions into windows; the noise is estimated from the motions and the declared
-    /// resolution.
+    /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
+    /// allow; the noise is estimated from the motions and the declared resolution.
     pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
         let resolution = |joint: usize| model.log.joints[joint].position.resolution;
-        let sigma_rad = (0..model.link_count())
+        let sigma_rad: Vec<f64> = (0..model.link_count())
             .map(|joint| noise_rad(&motions, joint, resolution(joint)))
             .collect();
+        let stable = motions
+            .par_iter()
+            .map(|motion| stable_horizon(model, &sigma_rad, motion));
+        let stable: Vec<Horizon> = stable.collect();
         FitData {
-            windows: cut(&motions, horizon),
+            windows: cut(&motions, &stable, horizon),
             motions,
             sigma_rad,
+            stable,
+        }
+    }
+
+    /// The same motions with the weights of others: those that decide on a fit are weighted as those
+    /// it was fitted to.
+    pub fn weighted_like(self, other: &FitData) -> FitData {
+        FitData {
+            sigma_rad: other.sigma_rad.clone(),
+            ..self
         }
     }
 
     /// The same motions and weights cut at another horizon.
     pub fn recut(&self, horizon: Horizon) -> FitData {
         FitData {
-            windows: cut(&self.motions, horizon),
+            windows: cut(&self.motions, &self.stable, horizon),
             ..self.clone()
         }
     }
 
     /// One of the motions, cut as it is here.
     pub fn only(&self, motion: usize) -> FitData {
-        let windows = self.windows_of(motion).map(|(_, window)| Window {
-            motion: 0,
+        self.part(|m| m == motion)
+    }
+
+    /// The motions of both, with the weights of this one.
+    pub fn joined(&self, other: &FitData) -> FitData {
+        let mut joined = self.clone();
+        let moved = other.windows.iter().map(|window| Window {
+            motion: window.motion + self.motions.len(),
             samples: window.samples.clone(),
         });
+        joined.windows.extend(moved);
+        joined.motions.extend(other.motions.iter().cloned());
+        joined.stable.extend(&other.stable);
+        joined
+    }
+
+    /// Some of the motions, cut as they are here.
+    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
+        let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();
+        let windows = kept.iter().enumerate().flat_map(|(index, &motion)| {
+            self.windows_of(motion).map(move |(_, window)| Window {
+                motion: index,
+                samples: window.samples.clone(),
+            })
+        });
         FitData {
-            motions: vec![self.motions[motion].clone()],
             windows: windows.collect(),
+            motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             sigma_rad: self.sigma_rad.clone(),
+            stable: kept.iter().map(|&m| self.stable[m]).collect(),
         }
+    }
+
+    /// How long the windows of each motion are at this horizon.
+    pub fn motion_windows(&self, horizon: Horizon) -> Vec<MotionWindow> {
+        let motions = self.motions.iter().zip(&self.stable);
+        let windows = motions.map(|(motion, stable)| {
+            let seconds = stable.shorter(horizon).seconds();
+            MotionWindow {
+                motion: motion.name.clone(),
+                window_s: seconds.filter(|s| *s < motion.duration_s()),
+            }
+        });
+        windows.collect()
     }
 
     /// The windows of one motion with their indices, in order of time.
@@ -101,6 +162,17 @@ impl FitData {
         self.windows.iter().map(|w| w.samples.len()).sum()
     }
 
+    /// Duration of the longest window, s.
+    pub fn longest_window_s(&self) -> f64 {
+        let seconds = |window: &Window| {
+            let time = &self.motions[window.motion].time_s[window.samples.clone()];
+            time.last()
+                .zip(time.first())
+                .map_or(0.0, |(end, begin)| end - begin)
+        };
+        self.windows.iter().map(seconds).fold(0.0, f64::max)
+    }
+
     /// Duration of the longest motion, s.
     pub fn longest_s(&self) -> f64 {
         let durations = self.motions.iter().map(Motion::duration_s);
@@ -114,10 +186,10 @@ impl FitData {
     }
 }
 
-fn cut(motions: &[Motion], horizon: Horizon) -> Vec<Window> {
+fn cut(motions: &[Motion], stable: &[Horizon], horizon: Horizon) -> Vec<Window> {
     let mut windows = Vec::new();
-    for (motion, log) in motions.iter().enumerate() {
-        let pieces = match horizon {
+    for (motion, (log, stable)) in motions.iter().zip(stable).enumerate() {
+        let pieces = match stable.shorter(horizon) {
             Horizon::Whole => 1,
             Horizon::Seconds(seconds) => {
                 let most = (log.len() / 5).max(1);

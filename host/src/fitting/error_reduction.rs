@@ -6,8 +6,11 @@ use serde::Serialize;
 /// together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ErrorReduction {
-    /// Error before, rad.
+    /// Error before, rad: of the model as it was given.
     pub before_rad: f64,
+    /// Error of the same model with its free values refitted, rad; absent where that was not asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refitted_rad: Option<f64>,
     /// Error after, rad.
     pub after_rad: f64,
     /// What noise and resolution of the measurement alone leave, rad.

@@ -1,7 +1,8 @@
 //! Shooting nodes: the state a window starts from, guessed from the measurement, then fitted close
 //! to the guess.
 
-use super::data::{FitData, Window};
+use super::data::Window;
+use crate::log::Motion;
 use crate::sim::{Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};
 
@@ -31,14 +32,14 @@ const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 const REACH_S: f64 = 0.06;
 
 impl Guess {
-    /// From a parabola through the samples around the window's start.
-    pub fn of(data: &FitData, window: &Window) -> Guess {
-        let motion = &data.motions[window.motion];
+    /// From a parabola through the samples around the window's start; `sigma_rad` is each joint's
+    /// noise.
+    pub fn of(motion: &Motion, sigma_rad: &[f64], window: &Window) -> Guess {
         let (joints, first) = (motion.position_rad.len(), window.samples.start);
         let mut unknowns = DVector::zeros(3 * joints);
         let mut deviation = DVector::zeros(3 * joints);
-        for joint in 0..joints {
-            let (time, position) = (&motion.time_s, &motion.position_rad[joint]);
+        for (joint, position) in motion.position_rad.iter().enumerate() {
+            let time = &motion.time_s;
             let [wide, near] = [REACH_S, REACH_S / 2.0]
                 .map(|reach| LocalParabola::around(time, position, first, reach));
             for (order, least) in LEAST_DEVIATIONS.into_iter().enumerate() {
@@ -46,7 +47,7 @@ impl Guess {
                 unknowns[at] = wide.derivatives[order];
                 // Where a shorter parabola says otherwise, the motion is no parabola.
                 deviation[at] = least
-                    + data.sigma_rad[joint] * wide.gains[order]
+                    + sigma_rad[joint] * wide.gains[order]
                     + (wide.derivatives[order] - near.derivatives[order]).abs();
             }
             let speed = joints + joint;
@@ -91,8 +92,8 @@ impl Guess {
 
 impl Node {
     /// The node the samples around a window's start suggest.
-    pub fn guess(data: &FitData, window: &Window) -> Node {
-        Guess::of(data, window).node
+    pub fn guess(motion: &Motion, sigma_rad: &[f64], window: &Window) -> Node {
+        Guess::of(motion, sigma_rad, window).node
     }
 
     /// The simulator's start state.

@@ -8,15 +8,17 @@ use super::data::{FitData, Horizon};
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
-use super::horizon::longest_stable;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
-use super::staged::{fit_staged, initial_guess};
+use super::staged::fit_staged;
+use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, Model, ParameterPath};
 
+/// Over short windows the squared error has few false valleys: where start values are told apart, s.
+const SCREENING_S: f64 = 1.0;
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: FitOptions = FitOptions {
     rough: true,
@@ -35,8 +37,10 @@ pub struct Refitted {
     pub values: Vec<FittedValue>,
     /// Error before and after.
     pub error: ErrorReduction,
-    /// How long the model ran without correction.
+    /// How long the model ran without correction at most.
     pub horizon: Horizon,
+    /// How long the windows of each motion are, those held out last.
+    pub windows: Vec<MotionWindow>,
     /// Whether the search met its tolerance before its iterations ran out.
     pub converged: bool,
 }
@@ -102,58 +106,52 @@ pub fn refit(
     split: &Split,
     horizon: Option<Horizon>,
 ) -> Result<Refitted, Undetermined> {
-    let (data, horizon) = match horizon {
-        Some(_) => training(model, split, horizon),
-        // How long a run is stable depends on the values, which may be far off.
-        None => {
-            let whole = FitData::new(model, split.training.clone(), Horizon::Whole);
-            training(&initial_guess(model, free, &whole), split, None)
-        }
-    };
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
     finish(model, found, &data, split, horizon)
 }
 
-/// Adds the candidate and fits its values along with the model's free ones, from every start value
-/// of the effect. The error before is that of the model refitted without it. `progress` hears of
-/// starts done and starts in all.
+/// Adds the candidates, one after the other, and fits their values along with the model's free ones,
+/// from every start value of each effect. The error before is that of the model refitted without
+/// them. `progress` hears of starts done and starts in all.
 ///
 /// # Errors
 /// The motions do not determine the values.
 pub fn refit_with(
     model: &Model,
-    candidate: Candidate,
+    candidates: &[Candidate],
     split: &Split,
     horizon: Option<Horizon>,
     progress: &dyn Fn(usize, usize),
 ) -> Result<Refitted, Undetermined> {
-    let (data, horizon) = training(model, split, horizon);
-    let base = fit(model, &model.free, &data, None, FitOptions::default());
-    let mut free = model.free.clone();
-    free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
-
-    let starts = candidate.starts();
-    let screened = starts.iter().enumerate().map(|(done, start)| {
-        progress(done, starts.len());
-        let mut with = base.model.clone();
-        with.effects.push(candidate.instance(start));
-        // Whoever goes on with this model refits the new values too.
-        with.free.clone_from(&free);
-        fit(&with, &free, &data, Some(&base.nodes), SCREENING)
-    });
-    let cost = |fit: &Fit| fit.residuals.cost();
-    let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)));
-    progress(starts.len(), starts.len());
-    let from = best.unwrap_or_else(|| base.clone());
-    let options = FitOptions::default();
-    let found = fit(&from.model, &free, &data, Some(&from.nodes), options);
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let data = FitData::new(model, split.training.clone(), horizon);
+    let base = fit_staged(model, &model.free, &data);
+    let short = data.recut(horizon.shorter(Horizon::Seconds(SCREENING_S)));
+    let all: usize = candidates
+        .iter()
+        .map(|candidate| candidate.starts().len())
+        .sum();
+    let (mut done, mut with, mut free) = (0, base.model.clone(), model.free.clone());
+    for candidate in candidates {
+        free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
+        let screened = candidate.starts().into_iter().map(|start| {
+            progress(done, all);
+            done += 1;
+            let mut started = with.clone();
+            started.effects.push(candidate.instance(&start));
+            fit(&started, &free, &short, None, SCREENING)
+        });
+        let cost = |fit: &Fit| fit.residuals.cost();
+        let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        with = best.map_or(with.clone(), |best| best.model);
+    }
+    progress(all, all);
+    // Whoever goes on with this model refits the new values too.
+    with.free.clone_from(&free);
+    let found = fit_staged(&with, &free, &data);
     finish(&base.model, found, &data, split, horizon)
-}
-
-fn training(model: &Model, split: &Split, horizon: Option<Horizon>) -> (FitData, Horizon) {
-    let data = FitData::new(model, split.training.clone(), Horizon::Whole);
-    let horizon = horizon.unwrap_or_else(|| longest_stable(model, &data));
-    (data.recut(horizon), horizon)
 }
 
 fn finish(
@@ -171,17 +169,23 @@ fn finish(
         [] => data.clone(),
         held_out => FitData::new(before, held_out.to_vec(), horizon),
     };
+    let mut windows = data.motion_windows(horizon);
+    if !split.held_out.is_empty() {
+        windows.extend(judged.motion_windows(horizon));
+    }
     let rms_rad = |model: &Model| fit_start_states(model, &judged).rms_rad(&judged);
     Ok(Refitted {
         values,
         error: ErrorReduction {
             before_rad: rms_rad(before),
+            refitted_rad: None,
             after_rad: rms_rad(&found.model),
             floor_rad: judged.floor_rad(),
             held_out: !split.held_out.is_empty(),
             reduction: None,
         },
         free: found.free,
+        windows,
         converged: found.converged,
         model: found.model,
         horizon,

@@ -1,6 +1,6 @@
 //! The calls that start a fit, or go on with one.
 
-use super::data::FitData;
+use super::data::{FitData, Window};
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::node::{Guess, Node};
@@ -58,5 +58,6 @@ pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
 }
 
 fn guesses(data: &FitData) -> Vec<Guess> {
-    data.windows.iter().map(|w| Guess::of(data, w)).collect()
+    let guess = |w: &Window| Guess::of(&data.motions[w.motion], &data.sigma_rad, w);
+    data.windows.iter().map(guess).collect()
 }

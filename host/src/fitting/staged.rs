@@ -22,12 +22,7 @@ const STAGE: FitOptions = FitOptions {
 /// Root-mean-square weighted residual that leaves nothing to look for.
 const AT_FLOOR: f64 = 1.15;
 
-/// The model after the stages of short windows: near enough for [`super::longest_stable`] and a
-/// last fit.
-pub fn initial_guess(model: &Model, free: &[ParameterPath], data: &FitData) -> Model {
-    stages(model, free, data).0
-}
-
+/// The model after the stages of short windows, and the simulations that took.
 fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> (Model, usize) {
     let longest = data.windows.iter().map(|w| w.samples.len()).max();
     let mut at = model.clone();
@@ -47,7 +42,7 @@ fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> (Model, usiz
 /// Fits the free parameters from values that may be several times off; windows as in `data`.
 ///
 /// A plain fit that leaves nothing but noise is taken as it is. Otherwise the better one counts of
-/// the plain fit and one that starts where [`initial_guess`] ends.
+/// the plain fit and one that starts where the stages of short windows end.
 pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
     let plain = fit(model, free, data, None, FitOptions::default());
     let mean = plain.residuals.cost() / plain.residuals.count().max(1) as f64;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 /// Where a motion came from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct MotionSource {
     /// The file as the user named it.
     pub path: PathBuf,
@@ -14,7 +14,7 @@ pub struct MotionSource {
 }
 
 /// One motion. Every vector is as long as `time_s`; an input holds from its sample to the next.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Motion {
     /// File name, and the segment where a file holds several: `single_id.csv#3`.
     pub name: String,

@@ -30,6 +30,17 @@ impl LogRequest {
             .is_none_or(|(first, last)| (first..=last).contains(&number))
     }
 
+    /// Whether both want some row of the same file.
+    pub fn overlaps(&self, other: &LogRequest) -> bool {
+        let apart = match (self.rows, other.rows) {
+            (Some((first, last)), Some((other_first, other_last))) => {
+                last < other_first || other_last < first
+            }
+            _ => false,
+        };
+        self.path == other.path && !apart
+    }
+
     /// Why a log of so many rows cannot give the rows wanted, if it cannot.
     pub(super) fn beyond(&self, rows: usize) -> Option<LogReason> {
         let (first, last) = self.rows.filter(|(_, last)| *last >= rows)?;

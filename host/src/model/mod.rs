@@ -28,6 +28,7 @@ pub use reason::{ModelReason, PathReason};
 pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
+use crate::effects::{self, Effect};
 use crate::error::Result;
 use std::path::Path;
 
@@ -186,7 +187,7 @@ pub struct Motor {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectInstance {
     /// Which effect.
-    pub effect: &'static dyn crate::effects::Effect,
+    pub effect: &'static dyn Effect,
     /// Joint index from 0; `None` acts on the whole rig.
     pub joint: Option<usize>,
     /// Values in the order of the effect's parameters.
@@ -224,10 +225,27 @@ impl Model {
         self.links.len()
     }
 
+    /// Joints that something drives, from the base outwards, counted from 0.
+    pub fn driven_joints(&self) -> Vec<usize> {
+        (0..self.joints.len())
+            .filter(|&joint| self.joints[joint].drive.is_driven())
+            .collect()
+    }
+
     /// Whether a sensor's reading trails the motion.
     pub fn trails(&self) -> bool {
         let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);
         self.effects.iter().any(|e| trail(e).is_some())
+    }
+
+    /// Adds an effect of the library at a joint, if there is one of this id.
+    pub(crate) fn add_effect(&mut self, id: &str, joint: usize, values: Vec<f64>) {
+        self.effects
+            .extend(effects::named(id).map(|effect| EffectInstance {
+                effect,
+                joint: Some(joint),
+                values,
+            }));
     }
 
     /// Whether the model already holds this effect at this joint.

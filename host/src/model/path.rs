@@ -96,19 +96,17 @@ impl ParameterPath {
         match *self {
             ParameterPath::Link { field, .. } => field.bounds(),
             ParameterPath::Joint { .. } => POSITIVE,
-            ParameterPath::Effect { id, parameter, .. } => {
-                parameter_of(id, parameter).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds)
-            }
+            ParameterPath::Effect { .. } => self
+                .parameter()
+                .map_or((f64::NEG_INFINITY, f64::INFINITY), |p| p.bounds),
         }
     }
 
     /// Unit as shown to people: `N m`, `kg m^2`.
     pub fn unit(&self) -> &'static str {
-        match *self {
-            ParameterPath::Effect { id, parameter, .. } => {
-                parameter_of(id, parameter).map_or("", |p| p.unit)
-            }
-            _ => split_unit(self.key()).map_or("", |(_, unit)| unit),
+        match self.parameter() {
+            Some(parameter) => parameter.unit,
+            None => split_unit(self.key()).map_or("", |(_, unit)| unit),
         }
     }
 
@@ -117,15 +115,17 @@ impl ParameterPath {
         match *self {
             ParameterPath::Link { field, .. } => field.key(),
             ParameterPath::Joint { field, .. } => field.key(),
-            ParameterPath::Effect { id, parameter, .. } => {
-                parameter_of(id, parameter).map_or("", |p| p.key)
-            }
+            ParameterPath::Effect { .. } => self.parameter().map_or("", |p| p.key),
         }
     }
-}
 
-fn parameter_of(id: &str, parameter: usize) -> Option<&'static effects::Parameter> {
-    effects::named(id)?.info().parameters.get(parameter)
+    /// The effect's parameter, of the value of an effect.
+    fn parameter(&self) -> Option<&'static effects::Parameter> {
+        let ParameterPath::Effect { id, parameter, .. } = *self else {
+            return None;
+        };
+        effects::named(id)?.info().parameters.get(parameter)
+    }
 }
 
 impl fmt::Display for ParameterPath {

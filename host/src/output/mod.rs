@@ -2,9 +2,10 @@
 //! for people: [`number`].
 
 pub mod number;
+pub mod table;
 
 use crate::error::{Error, Result};
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 /// Writes `text` to `path` through a temporary file beside it, synced before it takes the name.
@@ -12,15 +13,7 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Usage`] if the file exists and `force` is false; [`Error::File`] if the system refuses.
 pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
-    let exists = || {
-        Error::usage(
-            format!("{} exists", path.display()),
-            "choose another name or pass --force",
-        )
-    };
-    if !force && path.symlink_metadata().is_ok() {
-        return Err(exists());
-    }
+    vacant(path, force)?;
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -29,15 +22,33 @@ pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
     let mut file = temporary(folder).map_err(refused)?;
     file.write_all(text.as_bytes()).map_err(refused)?;
     file.as_file().sync_all().map_err(refused)?;
-    if force {
-        file.persist(path).map_err(|error| refused(error.error))?;
-        return Ok(());
-    }
-    match file.persist_noclobber(path) {
+    let kept = match force {
+        true => file.persist(path),
+        false => file.persist_noclobber(path),
+    };
+    match kept.map_err(|error| error.error) {
         Ok(_) => Ok(()),
-        Err(error) if error.error.kind() == std::io::ErrorKind::AlreadyExists => Err(exists()),
-        Err(error) => Err(refused(error.error)),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(exists(path)),
+        Err(error) => Err(refused(error)),
     }
+}
+
+/// Refuses a name that is taken before the work begins, not after it.
+///
+/// # Errors
+/// [`Error::Usage`] if the file exists and may not be replaced.
+pub fn vacant(path: &Path, force: bool) -> Result<()> {
+    match !force && path.symlink_metadata().is_ok() {
+        true => Err(exists(path)),
+        false => Ok(()),
+    }
+}
+
+fn exists(path: &Path) -> Error {
+    Error::usage(
+        format!("{} exists", path.display()),
+        "choose another name or pass --force",
+    )
 }
 
 /// A new file with the permissions any new file gets; a temporary one would be closed to others.

@@ -48,12 +48,12 @@ pub(crate) fn given(value: f64) -> String {
 }
 
 /// An angle in milliradians, without the unit.
-pub(crate) fn mrad(value_rad: f64) -> String {
+pub fn mrad(value_rad: f64) -> String {
     short(1e3 * value_rad)
 }
 
 /// As [`mrad`], with three digits at most behind the point, as columns that are compared have them.
-pub(crate) fn mrad_in_column(value_rad: f64) -> String {
+pub fn mrad_in_column(value_rad: f64) -> String {
     let value = 1e3 * value_rad;
     let digits = match value.abs() {
         v if v >= 99.95 => 0,

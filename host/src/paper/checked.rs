@@ -1,8 +1,8 @@
 //! Printed against computed: the printed digits decide.
 
 use super::computed::Computed;
-use super::printed::{PRINTED, Printed, Quantity};
-use crate::sysid::Interval;
+use super::printed::{Printed, PrintedQuantity, printed};
+use crate::sysid::IntervalEstimate;
 use std::fmt;
 
 /// Most digits that may differ for a misprint to be one of digits.
@@ -10,7 +10,7 @@ const MOST_DIGITS: usize = 2;
 
 /// How a print compares.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Agreement {
     /// To every printed digit, or inside the 95 % interval of what was estimated.
     Agrees,
     /// The digits agree, the sign does not.
@@ -23,53 +23,49 @@ pub enum Verdict {
 
 /// One number.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct CheckedNumber {
     /// As printed.
     pub printed: Printed,
     /// As computed.
-    pub computed: Interval,
+    pub computed: IntervalEstimate,
     /// How they compare.
-    pub verdict: Verdict,
+    pub verdict: Agreement,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Verdict::Agrees => f.write_str("agrees"),
-            Verdict::Sign => f.write_str("misprint: sign lost"),
-            Verdict::Digits(printed, meant) => write!(f, "misprint: {printed} for {meant}"),
-            Verdict::Differs => f.write_str("differs"),
+            Agreement::Agrees => f.write_str("agrees"),
+            Agreement::Sign => f.write_str("misprint: sign lost"),
+            Agreement::Digits(printed, meant) => write!(f, "misprint: {printed} for {meant}"),
+            Agreement::Differs => f.write_str("differs"),
         }
     }
 }
 
-impl Row {
+impl CheckedNumber {
     /// The computed value to one digit more than the print, or with its interval.
     pub fn computed_text(&self) -> String {
-        let digits = decimals(self.printed.text);
+        let (digits, computed) = (decimals(self.printed.text), &self.computed);
+        let half = computed.high - computed.value;
         match self.printed.quantity {
-            Quantity::Servo(_) => format!(
-                "{:.2$} +- {:.2$}",
-                self.computed.value,
-                self.computed.high - self.computed.value,
-                digits
-            ),
-            _ => format!("{:.*}", digits + 1, self.computed.value),
+            PrintedQuantity::Servo(_) => format!("{:.digits$} +- {half:.digits$}", computed.value),
+            _ => format!("{:.*}", digits + 1, computed.value),
         }
     }
 }
 
 /// Every printed number beside its computed one.
-pub fn check(computed: &Computed) -> Vec<Row> {
-    let row = |printed: &Printed| {
+pub fn check(computed: &Computed) -> Vec<CheckedNumber> {
+    let check = |printed: Printed| {
         let value = computed.value(printed.quantity);
-        Row {
-            printed: *printed,
+        CheckedNumber {
+            verdict: verdict(&printed, &value),
             computed: value,
-            verdict: verdict(printed, &value),
+            printed,
         }
     };
-    PRINTED.iter().map(row).collect()
+    printed().into_iter().map(check).collect()
 }
 
 /// Digits behind the point.
@@ -77,66 +73,58 @@ fn decimals(text: &str) -> usize {
     text.split_once('.').map_or(0, |(_, behind)| behind.len())
 }
 
-fn verdict(printed: &Printed, computed: &Interval) -> Verdict {
+fn verdict(printed: &Printed, computed: &IntervalEstimate) -> Agreement {
     let Ok(value) = printed.text.parse::<f64>() else {
-        return Verdict::Differs;
+        return Agreement::Differs;
     };
-    if let Quantity::Servo(_) = printed.quantity {
+    if let PrintedQuantity::Servo(_) = printed.quantity {
         return match computed.holds(value) {
-            true => Verdict::Agrees,
-            false => Verdict::Differs,
+            true => Agreement::Agrees,
+            false => Agreement::Differs,
         };
     }
     let digits = decimals(printed.text);
     // Half a unit of the last printed digit, and what binary numbers add to it.
     let half = 0.5 * 10f64.powi(-(digits as i32)) * (1.0 + 1e-9);
     let near = |value: f64| (value - computed.value).abs() <= half + 1e-12 * computed.value.abs();
-    if near(value) {
-        return Verdict::Agrees;
-    }
-    if near(-value) {
-        return Verdict::Sign;
-    }
     let meant = format!("{:.digits$}", computed.value);
-    let differing = printed
-        .text
-        .chars()
-        .zip(meant.chars())
-        .filter(|(a, b)| a != b);
-    let same_length = printed.text.len() == meant.len();
-    if same_length && differing.count() <= MOST_DIGITS {
-        return Verdict::Digits(printed.text.to_string(), meant);
+    let pairs = printed.text.chars().zip(meant.chars());
+    let few = pairs.filter(|(a, b)| a != b).count() <= MOST_DIGITS;
+    match printed.text.len() == meant.len() && few {
+        _ if near(value) => Agreement::Agrees,
+        _ if near(-value) => Agreement::Sign,
+        true => Agreement::Digits(printed.text.to_string(), meant),
+        false => Agreement::Differs,
     }
-    Verdict::Differs
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn judged(text: &'static str, computed: f64) -> Verdict {
+    fn judged(text: &'static str, computed: f64) -> Agreement {
         let printed = Printed {
             place: "",
-            quantity: Quantity::Pole(0),
+            quantity: PrintedQuantity::Pole(0),
             text,
             in_paper: true,
         };
-        verdict(&printed, &Interval::around(computed, 0.0))
+        verdict(&printed, &IntervalEstimate::around(computed, 0.0))
     }
 
     #[test]
     fn printed_digits_decide() {
-        assert_eq!(judged("1.23", 1.2349), Verdict::Agrees);
+        assert_eq!(judged("1.23", 1.2349), Agreement::Agrees);
         assert_eq!(
             judged("1.23", 1.2351),
-            Verdict::Digits("1.23".into(), "1.24".into())
+            Agreement::Digits("1.23".into(), "1.24".into())
         );
-        assert_eq!(judged("-1.23", 1.2349), Verdict::Sign);
+        assert_eq!(judged("-1.23", 1.2349), Agreement::Sign);
         assert_eq!(
             judged("114.7", 146.72),
-            Verdict::Digits("114.7".into(), "146.7".into())
+            Agreement::Digits("114.7".into(), "146.7".into())
         );
-        assert_eq!(judged("1.23", 9.87), Verdict::Differs);
-        assert_eq!(judged("1.23", f64::NAN), Verdict::Differs);
+        assert_eq!(judged("1.23", 9.87), Agreement::Differs);
+        assert_eq!(judged("1.23", f64::NAN), Agreement::Differs);
     }
 }

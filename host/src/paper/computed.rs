@@ -1,17 +1,19 @@
 //! The same numbers from Table 1: linearised, sampled, solved; and the servo's model found again in
 //! data made with it.
 
-use super::case::{TS_S, handstand};
-use super::printed::Quantity;
+use super::case::TS_S;
+use super::printed::PrintedQuantity;
 use crate::error::Result;
 use crate::model::Model;
+use crate::study::handstand;
 use crate::synth::{
     Continuous, Discrete, Gains, dlqr, linearise, lqr, poles, transmission_zeros, upright, zoh,
 };
 use crate::sysid::generate::{PAPER_TS_S, paper_model, paper_noise_model, pseudo_random};
 use crate::sysid::polynomial::{at_one, roots};
-use crate::sysid::{Estimate, Interval, Record, Structure, estimate, settling_samples};
+use crate::sysid::{Estimate, IntervalEstimate, Record, Structure, estimate, settling_samples};
 use nalgebra::{Complex, DMatrix};
+use serde::Serialize;
 
 /// Samples of the servo record.
 const SAMPLES: usize = 6000;
@@ -38,13 +40,13 @@ pub struct Computed {
     /// Zeros from the two torques to two of the angles.
     pub zeros: Vec<Zeros>,
     /// Coefficients of the paper's BJ(2,1,2,1) found in data made with it, with their names.
-    pub servo: Vec<(String, Interval)>,
+    pub servo: Vec<(String, IntervalEstimate)>,
     /// What follows from the servo's model without being printed.
     pub servo_facts: ServoFacts,
 }
 
 /// The transmission zeros from the torques to two of the angles: a pair on an axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Zeros {
     /// The angles, joints counted from 1.
     pub outputs: [usize; 2],
@@ -90,10 +92,10 @@ impl Computed {
 
     /// The value of a printed quantity in the print's unit; with its interval where it was
     /// estimated.
-    pub fn value(&self, quantity: Quantity) -> Interval {
-        let exact = |value: f64| Interval::around(value, 0.0);
+    pub fn value(&self, quantity: PrintedQuantity) -> IntervalEstimate {
+        let exact = |value: f64| IntervalEstimate::around(value, 0.0);
         match quantity {
-            Quantity::Link(link, field) => {
+            PrintedQuantity::Link(link, field) => {
                 let link = &self.model.links[link];
                 exact(match field {
                     0 => 1e3 * link.length_m,
@@ -102,12 +104,12 @@ impl Computed {
                     _ => 1e7 * link.inertia_kg_m2,
                 })
             }
-            Quantity::A(r, c) => exact(self.plant.a[(r, c)]),
-            Quantity::B(r, c) => exact(self.plant.b[(r, c)]),
-            Quantity::Lqr(r, c) => exact(self.lqr.k[(r, c)]),
-            Quantity::Dlqr(r, c) => exact(self.dlqr.k[(r, c)]),
-            Quantity::Pole(k) => exact(self.poles[k].re),
-            Quantity::Servo(name) => {
+            PrintedQuantity::A(r, c) => exact(self.plant.a[(r, c)]),
+            PrintedQuantity::B(r, c) => exact(self.plant.b[(r, c)]),
+            PrintedQuantity::Lqr(r, c) => exact(self.lqr.k[(r, c)]),
+            PrintedQuantity::Dlqr(r, c) => exact(self.dlqr.k[(r, c)]),
+            PrintedQuantity::Pole(k) => exact(self.poles[k].re),
+            PrintedQuantity::Servo(name) => {
                 let found = self.servo.iter().find(|(known, _)| known == name);
                 found.map_or(exact(f64::NAN), |(_, known)| *known)
             }
@@ -121,15 +123,9 @@ fn zeros(plant: &Continuous) -> Result<Vec<Zeros>> {
         let c = DMatrix::from_fn(2, 6, |row, state| {
             f64::from(u8::from(state + 1 == outputs[row]))
         });
-        let zeros = transmission_zeros(&plant.a, &plant.b, &c)?;
-        let first = zeros
-            .first()
-            .copied()
-            .unwrap_or(Complex::new(f64::NAN, 0.0));
-        Ok(Zeros {
-            outputs,
-            squared: (first * first).re,
-        })
+        let first = first(&transmission_zeros(&plant.a, &plant.b, &c)?);
+        let squared = (first * first).re;
+        Ok(Zeros { outputs, squared })
     };
     [[2, 3], [1, 3], [1, 2]].into_iter().map(to).collect()
 }
@@ -140,37 +136,29 @@ pub(super) fn servo_estimate(seed: u64) -> Option<(Record, Estimate)> {
     let input: Vec<f64> = told.iter().map(|u| COMMAND_RAD_S * u).collect();
     let output = paper_noise_model().respond(&input, NOISE_RAD_S, seed);
     let record = Record::new("generated", input, output);
-    let found = estimate(
-        &Structure::bj([1, 2, 1, 2, 1]),
-        std::slice::from_ref(&record),
-    );
+    let orders = Structure::bj([1, 2, 1, 2, 1]);
+    let found = estimate(&orders, std::slice::from_ref(&record));
     Some((record, found.ok()?))
 }
 
-fn servo() -> Vec<(String, Interval)> {
+fn servo() -> Vec<(String, IntervalEstimate)> {
     let Some((_, estimate)) = servo_estimate(1) else {
         return Vec::new();
     };
-    let values = estimate.model.values(&estimate.structure);
-    estimate
-        .structure
-        .names()
-        .into_iter()
-        .zip(values.iter().zip(estimate.half_widths()))
-        .map(|(name, (value, half))| (name, Interval::around(*value, half)))
-        .collect()
+    estimate.coefficients()
+}
+
+fn first(numbers: &[Complex<f64>]) -> Complex<f64> {
+    let none = Complex::new(f64::NAN, 0.0);
+    numbers.first().copied().unwrap_or(none)
 }
 
 fn servo_facts() -> ServoFacts {
     let model = paper_model();
     let poles = roots(&model.f).unwrap_or_default();
-    let first = poles
-        .first()
-        .copied()
-        .unwrap_or(Complex::new(f64::NAN, 0.0));
     ServoFacts {
         gain: at_one(&model.b) / at_one(&model.f),
-        continuous: first.ln() / PAPER_TS_S,
+        continuous: first(&poles).ln() / PAPER_TS_S,
         settling_s: settling_samples(&model.b, &model.f)
             .map_or(f64::INFINITY, |samples| samples as f64 * PAPER_TS_S),
         poles,

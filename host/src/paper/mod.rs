@@ -17,25 +17,24 @@ mod servo;
 #[cfg(test)]
 mod tests;
 
-pub use case::handstand;
-pub use checked::{Row, Verdict, check};
+pub use checked::{Agreement, CheckedNumber, check};
 pub use computed::{Computed, ServoFacts, Zeros};
-pub use figure::{Figure, Holds};
-pub use findings::{Finding, Shown, findings};
+pub use figure::{Holds, PaperFigure};
+pub use findings::{Finding, findings};
 pub use page::html;
-pub use printed::{PRINTED, Printed, Quantity};
+pub use printed::{Printed, PrintedQuantity, printed};
 
 use crate::error::Result;
 
 /// Everything the page shows.
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct Reproduction {
     /// Printed against computed.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CheckedNumber>,
     /// What follows from them without being printed.
     pub computed: Computed,
     /// The figures, redrawn.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<PaperFigure>,
     /// What the paper found.
     pub findings: Vec<Finding>,
 }
@@ -45,17 +44,17 @@ pub struct Study {
 ///
 /// # Errors
 /// None is known: the models are the project's own.
-pub fn study(done: &dyn Fn(&str)) -> Result<Study> {
+pub fn reproduce(done: &dyn Fn(&str)) -> Result<Reproduction> {
     let computed = Computed::new()?;
     done("numbers");
     let mut figures = servo::figures()?;
     done("servo");
-    figures.extend(robot::figures(&computed)?);
+    figures.extend(robot::figures()?);
     done("handstand");
     let rows = check(&computed);
     let findings = findings(&computed, &figures)?;
     done("findings");
-    Ok(Study {
+    Ok(Reproduction {
         rows,
         computed,
         figures,
@@ -63,5 +62,5 @@ pub fn study(done: &dyn Fn(&str)) -> Result<Study> {
     })
 }
 
-/// Steps of [`study`].
+/// Steps of [`reproduce`].
 pub const STEPS: u64 = 4;

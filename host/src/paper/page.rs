@@ -1,8 +1,7 @@
 //! The page: numbers, figures, findings.
 
-use super::figure::{Figure, Holds};
-use super::findings::{Finding, Shown};
-use super::{Row, Study, Verdict};
+use super::findings::Finding;
+use super::{Agreement, CheckedNumber, Holds, PaperFigure, Reproduction};
 use crate::output::number::short;
 use crate::plot::Chart;
 use crate::report::page::{Section, document, table};
@@ -12,7 +11,7 @@ use maud::{Markup, html as markup};
 const SIZE: (f64, f64) = (460.0, 250.0);
 
 /// A self-contained page. `command` is the line that makes it again.
-pub fn html(study: &Study, command: &str) -> String {
+pub fn html(study: &Reproduction, command: &str) -> String {
     let sections = [
         numbers(study),
         figures(study),
@@ -22,19 +21,19 @@ pub fn html(study: &Study, command: &str) -> String {
     document("The paper, reproduced", &header(study), &sections)
 }
 
-fn header(study: &Study) -> Markup {
+fn header(study: &Reproduction) -> Markup {
     let misprints = study
         .rows
         .iter()
-        .filter(|row| row.verdict != Verdict::Agrees)
+        .filter(|row| row.verdict != Agreement::Agrees)
         .count();
-    let hold = |figure: &&Figure| figure.holds == Holds::Yes;
+    let hold = |figure: &&PaperFigure| figure.holds == Holds::Yes;
     markup! {
         header.verdict-named {
             p.title { "Development of a simulation environment of an entertainment humanoid robot" }
             h1 {
-                (study.rows.len() - misprints) " of " (study.rows.len()) " numbers agree to every digit, "
-                (misprints) " are misprints."
+                (study.rows.len() - misprints) " of " (study.rows.len())
+                " numbers agree to every digit, " (misprints) " are misprints."
             }
             p {
                 "What the paper concludes from its figures holds here for "
@@ -45,7 +44,7 @@ fn header(study: &Study) -> Markup {
     }
 }
 
-fn numbers(study: &Study) -> Section {
+fn numbers(study: &Reproduction) -> Section {
     let facts = &study.computed.servo_facts;
     let headings = markup! {
         th { "Where" } th { "Quantity" } th { "Unit" } th.number { "Stated" }
@@ -85,7 +84,7 @@ fn numbers(study: &Study) -> Section {
     }
 }
 
-fn number(row: &Row) -> Markup {
+fn number(row: &CheckedNumber) -> Markup {
     markup! {
         tr {
             td { (row.printed.place) }
@@ -93,12 +92,12 @@ fn number(row: &Row) -> Markup {
             td { (row.printed.quantity.unit()) }
             td.number { (row.printed.text) }
             td.number { (row.computed_text()) }
-            td { span class=(good(row.verdict == Verdict::Agrees)) { (row.verdict.to_string()) } }
+            td { span class=(good(row.verdict == Agreement::Agrees)) { (row.verdict.to_string()) } }
         }
     }
 }
 
-fn figures(study: &Study) -> Section {
+fn figures(study: &Reproduction) -> Section {
     Section {
         id: "figures",
         title: "The figures, from our own simulation",
@@ -107,7 +106,7 @@ fn figures(study: &Study) -> Section {
     }
 }
 
-fn drawn(figure: &Figure) -> Markup {
+fn drawn(figure: &PaperFigure) -> Markup {
     let words = markup! {
         p { (figure.sentence) }
         p.note {
@@ -148,7 +147,7 @@ fn drawn_chart(chart: &Chart) -> Markup {
     }
 }
 
-fn findings(study: &Study) -> Section {
+fn findings(study: &Reproduction) -> Section {
     let headings = markup! {
         th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Verdict" }
     };
@@ -156,20 +155,21 @@ fn findings(study: &Study) -> Section {
     Section {
         id: "findings",
         title: "What the paper found",
-        lead: "Everything it measured, simulated or left open, with the command that shows it here.",
+        lead: "Everything it measured, simulated or left open, with the command that shows it \
+               here.",
         body: table(&headings, &rows),
     }
 }
 
 fn finding(row: &Finding) -> Markup {
-    let shown = matches!(row.shown, Shown::Here(Holds::Yes) | Shown::There);
+    let shown = matches!(row.holds, Holds::Yes | Holds::ShownElsewhere);
     markup! {
         tr {
             td.number { (row.number) }
             td { (row.found) }
             td { (row.said) }
             td { code { (row.command) } }
-            td { span class=(good(shown)) { (row.verdict()) } }
+            td { span class=(good(shown)) { (row.holds.words()) } }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 /// Which number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum PrintedQuantity {
     /// A value of the model file: link from 0, and 0 length, 1 centre of mass, 2 mass, 3 inertia,
     /// in the print's units.
     Link(usize, usize),
@@ -26,103 +26,89 @@ pub struct Printed {
     /// Where: "Table 1", "eq. (5)".
     pub place: &'static str,
     /// Which.
-    pub quantity: Quantity,
+    pub quantity: PrintedQuantity,
     /// As it stands there; its last digit says how exact it is.
     pub text: &'static str,
     /// Whether the paper prints it; else it was recomputed from Table 1 with SciPy.
     pub in_paper: bool,
 }
 
-const fn paper(place: &'static str, quantity: Quantity, text: &'static str) -> Printed {
-    Printed {
-        place,
-        quantity,
-        text,
-        in_paper: true,
+use PrintedQuantity::{A, B, Dlqr, Link, Lqr, Pole, Servo};
+
+/// Every number that can be computed, as it stands in its rows. Gains are without the minus sign of
+/// `u = -k x`.
+pub fn printed() -> Vec<Printed> {
+    type NumberAt = fn(usize, usize) -> PrintedQuantity;
+    const SERVO: [&str; 3] = ["b1", "f1", "f2"];
+    const RECOMPUTED: &str = "recomputed";
+    let blocks: [(&'static str, &[&'static str], NumberAt); 7] = [
+        (
+            "Table 1",
+            &[
+                "143.6 68.7 367.6 7890.7",
+                "115.8 57.5 981.5 32898.6",
+                "184.0 116.3 576.4 11328.0",
+            ],
+            Link,
+        ),
+        (
+            "eq. (5)",
+            &[
+                "74.2389 -117.8764 0.0028",
+                "-81.5857 348.7777 -76.0776",
+                "-7.3471 -230.9113 215.8591",
+            ],
+            |r, c| A(r + 3, c),
+        ),
+        (
+            "eq. (5)",
+            &[
+                "-176.2065 97.5517",
+                "527.7831 -467.2635",
+                "-467.2635 697.9566",
+            ],
+            |r, c| B(r + 3, c),
+        ),
+        (
+            RECOMPUTED,
+            &["21.2157 12.5086 5.6837 -5.6837 -12.5086 -21.2157"],
+            |_, k| Pole(k),
+        ),
+        (
+            "after eq. (9)",
+            &[
+                "-114.7206 -63.3382 -23.2078 -25.2863 11.8534 -5.0644",
+                "92.6369 -41.0629 -13.3245 -15.8651 8.1298 -2.2096",
+            ],
+            Lqr,
+        ),
+        (
+            RECOMPUTED,
+            &[
+                "-75.758443 -32.187228 -11.454290 -13.004784 -6.2134254 -2.3441985",
+                "-62.056988 -26.928273 -9.0350845 -10.653945 -5.1619377 -1.8225471",
+            ],
+            Dlqr,
+        ),
+        ("eq. (2)", &["0.06217 -1.469 0.5544"], |_, c| {
+            Servo(SERVO[c])
+        }),
+    ];
+    let mut all = Vec::new();
+    for (place, rows, quantity) in blocks {
+        for (r, row) in rows.iter().enumerate() {
+            all.extend(row.split(' ').enumerate().map(|(c, text)| Printed {
+                place,
+                quantity: quantity(r, c),
+                text,
+                in_paper: place != RECOMPUTED,
+            }));
+        }
     }
+    all
 }
 
-const fn recomputed(quantity: Quantity, text: &'static str) -> Printed {
-    Printed {
-        place: "recomputed",
-        quantity,
-        text,
-        in_paper: false,
-    }
-}
-
-const TABLE: &str = "Table 1";
-const PLANT: &str = "eq. (5)";
-const GAIN: &str = "after eq. (9)";
-const SERVO: &str = "eq. (2)";
-
-use Quantity::{A, B, Dlqr, Link, Lqr, Pole, Servo};
-
-/// Every number that can be computed. Gains are without the minus sign of `u = -k x`.
-pub const PRINTED: &[Printed] = &[
-    paper(TABLE, Link(0, 0), "143.6"),
-    paper(TABLE, Link(0, 1), "68.7"),
-    paper(TABLE, Link(0, 2), "367.6"),
-    paper(TABLE, Link(0, 3), "7890.7"),
-    paper(TABLE, Link(1, 0), "115.8"),
-    paper(TABLE, Link(1, 1), "57.5"),
-    paper(TABLE, Link(1, 2), "981.5"),
-    paper(TABLE, Link(1, 3), "32898.6"),
-    paper(TABLE, Link(2, 0), "184.0"),
-    paper(TABLE, Link(2, 1), "116.3"),
-    paper(TABLE, Link(2, 2), "576.4"),
-    paper(TABLE, Link(2, 3), "11328.0"),
-    paper(PLANT, A(3, 0), "74.2389"),
-    paper(PLANT, A(3, 1), "-117.8764"),
-    paper(PLANT, A(3, 2), "0.0028"),
-    paper(PLANT, A(4, 0), "-81.5857"),
-    paper(PLANT, A(4, 1), "348.7777"),
-    paper(PLANT, A(4, 2), "-76.0776"),
-    paper(PLANT, A(5, 0), "-7.3471"),
-    paper(PLANT, A(5, 1), "-230.9113"),
-    paper(PLANT, A(5, 2), "215.8591"),
-    paper(PLANT, B(3, 0), "-176.2065"),
-    paper(PLANT, B(3, 1), "97.5517"),
-    paper(PLANT, B(4, 0), "527.7831"),
-    paper(PLANT, B(4, 1), "-467.2635"),
-    paper(PLANT, B(5, 0), "-467.2635"),
-    paper(PLANT, B(5, 1), "697.9566"),
-    recomputed(Pole(0), "21.2157"),
-    recomputed(Pole(1), "12.5086"),
-    recomputed(Pole(2), "5.6837"),
-    recomputed(Pole(3), "-5.6837"),
-    recomputed(Pole(4), "-12.5086"),
-    recomputed(Pole(5), "-21.2157"),
-    paper(GAIN, Lqr(0, 0), "-114.7206"),
-    paper(GAIN, Lqr(0, 1), "-63.3382"),
-    paper(GAIN, Lqr(0, 2), "-23.2078"),
-    paper(GAIN, Lqr(0, 3), "-25.2863"),
-    paper(GAIN, Lqr(0, 4), "11.8534"),
-    paper(GAIN, Lqr(0, 5), "-5.0644"),
-    paper(GAIN, Lqr(1, 0), "92.6369"),
-    paper(GAIN, Lqr(1, 1), "-41.0629"),
-    paper(GAIN, Lqr(1, 2), "-13.3245"),
-    paper(GAIN, Lqr(1, 3), "-15.8651"),
-    paper(GAIN, Lqr(1, 4), "8.1298"),
-    paper(GAIN, Lqr(1, 5), "-2.2096"),
-    recomputed(Dlqr(0, 0), "-75.758443"),
-    recomputed(Dlqr(0, 1), "-32.187228"),
-    recomputed(Dlqr(0, 2), "-11.454290"),
-    recomputed(Dlqr(0, 3), "-13.004784"),
-    recomputed(Dlqr(0, 4), "-6.2134254"),
-    recomputed(Dlqr(0, 5), "-2.3441985"),
-    recomputed(Dlqr(1, 0), "-62.056988"),
-    recomputed(Dlqr(1, 1), "-26.928273"),
-    recomputed(Dlqr(1, 2), "-9.0350845"),
-    recomputed(Dlqr(1, 3), "-10.653945"),
-    recomputed(Dlqr(1, 4), "-5.1619377"),
-    recomputed(Dlqr(1, 5), "-1.8225471"),
-    paper(SERVO, Servo("b1"), "0.06217"),
-    paper(SERVO, Servo("f1"), "-1.469"),
-    paper(SERVO, Servo("f2"), "0.5544"),
-];
-
-impl Quantity {
+impl PrintedQuantity {
     /// Its name: `A[4,1]`, counted from 1 as on paper.
     pub fn name(self) -> String {
         const LINKS: [&str; 3] = ["arms", "torso", "legs"];

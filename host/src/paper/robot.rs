@@ -1,29 +1,28 @@
 //! The handstand's figures: 12, 13 and 14, from our own closed loop.
 
 use super::case::{
-    Case, ECCENTRIC_RAD, SECONDS, STARTS, Seen, sampled, stepped, with_dead_zone, with_gyro,
+    ECCENTRIC_RAD, RunCurves, SECONDS, STARTS, continuous, outcomes, sampled, stepped,
+    with_dead_zone, with_gyro,
 };
-use super::computed::Computed;
-use super::figure::{Figure, Holds};
+use super::figure::{Holds, PaperFigure};
 use crate::error::Result;
 use crate::output::number::short;
 use crate::plot::{Chart, Curve, Tone};
 use crate::sim::closed_loop::{Outcome, Velocity};
+use crate::study::{Case, bisect};
 
-/// Sampling time that stands for the continuous gains, s.
-const CONTINUOUS_S: f64 = 0.001;
 /// Constant torque that disturbs the arms, N m.
 const DISTURBANCE_NM: f64 = 0.01;
 /// Lean of the arms a run begins with, rad.
 const LEAN_RAD: f64 = 1.0 * std::f64::consts::PI / 180.0;
 
 /// Figures 12, 13, 14.
-pub(super) fn figures(computed: &Computed) -> Result<Vec<Figure>> {
+pub(super) fn figures() -> Result<Vec<PaperFigure>> {
     Ok(vec![
-        eccentric_masses(computed)?,
-        resolution(computed)?,
-        gyro(computed)?,
-        dead_zone(computed)?,
+        eccentric_masses()?,
+        resolution()?,
+        gyro()?,
+        dead_zone()?,
     ])
 }
 
@@ -38,12 +37,12 @@ fn end(outcome: &Outcome) -> String {
 }
 
 /// Angles above, torques below, of runs side by side; of one run, side by side.
-fn charts(runs: &[(&str, &Seen)]) -> Vec<Chart> {
-    let angles = |(name, seen): &(&str, &Seen)| {
+fn charts(runs: &[(&str, &RunCurves)]) -> Vec<Chart> {
+    let angles = |(name, seen): &(&str, &RunCurves)| {
         let title = format!("{name}: {}", end(&seen.outcome));
         Chart::new(title, "time, s", "angle, deg", joints(0, &seen.angles))
     };
-    let torques = |(name, seen): &(&str, &Seen)| {
+    let torques = |(name, seen): &(&str, &RunCurves)| {
         let title = format!("{name}: {} N m RMS", short(seen.outcome.rms_torque_nm));
         Chart::new(title, "time, s", "torque, N m", joints(1, &seen.torques))
     };
@@ -67,26 +66,24 @@ fn joints(first: usize, points: &[Vec<(f64, f64)>]) -> Vec<Curve> {
         .collect()
 }
 
-fn eccentric_masses(computed: &Computed) -> Result<Figure> {
-    let case = |eccentric_rad: f64, compensated: bool| Case {
-        eccentric_rad,
-        compensated,
-        ..Case::ideal(&computed.lqr.k, CONTINUOUS_S)
-    };
-    let without = case(ECCENTRIC_RAD, false).run_upright()?;
-    let with = case(ECCENTRIC_RAD, true).run_upright()?;
-    let falls = |angle: f64| Ok(case(angle, false).run_upright()?.outcome.fell_s.is_some());
+fn eccentric_masses() -> Result<PaperFigure> {
+    let run =
+        |eccentric_rad: f64, known: bool| RunCurves::upright(&continuous(eccentric_rad, known)?);
+    let (without, with) = (run(ECCENTRIC_RAD, false)?, run(ECCENTRIC_RAD, true)?);
+    let falls = |angle: f64| Ok(run(angle, false)?.outcome.fell_s.is_some());
     let limit = edge(falls, 0.0, ECCENTRIC_RAD)?;
-    let below = case(0.5 * limit, false).run_upright()?.outcome;
+    let below = run(0.5 * limit, false)?.outcome;
     let holds = without.outcome.fell_s.is_some() && with.outcome.fell_s.is_none();
-    Ok(Figure {
+    Ok(PaperFigure {
         number: "12",
         title: "LQR without and with angle compensation",
-        claim: "LQR does not stabilise the robot whose centres of mass are eccentric; with angle compensation it does",
-        holds: if holds { Holds::Yes } else { Holds::No },
+        claim: "LQR does not stabilise the robot whose centres of mass are eccentric; with angle \
+                compensation it does",
+        holds: Holds::when(holds),
         sentence: format!(
-            "Upright, with every centre of mass {:.0} deg off its link's line, the robot {} without compensation and {} with it; \
-             without, it falls from {:.1} deg on, and at half of that leans by up to {} deg.",
+            "Upright, with every centre of mass {:.0} deg off its link's line, the robot {} \
+             without compensation and {} with it; without, it falls from {:.1} deg on, and at half \
+             of that leans by up to {} deg.",
             ECCENTRIC_RAD.to_degrees(),
             end(&without.outcome),
             end(&with.outcome),
@@ -99,52 +96,35 @@ fn eccentric_masses(computed: &Computed) -> Result<Figure> {
 
 /// Where `fails` turns true between `low` (false) and `high` (true), to a thousandth of the span;
 /// `high` if it never does.
-pub(super) fn edge(
-    fails: impl Fn(f64) -> Result<bool>,
-    mut low: f64,
-    mut high: f64,
-) -> Result<f64> {
-    if !fails(high)? {
-        return Ok(high);
+pub(super) fn edge(fails: impl Fn(f64) -> Result<bool>, low: f64, high: f64) -> Result<f64> {
+    match fails(high)? {
+        true => Ok(bisect(low, high, 10, |value| Ok(!fails(value)?))?.1),
+        false => Ok(high),
     }
-    let close = (high - low) / 1000.0;
-    while high - low > close {
-        let middle = 0.5 * (low + high);
-        match fails(middle)? {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    Ok(high)
 }
 
-fn resolution(computed: &Computed) -> Result<Figure> {
-    let exact = sampled(computed).run(LEAN_RAD)?;
-    let coarse = stepped(computed).run(LEAN_RAD)?;
-    let continuous = Case {
-        eccentric_rad: 0.1 * ECCENTRIC_RAD,
-        ..Case::ideal(&computed.lqr.k, CONTINUOUS_S)
-    };
-    let continuous = continuous.run(LEAN_RAD)?;
-    let mut differenced = stepped(computed);
+fn resolution() -> Result<PaperFigure> {
+    let run = |case: &Case| RunCurves::leaning(case, LEAN_RAD);
+    let exact = run(&sampled()?)?;
+    let coarse = run(&stepped()?)?;
+    let continuous = run(&continuous(0.1 * ECCENTRIC_RAD, true)?)?;
+    let mut differenced = stepped()?;
     differenced.sensor.velocity = Velocity::Difference;
-    let differenced = differenced.run(LEAN_RAD)?.outcome;
-    let chatters = coarse
-        .outcome
-        .limit_cycle_rad
-        .is_some_and(|cycle| cycle > 1e-3);
-    let smaller = exact.peak_nm() < continuous.peak_nm();
-    let holds =
-        exact.outcome.fell_s.is_none() && coarse.outcome.fell_s.is_none() && chatters && smaller;
-    Ok(Figure {
+    let differenced = run(&differenced)?.outcome;
+    let stand = exact.outcome.fell_s.is_none() && coarse.outcome.fell_s.is_none();
+    let cycle_rad = coarse.outcome.limit_cycle_rad;
+    let chatters = cycle_rad.is_some_and(|cycle| cycle > 1e-3);
+    let holds = stand && chatters && exact.peak_nm() < continuous.peak_nm();
+    Ok(PaperFigure {
         number: "13",
         title: "DLQR at 0.01 s, and with the servos' position resolution",
-        claim: "sampled at 0.01 s with compensation the loop is stable and its torque smaller than in continuous time; \
-                with 300 deg / 2^10 it chatters and stays up",
-        holds: if holds { Holds::Yes } else { Holds::No },
+        claim: "sampled at 0.01 s with compensation the loop is stable and its torque smaller than \
+                in continuous time; with 300 deg / 2^10 it chatters and stays up",
+        holds: Holds::when(holds),
         sentence: format!(
-            "From a lean of 1 deg the sampled loop {} and asks for {} N m at most (continuous: {}); with the position \
-             steps it {} with {} N m RMS instead of {}. If speeds too are differences of those steps, it {} with {}.",
+            "From a lean of 1 deg the sampled loop {} and asks for {} N m at most (continuous: \
+             {}); with the position steps it {} with {} N m RMS instead of {}. If speeds too are \
+             differences of those steps, it {} with {}.",
             end(&exact.outcome),
             short(exact.peak_nm()),
             short(continuous.peak_nm()),
@@ -167,22 +147,21 @@ fn tally(outcomes: &[Outcome]) -> (usize, f64) {
     (stood, median.to_degrees())
 }
 
-fn gyro(computed: &Computed) -> Result<Figure> {
-    let before = stepped(computed).run(LEAN_RAD)?.outcome;
-    let mut disturbed = with_gyro(computed);
-    disturbed.disturbance_nm = DISTURBANCE_NM;
-    let seen = disturbed.run(LEAN_RAD)?;
+fn gyro() -> Result<PaperFigure> {
+    let before = RunCurves::leaning(&stepped()?, LEAN_RAD)?.outcome;
+    let mut disturbed = with_gyro()?;
+    disturbed.disturbance_nm[0] = DISTURBANCE_NM;
+    let seen = RunCurves::leaning(&disturbed, LEAN_RAD)?;
     let larger = seen.outcome.rms_torque_nm > before.rms_torque_nm;
-    Ok(Figure {
+    Ok(PaperFigure {
         number: "14 a,c,e",
         title: "Gyro resolution and a constant perturbation",
-        claim: "with the gyro's 10 deg/s and a constant perturbation the control is larger and the robot stays up",
-        holds: match larger && seen.outcome.fell_s.is_none() {
-            true => Holds::Yes,
-            false => Holds::No,
-        },
+        claim: "with the gyro's 10 deg/s and a constant perturbation the control is larger and \
+                the robot stays up",
+        holds: Holds::when(larger && seen.outcome.fell_s.is_none()),
         sentence: format!(
-            "With the gyro's steps and {DISTURBANCE_NM} N m on the arms the robot {} with {} N m RMS instead of {}.",
+            "With the gyro's steps and {DISTURBANCE_NM} N m on the arms the robot {} with {} N m \
+             RMS instead of {}.",
             end(&seen.outcome),
             short(seen.outcome.rms_torque_nm),
             short(before.rms_torque_nm)
@@ -191,31 +170,32 @@ fn gyro(computed: &Computed) -> Result<Figure> {
     })
 }
 
-fn dead_zone(computed: &Computed) -> Result<Figure> {
-    let direct = with_dead_zone(computed);
+fn dead_zone() -> Result<PaperFigure> {
+    let direct = with_dead_zone()?;
     let mut differenced = direct.clone();
     differenced.sensor.velocity = Velocity::Difference;
-    let (seen, fallen) = (direct.run(LEAN_RAD)?, differenced.run(LEAN_RAD)?);
-    let (stood, swing) = tally(&direct.share(LEAN_RAD)?);
-    let (differenced_stood, _) = tally(&differenced.share(LEAN_RAD)?);
-    let rests = seen
-        .outcome
-        .limit_cycle_rad
-        .is_some_and(|cycle| cycle.to_degrees() < 0.5);
+    let [seen, fallen] = [&direct, &differenced].map(|case| RunCurves::leaning(case, LEAN_RAD));
+    let (seen, fallen) = (seen?, fallen?);
+    let (stood, swing) = tally(&outcomes(&direct, LEAN_RAD)?);
+    let (differenced_stood, _) = tally(&outcomes(&differenced, LEAN_RAD)?);
+    let cycle_rad = seen.outcome.limit_cycle_rad;
+    let rests = cycle_rad.is_some_and(|cycle| cycle.to_degrees() < 0.5);
     let saturates = seen.peak_nm() >= 2.0 - 1e-9;
-    Ok(Figure {
+    Ok(PaperFigure {
         number: "14 b,d,f",
         title: "Dead zone and limit of the servos",
-        claim: "with a dead zone of 10 % and 2 N m the robot is not stabilised, and the torques saturate",
+        claim: "with a dead zone of 10 % and 2 N m the robot is not stabilised, and the torques \
+                saturate",
         holds: match (rests, saturates, stood) {
             (false, true, 0) => Holds::Yes,
             (false, true, _) => Holds::InPart,
             _ => Holds::No,
         },
         sentence: format!(
-            "It never comes to rest and its torques saturate, but of {STARTS} starts within 1 deg {stood} stand for \
-             {SECONDS:.0} s, swinging by {swing:.1} deg (median), as long as the speeds of shoulder and hip are exact; with \
-             speeds from differences of the position steps, as the servos give them, {differenced_stood} of {STARTS} stand."
+            "It never comes to rest and its torques saturate, but of {STARTS} starts within 1 deg \
+             {stood} stand for {SECONDS:.0} s, swinging by {swing:.1} deg (median), as long as the \
+             speeds of shoulder and hip are exact; with speeds from differences of the position \
+             steps, as the servos give them, {differenced_stood} of {STARTS} stand."
         ),
         charts: charts(&[("exact speeds", &seen), ("differenced", &fallen)]),
     })

@@ -2,7 +2,7 @@
 //! (2).
 
 use super::computed::servo_estimate;
-use super::figure::{Figure, Holds};
+use super::figure::{Holds, PaperFigure};
 use crate::error::Result;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
@@ -11,10 +11,11 @@ use crate::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
-    BlockMean, DeadZoneMap, Interval, OutputQuantity, Side, SupplyLine, blocks, score,
+    BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks, score,
     supply_errors,
 };
 use handstand_shared::raw::Position;
+use std::ops::Range;
 use std::path::Path;
 
 /// Speed of the full command, rad/s.
@@ -25,11 +26,48 @@ const BLOCK_S: f64 = 0.2;
 const LIFTED_KG: f64 = 1.6;
 
 /// Figures 4, 5, 7, 9, 10.
-pub(super) fn figures() -> Result<Vec<Figure>> {
+pub(super) fn figures() -> Result<Vec<PaperFigure>> {
     let model = model()?;
-    let mut all = vec![dead_zone(&model), supply(&model), torque(&model)];
+    let dead_zone = PaperFigure {
+        title: "Dead zone",
+        claim: "stiction is a dead zone of 7-10 % of the full range, without load",
+        ..fitted("4", dead_zone(&model))
+    };
+    let supply = PaperFigure {
+        title: "Supply voltage",
+        claim: "the speed error is proportional to the supply, and none near 9.8 V",
+        ..fitted("5", supply(&model))
+    };
+    let torque = PaperFigure {
+        title: "Torque against commanded speed",
+        claim: "torque is linear in the commanded speed outside the dead zone, and stops at 2 N m",
+        ..fitted("7", torque(&model))
+    };
+    let mut all = vec![dead_zone, supply, torque];
     all.extend(identification());
     Ok(all)
+}
+
+/// A chart, and what follows from it.
+type FittedFigure = (Chart, Holds, String);
+
+/// A figure that shows a fit, or that none was found.
+fn fitted(number: &'static str, drawn: Result<FittedFigure, String>) -> PaperFigure {
+    let (charts, holds, sentence) = match drawn {
+        Ok((chart, holds, sentence)) => (vec![chart], holds, sentence),
+        Err(why) => {
+            let sentence = format!("The simulated log gives no fit: {why}.");
+            (Vec::new(), Holds::No, sentence)
+        }
+    };
+    PaperFigure {
+        number,
+        title: "",
+        claim: "",
+        charts,
+        holds,
+        sentence,
+    }
 }
 
 /// The servo on the bench.
@@ -61,7 +99,7 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
 
 /// What the servo does under `command`, read by its encoder, with a little noise before the
 /// rounding.
-pub(super) fn simulated(
+fn simulated(
     model: &Model,
     command: Vec<f64>,
     supply_v: Option<Vec<f64>>,
@@ -74,27 +112,32 @@ pub(super) fn simulated(
         payload_kg,
         ..empty_motion(command)
     };
-    let plant = Plant::new(model, &motion);
     let rest = Start {
         angle_rad: vec![0.0],
         speed_rad_s: vec![0.0],
         ..Start::default()
     };
-    let mut readings = vec![0.0; samples];
-    predict(
-        &plant,
-        &motion,
-        0..samples,
-        &rest,
-        &mut SensorState::default(),
-        &mut readings,
-    );
+    let (mut readings, _) = predicted(model, &motion, 0..samples, &rest);
     let jitter = noise(samples, 0.1 * Position::LSB_RAD, seed);
     for (reading, jitter) in readings.iter_mut().zip(jitter) {
         *reading = ((*reading + jitter) / Position::LSB_RAD).round() * Position::LSB_RAD;
     }
     motion.position_rad = vec![readings];
     motion
+}
+
+/// What the model's encoder reads over a stretch of a motion, rad, and where it ends.
+pub(super) fn predicted(
+    model: &Model,
+    motion: &Motion,
+    stretch: Range<usize>,
+    start: &Start,
+) -> (Vec<f64>, Start) {
+    let plant = Plant::new(model, motion);
+    let mut readings = vec![0.0; stretch.len()];
+    let sensors = &mut SensorState::default();
+    let end = predict(&plant, motion, stretch, start, sensors, &mut readings);
+    (readings, end)
 }
 
 /// From one end of the range to the other and back, slowly.
@@ -121,7 +164,7 @@ fn line(map: &DeadZoneMap, most: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) -> String {
+fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<IntervalEstimate>, scale: f64) -> String {
     let text = |side: &Side| match of(side) {
         Some(known) => within(&known, scale),
         None => "none".to_string(),
@@ -130,178 +173,115 @@ fn sides(map: &DeadZoneMap, of: impl Fn(&Side) -> Option<Interval>, scale: f64) 
 }
 
 /// "8.50 (8.47 to 8.53)", to the decimals that the interval deserves.
-fn within(known: &Interval, scale: f64) -> String {
+fn within(known: &IntervalEstimate, scale: f64) -> String {
     let [value, low, high] = interval(scale * known.value, scale * known.low, scale * known.high);
     format!("{value} ({low} to {high})")
 }
 
-fn unfitted(number: &'static str, title: &'static str, claim: &'static str, why: &str) -> Figure {
-    Figure {
-        number,
-        title,
-        claim,
-        charts: Vec::new(),
-        holds: Holds::No,
-        sentence: format!("The simulated log gives no fit: {why}."),
-    }
-}
-
-fn dead_zone(model: &Model) -> Figure {
-    let (number, title) = ("4", "Dead zone");
-    let claim = "stiction is a dead zone of 7-10 % of the full range, without load";
+fn dead_zone(model: &Model) -> Result<FittedFigure, String> {
     let motion = simulated(model, ramp(8000, 0.4), None, 0.0, 4);
     let blocks = blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S);
-    let map = match DeadZoneMap::fit(&blocks) {
-        Ok(map) => map,
-        Err(why) => return unfitted(number, title, claim, &why.to_string()),
-    };
-    let edges = [map.up.edge, map.down.edge];
-    Figure {
-        number,
-        title,
-        claim,
-        charts: vec![Chart::new(
-            "speed against command, unloaded",
-            "command, % of full range",
-            "speed, rad/s",
-            vec![
-                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
-                Curve::line("fitted dead zone", Tone::Orange, line(&map, 0.4)),
-            ],
-        )],
-        holds: match edges.iter().all(|edge| edge.holds(0.085)) {
-            true => Holds::Yes,
-            false => Holds::InPart,
-        },
-        sentence: format!(
-            "Put into a simulated servo as 8.5 %, the dead zone comes back from its 10-bit position log as {} % (up and down).",
-            sides(&map, |side| Some(side.edge), 100.0)
-        ),
-    }
+    let map = DeadZoneMap::fit(&blocks).map_err(|why| why.to_string())?;
+    let chart = Chart::new(
+        "speed against command, unloaded",
+        "command, % of full range",
+        "speed, rad/s",
+        vec![
+            Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+            Curve::line("fitted dead zone", Tone::Orange, line(&map, 0.4)),
+        ],
+    );
+    let sentence = format!(
+        "Put into a simulated servo as 8.5 %, the dead zone comes back from its 10-bit position \
+         log as {} % (up and down).",
+        sides(&map, |side| Some(side.edge), 100.0)
+    );
+    let is_found = map.up.edge.holds(0.085) && map.down.edge.holds(0.085);
+    Ok((chart, Holds::at_least_in_part(is_found), sentence))
 }
 
-fn supply(model: &Model) -> Figure {
-    let (number, title) = ("5", "Supply voltage");
-    let claim = "the speed error is proportional to the supply, and none near 9.8 V";
-    let mut blocks = Vec::new();
-    for (run, volts) in [8.0, 8.8, 9.6, 10.4, 11.2].into_iter().enumerate() {
+fn supply(model: &Model) -> Result<FittedFigure, String> {
+    let mut means = Vec::new();
+    for (seed, volts) in (50..).zip([8.0, 8.8, 9.6, 10.4, 11.2]) {
         // What the servo would have to be told to move at the speed, past its dead zone.
-        let command: Vec<f64> = (0..1200)
-            .map(|k| if (k / 300) % 2 == 0 { 0.5 } else { -0.4 })
-            .collect();
-        let motion = simulated(
-            model,
-            command,
-            Some(vec![volts; 1200]),
-            0.0,
-            50 + run as u64,
-        );
-        blocks.extend(self::blocks(
-            &[motion],
-            0,
-            OutputQuantity::Velocity,
-            BLOCK_S,
-        ));
+        let command = |k: usize| [0.5, -0.4][k / 300 % 2];
+        let command = (0..1200).map(command).collect();
+        let motion = simulated(model, command, Some(vec![volts; 1200]), 0.0, seed);
+        means.extend(blocks(&[motion], 0, OutputQuantity::Velocity, BLOCK_S));
     }
     // Command as the speed it stands for: that of the same command at the nominal supply.
-    for block in &mut blocks {
-        let beyond = block.input.abs() - 0.085;
-        block.input = (beyond * FULL_RAD_S).copysign(block.input);
+    for mean in &mut means {
+        let beyond = mean.input.abs() - 0.085;
+        mean.input = (beyond * FULL_RAD_S).copysign(mean.input);
     }
-    let fitted = match SupplyLine::fit(&blocks) {
-        Ok(fitted) => fitted,
-        Err(why) => return unfitted(number, title, claim, &why.to_string()),
-    };
-    let errors = supply_errors(&blocks);
+    let fitted = SupplyLine::fit(&means).map_err(|why| why.to_string())?;
     let percent = |points: &[(f64, f64)]| points.iter().map(|(v, e)| (*v, 100.0 * e)).collect();
     let (right, slope) = (fitted.right_at_v, fitted.error_per_v);
     let ends = [7.8, 11.4].map(|v| (v, slope.value * (v - right.value)));
-    Figure {
-        number,
-        title,
-        claim,
-        charts: vec![Chart::new(
-            "speed error against supply",
-            "supply, V",
-            "speed error, % of the command",
-            vec![
-                Curve::dots("means over 0.2 s", Tone::Ink, percent(&errors)),
-                Curve::line("fitted line", Tone::Orange, percent(&ends)),
-            ],
-        )],
-        holds: match right.holds(9.8) && slope.low > 0.0 {
-            true => Holds::Yes,
-            false => Holds::InPart,
-        },
-        sentence: format!(
-            "The simulated servo's speed error in % of the command grows per volt by {}, and is none at {} V.",
-            within(&slope, 100.0),
-            within(&right, 1.0)
-        ),
-    }
+    let chart = Chart::new(
+        "speed error against supply",
+        "supply, V",
+        "speed error, % of the command",
+        vec![
+            Curve::dots(
+                "means over 0.2 s",
+                Tone::Ink,
+                percent(&supply_errors(&means)),
+            ),
+            Curve::line("fitted line", Tone::Orange, percent(&ends)),
+        ],
+    );
+    let sentence = format!(
+        "The simulated servo's speed error in % of the command grows per volt by {}, and is none \
+         at {} V.",
+        within(&slope, 100.0),
+        within(&right, 1.0)
+    );
+    let is_found = right.holds(9.8) && slope.low > 0.0;
+    Ok((chart, Holds::at_least_in_part(is_found), sentence))
 }
 
 /// A known mass is lifted until it hangs in balance: its weight's moment is the torque.
-fn torque(model: &Model) -> Figure {
-    let (number, title) = ("7", "Torque against commanded speed");
-    let claim = "torque is linear in the commanded speed outside the dead zone, and stops at 2 N m";
-    let motion = simulated(model, ramp(24_000, 1.0), None, LIFTED_KG, 7);
+fn torque(model: &Model) -> Result<FittedFigure, String> {
+    let mut motion = simulated(model, ramp(24_000, 1.0), None, LIFTED_KG, 7);
     let (own, at) = (&model.links[0], model.log.payload_at_m);
     let moment = model.gravity_m_s2 * (own.mass_kg * own.com_m + LIFTED_KG * at);
-    let lifted = Motion {
-        position_rad: vec![
-            motion.position_rad[0]
-                .iter()
-                .map(|q| moment * q.sin())
-                .collect(),
-        ],
-        ..motion
-    };
-    let blocks = blocks(&[lifted], 0, OutputQuantity::AsMeasured, BLOCK_S);
-    let map = match DeadZoneMap::fit(&blocks) {
-        Ok(map) => map,
-        Err(why) => return unfitted(number, title, claim, &why.to_string()),
-    };
-    let limits = [map.up.limit, map.down.limit];
-    let seen = limits
-        .iter()
-        .all(|limit| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02));
-    let inverse = map.inverse();
-    Figure {
-        number,
-        title,
-        claim,
-        charts: vec![Chart::new(
-            format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
-            "command, % of full range",
-            "torque, N m",
-            vec![
-                Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
-                Curve::line("fitted map", Tone::Orange, line(&map, 1.0)),
-            ],
-        )],
-        holds: if seen { Holds::Yes } else { Holds::InPart },
-        sentence: format!(
-            "In simulation the torque stops at {} N m and rises by {} N m per full command; turned round, 1 N m needs a \
-             command of {:.1} %.",
-            sides(&map, |side| side.limit, 1.0),
-            sides(&map, |side| Some(side.slope), 1.0),
-            100.0 * inverse.input(1.0)
-        ),
+    for angle in &mut motion.position_rad[0] {
+        *angle = moment * angle.sin();
     }
+    let blocks = blocks(&[motion], 0, OutputQuantity::AsMeasured, BLOCK_S);
+    let map = DeadZoneMap::fit(&blocks).map_err(|why| why.to_string())?;
+    let chart = Chart::new(
+        format!("lifting {LIFTED_KG} kg at {:.0} mm", 1e3 * at),
+        "command, % of full range",
+        "torque, N m",
+        vec![
+            Curve::dots("means over 0.2 s", Tone::Ink, points(&blocks)),
+            Curve::line("fitted map", Tone::Orange, line(&map, 1.0)),
+        ],
+    );
+    let sentence = format!(
+        "In simulation the torque stops at {} N m and rises by {} N m per full command; turned \
+         round, 1 N m needs a command of {:.1} %.",
+        sides(&map, |side| side.limit, 1.0),
+        sides(&map, |side| Some(side.slope), 1.0),
+        100.0 * map.inverse().input(1.0)
+    );
+    let near =
+        |limit: Option<IntervalEstimate>| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02);
+    let is_found = near(map.up.limit) && near(map.down.limit);
+    Ok((chart, Holds::at_least_in_part(is_found), sentence))
 }
 
 /// Figures 9 and 10: data made with eq. (2), and validation on other data.
-fn identification() -> Vec<Figure> {
-    let claim_data = "the commanded and the estimated speed, for identification";
-    let claim = "the Box-Jenkins model captures the servo's dynamics on validation data";
+fn identification() -> Vec<PaperFigure> {
+    let validation = |drawn| PaperFigure {
+        title: "Servo validation data",
+        claim: "the Box-Jenkins model captures the servo's dynamics on validation data",
+        ..fitted("10", drawn)
+    };
     let (Some((training, found)), Some((fresh, _))) = (servo_estimate(1), servo_estimate(2)) else {
-        return vec![unfitted(
-            "10",
-            "Servo validation data",
-            claim,
-            "no model was found",
-        )];
+        return vec![validation(Err("no model was found".to_string()))];
     };
     let seconds = |values: &[f64]| -> Vec<(f64, f64)> {
         let shown = values.iter().take(600).enumerate();
@@ -311,46 +291,34 @@ fn identification() -> Vec<Figure> {
     let own = score(&found.model, std::slice::from_ref(&training));
     let simulated = found.model.simulated(&fresh.input);
     let passed = scored.tests.iter().all(|test| test.passed);
-    let chart = |title: &str, curves| Chart::new(title, "time, s", "speed, rad/s", curves);
-    vec![
-        Figure {
-            number: "9",
-            title: "Servo identification data",
-            claim: claim_data,
-            charts: vec![chart(
-                "first 6 s",
-                vec![
-                    Curve::line("commanded", Tone::Grey, seconds(&training.input)),
-                    Curve::line("estimated speed", Tone::Ink, seconds(&training.output)),
-                ],
-            )],
-            holds: Holds::Yes,
-            sentence: format!(
-                "{} samples at 100 Hz made with eq. (2), random steps of +-5 rad/s; the noise model is our own choice, \
-                 since the paper prints none.",
-                training.count()
-            ),
-        },
-        Figure {
-            number: "10",
-            title: "Servo validation data",
-            claim,
-            charts: vec![chart(
-                "first 6 s",
-                vec![
-                    Curve::line("estimated speed", Tone::Ink, seconds(&fresh.output)),
-                    Curve::line("simulated by the model", Tone::Orange, seconds(&simulated)),
-                ],
-            )],
-            holds: if passed { Holds::Yes } else { Holds::InPart },
-            sentence: format!(
-                "Simulated from the input alone, the model fits the validation data to {:.1} % (training {:.1} %), one \
-                 step ahead to {:.1} %; its residual {} white and independent of the input.",
-                scored.simulated_fit_percent,
-                own.simulated_fit_percent,
-                scored.predicted_fit_percent,
-                if passed { "is" } else { "is not" }
-            ),
-        },
-    ]
+    let chart = |curves| Chart::new("first 6 s", "time, s", "speed, rad/s", curves);
+    let data = PaperFigure {
+        number: "9",
+        title: "Servo identification data",
+        claim: "the commanded and the estimated speed, for identification",
+        charts: vec![chart(vec![
+            Curve::line("commanded", Tone::Grey, seconds(&training.input)),
+            Curve::line("estimated speed", Tone::Ink, seconds(&training.output)),
+        ])],
+        holds: Holds::Yes,
+        sentence: format!(
+            "{} samples at 100 Hz made with eq. (2), random steps of +-5 rad/s; the noise model is \
+             our own choice, since the paper prints none.",
+            training.count()
+        ),
+    };
+    let curves = vec![
+        Curve::line("estimated speed", Tone::Ink, seconds(&fresh.output)),
+        Curve::line("simulated by the model", Tone::Orange, seconds(&simulated)),
+    ];
+    let sentence = format!(
+        "Simulated from the input alone, the model fits the validation data to {:.1} % (training \
+         {:.1} %), one step ahead to {:.1} %; its residual {} white and independent of the input.",
+        scored.simulated_fit_percent,
+        own.simulated_fit_percent,
+        scored.predicted_fit_percent,
+        if passed { "is" } else { "is not" }
+    );
+    let drawn = (chart(curves), Holds::at_least_in_part(passed), sentence);
+    vec![data, validation(Ok(drawn))]
 }

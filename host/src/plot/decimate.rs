@@ -5,24 +5,24 @@ use super::scale::{Scale, drawable};
 use std::fmt::Write as _;
 
 /// A place on the page, px.
-type Place = (f64, f64);
+type Pixel = (f64, f64);
 
 /// The `d` of an SVG path through the points; what cannot be drawn leaves a gap.
 pub(super) fn path(points: impl IntoIterator<Item = (f64, f64)>, x: &Scale, y: &Scale) -> String {
     let place = |(across, up): (f64, f64)| {
         (drawable(across) && drawable(up)).then(|| (x.place(across), y.place(up)))
     };
-    let places: Vec<Option<Place>> = points.into_iter().map(place).collect();
+    let places: Vec<Option<Pixel>> = points.into_iter().map(place).collect();
     let mut path = String::new();
     for stroke in places.split(Option::is_none) {
-        let stroke: Vec<Place> = stroke.iter().copied().flatten().collect();
+        let stroke: Vec<Pixel> = stroke.iter().copied().flatten().collect();
         write_stroke(&mut path, &decimated(&stroke));
     }
     path
 }
 
 /// A lone point becomes a dot under a round pen.
-fn write_stroke(path: &mut String, stroke: &[Place]) {
+fn write_stroke(path: &mut String, stroke: &[Pixel]) {
     for (index, (x, y)) in stroke.iter().enumerate() {
         let pen = if index == 0 { 'M' } else { 'L' };
         write!(path, "{pen}{x:.1} {y:.1}").expect("a string takes all");
@@ -33,7 +33,7 @@ fn write_stroke(path: &mut String, stroke: &[Place]) {
 }
 
 /// Lowest and highest point of each pixel column, in their order.
-fn decimated(stroke: &[Place]) -> Vec<Place> {
+fn decimated(stroke: &[Pixel]) -> Vec<Pixel> {
     let mut kept = Vec::new();
     for column in stroke.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
         let height = |index: &usize| column[*index].1;

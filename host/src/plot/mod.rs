@@ -10,8 +10,8 @@
 //! and, below, the residual.
 //! - `plotters` 0.3 (SVG backend alone, no fonts of the system) writes 144 kB, all points of every
 //!   curve; here it is 51 kB, since curves are decimated to pixel columns. It rounds coordinates to
-//!   whole pixels, which shows as steps in flat curves, writes colours into the marks, which rules out
-//!   the dark page and hiding a curve, and clips the last label.
+//!   whole pixels, which shows as steps in flat curves, writes colours into the marks, which rules
+//!   out the dark page and hiding a curve, and clips the last label.
 //! - `plotly` needs its script of more than 3 MB in each page; a page stays below 600 kB and
 //!   holds no script.
 //! - `textplots` 0.8 draws braille curves in a frame without labels, with its border over the

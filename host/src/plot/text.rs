@@ -13,14 +13,14 @@ const ROWS: usize = 12;
 const BITS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 
 /// Characters of a drawing.
-type Cells = [[u8; COLUMNS]; ROWS];
+type BrailleGrid = [[u8; COLUMNS]; ROWS];
 
 /// Curves between two axes with their end values; grey curves show every fifth dot.
 pub(super) fn chart(chart: &Chart) -> String {
     let [x, y] = chart.spans(0.05);
     let across = Scale::new(x, (0.0, (2 * COLUMNS - 1) as f64));
     let down = Scale::new(y, ((4 * ROWS - 1) as f64, 0.0));
-    let mut cells: Cells = [[0; COLUMNS]; ROWS];
+    let mut cells: BrailleGrid = [[0; COLUMNS]; ROWS];
     for curve in &chart.curves {
         let place = |&(x, y): &(f64, f64)| (across.held(x).round(), down.held(y).round());
         let dots: Vec<(f64, f64)> = curve.points.iter().map(place).collect();
@@ -32,7 +32,7 @@ pub(super) fn chart(chart: &Chart) -> String {
     framed(&cells, chart, x, y)
 }
 
-fn set(cells: &mut Cells, (across, down): (f64, f64)) {
+fn set(cells: &mut BrailleGrid, (across, down): (f64, f64)) {
     let (across, down) = (across as usize, down as usize);
     cells[down / 4][across / 2] |= BITS[across % 2][down % 4];
 }
@@ -56,7 +56,7 @@ fn trail(dots: &[(f64, f64)]) -> Vec<(f64, f64)> {
     trail
 }
 
-fn framed(cells: &Cells, chart: &Chart, x: (f64, f64), y: (f64, f64)) -> String {
+fn framed(cells: &BrailleGrid, chart: &Chart, x: (f64, f64), y: (f64, f64)) -> String {
     let mut lines = vec![format!("{:>9} {}", "", chart.y_label)];
     for (row, bits) in cells.iter().enumerate() {
         let mark = match row {
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_rising_line_goes_from_the_lower_left_to_the_upper_right() {
-        let mut cells: Cells = [[0; COLUMNS]; ROWS];
+        let mut cells: BrailleGrid = [[0; COLUMNS]; ROWS];
         let last = ((2 * COLUMNS - 1) as f64, (4 * ROWS - 1) as f64);
         for dot in trail(&[(0.0, last.1), (last.0, 0.0)]) {
             set(&mut cells, dot);

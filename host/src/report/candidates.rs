@@ -3,7 +3,7 @@
 use super::page::{Section, table};
 use super::words::{in_mrad, set_name, sorted, with_interval};
 use super::{AFTER, BEFORE, Report};
-use crate::diagnose::words::{SHOWN, joined};
+use crate::diagnose::words::{SHOWN, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
 use crate::output::number::{NONE, mrad, short};
 use crate::plot::{Bar, largest};
@@ -34,7 +34,7 @@ fn alternatives(alternatives: &[Alternative]) -> Markup {
         h3 { "These do as well: the data do not rule them out" }
         ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
-                b { (joined(&alternative.effects)) } ": error " (in_mrad(alternative.error_rad))
+                b { (explained_by(&alternative.effects, &alternative.wrong_values)) } ": error " (in_mrad(alternative.error_rad))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }
@@ -57,7 +57,7 @@ fn tried(diagnosis: &Diagnosis) -> Markup {
         th.wide {} th.number { "BIC change" } th { "Why not" }
     };
     let rows = html! {
-        @if !diagnosis.effects.is_empty() { (best(diagnosis, full)) }
+        @if found(diagnosis) { (best(diagnosis, full)) }
         @for tried in tried { (row(tried, full, chosen)) }
     };
     html! {
@@ -70,7 +70,11 @@ fn tried(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// The chosen set, to compare with.
+fn found(diagnosis: &Diagnosis) -> bool {
+    !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty()
+}
+
+/// The chosen explanation, to compare with.
 fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
     let after = diagnosis.error.after_rad;
     let (fitted, held_out) = match diagnosis.error.held_out {
@@ -79,7 +83,7 @@ fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
     };
     html! {
         tr.best {
-            td { (joined(&diagnosis.effects)) }
+            td { (explained_by(&diagnosis.effects, &diagnosis.wrong_values)) }
             td.number { (fitted) }
             td.number { (held_out) }
             td.wide { (Bar::new(after, full, AFTER).draw()) }

@@ -1,11 +1,11 @@
 //! An effect explained on a terminal: a page for each, and a table of all. Every word and curve
 //! comes from the descriptions and the laws.
 
-use super::plain_table;
 use super::signatures::{chart, title};
 use crate::effects::signature::signature;
 use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 use crate::output::number::given;
+use crate::output::table::plain_table;
 use comfy_table::Table;
 
 /// Columns of a page.
@@ -112,7 +112,7 @@ fn range((low, high): (f64, f64)) -> String {
 }
 
 fn confusions(info: &EffectInfo) -> String {
-    let lines = info.confused_with.iter().map(|confusion| {
+    let lines = info.confusions().map(|confusion| {
         let id = confusion.with;
         wrapped(&format!("{} ({id}): {}", title(id), confusion.why))
     });

@@ -1,10 +1,11 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word, window};
+use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
+use crate::fitting::in_windows;
 use crate::output::number::{mrad, short};
 use crate::plot::Tone;
 use maud::{Markup, html};
@@ -35,12 +36,13 @@ fn diagnosed(diagnosis: &Diagnosis) -> Markup {
 }
 
 fn error_line(diagnosis: &Diagnosis) -> Markup {
-    let (error, horizon_s) = (&diagnosis.error, diagnosis.horizon_s);
-    let found = !diagnosis.effects.is_empty();
+    let error = &diagnosis.error;
+    let found = !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty();
     if !error.before_rad.is_finite() {
         return html! {};
     }
-    let mut shown = vec![("refitted as it is", BEFORE, error.before_rad)];
+    let mut shown = vec![("as given", BEFORE, error.before_rad)];
+    shown.extend(error.refitted_rad.map(|rad| ("refitted", BEFORE, rad)));
     if found {
         shown.push(("with what was found", AFTER, error.after_rad));
     }
@@ -48,7 +50,7 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
     html! {
         (figures(&shown))
         p.note {
-            "Typical (RMS) angle error in milliradians, " (window(horizon_s))
+            "Typical (RMS) angle error in milliradians, " (in_windows(&diagnosis.windows))
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."

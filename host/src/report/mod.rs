@@ -21,7 +21,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
-pub use text::{diagnosis_text, plain_table};
+pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
@@ -47,12 +47,12 @@ pub struct Report {
     /// What is missing in the first of them, where that was asked.
     pub diagnosis: Option<Diagnosis>,
     /// What the report was made from.
-    pub provenance: Provenance,
+    pub provenance: ReportProvenance,
 }
 
 /// What a report was made from and by.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Provenance {
+pub struct ReportProvenance {
     /// Version of this program.
     pub program_version: String,
     /// Models, in the order of the chain.

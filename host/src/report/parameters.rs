@@ -82,7 +82,9 @@ fn collinear(diagnosis: &Diagnosis) -> Markup {
                  known well. Another kind of motion would part them."
             }
             ul { @for (one, other, correlation) in &diagnosis.collinear {
-                li { code { (one) } " and " code { (other) } ": correlation " (short(*correlation)) }
+                li {
+                    code { (one) } " and " code { (other) } ": correlation " (short(*correlation))
+                }
             } }
         }
     }

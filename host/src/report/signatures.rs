@@ -47,7 +47,7 @@ fn explained(effect: &dyn Effect) -> Markup {
                     dt { "The experiment that reveals it" } dd { (info.experiment) }
                     @if !info.confused_with.is_empty() {
                         dt { "Easily confused with" }
-                        @for confusion in info.confused_with {
+                        @for confusion in info.confusions() {
                             dd { (title(confusion.with)) ": " (confusion.why) }
                         }
                     }

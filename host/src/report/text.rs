@@ -1,14 +1,15 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, window, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_interval,
 };
-use crate::diagnose::words::{SHOWN as RIVALS, headline as sentence, joined};
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect};
-use crate::fitting::FittedValue;
+use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
+use crate::diagnose::{Alternative, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::fitting::{FittedValue, in_windows};
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
-use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
+use crate::output::table::{TableColumn, plain_table, table_of};
+use comfy_table::{CellAlignment, Table};
 
 /// Columns of a table.
 const WIDTH: u16 = 90;
@@ -20,6 +21,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
     let sections = [
         Some(headline(diagnosis)),
         effects(&diagnosis.effects),
+        wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
         alternatives(&diagnosis.alternatives),
         ruled_out(diagnosis),
@@ -39,44 +41,49 @@ fn headline(diagnosis: &Diagnosis) -> String {
 }
 
 fn effects(effects: &[FittedEffect]) -> Option<String> {
-    let header = [
-        "Effect",
-        "Joint",
-        "Parameter",
-        "Value",
-        "95 % interval",
-        "Unit",
-        "",
-    ];
-    let mut table = plain_table(header);
+    let mut values = Vec::new();
     for effect in effects {
-        table.add_rows(effect.parameters.iter().map(|fitted| row(effect, fitted)));
+        values.extend(effect.parameters.iter().map(|fitted| (effect, fitted)));
     }
-    Some(format!("Missing effects\n{}", lines(table, &[1, 3, 4])?))
+    let ends = |fitted: &FittedValue| interval(fitted.value, fitted.low, fitted.high);
+    let note = |on_bound: bool| if on_bound { "on its bound" } else { "" };
+    let columns: &[TableColumn<(&FittedEffect, &FittedValue)>] = &[
+        ("Effect", &|(effect, _)| effect.title.clone()),
+        ("Joint", &|(effect, _)| {
+            effect.joint.map_or("rig".into(), |joint| joint.to_string())
+        }),
+        ("Parameter", &|(_, fitted)| fitted.key.clone()),
+        ("Value", &|(_, fitted)| ends(fitted)[0].clone()),
+        ("95 % interval", &|(_, fitted)| {
+            ends(fitted)[1..].join(" to ")
+        }),
+        ("Unit", &|(_, fitted)| unit(&fitted.unit).to_string()),
+        ("", &|(_, fitted)| note(fitted.on_bound).to_string()),
+    ];
+    Some(format!(
+        "Missing effects\n{}",
+        lines(table_of(&values, columns), &[1, 3, 4])?
+    ))
 }
 
-fn row(effect: &FittedEffect, fitted: &FittedValue) -> [String; 7] {
-    let [value, low, high] = interval(fitted.value, fitted.low, fitted.high);
-    let note = if fitted.on_bound { "on its bound" } else { "" };
-    [
-        effect.title.clone(),
-        effect.joint.map_or("rig".into(), |joint| joint.to_string()),
-        fitted.key.clone(),
-        value,
-        format!("{low} to {high}"),
-        unit(&fitted.unit).to_string(),
-        note.to_string(),
-    ]
+fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
+    let line = |wrong: &WrongValue| format!("{}: {}", wrong.fitted.path, change(wrong));
+    let lines: Vec<String> = wrong.iter().map(line).collect();
+    list("Wrong values", &lines)
 }
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let (before, after) = (mrad(error.before_rad), mrad(error.after_rad));
-    let added = !diagnosis.effects.is_empty();
+    let added = !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty();
+    let refitted = error
+        .refitted_rad
+        .map(|rad| format!(", {} mrad refitted", mrad(rad)));
+    let refitted = refitted.unwrap_or_default();
     let change = if added {
-        format!(", refitted as it is -> {after} mrad;")
+        format!(" as given{refitted} -> {after} mrad;")
     } else {
-        ",".to_string()
+        format!(" as given{refitted};")
     };
     let mut lines = vec![
         format!(
@@ -85,7 +92,7 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
         ),
         format!(
             "RMS {}, on {}.",
-            window(diagnosis.horizon_s),
+            in_windows(&diagnosis.windows),
             measured_on(error)
         ),
     ];
@@ -94,7 +101,16 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
             .filter(|_| added)
             .map(|reduction| format!("So {reduction}.")),
     );
+    lines.extend(folds(&diagnosis.folds));
     error.before_rad.is_finite().then(|| lines.join("\n"))
+}
+
+/// "With other motions held out: 41.0 -> 6.2, 39.5 -> 6.4 mrad."
+fn folds(folds: &[Fold]) -> Option<String> {
+    let each = folds.iter();
+    let each = each.map(|fold| format!("{} -> {}", mrad(fold.before_rad), mrad(fold.after_rad)));
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| format!("With other motions held out: {} mrad.", each.join(", ")))
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Option<String> {
@@ -103,8 +119,11 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
             .effects
             .iter()
             .flat_map(|effect| &effect.parameters);
+        let wrong = alternative.wrong_values.iter().map(|wrong| &wrong.fitted);
+        let values = values.chain(wrong);
         let values = values.map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)));
-        let (effects, error) = (joined(&alternative.effects), in_mrad(alternative.error_rad));
+        let effects = explained_by(&alternative.effects, &alternative.wrong_values);
+        let error = in_mrad(alternative.error_rad);
         format!(
             "{effects}: {error}; {}",
             values.collect::<Vec<_>>().join(", ")
@@ -134,8 +153,8 @@ fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
 fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
     let structure = diagnosis.residual_structure.as_ref()?;
     Some(format!(
-        "Residual structure: a free form could still gain {} (at least {}) of the squared error above the \
-         floor; it leans on {}.",
+        "Residual structure: a free form could still gain {} (at least {}) of the squared error \
+         above the floor; it leans on {}.",
         percent(structure.explainable_share.clamp(0.0, 1.0)),
         percent(structure.explainable_low.clamp(0.0, 1.0)),
         structure.shape
@@ -145,18 +164,6 @@ fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
 fn list(title: &str, items: &[String]) -> Option<String> {
     let lines: Vec<String> = items.iter().map(|item| format!("  - {item}")).collect();
     (!items.is_empty()).then(|| format!("{title}\n{}", lines.join("\n")))
-}
-
-/// A table without frame, as wide as its text asks and at most as wide as the terminal.
-pub fn plain_table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header)
-        .remove_style(TableComponent::HorizontalLines)
-        .remove_style(TableComponent::MiddleIntersections);
-    table
 }
 
 /// The table's lines, numbers in these columns under each other; nothing without rows.

@@ -4,12 +4,14 @@ use crate::diagnose::words::{at_joint, headline, listed};
 use crate::diagnose::{Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::{ErrorReduction, FittedValue};
-use crate::output::number::{given, measured, mrad, percent};
+use crate::output::number::{measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Nominal => "nominal",
+        Verdict::Adequate => "adequate",
+        Verdict::WrongValue => "wrong_value",
         Verdict::Named => "named",
         Verdict::Ambiguous => "ambiguous",
         Verdict::Unexplained => "unexplained",
@@ -86,12 +88,4 @@ pub(super) fn sentences(diagnosis: &Diagnosis) -> impl Iterator<Item = &String> 
         .summary
         .iter()
         .filter(move |line| **line != headline)
-}
-
-/// What limits the judgement in time, as a clause.
-pub(super) fn window(horizon_s: Option<f64>) -> String {
-    match horizon_s {
-        Some(horizon_s) => format!("in windows of {} s", given(horizon_s)),
-        None => "over whole motions".into(),
-    }
 }

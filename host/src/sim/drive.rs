@@ -1,7 +1,7 @@
 //! Drive torque at a joint, from the drive's input, its regulator, its motor and the effects on
 //! them.
 
-use super::plant::{Active, JointPlan};
+use super::plant::{ActiveEffect, JointPlan};
 use crate::effects::{AtRest, DriveState};
 use crate::model::Drive;
 
@@ -45,7 +45,7 @@ impl JointPlan {
             torque_nm: 0.0,
             full_torque_nm: self.full_torque_nm,
         };
-        let follows_speed = |e: &Active| {
+        let follows_speed = |e: &ActiveEffect| {
             let slope = e.effect.slope(e.values(), &standstill);
             slope.is_none_or(|slope| slope.per_rad_s != 0.0)
         };

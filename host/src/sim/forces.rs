@@ -151,12 +151,9 @@ impl<R: Rows> Forces<R> {
                 *slope = 0.0;
             }
         }
-        plant.rig.chain.bearing_forces(
-            plant.rig.gravity_turn_rad,
-            at.angle,
-            at.speed,
-            out,
-            self.bearing.as_mut(),
-        );
+        let (rig, joints) = (&plant.rig, [at.angle, at.speed, out]);
+        let mut each = |joint, _, force: [f64; 2]| self.bearing[joint] = force[0].hypot(force[1]);
+        rig.chain
+            .newton_euler(rig.gravity_turn_rad, joints, &mut each);
     }
 }

@@ -4,7 +4,7 @@
 use super::drive::DriveInput;
 use super::plant::Plant;
 use super::rows::Many;
-use super::stepper::Stepper;
+use super::stepper::{Stepper, steps};
 use crate::error::{Error, Result};
 use crate::model::{Drive, Model};
 
@@ -46,7 +46,8 @@ impl Live {
                     "`{}` has a joint driven by a torque, not by a servo",
                     model.name
                 ),
-                "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, no_load_speed_rad_s",
+                "give it `drive = \"position\"` with gain_per_rad, stall_torque_nm, \
+                 no_load_speed_rad_s",
             ));
         }
         let model = bare_motors(model);
@@ -79,10 +80,9 @@ impl Live {
 
     /// Goes on for `span_s` under constant duties.
     pub fn advance(&mut self, span_s: f64) {
-        let steps = (span_s / self.plant.step_s - 1e-6).ceil().max(1.0);
-        for _ in 0..steps as usize {
-            self.stepper
-                .advance(&self.plant, &self.inputs, span_s / steps);
+        let (steps, h) = steps(span_s, self.plant.step_s);
+        for _ in 0..steps {
+            self.stepper.advance(&self.plant, &self.inputs, h);
         }
     }
 

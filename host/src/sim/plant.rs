@@ -1,22 +1,21 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
 use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
-use crate::log::{Motion, MotionSource};
+use crate::log::Motion;
 use crate::model::{Angles, Drive, Model};
-use std::path::PathBuf;
 
 /// Most values an effect has.
 const MOST_VALUES: usize = 4;
 
 /// An effect with its values, stored in place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Active {
+pub(super) struct ActiveEffect {
     pub effect: &'static dyn Effect,
     values: [f64; MOST_VALUES],
     count: usize,
 }
 
-impl Active {
+impl ActiveEffect {
     #[inline]
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
@@ -29,12 +28,12 @@ pub(super) struct JointPlan {
     pub drive: Drive,
     pub full_torque_nm: f64,
     pub delay_s: f64,
-    pub command: Vec<Active>,
-    pub torque: Vec<Active>,
-    pub friction: Vec<Active>,
-    pub output: Vec<Active>,
-    pub encode: Vec<Active>,
-    pub sense: Vec<Active>,
+    pub command: Vec<ActiveEffect>,
+    pub torque: Vec<ActiveEffect>,
+    pub friction: Vec<ActiveEffect>,
+    pub output: Vec<ActiveEffect>,
+    pub encode: Vec<ActiveEffect>,
+    pub sense: Vec<ActiveEffect>,
 }
 
 /// A model compiled for one motion.
@@ -95,23 +94,7 @@ impl Plant {
 
     /// Compiles `model` for a simulation without a log: no payload, not turned.
     pub fn without_log(model: &Model) -> Plant {
-        let motion = Motion {
-            name: String::new(),
-            source: MotionSource {
-                path: PathBuf::new(),
-                sha256: String::new(),
-                lines: (0, 0),
-            },
-            time_s: Vec::new(),
-            position_rad: Vec::new(),
-            velocity_rad_s: Vec::new(),
-            input: Vec::new(),
-            supply_v: None,
-            torque_on: None,
-            payload_kg: 0.0,
-            turned: false,
-        };
-        Plant::new(model, &motion)
+        Plant::new(model, &Motion::default())
     }
 
     /// Whether the log's angles are measured from the world.
@@ -160,7 +143,7 @@ impl Plant {
         let joints = self.joints.iter().zip(reading_rad).zip(speed_rad_s);
         joints
             .map(|((joint, reading), speed)| {
-                let trail = |e: &Active| e.effect.trail_rad(e.values(), *speed);
+                let trail = |e: &ActiveEffect| e.effect.trail_rad(e.values(), *speed);
                 reading + joint.sense.iter().filter_map(trail).sum::<f64>()
             })
             .collect()
@@ -177,20 +160,6 @@ impl Plant {
             }
         }
         speeds
-    }
-
-    /// A pose in the model's own convention as relative angles (joint 1 from hanging), rad.
-    pub(super) fn pose_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
-        let mut pose = pose_rad.to_vec();
-        if self.absolute {
-            for joint in (1..pose.len()).rev() {
-                pose[joint] -= pose[joint - 1];
-            }
-        }
-        if let Some(first) = pose.first_mut() {
-            *first += self.zero_rad;
-        }
-        pose
     }
 
     /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes
@@ -249,7 +218,7 @@ impl JointPlan {
     }
 
     fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {
-        let mut active = Active {
+        let mut active = ActiveEffect {
             effect,
             values: [0.0; MOST_VALUES],
             count: values.len(),

@@ -11,6 +11,13 @@ use super::plant::Plant;
 use super::rows::Rows;
 use crate::dynamics::RungeKutta;
 
+/// Into how many steps of what length, s, a span is cut by the longest step.
+#[inline]
+pub(super) fn steps(span_s: f64, longest_s: f64) -> (usize, f64) {
+    let steps = (span_s / longest_s - 1e-6).ceil().max(1.0);
+    (steps as usize, span_s / steps)
+}
+
 /// How friction acts on a joint until the next event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Contact {
@@ -103,7 +110,8 @@ impl<R: Rows> Stepper<R> {
     }
 
     fn stopped(&self, joint: usize) -> bool {
-        matches!(self.contact[joint], Contact::Sliding(direction) if direction * self.speed[joint] < 0.0)
+        let speed = self.speed[joint];
+        matches!(self.contact[joint], Contact::Sliding(direction) if direction * speed < 0.0)
     }
 
     /// The joint whose speed first crosses zero in the step just taken, and at which share of it.

@@ -1,9 +1,13 @@
 //! One robot under one set of circumstances, and the controller designed for it.
 
-use crate::controllers::{Design, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through};
+use crate::controllers::{
+    ControllerDesign, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through,
+};
 use crate::error::Result;
 use crate::model::{Angles, Model};
-use crate::sim::closed_loop::{Clock, ClosedLoop, Commands, Controller, Drives, Limits, Sensor};
+use crate::sim::closed_loop::{
+    Clock, ClosedLoop, Commands, Controller, Drives, Sensor, StabilityCriteria,
+};
 use crate::synth;
 
 /// What is run.
@@ -26,14 +30,14 @@ pub struct Case {
     /// The controller.
     pub control: Control,
     /// What counts as fallen and as stabilised.
-    pub limits: Limits,
+    pub limits: StabilityCriteria,
 }
 
 /// A controller, its settings, and what its designer assumes.
 #[derive(Debug, Clone)]
 pub struct Control {
     /// Which one.
-    pub design: &'static dyn Design,
+    pub design: &'static dyn ControllerDesign,
     /// Weight of every state, for the designs that let it be chosen.
     pub q: f64,
     /// Weight of every torque.
@@ -58,7 +62,7 @@ pub struct Designed {
 
 impl Case {
     /// A robot without further non-idealities under this controller, sampled every `period_s`.
-    pub fn ideal(model: Model, design: &'static dyn Design, period_s: f64) -> Case {
+    pub fn ideal(model: Model, design: &'static dyn ControllerDesign, period_s: f64) -> Case {
         Case {
             disturbance_nm: vec![0.0; model.link_count()],
             nominal: model.clone(),
@@ -76,7 +80,7 @@ impl Case {
                 drives: Drives::IDEAL,
                 sensor: Sensor::EXACT,
             },
-            limits: Limits::default(),
+            limits: StabilityCriteria::default(),
         }
     }
 

@@ -4,12 +4,15 @@
 //! length of its rows in bytes and their SHA-256, then the rows. Each is appended and synced whole;
 //! what does not match its sum at the end was torn by a crash and is cut off.
 
+use super::error::StudyError;
+use super::monte_carlo::{CHUNK, columns};
+use super::parse::Study;
 use crate::error::{Error, Place, Result};
+use crate::output::number::hex;
 use fs4::fs_std::FileExt as _;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
@@ -30,12 +33,23 @@ pub struct Header {
 }
 
 /// Version of the format.
-pub const FORMAT: u32 = 1;
+const FORMAT: u32 = 1;
 /// Most chunks of a study: some thousand million runs. A damaged header may say any number, and the
 /// missing ones are listed.
 const MOST_CHUNKS: usize = 10_000_000;
 
 impl Header {
+    /// The header of a study's journals.
+    pub fn of(study: &Study) -> Header {
+        Header {
+            handstand_study: FORMAT,
+            fingerprint: study.fingerprint(),
+            runs: study.judging.runs,
+            chunk: CHUNK,
+            columns: columns(study),
+        }
+    }
+
     /// Number of chunks of the whole study.
     pub fn chunks(&self) -> usize {
         self.runs.div_ceil(self.chunk.max(1))
@@ -76,10 +90,8 @@ impl Journal {
         options.read(true).write(true).create(true).truncate(false);
         let file = options.open(path).map_err(refused)?;
         if !file.try_lock_exclusive().map_err(refused)? {
-            return Err(Error::usage(
-                format!("{}: another program is writing it", path.display()),
-                "wait for it, or give this one another folder",
-            ));
+            let locked = StudyError::Locked(path.to_path_buf());
+            return Err(Error::Usage(Box::new(locked)));
         }
         let mut journal = Journal {
             path: path.to_path_buf(),
@@ -98,11 +110,7 @@ impl Journal {
         }
         let found = content(&bytes, path)?;
         if found.header != *header {
-            return Err(Error::data(
-                Place::file(path),
-                "this is the journal of another study, or of another version of the program",
-                "give this study another folder, or delete the journal",
-            ));
+            return Err(Error::refused(Place::file(path), StudyError::OtherStudy));
         }
         journal.torn_bytes = found.length - found.whole;
         journal.done = found.rows.into_keys().collect();
@@ -154,13 +162,7 @@ fn content(bytes: &[u8], path: &Path) -> Result<Content> {
         .filter(|header: &Header| header.handstand_study == FORMAT && header.chunk > 0)
         .filter(|header| header.chunks() <= MOST_CHUNKS)
         .filter(|_| line.len() < bytes.len())
-        .ok_or_else(|| {
-            Error::data(
-                Place::at(path, 1, 1),
-                "this is no journal of a study",
-                "name a .journal file that `handstand study monte-carlo` wrote, or its folder",
-            )
-        })?;
+        .ok_or_else(|| Error::refused(Place::at(path, 1, 1), StudyError::NoJournal))?;
     let mut place = line.len() + 1;
     let mut rows = BTreeMap::new();
     while let Some((chunk, text, end)) = chunk_at(bytes, place) {
@@ -196,13 +198,5 @@ fn chunk_at(bytes: &[u8], place: usize) -> Option<(usize, String, usize)> {
 }
 
 fn sum(rows: &str) -> String {
-    hex(Sha256::digest(rows.as_bytes()).as_slice())
-}
-
-/// Bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hex(Sha256::digest(rows))
 }

@@ -33,8 +33,6 @@ pub const SERVO_DEAD_TIME_S: [f64; 2] = [17e-3, 50e-3];
 /// A way from sample to servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignalPath {
-    /// Name for people.
-    pub title: &'static str,
     /// Servos that are read and commanded.
     pub servos: usize,
     /// Baud of the serial line; none if the law runs on the CM-5.
@@ -45,45 +43,36 @@ pub struct SignalPath {
 
 /// The ways there are.
 pub const SIGNAL_PATHS: &[SignalPath] = &[
-    SignalPath {
-        title: "law on the CM-5, 4 servos, return delay 0",
-        servos: BALANCING,
-        baud: None,
-        factory: false,
-    },
-    SignalPath {
-        title: "law on the CM-5, 18 servos, return delay 0",
-        servos: SERVOS,
-        baud: None,
-        factory: false,
-    },
-    SignalPath {
-        title: "law on the CM-5, 4 servos, factory return delay",
-        servos: BALANCING,
-        baud: None,
-        factory: true,
-    },
-    SignalPath {
-        title: "law on the PC, 18 servos, 115200 baud, return delay 0",
-        servos: SERVOS,
-        baud: Some(115_200.0),
-        factory: false,
-    },
-    SignalPath {
-        title: "law on the PC, 18 servos, 57600 baud, return delay 0",
-        servos: SERVOS,
-        baud: Some(57_600.0),
-        factory: false,
-    },
-    SignalPath {
-        title: "law on the PC, 18 servos, 57600 baud, factory return delay",
-        servos: SERVOS,
-        baud: Some(57_600.0),
-        factory: true,
-    },
+    SignalPath::of(BALANCING, None, false),
+    SignalPath::of(SERVOS, None, false),
+    SignalPath::of(BALANCING, None, true),
+    SignalPath::of(SERVOS, Some(115_200.0), false),
+    SignalPath::of(SERVOS, Some(57_600.0), false),
+    SignalPath::of(SERVOS, Some(57_600.0), true),
 ];
 
 impl SignalPath {
+    const fn of(servos: usize, baud: Option<f64>, factory: bool) -> Self {
+        SignalPath {
+            servos,
+            baud,
+            factory,
+        }
+    }
+
+    /// Name for people.
+    pub fn title(&self) -> String {
+        let law = if self.baud.is_some() { "PC" } else { "CM-5" };
+        let baud = self
+            .baud
+            .map_or(String::new(), |baud| format!(", {baud} baud"));
+        let delay = match self.factory {
+            true => "factory return delay",
+            false => "return delay 0",
+        };
+        format!("law on the {law}, {} servos{baud}, {delay}", self.servos)
+    }
+
     /// Reading all servos one after the other and commanding them in one packet, s.
     pub fn bus_s(&self) -> f64 {
         let delay_s = if self.factory { FACTORY_S } else { 0.0 };

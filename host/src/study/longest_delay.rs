@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::judge::{Judging, STABILISED_SHARE, judge};
 use super::quantity::Uncertain;
-use crate::controllers::{Design, DesignModel, LinearLaw};
+use crate::controllers::{ControllerDesign, DesignModel, LinearLaw};
 use crate::error::{Error, Result};
 use serde::Serialize;
 
@@ -57,7 +57,8 @@ impl Longest {
 
     /// Whether a delay lies within.
     pub fn tolerates(&self, delay_s: f64) -> bool {
-        matches!((self.shortest_s, self.delay_s), (Some(least), Some(most)) if least <= delay_s && delay_s <= most)
+        let within = |(least, most)| (least..=most).contains(&delay_s);
+        self.shortest_s.zip(self.delay_s).is_some_and(within)
     }
 }
 
@@ -68,7 +69,7 @@ impl Longest {
 /// # Errors
 /// A controller that cannot be made.
 pub fn longest_linear(
-    design: &dyn Design,
+    design: &dyn ControllerDesign,
     model: &DesignModel,
     known_s: Option<f64>,
     step_s: f64,

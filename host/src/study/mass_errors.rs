@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::quantity::Uncertain;
+use super::region::bisect;
 use crate::controllers::DesignModel;
 use crate::error::Result;
 use crate::synth::{Discrete, spectral_radius, upright, zoh};
@@ -48,16 +49,11 @@ impl MassErrors<'_> {
     /// # Errors
     /// As [`MassErrors::plants`].
     pub fn largest(&self, k: &DMatrix<f64>, share: f64) -> Result<f64> {
-        let (mut stable, mut unstable) = (0.0, 64.0);
-        while unstable - stable > 0.25 {
-            let middle = (stable + unstable) / 2.0;
-            if unstable_share(&radii(&self.plants(middle / 100.0)?, k)) <= share {
-                stable = middle;
-            } else {
-                unstable = middle;
-            }
-        }
-        Ok(stable / 100.0)
+        let stable = |percent: f64| {
+            let plants = self.plants(percent / 100.0)?;
+            Ok(unstable_share(&radii(&plants, k)) <= share)
+        };
+        Ok(bisect(0.0, 64.0, 8, stable)?.0 / 100.0)
     }
 }
 

@@ -1,5 +1,6 @@
 //! From journals to one table.
 
+use super::error::StudyError;
 use super::journal::{self, Header};
 use super::summary::Summary;
 use crate::error::{Error, Place, Result};
@@ -41,11 +42,8 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         }
         match &found {
             Some((header, first)) if *header != content.header => {
-                return Err(Error::data(
-                    Place::file(&file),
-                    format!("this is another study than {}", first.display()),
-                    "merge shards of one study, all by the same version of the program",
-                ));
+                let differ = StudyError::StudiesDiffer(first.clone());
+                return Err(Error::refused(Place::file(&file), differ));
             }
             Some(_) => {}
             None => found = Some((content.header, file.clone())),
@@ -53,11 +51,9 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         for (chunk, text) in content.rows {
             match rows.get(&chunk) {
                 Some((other, first)) if *other != text => {
-                    return Err(Error::data(
-                        Place::file(&file),
-                        format!("chunk {chunk} differs from that in {}", first.display()),
-                        "the same run must give the same row: one of the two was changed, or computed on a machine whose arithmetic differs",
-                    ));
+                    let other = first.clone();
+                    let differs = StudyError::ChunkDiffers { chunk, other };
+                    return Err(Error::refused(Place::file(&file), differs));
                 }
                 Some(_) => {}
                 None => {
@@ -67,18 +63,16 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         }
     }
     let Some((header, first)) = found else {
-        return Err(Error::usage(
-            "there is no journal to merge",
-            "name .journal files, or folders with such files",
-        ));
+        return Err(Error::Usage(Box::new(StudyError::NothingToMerge)));
     };
     let chunks = header.chunks();
-    if let Some((&beyond, (_, file))) = rows.range(chunks..).next() {
-        return Err(Error::data(
-            Place::file(file),
-            format!("chunk {beyond} of a study of {chunks} chunks"),
-            format!("compare the file with {}", first.display()),
-        ));
+    if let Some((&chunk, (_, file))) = rows.range(chunks..).next() {
+        let beyond = StudyError::ChunkBeyond {
+            chunk,
+            chunks,
+            other: first,
+        };
+        return Err(Error::refused(Place::file(file), beyond));
     }
     let missing: Vec<usize> = (0..chunks)
         .filter(|chunk| !rows.contains_key(chunk))
@@ -155,14 +149,9 @@ impl Merged {
                     field => field.parse::<f64>(),
                 });
                 let row: Option<Vec<f64>> = fields.map(Result::ok).collect();
-                row.filter(|row| row.len() == self.header.columns.len())
-                    .ok_or_else(|| {
-                        Error::data(
-                            Place::at(file, line + 2, 1),
-                            "this row does not fit the columns",
-                            "run the shard again",
-                        )
-                    })
+                let row = row.filter(|row| row.len() == self.header.columns.len());
+                let place = || Place::at(file, line + 2, 1);
+                row.ok_or_else(|| Error::refused(place(), StudyError::WrongRow))
             })
             .collect()
     }

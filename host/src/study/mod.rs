@@ -9,6 +9,7 @@
 
 mod case;
 mod conditions;
+mod error;
 mod journal;
 mod judge;
 mod latency;
@@ -30,20 +31,24 @@ mod verify;
 mod tests;
 
 pub use case::{Case, Control, Designed};
-pub use conditions::{CONDITIONS, Condition, condition};
-pub use journal::{FORMAT, Header, Journal};
+pub use conditions::{CONDITIONS, LoopCondition, NonIdeality, condition};
+pub use error::StudyError;
+pub use journal::{Header, Journal};
 pub use judge::{Figures, Judging, STABILISED_SHARE, judge, outcomes};
 pub use latency::{SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath};
 pub use longest_delay::{Longest, longest_linear, longest_stabilised};
 pub use mass_errors::{MassErrors, radii, unstable_share};
 pub use merge::{Merged, Missing, merge};
-pub use monte_carlo::{CHUNK, chunk_rows, chunks, columns};
-pub use parse::Study;
+pub use monte_carlo::{CHUNK, chunk_rows, fill};
+pub use parse::{Study, handstand};
 pub use plot::{monte_carlo_svg, sweep_svg};
 pub use quantities::QUANTITIES;
-pub use quantity::{Distribution, Levels, Place, Quantity, Spread, Uncertain, quantity, sweeps};
+pub use quantity::{
+    Distribution, Levels, Quantity, Spread, SpreadOver, Uncertain, quantity, sweeps,
+};
+pub(crate) use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use shard::Shard;
-pub use summary::{Summary, share_interval};
+pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
-pub use verify::{LeftOut, Verification, Without, left_out, verify};
+pub use verify::{LeftOut, Verification, Without, left_out, verification_steps, verify};

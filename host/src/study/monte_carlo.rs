@@ -4,34 +4,28 @@
 //! shard.
 
 use super::case::Designed;
+use super::error::StudyError;
+use super::journal::Journal;
 use super::judge::{Drawn, run_drawn};
 use super::parse::Study;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::output::table::or_empty;
 use crate::sim::closed_loop::Outcome;
-use std::fmt::Write as _;
+use rayon::prelude::*;
+use std::sync::mpsc;
 
 /// Runs in a chunk: what is lost at most when a run is killed, for each thread.
 pub const CHUNK: usize = 256;
 
-/// Number of chunks of a study.
-pub fn chunks(study: &Study) -> usize {
-    study.judging.runs.div_ceil(CHUNK)
-}
-
 /// Columns of the rows.
-pub fn columns(study: &Study) -> Vec<String> {
+pub(super) fn columns(study: &Study) -> Vec<String> {
     let joints = study.case.robot.link_count();
     let starts = (1..=joints).map(|joint| format!("start{joint}_rad"));
     let drawn = study.uncertain.iter().map(|uncertain| uncertain.column());
-    let figures = ["fell_s", "stabilised"]
-        .into_iter()
-        .chain(super::summary::FIGURES);
-    std::iter::once("run".to_string())
-        .chain(starts)
-        .chain(drawn)
-        .chain(std::iter::once("spectral_radius".to_string()))
-        .chain(figures.map(str::to_string))
-        .collect()
+    let found = ["spectral_radius", "fell_s", "stabilised"].into_iter();
+    let found = found.chain(super::summary::FIGURES).map(str::to_string);
+    let run = std::iter::once("run".to_string());
+    run.chain(starts).chain(drawn).chain(found).collect()
 }
 
 /// Rows of a chunk, lines of comma-separated values; `designed` is
@@ -55,14 +49,45 @@ pub fn chunk_rows(study: &Study, designed: &Designed, chunk: usize) -> Result<St
     Ok(rows)
 }
 
+/// Computes chunks on all cores and adds them to the journal as they come; `done` is called after
+/// each.
+///
+/// # Errors
+/// Robots that cannot be simulated, a journal that cannot be written.
+pub fn fill(
+    journal: &mut Journal,
+    study: &Study,
+    designed: &Designed,
+    chunks: &[usize],
+    mut done: impl FnMut(),
+) -> Result<()> {
+    let (send, receive) = mpsc::channel();
+    std::thread::scope(|scope| {
+        let computing = scope.spawn(move || {
+            chunks.par_iter().try_for_each_with(send, |send, &chunk| {
+                let rows = chunk_rows(study, designed, chunk)?;
+                // Nobody listens any more after a write has failed.
+                send.send((chunk, rows))
+                    .map_err(|_| Error::Usage(Box::new(StudyError::WritingStopped)))
+            })
+        });
+        // Taken by value: once this loop ends early, the computing stops.
+        let written = receive.into_iter().try_for_each(|(chunk, rows)| {
+            journal.add(chunk, &rows)?;
+            done();
+            Ok(())
+        });
+        let computed = match computing.join() {
+            Ok(computed) => computed,
+            Err(panic) => std::panic::resume_unwind(panic),
+        };
+        written.and(computed)
+    })
+}
+
 fn row(rows: &mut String, run: usize, drawn: &Drawn, radius: Option<f64>, outcome: &Outcome) {
-    let given = drawn
-        .start
-        .angle_rad
-        .iter()
-        .chain(&drawn.values)
-        .copied()
-        .map(Some);
+    let given = drawn.start.angle_rad.iter().chain(&drawn.values);
+    let given = given.copied().map(Some);
     let found = [
         radius,
         outcome.fell_s,
@@ -73,12 +98,7 @@ fn row(rows: &mut String, run: usize, drawn: &Drawn, radius: Option<f64>, outcom
         outcome.limit_cycle_rad,
         outcome.settle_s,
     ];
-    let _ = write!(rows, "{run}");
-    for value in given.chain(found) {
-        let _ = match value {
-            Some(value) => write!(rows, ",{value}"),
-            None => write!(rows, ","),
-        };
-    }
-    rows.push('\n');
+    let fields = given.chain(found).map(or_empty);
+    let fields: Vec<String> = std::iter::once(run.to_string()).chain(fields).collect();
+    *rows += &(fields.join(",") + "\n");
 }

@@ -2,16 +2,16 @@
 
 use super::case::Case;
 use super::conditions::CONDITIONS;
+use super::error::StudyError;
 use super::judge::Judging;
-use super::quantities::QUANTITIES;
-use super::quantity::{Distribution, Place, Uncertain, quantity};
+use super::quantity::{Distribution, SpreadOver, Uncertain, quantity};
 use crate::controllers::{self, DESIGNS};
-use crate::error::{Error, Result, words};
+use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::Model;
 use crate::model::reader::Table;
 use crate::model::source::TomlSource;
-use crate::model::suggest::suggest;
+use crate::output::number::hex;
 use crate::sim::closed_loop::{Drives, Gyro, Sensor, Velocity};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
@@ -27,7 +27,14 @@ pub struct Study {
     pub uncertain: Vec<Uncertain>,
 }
 
-const HANDSTAND: &str = include_str!("../../models/handstand.toml");
+/// The paper's robot: the model file with its Table 1.
+///
+/// # Errors
+/// None is known: the file is the project's own.
+pub fn handstand() -> Result<Model> {
+    let text = include_str!("../../models/handstand.toml");
+    Model::parse(text, Path::new("handstand.toml"))
+}
 
 impl Study {
     /// The paper's robot with its regulator (Q = 100 I, R = I, 10 ms) under ideal circumstances:
@@ -36,8 +43,7 @@ impl Study {
     /// # Errors
     /// None that are not bugs.
     pub fn paper() -> Result<Study> {
-        let model = Model::parse(HANDSTAND, Path::new("handstand.toml"))?;
-        Ok(Study::of(model))
+        Ok(Study::of(handstand()?))
     }
 
     /// The same for another robot.
@@ -113,7 +119,7 @@ impl Study {
             self.judging,
             drawn
         );
-        super::journal::hex(Sha256::digest(said.as_bytes()).as_slice())
+        hex(Sha256::digest(said))
     }
 }
 
@@ -270,12 +276,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     let what = table.required_text("what")?;
     let named = quantity(what).and_then(|quantity| Some((quantity, quantity.spread.as_ref()?)));
     let Some((quantity, spread)) = named else {
-        let uncertain = QUANTITIES
-            .iter()
-            .filter(|quantity| quantity.spread.is_some());
-        let known: Vec<&str> = uncertain.map(|quantity| quantity.id).collect();
-        let said = format!("nothing called `{what}` can be uncertain");
-        return Err(table.bad("what", words(said, suggest(what, &known))));
+        return Err(table.bad("what", StudyError::NotUncertain(what.to_string())));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -287,13 +288,12 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     let size = table.required_number("size", NOT_NEGATIVE)?;
     let chosen = table.index("link", links)?;
     let places = match (spread.place, chosen) {
-        (Place::Whole, None) => vec![None],
-        (Place::Whole, Some(_)) => {
-            let said = format!("`{what}` belongs to the whole robot");
-            return Err(table.bad("link", words(said, "leave `link` out")));
+        (SpreadOver::Whole, None) => vec![None],
+        (SpreadOver::Whole, Some(_)) => {
+            return Err(table.bad("link", StudyError::WholeRobot(what.to_string())));
         }
-        (Place::Link, Some(link)) => vec![Some(link)],
-        (Place::Link, None) => (0..links).map(Some).collect(),
+        (SpreadOver::Link, Some(link)) => vec![Some(link)],
+        (SpreadOver::Link, None) => (0..links).map(Some).collect(),
     };
     for link in places {
         let new = Uncertain {
@@ -304,8 +304,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
             size,
         };
         if all.iter().any(|other| other.column() == new.column()) {
-            let said = format!("{} is drawn twice", new.column());
-            return Err(table.bad("what", words(said, "say it once")));
+            return Err(table.bad("what", StudyError::DrawnTwice(new.column())));
         }
         all.push(new);
     }

@@ -57,8 +57,8 @@ fn curve(ran: &Sweep, name: &str, tone: Tone, of: impl Fn(&Figures) -> Option<f6
     Curve::by_category(name, tone, figures.map(|figures| figures.and_then(&of)))
 }
 
-/// Parts into which an uncertain value's range is cut.
-const PARTS: usize = 6;
+/// Bins into which an uncertain value's range is cut.
+const BINS: usize = 6;
 
 /// A Monte Carlo study: share stabilised, and share unstable in the small, over every uncertain
 /// value.
@@ -75,7 +75,7 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
     let is_stabilised = |row: &[f64]| row[stabilised] == 1.0;
     let unstable = |row: &[f64]| row[radius] >= 1.0;
     let chart = |(value, name): (usize, &String)| {
-        let parts = Parts::of(&rows, value);
+        let parts = Bins::of(&rows, value);
         let curves = vec![
             parts.share("stabilised", TONES[0], &rows, is_stabilised),
             parts.share("unstable in the small", TONES[1], &rows, unstable),
@@ -92,21 +92,21 @@ pub fn monte_carlo_svg(merged: &Merged, file: &Path) -> Result<String> {
 }
 
 /// Runs sorted by one of their values.
-struct Parts {
-    centres: [f64; PARTS],
+struct Bins {
+    centres: [f64; BINS],
     /// Part of each run.
     of: Vec<usize>,
 }
 
-impl Parts {
-    fn of(rows: &[Vec<f64>], value: usize) -> Parts {
+impl Bins {
+    fn of(rows: &[Vec<f64>], value: usize) -> Bins {
         let values = || rows.iter().map(|row| row[value]);
         let low = values().fold(f64::INFINITY, f64::min);
-        let width = (values().fold(f64::NEG_INFINITY, f64::max) - low) / PARTS as f64;
-        Parts {
+        let width = (values().fold(f64::NEG_INFINITY, f64::max) - low) / BINS as f64;
+        Bins {
             centres: std::array::from_fn(|part| low + (part as f64 + 0.5) * width),
             of: values()
-                .map(|value| (((value - low) / width) as usize).min(PARTS - 1))
+                .map(|value| (((value - low) / width) as usize).min(BINS - 1))
                 .collect(),
         }
     }
@@ -119,7 +119,7 @@ impl Parts {
         rows: &[Vec<f64>],
         so: impl Fn(&[f64]) -> bool,
     ) -> Curve {
-        let mut counts = [(0, 0); PARTS];
+        let mut counts = [(0, 0); BINS];
         for (part, row) in self.of.iter().zip(rows) {
             counts[*part].0 += usize::from(so(row));
             counts[*part].1 += 1;

@@ -1,7 +1,7 @@
 //! The table of everything that can be varied.
 
 use super::case::Case;
-use super::quantity::{Levels, Place, Quantity, Spread};
+use super::quantity::{Levels, Quantity, Spread, SpreadOver};
 use crate::effects;
 use crate::model::EffectInstance;
 use crate::output::number::given;
@@ -72,7 +72,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "dead-zone",
         title: "dead zone",
-        meaning: "Share of the full torque up to which a command does nothing; the paper measured 7 to 10 %.",
+        meaning: "Share of the full torque up to which a command does nothing; the paper measured \
+                  7 to 10 %.",
         levels: Some(Levels {
             unit: "%",
             values: &[0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0],
@@ -83,7 +84,7 @@ pub const QUANTITIES: &[Quantity] = &[
         spread: Some(Spread {
             unit: "1",
             drawn: "change of the dead zone as a share of the full torque, which stays 0 or above",
-            place: Place::Whole,
+            place: SpreadOver::Whole,
             apply: |case, _, change| {
                 case.drives.dead_zone = (case.drives.dead_zone + change).max(0.0);
             },
@@ -92,7 +93,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "delay",
         title: "delay",
-        meaning: "Time from a sample to the torque it asks for; the design counts on what the study says.",
+        meaning: "Time from a sample to the torque it asks for; the design counts on what the \
+                  study says.",
         levels: Some(Levels {
             unit: "ms",
             values: &[
@@ -105,7 +107,7 @@ pub const QUANTITIES: &[Quantity] = &[
         spread: Some(Spread {
             unit: "periods",
             drawn: "change of the delay, which stays 0 or above",
-            place: Place::Whole,
+            place: SpreadOver::Whole,
             apply: |case, _, change| {
                 case.drives.delay_periods = (case.drives.delay_periods + change).max(0.0);
             },
@@ -138,7 +140,7 @@ pub const QUANTITIES: &[Quantity] = &[
         spread: Some(Spread {
             unit: "1",
             drawn: "relative error of the supply, which every torque follows",
-            place: Place::Whole,
+            place: SpreadOver::Whole,
             apply: |case, _, error| case.drives.supply *= factor(error),
         }),
     },
@@ -182,21 +184,21 @@ pub const QUANTITIES: &[Quantity] = &[
         "mass",
         "1",
         "relative error of a link's mass",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, error| case.robot.links[link].mass_kg *= factor(error),
     ),
     drawn(
         "inertia",
         "1",
         "relative error of a link's inertia about its centre of mass",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, error| case.robot.links[link].inertia_kg_m2 *= factor(error),
     ),
     drawn(
         "density",
         "1",
         "relative error of a link's mass and inertia together",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, error| {
             case.robot.links[link].mass_kg *= factor(error);
             case.robot.links[link].inertia_kg_m2 *= factor(error);
@@ -206,14 +208,14 @@ pub const QUANTITIES: &[Quantity] = &[
         "com",
         "m",
         "error of a centre of mass along its link",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, error| case.robot.links[link].com_m += error,
     ),
     drawn(
         "com-aside",
         "m",
         "distance of a centre of mass from its link's line",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, aside| {
             let angle = (aside / case.robot.links[link].com_m).atan();
             effect(case, "com_angle", Some(link), angle);
@@ -223,28 +225,28 @@ pub const QUANTITIES: &[Quantity] = &[
         "com_angle",
         "rad",
         "angle of a centre of mass off its link's line",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, angle| effect(case, "com_angle", Some(link), angle),
     ),
     drawn(
         "length",
         "1",
         "relative error of a link's length",
-        Place::Link,
+        SpreadOver::Link,
         |case, link, error| case.robot.links[link].length_m *= factor(error),
     ),
     drawn(
         "base_tilt",
         "rad",
         "angle by which gravity is turned in the robot's plane",
-        Place::Whole,
+        SpreadOver::Whole,
         |case, _, angle| effect(case, "base_tilt", None, angle),
     ),
     drawn(
         "disturbance",
         "N m",
         "constant torque from outside on a joint",
-        Place::Link,
+        SpreadOver::Link,
         |case, joint, torque| case.disturbance_nm[joint] += torque,
     ),
 ];
@@ -254,7 +256,7 @@ const fn drawn(
     id: &'static str,
     unit: &'static str,
     meaning: &'static str,
-    place: Place,
+    place: SpreadOver,
     apply: fn(&mut Case, usize, f64),
 ) -> Quantity {
     Quantity {

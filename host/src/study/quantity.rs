@@ -43,13 +43,13 @@ pub struct Spread {
     /// What is drawn.
     pub drawn: &'static str,
     /// What has it.
-    pub place: Place,
+    pub place: SpreadOver,
     pub(super) apply: fn(&mut Case, usize, f64),
 }
 
 /// What has a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum SpreadOver {
     /// Every link, or the joint before it, its own.
     Link,
     /// The robot.
@@ -108,8 +108,8 @@ impl Uncertain {
             size,
         };
         match spread.place {
-            Place::Whole => vec![one(None)],
-            Place::Link => (0..links).map(|link| one(Some(link))).collect(),
+            SpreadOver::Whole => vec![one(None)],
+            SpreadOver::Link => (0..links).map(|link| one(Some(link))).collect(),
         }
     }
 

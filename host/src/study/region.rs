@@ -90,23 +90,31 @@ pub fn region(
 /// # Errors
 /// Those of `stabilises`.
 pub(super) fn largest(mut stabilises: impl FnMut(f64) -> Result<bool>) -> Result<Region> {
-    let (mut inside, mut outside) = (0.0, LARGEST_REGION_RAD);
-    if stabilises(outside)? {
-        return Ok(Region {
-            spread_rad: outside,
-            open: true,
-        });
-    }
-    for _ in 0..HALVINGS {
-        let middle = (inside + outside) / 2.0;
-        if stabilises(middle)? {
-            inside = middle;
-        } else {
-            outside = middle;
+    let open = stabilises(LARGEST_REGION_RAD)?;
+    let spread_rad = match open {
+        true => LARGEST_REGION_RAD,
+        false => bisect(0.0, LARGEST_REGION_RAD, HALVINGS, stabilises)?.0,
+    };
+    Ok(Region { spread_rad, open })
+}
+
+/// Halves the interval from `inside`, where `holds`, to `outside`, where it does not: its ends, in
+/// this order, after that many halvings.
+///
+/// # Errors
+/// Those of `holds`.
+pub(crate) fn bisect(
+    mut inside: f64,
+    mut outside: f64,
+    halvings: usize,
+    mut holds: impl FnMut(f64) -> Result<bool>,
+) -> Result<(f64, f64)> {
+    for _ in 0..halvings {
+        let middle = 0.5 * (inside + outside);
+        match holds(middle)? {
+            true => inside = middle,
+            false => outside = middle,
         }
     }
-    Ok(Region {
-        spread_rad: inside,
-        open: false,
-    })
+    Ok((inside, outside))
 }

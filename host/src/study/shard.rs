@@ -1,5 +1,6 @@
 //! A share of a study's chunks.
 
+use super::error::StudyError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -30,10 +31,10 @@ impl fmt::Display for Shard {
 }
 
 impl FromStr for Shard {
-    type Err = String;
+    type Err = StudyError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wish = || format!("`{text}` is no shard: write `2/5` for the second of five");
+    fn from_str(text: &str) -> Result<Self, StudyError> {
+        let wish = || StudyError::NoShard(text.to_string());
         let (index, of) = text.split_once('/').ok_or_else(wish)?;
         let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wish());
         let (index, of) = (number(index)?, number(of)?);

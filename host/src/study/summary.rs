@@ -36,15 +36,15 @@ pub struct Summary {
     pub fallen_share: f64,
     /// Share of robots whose loop, linearised at their balance, is unstable.
     pub unstable: f64,
-    /// Distribution of each figure over the stabilised runs.
-    pub figures: Vec<Distribution>,
+    /// Quantiles of each figure over the stabilised runs.
+    pub figures: Vec<FigureQuantiles>,
     /// How each uncertain value goes with being stabilised.
     pub influence: Vec<Influence>,
 }
 
 /// Quantiles of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Distribution {
+pub struct FigureQuantiles {
     /// Column.
     pub figure: String,
     /// 5 %, 50 % and 95 %; none if no run was stabilised.
@@ -92,7 +92,7 @@ impl Summary {
         let unstable = radius.iter().filter(|radius| **radius >= 1.0).count();
         let [stabilised_low, stabilised_high] = share_interval(count, rows.len());
         let share = |of: usize| of as f64 / rows.len().max(1) as f64;
-        let distribution = |name: &str| Distribution {
+        let distribution = |name: &str| FigureQuantiles {
             figure: name.to_string(),
             quantiles: quantiles(
                 column(name)

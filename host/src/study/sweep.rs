@@ -1,6 +1,7 @@
 //! One quantity varied, level by level.
 
 use super::case::Case;
+use super::error::StudyError;
 use super::judge::{Figures, Judging, judge};
 use super::quantity::{Levels, Quantity};
 use super::region::tilt_border_rad;
@@ -48,10 +49,12 @@ pub fn sweep(
 ) -> Result<Sweep> {
     let (low, high) = levels.bounds;
     if let Some(level) = values.iter().find(|level| !(low..=high).contains(*level)) {
-        return Err(Error::usage(
-            format!("{}: there is no level {level}", quantity.id),
-            format!("give levels from {low} to {high} {}", levels.unit).trim_end(),
-        ));
+        return Err(Error::Usage(Box::new(StudyError::NoLevel {
+            sweep: quantity.id,
+            level: *level,
+            bounds: levels.bounds,
+            unit: levels.unit,
+        })));
     }
     let judged = values.iter().map(|&level| {
         let mut case = case.clone();

@@ -2,14 +2,14 @@
 //! design leaves out included.
 
 use super::judge::{Figures, STABILISED_SHARE};
-use super::region::largest;
+use super::region::{REGION_JUDGEMENTS, largest};
 use crate::effects::Effect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
 };
-use crate::synth::{Design, Request, Time, continuous_period_s};
+use crate::synth::{Design, Request, Time, continuous_period_s, rows};
 use serde::Serialize;
 
 /// Runs from random starts behind each figure.
@@ -84,8 +84,18 @@ pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<Lef
     left_out
 }
 
+/// Shares that [`verify`] simulates at most.
+pub fn verification_steps(left_out: &[LeftOut]) -> usize {
+    let regions = match left_out.len() {
+        count @ 0..2 => 1 + count,
+        count => 2 + count,
+    };
+    1 + regions * REGION_JUDGEMENTS
+}
+
 /// Simulates the loop of a design from random starts around its pose, the same every time. The
-/// plant is `model` with all its effects.
+/// plant is `model` with all its effects. `done` is called after each of up to
+/// [`verification_steps`].
 ///
 /// # Errors
 /// Models that cannot be simulated.
@@ -94,13 +104,16 @@ pub fn verify(
     design: &Design,
     request: &Request,
     left_out: &[LeftOut],
+    done: &dyn Fn(),
 ) -> Result<Verification> {
     let tested = Tested {
         model,
         design,
         request,
+        done,
     };
-    let (near, region_rad) = tested.whole()?;
+    let near = tested.figures(&tested.closed_loop(&[])?, NEAR_RAD);
+    let region_rad = tested.region_rad(&[])?;
     let mut without = Vec::new();
     for one in left_out {
         without.push(Without {
@@ -126,23 +139,16 @@ struct Tested<'a> {
     model: &'a Model,
     design: &'a Design,
     request: &'a Request,
+    done: &'a dyn Fn(),
 }
 
 impl Tested<'_> {
-    fn whole(&self) -> Result<(Figures, f64)> {
-        let closed = self.closed_loop(&[])?;
-        let controller = self.controller();
-        let outcomes = closed.run_all(&controller, &self.starts(NEAR_RAD), SECONDS, 1);
-        Ok((Figures::of(&outcomes), self.region_rad(&[])?))
-    }
-
     /// The loop of the model without these effects.
     fn closed_loop(&self, without: &[LeftOut]) -> Result<ClosedLoop> {
         let mut model = self.model.clone();
         let is = |e: &EffectInstance, one: &LeftOut| one.effect == e.effect && one.joint == e.joint;
-        model
-            .effects
-            .retain(|e| !without.iter().any(|one| is(e, one)));
+        let stays = |e: &EffectInstance| !without.iter().any(|one| is(e, one));
+        model.effects.retain(stays);
         let period_s = match self.request.time {
             Time::Continuous => continuous_period_s(&self.design.gains.poles),
             Time::Sampled { ts_s, delay_s } => {
@@ -155,29 +161,25 @@ impl Tested<'_> {
         ClosedLoop::new(&model, &self.request.pose_rad, Commands::Own, period_s)
     }
 
-    fn controller(&self) -> StateFeedback {
-        let rows = self.design.gains.k.row_iter();
-        let rows = rows.map(|row| row.iter().copied().collect()).collect();
-        let joints = self.model.link_count();
-        StateFeedback::new(joints, rows).feeding(&self.design.u0)
-    }
-
-    fn starts(&self, spread_rad: f64) -> Vec<InitialState> {
-        let joints = self.model.link_count();
+    /// From random starts within a spread.
+    fn figures(&self, closed: &ClosedLoop, spread_rad: f64) -> Figures {
+        let (joints, u0) = (self.model.link_count(), &self.design.u0);
+        let rows = rows(&self.design.gains.k);
+        let controller = StateFeedback::new(joints, rows).feeding(u0);
         let start = |run| InitialState {
-            command: self.design.u0.clone(),
+            command: u0.clone(),
             ..InitialState::random(joints, spread_rad, &mut stream(1, run))
         };
-        (0..RUNS).map(start).collect()
+        let starts: Vec<InitialState> = (0..RUNS).map(start).collect();
+        let figures = Figures::of(&closed.run_all(&controller, &starts, SECONDS, 1));
+        (self.done)();
+        figures
     }
 
     fn region_rad(&self, without: &[LeftOut]) -> Result<f64> {
         let closed = self.closed_loop(without)?;
-        let controller = self.controller();
-        let region = largest(|spread_rad| {
-            let outcomes = closed.run_all(&controller, &self.starts(spread_rad), SECONDS, 1);
-            Ok(Figures::of(&outcomes).stabilised_share >= STABILISED_SHARE)
-        })?;
-        Ok(region.spread_rad)
+        let stabilises =
+            |spread_rad| Ok(self.figures(&closed, spread_rad).stabilised_share >= STABILISED_SHARE);
+        Ok(largest(stabilises)?.spread_rad)
     }
 }

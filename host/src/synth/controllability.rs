@@ -41,8 +41,7 @@ pub fn controllability(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Controllabi
         matrix.view_mut((0, k * m), (n, m)).copy_from(&block);
         block = &scaled * block;
     }
-    let mut singular_values: Vec<f64> = matrix.singular_values().iter().copied().collect();
-    singular_values.sort_by(|a, b| b.total_cmp(a));
+    let singular_values = matrix.singular_values().as_slice().to_vec();
     let least = ZERO * singular_values.first().copied().unwrap_or(0.0);
     Ok(Controllability {
         rank: singular_values.iter().filter(|s| **s > least).count(),

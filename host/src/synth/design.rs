@@ -6,17 +6,17 @@ use super::error::DesignError;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
-use super::linearise::{Linearised, linearise};
+use super::linearise::{Linearisation, linearise};
 use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
-use super::quantise::{Ranges, quantise};
+use super::quantise::{Ranges, largest_word, power_of_two_above, quantise};
 use super::request::{Request, Sensors, Time};
-use super::signal::{Signal, default_limit, driven, input, states};
+use super::signal::{Signal, default_limit, input, states};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
 use crate::model::Model;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// A finished design.
 #[derive(Debug, Clone)]
@@ -86,7 +86,7 @@ impl Design {
     /// # Errors
     /// Whatever stands in the way, with what to change.
     pub fn of(model: &Model, request: &Request) -> Result<Design, DesignError> {
-        let Linearised {
+        let Linearisation {
             plant,
             inputs: u0,
             omitted,
@@ -102,18 +102,13 @@ impl Design {
                 let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
                 let sampled = zoh(&plant, ts_s, delay_s)?;
                 let all = sampled.a.nrows();
-                let size = if request.q.size() == Some(all) {
-                    all
-                } else {
-                    n
-                };
+                let size = request.q.size().filter(|size| *size == all).unwrap_or(n);
                 let q = request.q.matrix("Q", size, "states")?;
                 (dlqr(&sampled, &q, &r)?, Some((sampled, delay_s)), q)
             }
         };
-        let driven = driven(model);
-        let outputs = driven.iter().map(|joint| plant.c.row(*joint).into_owned());
-        let outputs = DMatrix::from_rows(&outputs.collect::<Vec<_>>());
+        let driven = model.driven_joints();
+        let outputs = plant.c.select_rows(&driven);
         let angles = plant.c.rows(0, model.link_count()).into_owned();
         let inputs: Vec<Signal> = driven.iter().map(|joint| input(model, *joint)).collect();
         let delayed = sampled
@@ -142,7 +137,7 @@ impl Design {
                 Some(range) => range.diagonal("the range of inputs", m)?,
                 None => driven
                     .iter()
-                    .map(|joint| default_limit(model, *joint))
+                    .map(|&joint| default_limit(model, joint))
                     .collect(),
             };
             design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
@@ -165,22 +160,18 @@ impl Design {
         let mut format = request.format.clone();
         if plant.delayed_inputs > 0 {
             // Past inputs come back in the steps in which they went out.
-            let word = 2f64.powi(format.bits as i32 - 1) - 1.0;
-            let step = |range: &f64| 2f64.powi((range / word).log2().ceil() as i32);
-            let input_step = format
-                .input_step
-                .get_or_insert_with(|| input.iter().map(step).collect())
-                .clone();
-            let own = state
-                .iter()
-                .zip(&self.x0)
-                .map(|(range, x)| step(&(range + x.abs())));
+            let word = largest_word(format.bits);
+            let step = |range: &f64| power_of_two_above(range / word);
+            let input_step = format.input_step.take();
+            let input_step = input_step.unwrap_or_else(|| input.iter().map(step).collect());
+            let reach = state.iter().zip(&self.x0);
+            let own = reach.map(|(range, x)| step(&(range + x.abs())));
             let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
             for _ in 0..plant.delayed_inputs {
                 steps.extend(&input_step);
                 state.extend(&input);
             }
-            format.state_step = Some(steps);
+            (format.state_step, format.input_step) = (Some(steps), Some(input_step));
         }
         let ranges = Ranges { state, input };
         let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
@@ -201,9 +192,8 @@ impl Design {
         input_range: &[f64],
     ) -> Result<Estimation, DesignError> {
         let (own, joints) = (plant.plant_states(), plant.plant_states() / 2);
-        let rows: Vec<usize> = (0..=joints).collect();
         let plant = Discrete {
-            c: plant.c.select_rows(&rows),
+            c: plant.c.rows(0, joints + 1).into_owned(),
             ..plant
         };
         let mut variance = vec![rounding_variance(sensors.position_step_rad); joints];
@@ -212,11 +202,8 @@ impl Design {
             Some(process) => process.matrix("W", own, "states")?,
             None => {
                 let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
-                let sd = input_range
-                    .iter()
-                    .map(|range| 0.01 * range)
-                    .collect::<Vec<_>>();
-                let noisy = held * DMatrix::from_diagonal(&sd.into());
+                let sd = 0.01 * DVector::from_column_slice(input_range);
+                let noisy = held * DMatrix::from_diagonal(&sd);
                 &noisy * noisy.transpose()
             }
         };

@@ -8,7 +8,7 @@
 
 use super::error::DesignError;
 use super::system::{Continuous, Discrete};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, stack};
 
 /// A delay that differs from whole samples by less than this share of one is whole.
 const WHOLE: f64 = 1e-9;
@@ -57,8 +57,7 @@ pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete, Desi
         let later = m * (delayed_inputs - 1);
         a.view_mut((n + m, n), (later, later)).fill_with_identity();
     }
-    let mut c = DMatrix::zeros(plant.c.nrows(), size);
-    c.view_mut((0, 0), plant.c.shape()).copy_from(&plant.c);
+    let c = plant.c.clone().resize_horizontally(size, 0.0);
     if a.iter().chain(b.iter()).any(|value| !value.is_finite()) {
         return Err(DesignError::GrowsWithinSample(ts_s));
     }
@@ -88,9 +87,7 @@ fn check(ts_s: f64, delay_s: f64) -> Result<(), DesignError> {
 /// e^{At} and int_0^t e^{As} ds B.
 fn held(plant: &Continuous, t_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
     let (n, m) = (plant.a.nrows(), plant.b.ncols());
-    let mut block = DMatrix::zeros(n + m, n + m);
-    block.view_mut((0, 0), (n, n)).copy_from(&(&plant.a * t_s));
-    block.view_mut((0, n), (n, m)).copy_from(&(&plant.b * t_s));
+    let block = stack![&plant.a * t_s, &plant.b * t_s].resize_vertically(n + m, 0.0);
     let exponential = block.exp();
     (
         exponential.view((0, 0), (n, n)).into_owned(),

@@ -1,12 +1,13 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
-use crate::error::Error;
-use nalgebra::Complex;
+use super::eigen::Mode;
+use crate::error::{Error, Reason};
+use std::borrow::Cow;
 use std::fmt;
 
 /// What stands in the way of a design; joints, states and inputs count from 0.
 ///
-/// As [`Error::Design`] it ends a command with exit code 3.
+/// As [`Error::Design`], which holds it, it ends a command with exit code 3.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum DesignError {
@@ -21,7 +22,8 @@ pub enum DesignError {
     #[error("the pose has an angle of {0}")]
     PoseAngle(f64),
     #[error(
-        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: the pose is no equilibrium",
+        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: \
+         the pose is no equilibrium",
         joint + 1
     )]
     NoEquilibrium {
@@ -31,7 +33,10 @@ pub enum DesignError {
     },
     #[error("no equilibrium was found near this pose")]
     EquilibriumNotFound,
-    #[error("joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give", joint + 1)]
+    #[error(
+        "joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give",
+        joint + 1
+    )]
     DriveTooWeak { joint: usize, torque_nm: f64 },
 
     #[error("a sampling time of {0} s")]
@@ -94,7 +99,10 @@ pub enum DesignError {
     Uncontrollable { mode: PlantMode, role: Role },
     #[error("{mode}: {}", role.unweighted().0)]
     Unweighted { mode: PlantMode, role: Role },
-    #[error("no stabilising solution was found within double precision{}", nearest(weakest.as_ref()))]
+    #[error(
+        "no stabilising solution was found within double precision{}",
+        nearest(weakest.as_ref())
+    )]
     NoSolution { weakest: Option<PlantMode> },
 
     #[error("a word of {0} bits")]
@@ -122,7 +130,8 @@ pub enum DesignError {
         word: f64,
     },
     #[error(
-        "the gains of input {} overflow {bits} bits: the sum over the declared ranges is too large for its step of {step}",
+        "the gains of input {} overflow {bits} bits: the sum over the declared ranges is too \
+         large for its step of {step}",
         input + 1
     )]
     Overflow { input: usize, bits: u32, step: f64 },
@@ -140,14 +149,10 @@ pub enum DesignError {
 /// A mode of a plant that a Riccati equation cannot move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantMode {
-    /// Its eigenvalue, 1/s, or per sample if `sampled`.
-    pub pole: Complex<f64>,
+    /// The mode.
+    pub mode: Mode,
     /// Whether the plant is sampled.
     pub sampled: bool,
-    /// The state in which it shows most.
-    pub state: usize,
-    /// Its distance from being uncontrollable, 0 to about 1: see [`Mode`](super::Mode).
-    pub margin: f64,
 }
 
 /// What a Riccati equation is solved for.
@@ -192,12 +197,13 @@ impl Role {
 impl fmt::Display for PlantMode {
     /// "the mode with pole 1.07+0.2i, strongest in state 3".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the mode with pole {:.6}", self.pole.re)?;
-        if self.pole.im != 0.0 {
-            write!(f, "{:+.6}i", self.pole.im)?;
+        let Mode { pole, state, .. } = self.mode;
+        write!(f, "the mode with pole {:.6}", pole.re)?;
+        if pole.im != 0.0 {
+            write!(f, "{:+.6}i", pole.im)?;
         }
         let unit = if self.sampled { "" } else { " 1/s" };
-        write!(f, "{unit}, strongest in state {}", self.state + 1)
+        write!(f, "{unit}, strongest in state {}", state + 1)
     }
 }
 
@@ -205,16 +211,15 @@ fn nearest(weakest: Option<&PlantMode>) -> String {
     weakest.map_or_else(String::new, |mode| {
         format!(
             "; {mode} is the hardest to control, {:.1e} from impossible",
-            mode.margin
+            mode.mode.margin
         )
     })
 }
 
-impl DesignError {
-    /// What to change.
-    pub fn remedy(&self) -> String {
+impl Reason for DesignError {
+    fn remedy(&self) -> Cow<'_, str> {
         use DesignError as E;
-        let plain = match self {
+        Cow::Borrowed(match self {
             E::NothingDriven { .. } => "give a [[joint]] another drive than passive",
             E::NoInertia { .. } => "give every link a mass and an inertia",
             E::DelaysDiffer { .. } => {
@@ -229,7 +234,7 @@ impl DesignError {
             E::DriveTooWeak { .. } => "choose a pose that asks less of it",
             E::SamplingTime(_) => "give seconds above 0",
             E::Delay { most_samples, .. } => {
-                return format!("give a delay from 0 to {most_samples} samples");
+                return format!("give a delay from 0 to {most_samples} samples").into();
             }
             E::GrowsWithinSample(_) => "sample faster",
             E::DiagonalSize { .. } | E::ListSize { .. } => {
@@ -238,21 +243,26 @@ impl DesignError {
             E::MatrixSize { name, size, .. } => {
                 return format!(
                     "give {name} as {size} x {size}, as its diagonal, or as one number"
-                );
+                )
+                .into();
             }
             E::Entry { .. } => "give numbers",
             E::Asymmetric { name, .. } => {
-                return format!("give its symmetric part, half of {name} plus its transpose");
+                return format!("give its symmetric part, half of {name} plus its transpose")
+                    .into();
             }
             E::Indefinite { name, .. } => {
                 return format!(
-                    "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
-                );
+                    "no weight or variance is negative: raise the eigenvalues of {name} to 0 or \
+                     above"
+                )
+                .into();
             }
             E::NotDefinite { name, of, .. } => {
                 return format!(
                     "give every one of the {of} a weight or variance above 0 in {name}"
-                );
+                )
+                .into();
             }
             E::Innovation => "raise the measurement noise V",
             E::Eigenvalues => "look for entries that are not numbers or of very different size",
@@ -262,7 +272,7 @@ impl DesignError {
                 "scale the weights to like sizes, sample slower, or drive more joints"
             }
             E::WordLength(_) => "choose 8 to 32 bits",
-            E::Count { of, .. } => return format!("give one per {of}, or one for all"),
+            E::Count { of, .. } => return format!("give one per {of}, or one for all").into(),
             E::NotPositive { .. } => "give a number above 0",
             E::BeyondWord { .. } => "declare a smaller range, a coarser step, or more bits",
             E::Overflow { .. } => "declare smaller ranges, take a coarser input step, or more bits",
@@ -271,13 +281,12 @@ impl DesignError {
             }
             E::UnstableStart => "start from plants that differ less",
             E::SpreadTooWide { .. } => "ask for less spread, or for more stages on the way",
-        };
-        plain.to_string()
+        })
     }
 }
 
 impl From<DesignError> for Error {
     fn from(error: DesignError) -> Error {
-        Error::design(error.to_string(), error.remedy())
+        Error::Design(Box::new(error))
     }
 }

@@ -1,12 +1,12 @@
 //! The stationary Kalman filter, and with gains the controller that needs no measured state (LQG).
 
-use super::eigen::poles;
+use super::eigen::{poles, slowest_first};
 use super::error::{DesignError, Role};
 use super::gains::Gains;
 use super::riccati::{Problem, TimeDomain};
 use super::system::Discrete;
 use super::weights::{self, Sign};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, stack};
 
 /// x(k|k) = x(k|k-1) + L (y - C x(k|k-1)), x(k+1|k) = A x(k|k) + B u.
 #[derive(Debug, Clone)]
@@ -51,15 +51,8 @@ pub fn kalman(
     process: &DMatrix<f64>,
     measurement: &DMatrix<f64>,
 ) -> Result<Estimator, DesignError> {
-    let (n, own, p) = (plant.a.nrows(), plant.plant_states(), plant.c.nrows());
-    let size = if process.shape() == (own, own) {
-        own
-    } else {
-        n
-    };
-    weights::of("W", process, size, "states", Sign::Semidefinite)?;
-    weights::of("V", measurement, p, "outputs", Sign::Definite)?;
-    let process = process.clone().resize(n, n, 0.0);
+    let process = plant.whole_state("W", process)?;
+    weights::of("V", measurement, plant.c.nrows(), "outputs", Sign::Definite)?;
     let (a, c) = (plant.a.transpose(), plant.c.transpose());
     let problem = Problem {
         time: TimeDomain::Discrete,
@@ -78,7 +71,7 @@ pub fn kalman(
         .ok_or(DesignError::Innovation)?;
     let gain = innovation.solve(&cp).transpose();
     let mut poles = poles(&(&plant.a - &plant.a * &gain * &plant.c))?;
-    poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+    slowest_first(&mut poles);
     Ok(Estimator {
         gain,
         covariance,
@@ -100,30 +93,18 @@ pub fn lqg(
     let (k, l) = (&gains.k, &estimator.gain);
     let closed = &plant.a - &plant.b * k;
     let corrected = DMatrix::identity(n, n) - l * &plant.c;
-    let compensator = Compensator {
-        a: &closed * &corrected,
-        b: &closed * l,
-        c: -k * &corrected,
-        d: -k * l,
-        loop_poles: Vec::new(),
-    };
-    let mut whole = DMatrix::zeros(2 * n, 2 * n);
-    let driven = &plant.b * &compensator.d * &plant.c;
-    whole
-        .view_mut((0, 0), (n, n))
-        .copy_from(&(&plant.a + driven));
-    whole
-        .view_mut((0, n), (n, n))
-        .copy_from(&(&plant.b * &compensator.c));
-    whole
-        .view_mut((n, 0), (n, n))
-        .copy_from(&(&compensator.b * &plant.c));
-    whole.view_mut((n, n), (n, n)).copy_from(&compensator.a);
+    let (a, b) = (&closed * &corrected, &closed * l);
+    let (c, d) = (-k * &corrected, -k * l);
+    let driven = &plant.a + &plant.b * &d * &plant.c;
+    let whole = stack![driven, &plant.b * &c; &b * &plant.c, a];
     let mut loop_poles = poles(&whole)?;
-    loop_poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+    slowest_first(&mut loop_poles);
     Ok(Compensator {
+        a,
+        b,
+        c,
+        d,
         loop_poles,
-        ..compensator
     })
 }
 

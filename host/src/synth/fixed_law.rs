@@ -3,7 +3,7 @@
 //! With 16 bits it is [`handstand_shared::law::control`] bit for bit; other lengths are for
 //! studies.
 
-use super::eigen::poles;
+use super::eigen::{largest, poles};
 use super::error::DesignError;
 use super::gains::Gains;
 use super::system::Discrete;
@@ -118,10 +118,7 @@ impl FixedLaw {
         let point_off = |j: usize| (self.x0[j] as f64 * self.state_step[j] - x0[j]).abs();
         let overflow = 2f64.powi(2 * self.bits as i32 - 1);
         let radius = |k: &DMatrix<f64>| -> Result<f64, DesignError> {
-            let poles = poles(&(&plant.a - &plant.b * k))?;
-            Ok(poles
-                .iter()
-                .fold(0.0, |most: f64, pole| most.max(pole.norm())))
+            Ok(largest(&poles(&(&plant.a - &plant.b * k))?))
         };
         Ok(Loss {
             gain_error: per_input(&|i, j| {

@@ -1,10 +1,10 @@
 //! The linear-quadratic regulator, continuous and sampled.
 
-use super::eigen::poles;
+use super::eigen::{poles, slowest_first};
 use super::error::{DesignError, Role};
 use super::riccati::{Problem, TimeDomain};
 use super::system::{Continuous, Discrete};
-use super::weights;
+use super::weights::{self, Sign};
 use nalgebra::{Complex, DMatrix};
 
 /// A pole this near to the edge of stability is not told from one on it.
@@ -28,7 +28,8 @@ pub struct Gains {
 /// # Errors
 /// Weights of the wrong size or sign; plants that no gain stabilises.
 pub fn lqr(plant: &Continuous, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains, DesignError> {
-    weights::check(q, r, plant.a.nrows(), plant.b.ncols())?;
+    weights::of("Q", q, plant.a.nrows(), "states", Sign::Semidefinite)?;
+    weights::of("R", r, plant.b.ncols(), "inputs", Sign::Definite)?;
     Gains::of(&Problem {
         time: TimeDomain::Continuous,
         a: &plant.a,
@@ -45,14 +46,8 @@ pub fn lqr(plant: &Continuous, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gai
 /// # Errors
 /// As [`lqr`].
 pub fn dlqr(plant: &Discrete, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Result<Gains, DesignError> {
-    let (n, m) = (plant.a.nrows(), plant.b.ncols());
-    let own = plant.plant_states();
-    if q.shape() == (own, own) {
-        weights::check(q, r, own, m)?;
-    } else {
-        weights::check(q, r, n, m)?;
-    }
-    let q = q.clone().resize(n, n, 0.0);
+    let q = plant.whole_state("Q", q)?;
+    weights::of("R", r, plant.b.ncols(), "inputs", Sign::Definite)?;
     Gains::of(&Problem {
         time: TimeDomain::Discrete,
         a: &plant.a,
@@ -81,7 +76,7 @@ impl Gains {
                 poles.iter().all(|pole| pole.re < -slack)
             }
             TimeDomain::Discrete => {
-                poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+                slowest_first(&mut poles);
                 poles.iter().all(|pole| pole.norm() < 1.0 - STABLE)
             }
         };

@@ -31,21 +31,6 @@ pub(super) struct Held {
     pub omitted: Vec<OmittedEffect>,
 }
 
-/// Torque of springs and the like, with its slopes.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct JointTorque {
-    pub torque_nm: f64,
-    pub per_rad: f64,
-    pub per_rad_s: f64,
-}
-
-/// A duty with the torque's slopes per duty and per speed.
-struct Duty {
-    duty: f64,
-    per_duty: f64,
-    per_rad_s: f64,
-}
-
 /// One joint and what acts on it.
 pub(super) struct JointAt<'a> {
     joint: usize,
@@ -109,16 +94,17 @@ impl<'a> JointAt<'a> {
         }
     }
 
-    /// Torque of the smooth joint effects; those that are not smooth are added to `omitted`.
-    pub fn torque(&self, omitted: &mut Vec<OmittedEffect>) -> JointTorque {
+    /// Torque of the smooth joint effects, N m, and its slope; those that are not smooth are added
+    /// to `omitted`.
+    pub fn torque(&self, omitted: &mut Vec<OmittedEffect>) -> (f64, Slope) {
         let state = JointState::undriven(self.angle_rad, 0.0);
-        let mut sum = JointTorque::default();
+        let (mut torque_nm, mut sum) = (0.0, Slope::NONE);
         for (effect, values, slope) in self.slopes(Site::Joint, self.at_rest(), omitted) {
-            sum.torque_nm += effect.torque(values, &state);
+            torque_nm += effect.torque(values, &state);
             sum.per_rad += slope.per_rad;
             sum.per_rad_s += slope.per_rad_s;
         }
-        sum
+        (torque_nm, sum)
     }
 
     /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within
@@ -128,7 +114,7 @@ impl<'a> JointAt<'a> {
         for site in [Site::Command, Site::Friction, Site::Sensor] {
             self.slopes(site, at, &mut omitted);
         }
-        let own = self.torque(&mut omitted);
+        let (own_nm, own) = self.torque(&mut omitted);
         let mut slope = JointSlope {
             per_rad: own.per_rad,
             per_rad_s: own.per_rad_s,
@@ -140,15 +126,19 @@ impl<'a> JointAt<'a> {
             slope.reading *= encoder.gain;
             reading_rad = effect.encode(values, reading_rad);
         }
-        let needed_nm = gravity_nm - own.torque_nm;
+        let needed_nm = gravity_nm - own_nm;
         let input = if self.drive.is_driven() {
-            let duty = self.duty(needed_nm, &mut omitted)?;
-            slope.per_rad_s += duty.per_rad_s;
-            Some(self.input(&duty, reading_rad, &mut slope))
+            let (duty, drive) = self.duty(needed_nm, &mut omitted)?;
+            slope.per_rad_s += drive.per_rad_s;
+            Some(self.input(duty, drive.per_duty, reading_rad, &mut slope))
         } else if needed_nm.abs() <= slack_nm {
             None
         } else {
-            return Err(self.unbalanced(needed_nm));
+            return Err(DesignError::NoEquilibrium {
+                joint: self.joint,
+                torque_nm: needed_nm,
+                angle_rad: self.pose_rad,
+            });
         };
         Ok(Held {
             slope,
@@ -157,32 +147,28 @@ impl<'a> JointAt<'a> {
         })
     }
 
-    fn unbalanced(&self, needed_nm: f64) -> DesignError {
-        DesignError::NoEquilibrium {
-            joint: self.joint,
-            torque_nm: needed_nm,
-            angle_rad: self.pose_rad,
-        }
-    }
-
-    /// Duty that makes `needed_nm`, by Newton's iteration: one step where the torque is linear in
-    /// the duty.
-    fn duty(&self, needed_nm: f64, omitted: &mut Vec<OmittedEffect>) -> Result<Duty, DesignError> {
+    /// Duty that makes `needed_nm` and the torque's slope there, by Newton's iteration: one step
+    /// where the torque is linear in the duty.
+    fn duty(
+        &self,
+        needed_nm: f64,
+        omitted: &mut Vec<OmittedEffect>,
+    ) -> Result<(f64, Slope), DesignError> {
         let mut at = self.at_rest();
         let (full_torque_nm, motor) = (at.full_torque_nm, self.drive.motor());
         at.duty = needed_nm / full_torque_nm;
         for _ in 0..MOST_STEPS {
             let mut without = Vec::new();
-            let (torque_nm, duty) = self.driven(at, &mut without);
+            let (torque_nm, slope) = self.driven(at, &mut without);
             let off_nm = needed_nm - torque_nm;
             if off_nm.abs() <= 1e-12 * full_torque_nm.max(needed_nm.abs()) {
                 if motor.is_some() && at.duty.abs() >= 1.0 {
                     break;
                 }
                 omitted.extend(without);
-                return Ok(duty);
+                return Ok((at.duty, slope));
             }
-            at.duty += off_nm / duty.per_duty;
+            at.duty += off_nm / slope.per_duty;
         }
         Err(DesignError::DriveTooWeak {
             joint: self.joint,
@@ -190,9 +176,9 @@ impl<'a> JointAt<'a> {
         })
     }
 
-    /// Torque of the drive at a duty, with its slopes. An effect without a slope still limits the
-    /// torque: beyond a limit nothing holds the pose.
-    fn driven(&self, mut at: AtRest, omitted: &mut Vec<OmittedEffect>) -> (f64, Duty) {
+    /// Torque of the drive at a duty, N m, with its slope. An effect without a slope still limits
+    /// the torque: beyond a limit nothing holds the pose.
+    fn driven(&self, mut at: AtRest, omitted: &mut Vec<OmittedEffect>) -> (f64, Slope) {
         let state = DriveState {
             speed_rad_s: 0.0,
             duty: at.duty,
@@ -201,30 +187,26 @@ impl<'a> JointAt<'a> {
         };
         at.torque_nm = at.full_torque_nm * at.duty;
         let no_load = self.drive.motor().map(|m| m.no_load_speed_rad_s);
-        let mut duty = Duty {
-            duty: at.duty,
+        let mut sum = Slope {
             per_duty: at.full_torque_nm,
             per_rad_s: no_load.map_or(0.0, |speed| -at.full_torque_nm / speed),
+            ..Slope::NONE
         };
-        for e in self
-            .effects
-            .iter()
-            .filter(|e| e.effect.info().site == Site::Drive)
-        {
+        let at_drive = |e: &&&EffectInstance| e.effect.info().site == Site::Drive;
+        for e in self.effects.iter().filter(at_drive) {
             let slope = e.effect.slope(&e.values, &at).unwrap_or_else(|| {
                 omitted.push(OmittedEffect::new(e.effect, self.joint));
                 Slope::NONE
             });
             at.torque_nm = e.effect.drive(&e.values, at.torque_nm, &state);
-            duty.per_duty = slope.gain * duty.per_duty + slope.per_duty;
-            duty.per_rad_s = slope.gain * duty.per_rad_s + slope.per_rad_s;
+            sum.per_duty = slope.gain * sum.per_duty + slope.per_duty;
+            sum.per_rad_s = slope.gain * sum.per_rad_s + slope.per_rad_s;
         }
-        (at.torque_nm, duty)
+        (at.torque_nm, sum)
     }
 
     /// The input that makes `duty`; completes the slopes.
-    fn input(&self, duty: &Duty, reading_rad: f64, slope: &mut JointSlope) -> f64 {
-        let Duty { duty, per_duty, .. } = *duty;
+    fn input(&self, duty: f64, per_duty: f64, reading_rad: f64, slope: &mut JointSlope) -> f64 {
         match self.drive {
             Drive::Passive => 0.0,
             Drive::Torque | Drive::Duty(_) => {
@@ -251,19 +233,8 @@ impl<'a> JointAt<'a> {
 
 /// Whether an effect's values are those at which it does nothing.
 fn vanishes(instance: &EffectInstance) -> bool {
-    let mut off = instance
-        .effect
-        .info()
-        .parameters
-        .iter()
-        .zip(&instance.values);
-    let mut any = false;
-    let none = off.all(|(parameter, &value)| match parameter.off {
-        Some(off) => {
-            any = true;
-            value == off
-        }
-        None => true,
-    });
-    any && none
+    let parameters = instance.effect.info().parameters.iter();
+    let values = parameters.zip(&instance.values);
+    let mut off = values.filter_map(|(parameter, value)| Some(parameter.off? == *value));
+    off.next().is_some_and(|first| first && off.all(|off| off))
 }

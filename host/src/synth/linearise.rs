@@ -10,11 +10,11 @@ use super::omitted::OmittedEffect;
 use super::operating_point::OperatingPoint;
 use super::system::Continuous;
 use crate::model::{Angles, Model};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, stack};
 
 /// A linear model with the operating point that it departs from.
 #[derive(Debug, Clone)]
-pub struct Linearised {
+pub struct Linearisation {
     /// The linear model.
     pub plant: Continuous,
     /// Inputs of the driven joints that hold the pose, each in the SI unit of its drive.
@@ -31,29 +31,22 @@ pub struct Linearised {
 ///
 /// # Errors
 /// A pose that is no equilibrium of the smooth effects, nothing driven.
-pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised, DesignError> {
+pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearisation, DesignError> {
     let point = OperatingPoint::of(model, pose_rad)?;
     let n = model.link_count();
-    let driven: Vec<usize> = (0..n)
-        .filter(|&joint| model.joints[joint].drive.is_driven())
-        .collect();
+    let driven = model.driven_joints();
     if driven.is_empty() {
         return Err(DesignError::NothingDriven {
             model: model.name.clone(),
         });
     }
     // The model's own angles are `convention` times the relative ones.
-    let convention = match model.angles {
-        Angles::Relative => DMatrix::identity(n, n),
-        Angles::Absolute => DMatrix::from_fn(n, n, |i, j| if j <= i { 1.0 } else { 0.0 }),
-    };
-    let back = match model.angles {
-        Angles::Relative => DMatrix::identity(n, n),
-        Angles::Absolute => DMatrix::from_fn(n, n, |i, j| match i.wrapping_sub(j) {
-            0 => 1.0,
-            1 => -1.0,
-            _ => 0.0,
-        }),
+    let (convention, back) = match model.angles {
+        Angles::Relative => (DMatrix::identity(n, n), DMatrix::identity(n, n)),
+        Angles::Absolute => (
+            DMatrix::from_element(n, n, 1.0).lower_triangle(),
+            DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - f64::from(i == j + 1)),
+        ),
     };
     let diagonal = |of: fn(&JointSlope) -> f64| {
         DMatrix::from_diagonal(&DVector::from_iterator(n, point.joints.iter().map(of)))
@@ -69,21 +62,15 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearised, DesignEr
         model: model.name.clone(),
     })?;
     let accelerate = |torque: DMatrix<f64>| &convention * mass.solve(&torque);
-    let mut a = DMatrix::zeros(2 * n, 2 * n);
-    a.view_mut((0, n), (n, n)).fill_with_identity();
-    a.view_mut((n, 0), (n, n))
-        .copy_from(&(accelerate(per_rad) * &back));
-    a.view_mut((n, n), (n, n))
-        .copy_from(&(accelerate(diagonal(|s| s.per_rad_s)) * &back));
-    let mut b = DMatrix::zeros(2 * n, driven.len());
-    b.view_mut((n, 0), (n, driven.len()))
-        .copy_from(&accelerate(per_input));
+    let damping = accelerate(diagonal(|s| s.per_rad_s)) * &back;
+    let a = stack![0, DMatrix::identity(n, n); accelerate(per_rad) * &back, damping];
+    let b = stack![DMatrix::zeros(n, driven.len()); accelerate(per_input)];
     let mut c = DMatrix::identity(2 * n, 2 * n);
     for (joint, slope) in point.joints.iter().enumerate() {
         c[(joint, joint)] = slope.reading;
         c[(n + joint, n + joint)] = slope.reading;
     }
-    Ok(Linearised {
+    Ok(Linearisation {
         plant: Continuous { a, b, c },
         inputs: point.inputs,
         omitted: point.omitted,
@@ -223,7 +210,7 @@ input = {{ column = "u3", unit = "rad/s" }}
         for angles in ["relative", "absolute"] {
             let model = model(angles);
             let pose = balanced(&model, &[0.1, 0.3, -0.2]).unwrap();
-            let Linearised {
+            let Linearisation {
                 plant,
                 inputs,
                 omitted,

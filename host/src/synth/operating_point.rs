@@ -4,7 +4,7 @@
 use super::error::DesignError;
 use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
-use super::pose::{check_size, relative};
+use super::pose::check_size;
 use crate::dynamics::EquationsOfMotion;
 use crate::model::Model;
 
@@ -34,7 +34,7 @@ impl OperatingPoint {
     /// can give.
     pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint, DesignError> {
         check_size(model, pose_rad)?;
-        let relative_rad = relative(model, pose_rad);
+        let relative_rad = model.relative_rad(pose_rad);
         let equations = equations(model);
         let gravity_nm = equations.gravity(&relative_rad);
         let mut level_rad = relative_rad.clone();
@@ -74,8 +74,7 @@ pub fn input_delay_s(model: &Model) -> Result<f64, DesignError> {
         // An empty sum would be -0.
         at.fold(0.0, |sum, e| sum + e.effect.delay_s(&e.values))
     };
-    let driven = (0..model.link_count()).filter(|&joint| model.joints[joint].drive.is_driven());
-    let delays: Vec<f64> = driven.map(delay).collect();
+    let delays: Vec<f64> = model.driven_joints().into_iter().map(delay).collect();
     let first = delays.first().copied().unwrap_or(0.0);
     match delays.iter().find(|&&delay| delay != first) {
         None => Ok(first),

@@ -109,7 +109,7 @@ impl StateFeedbackPlan {
 
 fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
     let joints = model.link_count();
-    let drives = model.joints.iter().filter(|j| j.drive.is_driven()).count();
+    let drives = model.driven_joints().len();
     let sampled = value.get("sampled").filter(|sampled| !sampled.is_null());
     let timing = sampled.map(timing).transpose()?;
     let past = timing.map_or(0, |timing| timing.delayed_inputs);
@@ -155,13 +155,13 @@ fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
 
 /// When the law is computed and its inputs arrive.
 #[derive(Clone, Copy)]
-struct Timing {
+struct PlanTiming {
     ts_s: f64,
     delay_s: f64,
     delayed_inputs: usize,
 }
 
-fn timing(sampled: &Value) -> Result<Timing, PlanReason> {
+fn timing(sampled: &Value) -> Result<PlanTiming, PlanReason> {
     let number = |key: &'static str, expected| {
         let value = sampled.get(key);
         let number = value.and_then(Value::as_f64).filter(|n| *n >= 0.0);
@@ -185,7 +185,7 @@ fn timing(sampled: &Value) -> Result<Timing, PlanReason> {
             delayed_inputs,
         });
     }
-    Ok(Timing {
+    Ok(PlanTiming {
         ts_s,
         delay_s,
         delayed_inputs,

@@ -3,7 +3,7 @@
 use super::error::DesignError;
 use super::joint_slope::JointAt;
 use super::operating_point::equations;
-use crate::model::{Angles, Model};
+use crate::model::Model;
 use nalgebra::DVector;
 
 /// Of Newton's iteration.
@@ -22,13 +22,13 @@ const SETTLED_RAD: f64 = 1e-9;
 /// No equilibrium within reach of Newton's iteration.
 pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError> {
     check_size(model, pose_rad)?;
-    let passive: Vec<usize> = (0..model.link_count())
-        .filter(|&joint| !model.joints[joint].drive.is_driven())
-        .collect();
+    let driven = model.driven_joints();
+    let joints = 0..model.link_count();
+    let passive: Vec<usize> = joints.filter(|joint| !driven.contains(joint)).collect();
     let equations = equations(model);
-    let mut angle_rad = relative(model, pose_rad);
+    let mut angle_rad = model.relative_rad(pose_rad);
     for _ in 0..MOST_STEPS {
-        let pose_rad = convention(model, &angle_rad);
+        let pose_rad = model.convention_rad(&angle_rad);
         if passive.is_empty() {
             return Ok(pose_rad);
         }
@@ -37,8 +37,9 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError
         let mut left = DVector::zeros(passive.len());
         let mut slope = slope.select_rows(&passive).select_columns(&passive);
         for (i, &joint) in passive.iter().enumerate() {
-            let own = JointAt::new(model, joint, &angle_rad, &pose_rad).torque(&mut Vec::new());
-            left[i] = gravity_nm[joint] - own.torque_nm;
+            let at = JointAt::new(model, joint, &angle_rad, &pose_rad);
+            let (own_nm, own) = at.torque(&mut Vec::new());
+            left[i] = gravity_nm[joint] - own_nm;
             slope[(i, i)] -= own.per_rad;
         }
         let Some(step) = slope.lu().solve(&left) else {
@@ -48,37 +49,10 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError
             angle_rad[joint] -= step.clamp(-LONGEST_STEP_RAD, LONGEST_STEP_RAD);
         }
         if step.amax() < SETTLED_RAD {
-            return Ok(convention(model, &angle_rad));
+            return Ok(model.convention_rad(&angle_rad));
         }
     }
     Err(DesignError::EquilibriumNotFound)
-}
-
-/// Relative angles, the first from hanging, in the model's own convention.
-fn convention(model: &Model, relative_rad: &[f64]) -> Vec<f64> {
-    let zero = model.angle_zero.from_hanging_rad();
-    let mut sum = -zero;
-    let angle = |(joint, &angle): (usize, &f64)| {
-        sum += angle;
-        match model.angles {
-            Angles::Relative if joint == 0 => angle - zero,
-            Angles::Relative => angle,
-            Angles::Absolute => sum,
-        }
-    };
-    relative_rad.iter().enumerate().map(angle).collect()
-}
-
-/// Relative angles, the first from hanging.
-pub(super) fn relative(model: &Model, pose_rad: &[f64]) -> Vec<f64> {
-    let zero = model.angle_zero.from_hanging_rad();
-    let mut before = -zero;
-    let angle = |(joint, &angle): (usize, &f64)| match model.angles {
-        Angles::Relative if joint == 0 => angle + zero,
-        Angles::Relative => angle,
-        Angles::Absolute => angle - std::mem::replace(&mut before, angle),
-    };
-    pose_rad.iter().enumerate().map(angle).collect()
 }
 
 /// One angle per joint, all of them numbers.

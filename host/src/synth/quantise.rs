@@ -57,7 +57,7 @@ pub fn quantise(
     }
     positive("range", "state", &ranges.state, k.ncols())?;
     positive("range", "input", &ranges.input, k.nrows())?;
-    let word = 2f64.powi(bits as i32 - 1) - 1.0;
+    let word = largest_word(bits);
     let reach: Vec<f64> = x0
         .iter()
         .zip(&ranges.state)
@@ -121,11 +121,9 @@ impl GainRow {
     /// Whether gains and sum fit at this scale.
     fn fits(&self, scale: f64, shift: u32) -> bool {
         let word = 2f64.powi(self.bits as i32 - 1);
-        let sum: f64 = self.weights.iter().map(|w| (w * scale).abs().round()).sum();
-        let most = self
-            .weights
-            .iter()
-            .fold(0.0, |most: f64, w| most.max((w * scale).abs().round()));
+        let sizes = || self.weights.iter().map(|w| (w * scale).abs().round());
+        let sum: f64 = sizes().sum();
+        let most = sizes().fold(0.0, f64::max);
         let bias = (self.u0 * scale).abs().round() + 2f64.powi(shift as i32);
         most < word && sum * word + bias < 2.0 * word * word - 1.0
     }
@@ -133,7 +131,7 @@ impl GainRow {
     /// The largest scale that fits, and its split into bytes of shift and a step that the range
     /// needs.
     fn shift_and_step(&self) -> (u32, f64) {
-        let word = 2f64.powi(self.bits as i32 - 1) - 1.0;
+        let word = largest_word(self.bits);
         let most_shift = self.bits.next_multiple_of(8);
         // The step must let the range fit, so 2^shift / step has a largest value for the longest
         // shift.
@@ -224,7 +222,12 @@ fn steps(
     }
 }
 
-fn power_of_two_above(value: f64) -> f64 {
+/// The largest number that a word of so many bits holds.
+pub(super) fn largest_word(bits: u32) -> f64 {
+    2f64.powi(bits as i32 - 1) - 1.0
+}
+
+pub(super) fn power_of_two_above(value: f64) -> f64 {
     2f64.powi(value.log2().ceil() as i32)
 }
 
@@ -284,7 +287,12 @@ mod tests {
                 ts_s: 0.01,
                 delayed_inputs: 0,
             };
-            let exact = crate::synth::Gains { k: k.clone(), riccati: k.clone(), residual: 0.0, poles: Vec::new() };
+            let exact = crate::synth::Gains {
+                k: k.clone(),
+                riccati: k.clone(),
+                residual: 0.0,
+                poles: Vec::new(),
+            };
             let loss = law.loss(&plant, &exact, &x0, &u0, &range).unwrap();
             let off: Vec<f64> = (0..2).map(|j| share[j] * range[j]).collect();
             let x: Vec<f64> = (0..2).map(|j| x0[j] + off[j]).collect();

@@ -11,11 +11,15 @@
 
 use super::error::DesignError;
 use super::gains::dlqr;
+use super::riccati::stein;
 use super::system::Discrete;
 use nalgebra::{DMatrix, DVector};
 
 /// Most quasi-Newton steps.
 const MOST_STEPS: usize = 200;
+
+/// Of the sums over all of a run.
+const ACCURACY: f64 = 1e-14;
 
 /// The search ends once a step lowers the logarithm of the cost by less than this.
 const STILL: f64 = 1e-9;
@@ -125,33 +129,13 @@ fn mean_cost(
     let unit = DMatrix::identity(k.ncols(), k.ncols());
     for Discrete { a, b, .. } in plants {
         let closed = a - b * k;
-        let p = summed(&closed.transpose(), &weight)?;
-        let s = summed(&closed, &unit)?;
+        let s = stein(closed.transpose(), unit.clone(), ACCURACY)?;
+        let p = stein(closed, weight.clone(), ACCURACY)?;
         let bp = b.transpose() * &p;
         cost += p.trace();
         gradient += 2.0 * ((r + &bp * b) * k - bp * a) * s;
     }
     (cost > 0.0 && cost.is_finite()).then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
-}
-
-/// Sum of A^k W A'^k over all k, by doubling (Smith, SIAM J. Applied Math. 16 (1968) 198); none if
-/// it has no end.
-fn summed(a: &DMatrix<f64>, w: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    // 2^22 terms: a radius nearer to 1 than 1e-5 counts as fallen.
-    const DOUBLINGS: usize = 22;
-    let (mut power, mut sum) = (a.clone(), w.clone());
-    for _ in 0..DOUBLINGS {
-        let more = &power * &sum * power.transpose();
-        sum += &more;
-        if !sum.norm().is_finite() {
-            return None;
-        }
-        if more.norm() <= 1e-14 * sum.norm() {
-            return Some(sum);
-        }
-        power = &power * &power;
-    }
-    None
 }
 
 /// A step along `way` that lowers the cost enough (Armijo), with the cost and gradient there.

@@ -11,13 +11,6 @@ pub struct Signal {
     pub unit: &'static str,
 }
 
-/// Driven joints from the base outwards, counted from 0.
-pub(super) fn driven(model: &Model) -> Vec<usize> {
-    let joints = model.joints.iter().enumerate();
-    let driven = joints.filter(|(_, joint)| joint.drive.is_driven());
-    driven.map(|(at, _)| at).collect()
-}
-
 /// The input of a driven joint.
 pub(super) fn input(model: &Model, joint: usize) -> Signal {
     Signal {

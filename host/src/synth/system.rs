@@ -1,6 +1,8 @@
 //! Linear plants in state space.
 
-use nalgebra::DMatrix;
+use super::error::DesignError;
+use super::weights::{self, Sign};
+use nalgebra::{DMatrix, Scalar};
 
 /// x' = A x + B u, y = C x, in SI.
 ///
@@ -39,4 +41,26 @@ impl Discrete {
     pub fn plant_states(&self) -> usize {
         self.a.nrows() - self.delayed_inputs * self.b.ncols()
     }
+
+    /// A weight or covariance of the whole state: itself, or one of the plant's own states, past
+    /// inputs being 0.
+    ///
+    /// # Errors
+    /// As [`weights::of`].
+    pub(super) fn whole_state(
+        &self,
+        name: &'static str,
+        matrix: &DMatrix<f64>,
+    ) -> Result<DMatrix<f64>, DesignError> {
+        let (n, own) = (self.a.nrows(), self.plant_states());
+        let size = if matrix.nrows() == own { own } else { n };
+        weights::of(name, matrix, size, "states", Sign::Semidefinite)?;
+        Ok(matrix.clone().resize(n, n, 0.0))
+    }
+}
+
+/// The rows of a matrix.
+pub fn rows<T: Scalar>(matrix: &DMatrix<T>) -> Vec<Vec<T>> {
+    let row = |row| matrix.row(row).iter().cloned().collect();
+    (0..matrix.nrows()).map(row).collect()
 }

@@ -21,22 +21,19 @@ impl Problem<'_> {
         let weakest = |modes: Vec<Mode>, counts: &dyn Fn(&Mode) -> bool| {
             let counted = modes.into_iter().filter(counts);
             let weakest = counted.min_by(|a, b| a.margin.total_cmp(&b.margin));
-            weakest.map(|mode| PlantMode {
-                pole: mode.pole,
-                sampled: self.time == TimeDomain::Discrete,
-                state: mode.state,
-                margin: mode.margin,
-            })
+            let sampled = self.time == TimeDomain::Discrete;
+            weakest.map(|mode| PlantMode { mode, sampled })
         };
+        let immovable = |mode: &PlantMode| mode.mode.margin < UNCONTROLLABLE;
         let weakest_driven = match modes(self.a, self.b) {
             Ok(modes) => weakest(modes, &lasting),
             Err(error) => return error,
         };
-        if let Some(mode) = weakest_driven.filter(|mode| mode.margin < UNCONTROLLABLE) {
+        if let Some(mode) = weakest_driven.filter(immovable) {
             return DesignError::Uncontrollable { mode, role };
         }
         if let Ok(modes) = modes(&self.a.transpose(), self.q)
-            && let Some(mode) = weakest(modes, &marginal).filter(|m| m.margin < UNCONTROLLABLE)
+            && let Some(mode) = weakest(modes, &marginal).filter(immovable)
         {
             return DesignError::Unweighted { mode, role };
         }

@@ -15,20 +15,6 @@ pub(super) enum Sign {
     Definite,
 }
 
-/// Q for `n` states, R for `m` inputs.
-///
-/// # Errors
-/// As [`of`].
-pub(super) fn check(
-    q: &DMatrix<f64>,
-    r: &DMatrix<f64>,
-    n: usize,
-    m: usize,
-) -> Result<(), DesignError> {
-    of("Q", q, n, "states", Sign::Semidefinite)?;
-    of("R", r, m, "inputs", Sign::Definite)
-}
-
 /// A symmetric matrix for so many states (inputs, outputs), of a sign.
 ///
 /// # Errors

@@ -6,7 +6,7 @@
 
 use super::eigen::poles;
 use super::error::DesignError;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, stack};
 
 /// Singular values below this share of the system's size count as zero.
 const ZERO: f64 = 1e-11;
@@ -89,20 +89,12 @@ impl Reduced {
             let a = turn.transpose() * &self.a * &turn;
             let b = turn.transpose() * &self.b;
             let c = &self.c * &turn;
-            let (p, m) = (rank + seen, b.ncols());
-            let mut next = Reduced {
+            self = Reduced {
                 a: a.view((0, 0), (kept, kept)).into_owned(),
                 b: b.rows(0, kept).into_owned(),
-                c: DMatrix::zeros(p, kept),
-                d: DMatrix::zeros(p, m),
+                c: stack![c.columns(0, kept); a.view((kept, 0), (seen, kept))],
+                d: stack![self.d; b.rows(kept, seen)],
             };
-            next.c.rows_mut(0, rank).copy_from(&c.columns(0, kept));
-            next.c
-                .rows_mut(rank, seen)
-                .copy_from(&a.view((kept, 0), (seen, kept)));
-            next.d.rows_mut(0, rank).copy_from(&self.d);
-            next.d.rows_mut(rank, seen).copy_from(&b.rows(kept, seen));
-            self = next;
         }
     }
 }
@@ -119,10 +111,8 @@ fn row_compression(m: &DMatrix<f64>) -> (DMatrix<f64>, usize) {
     let Some(left) = svd.u else {
         return (DMatrix::identity(rows, rows), 0);
     };
-    let mut order: Vec<usize> = (0..rows).collect();
-    order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
     let rank = svd.singular_values.iter().filter(|s| **s > ZERO).count();
-    (left.select_columns(&order).transpose(), rank)
+    (left.transpose(), rank)
 }
 
 #[cfg(test)]

@@ -30,13 +30,9 @@ pub fn blocks(
     output: OutputQuantity,
     block_s: f64,
 ) -> Vec<BlockMean> {
-    let inputs = motions.iter().filter_map(|m| m.input[joint].as_deref());
-    let whole = inputs
-        .map(range)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| {
-            (a.0.min(b.0), a.1.max(b.1))
-        });
-    let most = STEP * (whole.1 - whole.0);
+    let inputs = motions.iter().filter_map(|m| m.input[joint].as_ref());
+    let (low, high) = range(inputs.flatten());
+    let most = STEP * (high - low);
     let mut all = Vec::new();
     for motion in motions {
         let Some(input) = &motion.input[joint] else {
@@ -73,12 +69,10 @@ pub fn blocks(
     all
 }
 
-fn range(values: &[f64]) -> (f64, f64) {
-    values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(*v), high.max(*v))
-        })
+fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let widened = |(low, high): (f64, f64), v: &f64| (low.min(*v), high.max(*v));
+    values.into_iter().fold(none, widened)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! 7.
 
 use super::blocks::BlockMean;
-use super::dynamics::Interval;
+use super::dynamics::IntervalEstimate;
 use crate::fitting::quantile_975;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
@@ -18,11 +18,11 @@ const LEAST: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Side {
     /// Where the dead zone ends, in the input's unit.
-    pub edge: Interval,
+    pub edge: IntervalEstimate,
     /// OutputQuantity per input outside.
-    pub slope: Interval,
+    pub slope: IntervalEstimate,
     /// OutputQuantity at which it stays; none where no saturation is seen.
-    pub limit: Option<Interval>,
+    pub limit: Option<IntervalEstimate>,
     /// Blocks on this side.
     pub blocks: usize,
     /// Root-mean-square of what is left, in the output's unit.
@@ -263,7 +263,7 @@ fn side(curve: &DeadZoneCurve, points: &[(f64, f64)]) -> Option<Side> {
     let (variance, reach) = (curve.cost(points) / freedom, quantile_975(freedom));
     let inverse = matrix.try_inverse()?;
     let known = |value: f64, k: usize| {
-        Interval::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
+        IntervalEstimate::around(value, reach * (variance * inverse[(k, k)]).max(0.0).sqrt())
     };
     Some(Side {
         slope: known(curve.slope, 0),

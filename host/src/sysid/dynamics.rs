@@ -11,7 +11,7 @@ const HALF_95: f64 = 1.96;
 
 /// A value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Interval {
+pub struct IntervalEstimate {
     /// The value.
     pub value: f64,
     /// Lower end.
@@ -20,10 +20,10 @@ pub struct Interval {
     pub high: f64,
 }
 
-impl Interval {
+impl IntervalEstimate {
     /// `value` give or take `half`.
     pub fn around(value: f64, half: f64) -> Self {
-        Interval {
+        IntervalEstimate {
             value,
             low: value - half,
             high: value + half,
@@ -40,11 +40,11 @@ impl Interval {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pole {
     /// Real part.
-    pub re: Interval,
+    pub re: IntervalEstimate,
     /// Imaginary part; 0 for a real pole.
-    pub im: Interval,
+    pub im: IntervalEstimate,
     /// Distance from the origin: below 1 where stable.
-    pub radius: Interval,
+    pub radius: IntervalEstimate,
     /// Real part of `ln(z) / Ts`, 1/s: how fast it dies.
     pub decay_rad_s: f64,
     /// Imaginary part of `ln(z) / Ts`, rad/s: how fast it turns.
@@ -55,7 +55,7 @@ pub struct Pole {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Dynamics {
     /// OutputQuantity over a constant input, once at rest.
-    pub gain: Interval,
+    pub gain: IntervalEstimate,
     /// Poles, largest first; of a pair both.
     pub poles: Vec<Pole>,
     /// Time after a step from which the output stays within 2 % of its end, s; none if it never
@@ -93,7 +93,7 @@ fn deviation(estimate: &Estimate, gradient: &DVector<f64>) -> f64 {
 }
 
 /// B(1) / (A(1) F(1)).
-fn gain(estimate: &Estimate) -> Interval {
+fn gain(estimate: &Estimate) -> IntervalEstimate {
     let (structure, model) = (&estimate.structure, &estimate.model);
     let (a, b, f) = (at_one(&model.a), at_one(&model.b), at_one(&model.f));
     let value = b / (a * f);
@@ -103,7 +103,7 @@ fn gain(estimate: &Estimate) -> Interval {
     gradient.rows_mut(0, structure.na).fill(-value / a);
     gradient.rows_mut(b_at, structure.nb).fill(1.0 / (a * f));
     gradient.rows_mut(f_at, structure.nf).fill(-value / f);
-    Interval::around(value, HALF_95 * deviation(estimate, &gradient))
+    IntervalEstimate::around(value, HALF_95 * deviation(estimate, &gradient))
 }
 
 fn poles(estimate: &Estimate, ts_s: f64) -> Vec<Pole> {
@@ -140,7 +140,7 @@ fn pole(
         gradient[2][first + k - 1] = (root.conj() * moved).re / root.norm();
     }
     let known = |value: f64, gradient: &DVector<f64>| {
-        Interval::around(value, HALF_95 * deviation(estimate, gradient))
+        IntervalEstimate::around(value, HALF_95 * deviation(estimate, gradient))
     };
     let continuous = root.ln() / ts_s;
     Pole {

@@ -2,9 +2,9 @@
 
 use super::model::TransferModel;
 use super::polynomial::filter;
+use crate::sim::closed_loop::normal;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use std::f64::consts::TAU;
 
 /// Sampling period of the paper's servo logs, s.
 pub const PAPER_TS_S: f64 = 0.01;
@@ -31,15 +31,10 @@ pub fn paper_noise_model() -> TransferModel {
     }
 }
 
-/// Independent normal numbers of this standard deviation (Box & Muller 1958).
+/// Independent normal numbers of this standard deviation.
 pub fn noise(samples: usize, deviation: f64, seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    (0..samples)
-        .map(|_| {
-            let (u, v): (f64, f64) = (1.0 - rng.random::<f64>(), rng.random());
-            deviation * (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
-        })
-        .collect()
+    (0..samples).map(|_| deviation * normal(&mut rng)).collect()
 }
 
 /// Plus and minus 1, each held for `hold` samples, drawn at random.

@@ -21,12 +21,12 @@ mod tests;
 
 pub use blocks::{BlockMean, blocks};
 pub use dead_zone::{DeadZoneMap, Inverse, Side, Unmapped};
-pub use dynamics::{Dynamics, Interval, Pole, dynamics, settling_samples};
+pub use dynamics::{Dynamics, IntervalEstimate, Pole, dynamics, settling_samples};
 pub use estimate::{Estimate, Unfitted, estimate};
 pub use model::TransferModel;
-pub use record::{OutputQuantity, Record, record, sampling_period_s, velocity};
+pub use record::{OutputQuantity, Record, RecordReason, record, sampling_period_s, velocity};
 pub use score::{FitScore, prediction_errors, score};
-pub use select::{Candidate, FittedModel, select, try_all};
-pub use structure::{FAMILIES, Family, Structure, structures};
+pub use select::{FittedModel, TriedStructure, select, try_all};
+pub use structure::{FAMILIES, Family, Structure, StructureFault, StructureReason, structures};
 pub use supply::{NoLine, SupplyLine, errors as supply_errors};
 pub use text::transfer_function;

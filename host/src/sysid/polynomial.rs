@@ -1,9 +1,7 @@
 //! Polynomials in the delay operator, `c[0] + c[1] q^-1 + ...`, and filters made of two of them.
 
-use nalgebra::{Complex, DMatrix, Schur};
-
-/// Most iterations of the eigenvalue search per root.
-const PATIENCE: usize = 1000;
+use crate::synth::poles;
+use nalgebra::{Complex, DMatrix};
 
 /// `numerator(q) / denominator(q)` applied to a signal that was zero before its first sample.
 ///
@@ -76,8 +74,7 @@ pub fn roots(polynomial: &[f64]) -> Option<Vec<Complex<f64>>> {
         (row, column) if row == column + 1 => 1.0,
         _ => 0.0,
     });
-    let schur = Schur::try_new(companion, f64::EPSILON, PATIENCE * order)?;
-    let mut roots: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    let mut roots = poles(&companion).ok()?;
     roots.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
     Some(roots)
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// A structure that was tried.
 #[derive(Debug, Clone)]
-pub struct Candidate {
+pub struct TriedStructure {
     /// What was tried.
     pub structure: Structure,
     /// What came of it.
@@ -33,7 +33,7 @@ pub fn try_all(
     training: &[Record],
     validation: &[Record],
     done: &(dyn Fn() + Sync),
-) -> Vec<Candidate> {
+) -> Vec<TriedStructure> {
     structures
         .par_iter()
         .map(|structure| {
@@ -43,7 +43,7 @@ pub fn try_all(
                 estimate,
             });
             done();
-            Candidate {
+            TriedStructure {
                 structure: *structure,
                 outcome,
             }
@@ -54,7 +54,7 @@ pub fn try_all(
 /// The trial to keep: of those whose squared one-step errors on `validation` are not above the best
 /// one's by more than twice the standard error of the difference, the one with the fewest
 /// coefficients; among equals the best. A model whose validation error is no number is never kept.
-pub fn select(trials: &[Candidate], validation: &[Record]) -> Option<usize> {
+pub fn select(trials: &[TriedStructure], validation: &[Record]) -> Option<usize> {
     let fitted: Vec<(usize, &FittedModel)> = trials
         .iter()
         .enumerate()

@@ -16,16 +16,18 @@ const ROUNDS: usize = 8;
 /// Models to start from, stable ones; the search goes on from each.
 pub(super) fn starts(structure: &Structure, records: &[Record]) -> Vec<TransferModel> {
     match structure.family {
-        Family::Arx => arx(structure.na, structure.nb, structure.nk, records, None)
-            .into_iter()
-            .collect(),
+        Family::Arx => {
+            let orders = [structure.na, structure.nb, structure.nk];
+            arx(orders, records, None, None).into_iter().collect()
+        }
         Family::Armax => armax(structure, records).into_iter().collect(),
         Family::Oe | Family::Bj => {
-            let plain = arx(structure.nf, structure.nb, structure.nk, records, None);
+            let orders = [structure.nf, structure.nb, structure.nk];
+            let plain = arx(orders, records, None, None);
             let plants = [
                 plain.clone(),
-                instrumented(structure, records),
-                plain.and_then(|plain| steiglitz_mcbride(structure, records, plain)),
+                instrumented(orders, records),
+                plain.and_then(|plain| steiglitz_mcbride(orders, records, plain)),
             ];
             let with_noise = |plant: TransferModel| noise_model(structure, records, plant);
             plants.into_iter().flatten().map(with_noise).collect()
@@ -39,8 +41,9 @@ struct Regressor<'a> {
     delay: usize,
 }
 
-/// Weights of `columns` that come nearest to `target` over the scored samples. With `instruments`,
-/// one per column, the error is made orthogonal to them instead (Ljung 1999, eq. 7.118).
+/// Weights of `columns` whose error from `target` over the scored samples is orthogonal to
+/// `instruments`, one per column (Ljung 1999, eq. 7.118): the least squares where these are the
+/// columns themselves.
 fn regress(
     records: &[Record],
     target: &[Vec<f64>],
@@ -48,11 +51,6 @@ fn regress(
     instruments: &[Regressor],
 ) -> Option<DVector<f64>> {
     let count = columns.len();
-    let against = if instruments.is_empty() {
-        columns
-    } else {
-        instruments
-    };
     let mut normal = DMatrix::<f64>::zeros(count, count);
     let mut right = DVector::zeros(count);
     let at = |column: &Regressor, r: usize, t: usize| match t.checked_sub(column.delay) {
@@ -64,7 +62,7 @@ fn regress(
         for t in record.scored.clone() {
             for k in 0..count {
                 row[k] = at(&columns[k], r, t);
-                test[k] = at(&against[k], r, t);
+                test[k] = at(&instruments[k], r, t);
             }
             for (i, test) in test.iter().enumerate() {
                 right[i] += test * target[r][t];
@@ -104,12 +102,12 @@ fn delayed<'a>(
 }
 
 /// Least squares on `y = -a y(past) + b u`; filtered by `1/prefilter` first, where there is one.
+/// With an `instrument`, what that model makes of the input stands for the past outputs' own noise.
 fn arx(
-    na: usize,
-    nb: usize,
-    nk: usize,
+    [na, nb, nk]: [usize; 3],
     records: &[Record],
     prefilter: Option<&[f64]>,
+    instrument: Option<&TransferModel>,
 ) -> Option<TransferModel> {
     let through = |signal: &[f64]| match prefilter {
         Some(denominator) => filter(&[1.0], denominator, signal),
@@ -117,27 +115,33 @@ fn arx(
     };
     let output = signals(records, |r| through(&r.output));
     let input = signals(records, |r| through(&r.input));
-    let columns: Vec<Regressor> = delayed(&output, 1..na + 1)
-        .chain(delayed(&input, nk..nk + nb))
-        .collect();
-    let mut weights = regress(records, &output, &columns, &[])?;
+    let clean = instrument.map(|model| signals(records, |r| model.simulated(&r.input)));
+    let past = |output| -> Vec<Regressor> {
+        let output = delayed(output, 1..na + 1);
+        output.chain(delayed(&input, nk..nk + nb)).collect()
+    };
+    let (columns, instruments) = (past(&output), past(clean.as_ref().unwrap_or(&output)));
+    let mut weights = regress(records, &output, &columns, &instruments)?;
     weights.rows_mut(0, na).neg_mut();
-    Some(TransferModel::of(
-        &Structure::arx([na, nb, nk]),
-        weights.as_slice(),
-    ))
+    let structure = Structure::arx([na, nb, nk]);
+    Some(TransferModel::of(&structure, weights.as_slice()))
+}
+
+/// Order of the long ARX model that the records can carry.
+fn long_order(records: &[Record]) -> usize {
+    let samples: usize = records.iter().map(Record::count).sum();
+    LONG.min(samples / 10).max(1)
 }
 
 /// A long ARX model: its errors come near the noise's own innovations.
-fn long_arx(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
-    let samples: usize = records.iter().map(Record::count).sum();
-    let order = LONG.min(samples / 10).max(1);
-    arx(order, order, structure.nk, records, None)
+fn long_arx(nk: usize, records: &[Record]) -> Option<TransferModel> {
+    let order = long_order(records);
+    arx([order, order, nk], records, None, None)
 }
 
 /// Extended least squares: past errors of a long ARX model stand for the noise.
 fn armax(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
-    let long = long_arx(structure, records)?;
+    let long = long_arx(structure.nk, records)?;
     let (na, nb, nc, nk) = (structure.na, structure.nb, structure.nc, structure.nk);
     let output = signals(records, |r| r.output.clone());
     let input = signals(records, |r| r.input.clone());
@@ -146,7 +150,7 @@ fn armax(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
         .chain(delayed(&input, nk..nk + nb))
         .chain(delayed(&errors, 1..nc + 1))
         .collect();
-    let mut weights = regress(records, &output, &columns, &[])?;
+    let mut weights = regress(records, &output, &columns, &columns)?;
     weights.rows_mut(0, na).neg_mut();
     let mut model = TransferModel::of(structure, weights.as_slice());
     model.c = stabilised(&model.c, MOST_ROOT);
@@ -154,44 +158,23 @@ fn armax(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
 }
 
 /// B/F by instrumental variables: the long ARX model's noise-free output as the instrument.
-fn instrumented(structure: &Structure, records: &[Record]) -> Option<TransferModel> {
-    let mut long = long_arx(structure, records)?;
+fn instrumented(orders: [usize; 3], records: &[Record]) -> Option<TransferModel> {
+    let mut long = long_arx(orders[2], records)?;
     long.a = stabilised(&long.a, MOST_ROOT);
-    let (nf, nb, nk) = (structure.nf, structure.nb, structure.nk);
-    let output = signals(records, |r| r.output.clone());
-    let input = signals(records, |r| r.input.clone());
-    let clean = signals(records, |r| long.simulated(&r.input));
-    let columns: Vec<Regressor> = delayed(&output, 1..nf + 1)
-        .chain(delayed(&input, nk..nk + nb))
-        .collect();
-    let instruments: Vec<Regressor> = delayed(&clean, 1..nf + 1)
-        .chain(delayed(&input, nk..nk + nb))
-        .collect();
-    let mut weights = regress(records, &output, &columns, &instruments)?;
-    weights.rows_mut(0, nf).neg_mut();
-    Some(TransferModel::of(
-        &Structure::arx([nf, nb, nk]),
-        weights.as_slice(),
-    ))
+    arx(orders, records, None, Some(&long))
 }
 
 /// B/F by least squares on signals filtered by the denominator found before (Steiglitz & McBride,
 /// IEEE Trans. Automatic Control 10, 1965, 461-464).
 fn steiglitz_mcbride(
-    structure: &Structure,
+    orders: [usize; 3],
     records: &[Record],
     plain: TransferModel,
 ) -> Option<TransferModel> {
     let mut model = plain;
     for _ in 0..ROUNDS {
         let denominator = stabilised(&model.a, MOST_ROOT);
-        model = arx(
-            structure.nf,
-            structure.nb,
-            structure.nk,
-            records,
-            Some(&denominator),
-        )?;
+        model = arx(orders, records, Some(&denominator), None)?;
     }
     Some(model)
 }
@@ -214,23 +197,19 @@ fn noise_model(structure: &Structure, records: &[Record], plant: TransferModel) 
         let simulated = model.simulated(&r.input);
         r.output.iter().zip(simulated).map(|(y, w)| y - w).collect()
     });
-    let samples: usize = records.iter().map(Record::count).sum();
-    let long = LONG.min(samples / 10).max(1);
-    let past: Vec<Regressor> = delayed(&left, 1..long + 1).collect();
-    let Some(weights) = regress(records, &left, &past, &[]) else {
+    let past: Vec<Regressor> = delayed(&left, 1..long_order(records) + 1).collect();
+    let Some(weights) = regress(records, &left, &past, &past) else {
         return model;
     };
     let whitening: Vec<f64> = std::iter::once(1.0)
         .chain(weights.iter().map(|w| -w))
         .collect();
-    let errors: Vec<Vec<f64>> = left
-        .iter()
-        .map(|left| filter(&whitening, &[1.0], left))
-        .collect();
+    let errors = left.iter().map(|left| filter(&whitening, &[1.0], left));
+    let errors: Vec<Vec<f64>> = errors.collect();
     let columns: Vec<Regressor> = delayed(&errors, 1..structure.nc + 1)
         .chain(delayed(&left, 1..structure.nd + 1))
         .collect();
-    if let Some(weights) = regress(records, &left, &columns, &[]) {
+    if let Some(weights) = regress(records, &left, &columns, &columns) {
         let (c, d) = weights.as_slice().split_at(structure.nc);
         model.c[1..].copy_from_slice(c);
         for (own, weight) in model.d[1..].iter_mut().zip(d) {

@@ -1,7 +1,7 @@
 //! Speed error against supply voltage: the paper's Figure 5.
 
 use super::blocks::BlockMean;
-use super::dynamics::Interval;
+use super::dynamics::IntervalEstimate;
 use crate::fitting::quantile_975;
 use serde::Serialize;
 
@@ -14,9 +14,9 @@ const LEAST: usize = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SupplyLine {
     /// Change of `speed / command - 1` per volt.
-    pub error_per_v: Interval,
+    pub error_per_v: IntervalEstimate,
     /// SupplyLine at which the speed is the one commanded, V; its interval may be unbounded.
-    pub right_at_v: Interval,
+    pub right_at_v: IntervalEstimate,
     /// Lowest and highest supply seen, V.
     pub range_v: (f64, f64),
     /// Blocks that counted.
@@ -77,7 +77,7 @@ impl SupplyLine {
         let reach = quantile_975(count - 2.0);
         let volts = || points.iter().map(|p| p.0);
         Ok(SupplyLine {
-            error_per_v: Interval::around(slope, reach * (variance / square).sqrt()),
+            error_per_v: IntervalEstimate::around(slope, reach * (variance / square).sqrt()),
             right_at_v: zero(
                 (mean_v, mean),
                 slope,
@@ -101,7 +101,7 @@ fn zero(
     slope: f64,
     [mean_variance, slope_variance]: [f64; 2],
     reach: f64,
-) -> Interval {
+) -> IntervalEstimate {
     let z = reach * reach;
     let value = mean_v - mean / slope;
     // slope^2 x^2 + 2 mean slope x + mean^2 = z (mean_variance + slope_variance x^2), x = v -
@@ -111,13 +111,13 @@ fn zero(
     let c = mean * mean - z * mean_variance;
     let root = b * b - a * c;
     if a <= 0.0 || root < 0.0 {
-        return Interval {
+        return IntervalEstimate {
             value,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         };
     }
-    Interval {
+    IntervalEstimate {
         value,
         low: mean_v + (-b - root.sqrt()) / a,
         high: mean_v + (-b + root.sqrt()) / a,

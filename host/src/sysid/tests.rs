@@ -30,7 +30,7 @@ fn box_jenkins_intervals_hold_the_papers_servo() {
             let halves = estimate.half_widths();
             let dynamics = dynamics(&estimate, 0.01);
             let mut held: Vec<bool> = (0..values.len())
-                .map(|k| Interval::around(found[k], halves[k]).holds(values[k]))
+                .map(|k| IntervalEstimate::around(found[k], halves[k]).holds(values[k]))
                 .collect();
             held.push(dynamics.gain.holds(true_gain));
             held.push(dynamics.poles[0].re.holds(true_pole.re));

@@ -242,7 +242,7 @@ fn an_effect_is_added_with_its_value_and_provenance() {
     let ran = bench.run("add model.toml viscous --fit a.csv --holdout b.csv -o new.toml --json");
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
-    assert_eq!(data["effect"], "viscous@1");
+    assert_eq!(data["effects"][0], "viscous@1");
     let value = data["values"][0]["value"].as_f64().unwrap();
     assert!((value - 0.001).abs() < 2e-5, "{value}");
     let error = &data["error"];

@@ -18,6 +18,7 @@ mod gains;
 mod golden;
 #[cfg(unix)]
 mod mcap;
+mod mixed_motions;
 #[cfg(unix)]
 mod recipes;
 mod record;

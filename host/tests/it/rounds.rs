@@ -64,3 +64,77 @@ fn a_challenge_is_made_once_and_scored() {
     let unknown = bench.run("challenge new --seed 5 --effect delai -o other");
     assert_eq!(unknown.code, Some(2), "{unknown:?}");
 }
+
+#[test]
+fn a_wrong_value_is_named_before_any_missing_effect() {
+    let bench = Bench::new();
+    let model = bench.get("model.toml").replace(
+        "[log]",
+        "[[effect]]\nkind = \"viscous\"\njoint = 1\ncoefficient_nm_s_rad = 0.00017\n\n[log]",
+    );
+    bench.put("sixth.toml", model);
+    let ran = bench.run("diagnose sixth.toml a.csv --holdout b.csv --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    assert_eq!(data["verdict"], "wrong_value", "{data}");
+    assert_eq!(data["effects"].as_array().map(Vec::len), Some(0));
+    let wrong = &data["wrong_values"][0];
+    assert_eq!(wrong["path"], "viscous@1.coefficient_nm_s_rad");
+    assert_eq!(wrong["given"], 0.00017);
+    assert!(
+        (wrong["value"].as_f64().unwrap() / 0.001 - 1.0).abs() < 0.02,
+        "{wrong}"
+    );
+    // What is printed to mend it does.
+    let fit = data["next"][0]
+        .as_str()
+        .unwrap()
+        .split_once("handstand ")
+        .unwrap()
+        .1;
+    assert_eq!(bench.run(fit).code, Some(0), "{fit}");
+    let mended = bench
+        .run("diagnose better.toml a.csv --holdout b.csv --json")
+        .json();
+    assert_eq!(mended["verdict"], "nominal", "{mended}");
+}
+
+#[test]
+fn an_effect_that_does_not_help_is_not_added() {
+    let bench = Bench::new();
+    assert_eq!(
+        bench
+            .run("add model.toml viscous --fit a.csv --holdout b.csv -o new.toml")
+            .code,
+        Some(0)
+    );
+    let ran = bench.run("add new.toml base_tilt --fit a.csv --holdout b.csv -o worse.toml");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.stdout.contains("refused"), "{ran:?}");
+    assert!(!bench.path("worse.toml").exists());
+}
+
+#[test]
+fn several_effects_are_added_at_once() {
+    let bench = Bench::new();
+    let line = "add model.toml viscous air_drag --fit a.csv -o both.toml --json";
+    let ran = bench.run(line);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(
+        ran.json()["effects"],
+        serde_json::json!(["viscous@1", "air_drag@1"])
+    );
+    let twice = bench.run("add model.toml viscous viscous@1 --fit a.csv -o twice.toml");
+    assert_eq!(twice.code, Some(2), "{twice:?}");
+}
+
+#[test]
+fn rows_that_are_fitted_cannot_be_held_out() {
+    let bench = Bench::new();
+    let ran = bench.run("diagnose model.toml a.csv:0-50 --holdout a.csv:50-90");
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    assert!(
+        ran.stderr.contains("shares rows with a.csv:0-50"),
+        "{ran:?}"
+    );
+}

@@ -4,7 +4,7 @@
 use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
 use super::run::Run;
-use handstand::controllers::{OnBoard, Timing};
+use handstand::controllers::{BoardTiming, OnBoard};
 use handstand::deploy::{self, Board, BoardLaw};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
@@ -25,10 +25,10 @@ pub enum Source {
 
 impl Source {
     /// When things happen.
-    pub fn timing(self) -> Timing {
+    pub fn timing(self) -> BoardTiming {
         match self {
-            Source::Host => Timing::HOST_ATTITUDE,
-            Source::Gyro => Timing::GYRO,
+            Source::Host => BoardTiming::HOST_ATTITUDE,
+            Source::Gyro => BoardTiming::GYRO,
         }
     }
 

@@ -4,7 +4,7 @@
 use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
 use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
-use handstand::controllers::{OnBoard, Timing};
+use handstand::controllers::{BoardTiming, OnBoard};
 use handstand::deploy::{reading_steps, state_steps};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
@@ -159,7 +159,7 @@ impl Sensor {
 pub fn balance_by_host(
     law: &mut dyn HostLaw,
     conditions: &Conditions,
-    timing: &Timing,
+    timing: &BoardTiming,
     source: Source,
     seconds: f64,
 ) -> Balanced {
@@ -264,7 +264,7 @@ mod tests {
     /// From two degrees in every combination of signs, with attitude from the host or a gyro alone.
     #[test]
     fn both_laws_of_the_host_stand() {
-        for timing in [Timing::HOST_ATTITUDE, Timing::GYRO] {
+        for timing in [BoardTiming::HOST_ATTITUDE, BoardTiming::GYRO] {
             let (model, board) = (model(), Board::BIOLOID);
             let machine = deploy::observer_design(&model, &board, &timing).unwrap();
             let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board).unwrap();

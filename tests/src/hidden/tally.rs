@@ -1,189 +1,281 @@
-//! Many outcomes as a few figures with their targets.
+//! Many outcomes as rates with their intervals and targets.
 
-use super::trial::Outcome;
-use handstand::diagnose::Verdict;
+use super::family::{FAMILIES, Family};
+use super::trial::{Answer, Outcome};
+use handstand::study::share_interval;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What was said of all benches that hide the same.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Row {
-    /// What is hidden; none for nothing.
-    pub hidden: Option<String>,
-    /// Benches.
-    pub count: usize,
-    /// Exactly the hidden effect was named; for benches that hide nothing, nothing was.
-    pub right: usize,
-    /// Other sets that were named, and how often.
-    pub wrong: BTreeMap<String, usize>,
-    /// Several sets do as well.
-    pub ambiguous: usize,
-    /// Of those, the hidden effect alone is one of the sets.
-    pub ambiguous_with_truth: usize,
-    /// Something is missing, none of the library's.
-    pub unexplained: usize,
-    /// Nothing is missing, though something is.
-    pub nominal: usize,
-    /// The data cannot tell.
-    pub unfit: usize,
-}
-
-impl Row {
-    fn count(&mut self, outcome: &Outcome) {
-        self.count += 1;
-        match outcome.verdict {
-            Verdict::Named if outcome.is_right() => self.right += 1,
-            Verdict::Named => *self.wrong.entry(outcome.effects.join("+")).or_default() += 1,
-            Verdict::Ambiguous => {
-                self.ambiguous += 1;
-                let mut sets = outcome.alternatives.iter().chain([&outcome.effects]);
-                if sets.any(|set| set.iter().eq(outcome.hidden.iter())) {
-                    self.ambiguous_with_truth += 1;
-                }
-            }
-            Verdict::Unexplained => self.unexplained += 1,
-            Verdict::Nominal if outcome.hidden.is_none() => self.right += 1,
-            Verdict::Nominal => self.nominal += 1,
-            Verdict::Unfit => self.unfit += 1,
-        }
-    }
-}
-
-/// A measured figure beside its target.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Figure {
-    /// What it is.
-    pub name: &'static str,
+/// So many of so many, with the ends of the 95 % interval (Wilson).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Share {
     /// Cases that meet it.
     pub met: usize,
     /// Cases in all.
     pub of: usize,
-    /// Least share that must meet it, or most where `at_most`.
-    pub target: f64,
-    /// Whether the target is an upper limit.
-    pub at_most: bool,
+    /// Lower end of the share's interval, 0 to 1.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
 }
 
-impl Figure {
-    fn of<T>(
-        name: &'static str,
-        target: f64,
-        cases: impl IntoIterator<Item = T>,
-        meets: impl Fn(&T) -> bool,
-    ) -> Figure {
-        let cases: Vec<T> = cases.into_iter().collect();
-        Figure {
-            name,
-            met: cases.iter().filter(|case| meets(case)).count(),
-            of: cases.len(),
-            target,
-            at_most: false,
-        }
+impl Share {
+    fn of(met: usize, of: usize) -> Share {
+        let [low, high] = share_interval(met, of);
+        Share { met, of, low, high }
     }
 
-    /// The share, from 0 to 1; none without cases.
+    /// The share, 0 to 1; none without cases.
     pub fn share(&self) -> Option<f64> {
         (self.of > 0).then(|| self.met as f64 / self.of as f64)
     }
+}
 
-    /// Whether the target is reached; without cases nothing is missed.
-    pub fn is_met(&self) -> bool {
-        self.share().is_none_or(|share| match self.at_most {
-            true => share <= self.target,
-            false => share >= self.target,
+/// Median, 90 % and largest of some numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Half of them are at most this.
+    pub median: f64,
+    /// Nine tenths of them are at most this.
+    pub most_90: f64,
+    /// All of them are at most this.
+    pub largest: f64,
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f64>) -> Option<Spread> {
+        let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let place = (share * values.len() as f64).ceil() as usize;
+            values.get(place.max(1) - 1).copied()
+        };
+        Some(Spread {
+            median: at(0.5)?,
+            most_90: at(0.9)?,
+            largest: at(1.0)?,
         })
     }
 }
 
-/// Held-out error against the true model's that still counts as explained.
-pub const MOST_RATIO: f64 = 1.3;
+/// What was said of all cases of a family.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FamilyRow {
+    /// The family.
+    pub family: Family,
+    /// Cases.
+    pub count: usize,
+    /// How many of each answer.
+    pub answers: BTreeMap<Answer, usize>,
+    /// Cases that count as right, those in an equivalent set too.
+    pub reached: Share,
+    /// Least share of them that is asked for.
+    pub target: f64,
+    /// Held-out error over the true model's.
+    pub ratio: Option<Spread>,
+    /// Intervals of 95 % that hold the truth, of effects named rightly.
+    pub coverage: Share,
+    /// Seconds of a diagnosis.
+    pub seconds: Option<Spread>,
+}
+
+/// Largest held-out error over the true model's, for nine of ten cases.
+pub const MOST_RATIO: f64 = 1.1;
+/// Least and most of the intervals of 95 % that hold the truth.
+pub const COVERAGE: (f64, f64) = (0.92, 0.98);
+
+impl FamilyRow {
+    fn of(family: Family, outcomes: &[&Outcome]) -> FamilyRow {
+        let mut answers = BTreeMap::new();
+        for outcome in outcomes {
+            *answers.entry(outcome.answer).or_default() += 1;
+        }
+        let count = |answer| answers.get(&answer).copied().unwrap_or(0);
+        let reached = count(Answer::Right) + count(Answer::Equivalent);
+        let values = || outcomes.iter().flat_map(|outcome| &outcome.values);
+        let covered = values().filter(|value| value.covered).count();
+        FamilyRow {
+            family,
+            count: outcomes.len(),
+            reached: Share::of(reached, outcomes.len()),
+            target: family.target().share,
+            ratio: Spread::of(outcomes.iter().filter_map(|outcome| outcome.ratio())),
+            coverage: Share::of(covered, values().count()),
+            seconds: Spread::of(outcomes.iter().map(|outcome| outcome.seconds)),
+            answers,
+        }
+    }
+
+    /// Cases of this answer.
+    pub fn answered(&self, answer: Answer) -> usize {
+        self.answers.get(&answer).copied().unwrap_or(0)
+    }
+
+    /// Whether enough of them are right.
+    pub fn is_reached(&self) -> bool {
+        self.reached
+            .share()
+            .is_none_or(|share| share >= self.target)
+    }
+
+    /// Whether nine of ten held-out errors are near the true model's; where something the library
+    /// knows is hidden.
+    pub fn is_near(&self) -> bool {
+        self.family == Family::Outside || self.ratio.is_none_or(|ratio| ratio.most_90 <= MOST_RATIO)
+    }
+
+    /// Whether the intervals hold the truth about as often as they say: a share within the limits
+    /// lies in its interval.
+    pub fn is_covered(&self) -> bool {
+        let (least, most) = COVERAGE;
+        self.coverage.of == 0 || (self.coverage.low <= most && self.coverage.high >= least)
+    }
+}
+
+/// What was said of all rigs that hide the same effect, singly.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EffectRow {
+    /// The family.
+    pub family: Family,
+    /// Kind of the effect.
+    pub kind: String,
+    /// Cases.
+    pub count: usize,
+    /// How many of each answer.
+    pub answers: BTreeMap<Answer, usize>,
+    /// What was said in place of it, and how often.
+    pub instead: BTreeMap<String, usize>,
+}
 
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tally {
-    /// Confusion, a row per hidden effect and one for none.
-    pub rows: Vec<Row>,
-    /// Figures with targets.
-    pub figures: Vec<Figure>,
-    /// Median of held-out error against the true model's, over all benches that hide something.
-    pub median_ratio: Option<f64>,
-    /// Their largest.
-    pub largest_ratio: Option<f64>,
-    /// Median seconds of a diagnosis; not part of the JSON.
-    #[serde(skip)]
-    pub median_seconds: Option<f64>,
+    /// A row per family that was tried.
+    pub families: Vec<FamilyRow>,
+    /// A row per family and effect, of those that hide one.
+    pub effects: Vec<EffectRow>,
 }
 
 impl Tally {
     /// Counts outcomes.
     pub fn of(outcomes: &[Outcome]) -> Tally {
-        let mut rows: Vec<Row> = Vec::new();
-        for outcome in outcomes.iter().filter(|outcome| !outcome.left_out) {
-            match rows.iter_mut().find(|row| row.hidden == outcome.hidden) {
-                Some(row) => row.count(outcome),
-                None => {
-                    let mut row = Row {
-                        hidden: outcome.hidden.clone(),
-                        ..Row::default()
-                    };
-                    row.count(outcome);
-                    rows.push(row);
-                }
-            }
-        }
-        let hidden = || {
-            outcomes
-                .iter()
-                .filter(|o| o.hidden.is_some() && !o.left_out)
+        let of = |family: Family| -> Vec<&Outcome> {
+            let all = outcomes.iter();
+            all.filter(|outcome| outcome.family == family).collect()
         };
-        let nominal = outcomes.iter().filter(|o| o.hidden.is_none());
-        let right = || hidden().filter(|outcome| outcome.is_right());
-        let values = right().flat_map(|outcome| &outcome.values);
-        let left_out = outcomes.iter().filter(|outcome| outcome.left_out);
-        let undecided =
-            |o: &&Outcome| matches!(o.verdict, Verdict::Unexplained | Verdict::Ambiguous);
-        let mut ratios: Vec<f64> = hidden().map(Outcome::ratio).collect();
-        let mut seconds: Vec<f64> = outcomes.iter().map(|outcome| outcome.seconds).collect();
+        let tried = FAMILIES
+            .into_iter()
+            .filter(|family| !of(*family).is_empty());
+        let tried: Vec<Family> = tried.collect();
         Tally {
-            rows,
-            figures: vec![
-                Figure::of("named rightly", 0.9, hidden(), |o| o.is_right()),
-                Figure {
-                    at_most: true,
-                    ..Figure::of("false alarms", 0.04, nominal, |o| {
-                        o.verdict != Verdict::Nominal
-                    })
-                },
-                Figure::of(
-                    "held-out error within 1.3x of the true model's",
-                    0.9,
-                    hidden(),
-                    |o| o.ratio() <= MOST_RATIO,
-                ),
-                Figure::of("95 % intervals that hold the truth", 0.85, values, |v| {
-                    v.covered
-                }),
-                Figure::of(
-                    "left out, ends unexplained or ambiguous",
-                    0.8,
-                    left_out,
-                    undecided,
-                ),
-            ],
-            median_ratio: median(&mut ratios),
-            largest_ratio: ratios.last().copied(),
-            median_seconds: median(&mut seconds),
+            families: tried
+                .iter()
+                .map(|&family| FamilyRow::of(family, &of(family)))
+                .collect(),
+            effects: tried
+                .iter()
+                .flat_map(|&family| effect_rows(family, &of(family)))
+                .collect(),
         }
     }
 
     /// Whether every target is reached.
     pub fn is_met(&self) -> bool {
-        self.figures.iter().all(Figure::is_met)
+        let met = |row: &FamilyRow| row.is_reached() && row.is_near() && row.is_covered();
+        self.families.iter().all(met)
     }
 }
 
-/// Sorts, and takes the middle.
-fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+fn effect_rows(family: Family, outcomes: &[&Outcome]) -> Vec<EffectRow> {
+    let mut rows: Vec<EffectRow> = Vec::new();
+    for outcome in outcomes {
+        let [kind] = outcome.kinds.as_slice() else {
+            continue;
+        };
+        let place = rows.iter().position(|row| row.kind == *kind);
+        let place = place.unwrap_or_else(|| {
+            rows.push(EffectRow {
+                family,
+                kind: kind.clone(),
+                count: 0,
+                answers: BTreeMap::new(),
+                instead: BTreeMap::new(),
+            });
+            rows.len() - 1
+        });
+        let row = &mut rows[place];
+        row.count += 1;
+        *row.answers.entry(outcome.answer).or_default() += 1;
+        if outcome.answer == Answer::Wrong {
+            let sets = outcome.sets.iter().map(|set| set.join(" + "));
+            let said = sets.collect::<Vec<_>>().join(" | ");
+            *row.instead.entry(said).or_default() += 1;
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::Truth;
+    use super::super::trial::Value;
+    use super::*;
+
+    fn outcome(kind: &str, answer: Answer, ratio: f64, covered: bool) -> Outcome {
+        Outcome {
+            truth: Truth::Own,
+            family: Family::Single,
+            kinds: vec![kind.to_string()],
+            seed: 1,
+            hidden: vec![format!("{kind}@1")],
+            verdict: "named".to_string(),
+            sets: vec![vec!["mass@1".to_string()]],
+            answer,
+            before_rad: Some(0.1),
+            after_rad: Some(1e-3 * ratio),
+            true_rad: Some(1e-3),
+            values: vec![Value {
+                path: "x".to_string(),
+                true_value: 1.0,
+                estimate: Some(1.0),
+                interval: Some((0.9, 1.1)),
+                covered,
+            }],
+            seconds: 2.0,
+        }
+    }
+
+    #[test]
+    fn equivalent_sets_count_and_wrong_names_are_told() {
+        let mut outcomes = vec![outcome("delay", Answer::Right, 1.0, true); 8];
+        outcomes.push(outcome("delay", Answer::Equivalent, 1.0, true));
+        outcomes.push(outcome("delay", Answer::Wrong, 3.0, true));
+        let tally = Tally::of(&outcomes);
+        let row = &tally.families[0];
+        assert_eq!((row.reached.met, row.reached.of), (9, 10));
+        assert!(row.reached.low < 0.9 && row.reached.high > 0.9);
+        assert!(!row.is_reached());
+        let ratio = row.ratio.unwrap();
+        assert_eq!(
+            (ratio.median, ratio.most_90, ratio.largest),
+            (1.0, 1.0, 3.0)
+        );
+        assert!(row.is_near());
+        assert_eq!(tally.effects[0].instead["mass@1"], 1);
+        assert!(!tally.is_met());
+    }
+
+    #[test]
+    fn a_target_missed_is_one_of_rate_ratio_or_coverage() {
+        let right = |ratio, covered| outcome("delay", Answer::Right, ratio, covered);
+        let all = |ratio, covered| Tally::of(&vec![right(ratio, covered); 100]);
+        assert!(Tally::of(&[right(1.0, true)]).is_met());
+        assert!(!all(1.2, true).is_met());
+        assert!(!all(1.0, false).is_met());
+        // Intervals that always hold the truth are too wide.
+        assert!(!all(1.0, true).is_met());
+        let mut some = vec![right(1.0, true); 95];
+        some.extend(vec![right(1.0, false); 5]);
+        assert!(Tally::of(&some).is_met());
+    }
 }

@@ -1,31 +1,29 @@
-//! One bench diagnosed, and what was said of it.
+//! One case diagnosed as a user would, with default settings, and what was said of it.
+//!
+//! Everything is read from what `handstand diagnose --json` prints.
 
-use handstand::challenge::{ChallengeAnswer, Hidden, generate};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
-use handstand::fitting::{FitData, FittedValue, Horizon, fit_start_states};
+use super::case::{Case, Files, HiddenEffect, Truth};
+use super::family::Family;
+use super::said::{Said, said};
+use handstand::compare::compare;
+use handstand::diagnose::{DiagnoseOptions, diagnose};
+use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Motion, read};
-use handstand::{Error, Model, Result};
-use serde::Serialize;
+use handstand::model::edit::{add_effect, set_values};
+use handstand::model::{EffectInstance, ParameterPath};
+use handstand::report::diagnosis_json;
+use handstand::{Model, effects};
+use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// A bench to diagnose.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Case {
-    /// What it hides; none when it hides nothing.
-    pub kind: Option<&'static str>,
-    /// Its seed.
-    pub seed: u64,
-    /// Whether the library lacks that effect.
-    pub left_out: bool,
-}
-
 /// A value of a hidden effect beside its interval.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Value {
-    /// Its key.
-    pub key: String,
+    /// Effect and key: `coulomb@1.torque_nm`.
+    pub path: String,
     /// The truth.
     pub true_value: f64,
     /// What was fitted; none when the library's effect has no such value.
@@ -36,159 +34,340 @@ pub struct Value {
     pub covered: bool,
 }
 
+/// What an answer is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Answer {
+    /// Exactly what is hidden was named; where nothing is hidden, nothing was; where the library
+    /// lacks it, the answer is that it does.
+    Right,
+    /// What is hidden is one of the sets that cannot be told apart.
+    Equivalent,
+    /// Something else was named, or several sets without the truth.
+    Wrong,
+    /// Something is missing, none of the library's.
+    Unexplained,
+    /// Nothing is missing, though something is.
+    Nominal,
+    /// The data cannot tell.
+    Unfit,
+}
+
 /// What a diagnosis said.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// What was hidden.
-    pub hidden: Option<String>,
-    /// Seed of the bench.
+    /// Who made the logs.
+    pub truth: Truth,
+    /// The family.
+    pub family: Family,
+    /// Kinds of the effects that were to be hidden.
+    pub kinds: Vec<String>,
+    /// Seed of the rig.
     pub seed: u64,
-    /// Whether the library lacked that effect.
-    pub left_out: bool,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Kinds of the effects it gives.
-    pub effects: Vec<String>,
-    /// Sets it could not tell from them.
-    pub alternatives: Vec<Vec<String>>,
-    /// Error on the held-out motion before, rad.
-    pub before_rad: f64,
-    /// The same with the effects.
-    pub after_rad: f64,
-    /// The same of the true model.
-    pub true_rad: f64,
-    /// The hidden effect's values, where exactly that effect was named.
+    /// What was hidden: `coulomb@1`.
+    pub hidden: Vec<String>,
+    /// The verdict, in its own word.
+    pub verdict: String,
+    /// Sets that were given, the best first.
+    pub sets: Vec<Vec<String>>,
+    /// What that is worth.
+    pub answer: Answer,
+    /// Error on the held-out motions before, rad.
+    pub before_rad: Option<f64>,
+    /// The same with what was found.
+    pub after_rad: Option<f64>,
+    /// The same of the true model, where the library can write it.
+    pub true_rad: Option<f64>,
+    /// The hidden effects' values, where exactly those effects were named.
     pub values: Vec<Value>,
-    /// How long the diagnosis took; not part of the JSON, so that equal runs give equal bytes.
-    #[serde(skip)]
+    /// How long the diagnosis took, s.
     pub seconds: f64,
 }
 
 impl Outcome {
-    /// Whether exactly the hidden effect was named.
+    /// Whether exactly the hidden effects were named, or it was said that nothing is missing, or
+    /// that the library lacks what is.
     pub fn is_right(&self) -> bool {
-        self.verdict == Verdict::Named && self.effects.iter().eq(self.hidden.iter())
+        self.answer == Answer::Right
     }
 
     /// Held-out error against the true model's.
-    pub fn ratio(&self) -> f64 {
-        self.after_rad / self.true_rad
+    pub fn ratio(&self) -> Option<f64> {
+        Some(self.after_rad? / self.true_rad?)
+    }
+
+    /// Whether this is the outcome of that case.
+    pub fn is_of(&self, case: &Case) -> bool {
+        (self.truth, self.family, self.seed) == (case.truth, case.family, case.seed)
+            && self.kinds == case.hidden
     }
 }
 
-/// Writes the bench's logs, reads them as a user's, diagnoses the first two by the third.
+/// Writes the rig's logs, reads them as a user's, diagnoses those to learn from by those held out.
 ///
 /// # Errors
-/// A file that could not be written, or was refused.
-pub fn try_case(case: &Case) -> Result<Outcome> {
-    let challenge = generate(case.seed, case.kind.map_or(Hidden::Nothing, Hidden::Effect));
-    let folder = std::env::temp_dir();
-    let dir = tempfile::tempdir().map_err(|error| Error::file(&folder, "create", error))?;
-    let mut motions = Vec::new();
-    let model = Model::parse(&challenge.model_toml, Path::new("nominal.toml"))?;
-    for (name, content) in &challenge.logs {
-        let path = dir.path().join(name);
-        std::fs::write(&path, content).map_err(|error| Error::file(&path, "write", error))?;
-        motions.extend(read(&[LogRequest::whole(path)], &model.log)?);
-    }
-    let held_out = motions.split_off(2);
+/// Logs that cannot be made, and files that cannot be written or are refused.
+pub fn try_case(case: &Case) -> Result<Outcome, String> {
+    let dir = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let files = case.write(dir.path())?;
+    diagnosed(case, &files).map_err(|error| error.to_string())
+}
+
+fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
+    let model = Model::load(&files.nominal)?;
+    let (training, held_out) = (
+        motions(&model, &files.fit)?,
+        motions(&model, &files.held_out)?,
+    );
     let options = DiagnoseOptions {
-        without: case
-            .left_out
-            .then_some(case.kind)
-            .flatten()
-            .map(str::to_owned)
-            .into_iter()
-            .collect(),
+        without: case.without(),
         ..DiagnoseOptions::default()
     };
     let begun = Instant::now();
-    let said = diagnose(&model, motions.clone(), held_out.clone(), &options, &|_| {});
+    let json = diagnosis_json(&diagnose(
+        &model,
+        training,
+        held_out.clone(),
+        &options,
+        &|_| {},
+    ));
     let seconds = begun.elapsed().as_secs_f64();
-    let truth = Model::parse(&challenge.answer.true_model_toml, Path::new("true.toml"))?;
-    let mut outcome = Outcome {
-        hidden: challenge.answer.kind.clone(),
+    let said = said(&json);
+    let hidden: Vec<String> = files.effects.iter().map(HiddenEffect::address).collect();
+    let errors = errors(&model, files, &said, &held_out)?;
+    let answer = answer(case, &hidden, &said);
+    Ok(Outcome {
+        truth: case.truth,
+        family: case.family,
+        kinds: case.hidden.iter().map(|kind| kind.to_string()).collect(),
         seed: case.seed,
-        left_out: case.left_out,
+        values: match answer == Answer::Right && case.family != Family::Outside {
+            true => values(&files.effects, &json),
+            false => Vec::new(),
+        },
+        answer,
+        hidden,
         verdict: said.verdict,
-        effects: said.effects.iter().map(|e| e.kind.clone()).collect(),
-        alternatives: said
-            .alternatives
-            .iter()
-            .map(|set| set.effects.iter().map(|e| e.kind.clone()).collect())
-            .collect(),
-        before_rad: said.error.before_rad,
-        after_rad: said.error.after_rad,
-        true_rad: true_error_rad(&truth, motions, held_out, said.horizon_s),
-        values: Vec::new(),
+        sets: said.sets,
+        before_rad: errors.before_rad,
+        after_rad: errors.after_rad,
+        true_rad: errors.true_rad,
         seconds,
+    })
+}
+
+fn motions(model: &Model, logs: &[PathBuf]) -> handstand::Result<Vec<Motion>> {
+    let requests: Vec<LogRequest> = logs.iter().cloned().map(LogRequest::whole).collect();
+    read(&requests, &model.log)
+}
+
+/// What the answer is worth.
+fn answer(case: &Case, hidden: &[String], said: &Said) -> Answer {
+    let sorted = |set: &[String]| {
+        let mut set = set.to_vec();
+        set.sort();
+        set
     };
-    if outcome.is_right() {
-        outcome.values = values(&challenge.answer, &said);
+    let truth = sorted(hidden);
+    let best = said.sets.first().map(|set| sorted(set)).unwrap_or_default();
+    let nothing = match said.verdict.as_str() {
+        "nominal" | "adequate" => true,
+        // Wrong are only the values of friction that the owner guesses.
+        "wrong_value" => best.is_empty(),
+        _ => false,
+    };
+    match said.verdict.as_str() {
+        "unfit" => Answer::Unfit,
+        _ if nothing && case.family.hides_nothing() => Answer::Right,
+        _ if nothing => Answer::Nominal,
+        "unexplained" if case.family == Family::Outside => Answer::Right,
+        "unexplained" => Answer::Unexplained,
+        _ if case.family == Family::Outside => Answer::Wrong,
+        "ambiguous" if said.sets.iter().any(|set| sorted(set) == truth) => Answer::Equivalent,
+        "named" | "wrong_value" if best == truth => Answer::Right,
+        _ => Answer::Wrong,
     }
-    Ok(outcome)
 }
 
-/// What the true model leaves of the held-out motion, weighed and cut as the diagnosis did.
-fn true_error_rad(
-    truth: &Model,
-    training: Vec<Motion>,
-    held_out: Vec<Motion>,
-    horizon_s: Option<f64>,
-) -> f64 {
-    let horizon = horizon_s.map_or(Horizon::Whole, Horizon::Seconds);
-    let data = FitData {
-        sigma_rad: FitData::new(truth, training, horizon).sigma_rad,
-        ..FitData::new(truth, held_out, horizon)
-    };
-    fit_start_states(truth, &data).rms_rad(&data)
+/// Root-mean-square errors on the held-out motions.
+struct Errors {
+    before_rad: Option<f64>,
+    after_rad: Option<f64>,
+    true_rad: Option<f64>,
 }
 
-fn values(answer: &ChallengeAnswer, said: &Diagnosis) -> Vec<Value> {
-    let fitted = |key: &str| {
-        let mut all = said.effects.iter().flat_map(|effect| &effect.parameters);
-        all.find(|value| value.key == key)
+/// Errors of the model as it is, of the one that was found, and of the true one, all over one
+/// horizon: that of the result, or that of the true model where the result has none.
+fn errors(
+    model: &Model,
+    files: &Files,
+    said: &Said,
+    held_out: &[Motion],
+) -> handstand::Result<Errors> {
+    let truth = files.truth.as_deref().map(Model::load).transpose()?;
+    let found = found(files, said)?;
+    let mut horizon = said.horizon_s.map(Horizon::Seconds);
+    let mut error = |model: &Model| {
+        let compared = compare(model, "model", held_out, horizon);
+        horizon = Some(Horizon::from_seconds(compared.horizon_s));
+        let squares = compared.signals.iter().map(|signal| signal.rms_rad.powi(2));
+        let mean = squares.sum::<f64>() / compared.signals.len() as f64;
+        mean.is_finite().then_some(mean.sqrt())
     };
-    let value = |(key, truth): &(String, f64)| {
-        let fitted = fitted(key);
-        Value {
-            key: key.clone(),
-            true_value: *truth,
-            estimate: fitted.map(|fitted| fitted.value),
-            interval: fitted.map(|fitted| (fitted.low, fitted.high)),
-            covered: fitted.is_some_and(|fitted| covers(fitted, *truth)),
+    let true_rad = truth.as_ref().and_then(&mut error);
+    Ok(Errors {
+        true_rad,
+        after_rad: error(&found),
+        before_rad: error(model),
+    })
+}
+
+/// The model with what the result gives it.
+fn found(files: &Files, said: &Said) -> handstand::Result<Model> {
+    let file = Path::new("found.toml");
+    let mut text = std::fs::read_to_string(&files.nominal)
+        .map_err(|error| handstand::Error::file(&files.nominal, "read", error))?;
+    let mut values = Vec::new();
+    for (path, value) in &said.values {
+        if let Ok(path) = path.parse::<ParameterPath>() {
+            values.push((path, *value));
         }
-    };
-    answer.parameters.iter().map(value).collect()
+    }
+    text = set_values(&text, file, &values)?;
+    for effect in &said.effects {
+        if let Some(known) = effects::named(&effect.kind) {
+            let off = known.info().parameters.iter();
+            let instance = EffectInstance {
+                effect: known,
+                joint: effect.joint.map(|joint| joint - 1),
+                values: off
+                    .map(|parameter| effect.value(parameter.key).unwrap_or(f64::NAN))
+                    .collect(),
+            };
+            text = add_effect(&text, file, &instance, None)?;
+        }
+    }
+    Model::parse(&text, file)
+}
+
+fn values(hidden: &[HiddenEffect], json: &Json) -> Vec<Value> {
+    let said = said(json);
+    let mut values = Vec::new();
+    for effect in hidden {
+        let address = effect.address();
+        let fitted = said.effects.iter().find(|said| said.address() == address);
+        for (key, truth) in &effect.parameters {
+            let Some(truth) = truth.as_f64() else {
+                continue;
+            };
+            let fitted = fitted.and_then(|fitted| fitted.parameters.get(key));
+            values.push(Value {
+                path: format!("{address}.{key}"),
+                true_value: truth,
+                estimate: fitted.map(|fitted| fitted.value),
+                interval: fitted.map(|fitted| (fitted.low, fitted.high)),
+                covered: fitted.is_some_and(|fitted| {
+                    covers(key, fitted.value, (fitted.low, fitted.high), truth)
+                }),
+            });
+        }
+    }
+    values
 }
 
 /// Whether the interval holds the truth; a phase is known but for whole turns.
-fn covers(fitted: &FittedValue, truth: f64) -> bool {
-    let truth = if fitted.key.contains("phase") {
-        fitted.value + (truth - fitted.value + PI).rem_euclid(TAU) - PI
-    } else {
-        truth
+fn covers(key: &str, value: f64, (low, high): (f64, f64), truth: f64) -> bool {
+    let truth = match key.contains("phase") {
+        true => value + (truth - value + PI).rem_euclid(TAU) - PI,
+        false => truth,
     };
-    (fitted.low..=fitted.high).contains(&truth)
+    (low..=high).contains(&truth)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn case(family: Family, hidden: &[&'static str]) -> Case {
+        Case {
+            truth: Truth::Own,
+            family,
+            hidden: hidden.to_vec(),
+            seed: 1,
+        }
+    }
+
+    fn heard(verdict: &str, sets: &[&[&str]]) -> Said {
+        let own = |set: &&[&str]| set.iter().map(|name| name.to_string()).collect();
+        Said {
+            verdict: verdict.to_string(),
+            sets: sets.iter().map(own).collect(),
+            ..Said::default()
+        }
+    }
+
     #[test]
     fn a_phase_is_covered_but_for_whole_turns() {
-        let fitted = |key: &str| FittedValue {
-            path: format!("cogging@1.{key}"),
-            key: key.to_owned(),
-            unit: "rad".to_owned(),
-            value: 3.1,
-            low: 2.9,
-            high: 3.3,
-            on_bound: false,
-        };
-        assert!(covers(&fitted("phase_rad"), -3.1));
-        assert!(!covers(&fitted("phase_rad"), -2.8));
-        assert!(!covers(&fitted("angle_rad"), -3.1));
+        assert!(covers("phase_rad", 3.1, (2.9, 3.3), -3.1));
+        assert!(!covers("phase_rad", 3.1, (2.9, 3.3), -2.8));
+        assert!(!covers("angle_rad", 3.1, (2.9, 3.3), -3.1));
+    }
+
+    #[test]
+    fn only_the_hidden_set_is_right() {
+        let pair = case(Family::Pairs, &["delay", "mass"]);
+        let hidden = ["delay@1".to_string(), "mass@1".to_string()];
+        let worth = |said: &Said| answer(&pair, &hidden, said);
+        assert_eq!(
+            worth(&heard("named", &[&["mass@1", "delay@1"]])),
+            Answer::Right
+        );
+        assert_eq!(worth(&heard("named", &[&["delay@1"]])), Answer::Wrong);
+        assert_eq!(
+            worth(&heard("named", &[&["delay@2", "mass@1"]])),
+            Answer::Wrong
+        );
+        let with = heard("ambiguous", &[&["delay@1"], &["delay@1", "mass@1"]]);
+        assert_eq!(worth(&with), Answer::Equivalent);
+        let lacks = heard("ambiguous", &[&["delay@1"], &["mass@1"]]);
+        assert_eq!(worth(&lacks), Answer::Wrong);
+        assert_eq!(
+            worth(&heard("unexplained", &[&["delay@1", "mass@1"]])),
+            Answer::Unexplained
+        );
+        assert_eq!(worth(&heard("nominal", &[])), Answer::Nominal);
+        assert_eq!(worth(&heard("wrong_value", &[&[]])), Answer::Nominal);
+        assert_eq!(worth(&heard("unfit", &[])), Answer::Unfit);
+    }
+
+    #[test]
+    fn nothing_and_what_the_library_lacks_have_answers_of_their_own() {
+        let nothing = case(Family::Nothing, &[]);
+        assert_eq!(answer(&nothing, &[], &heard("nominal", &[])), Answer::Right);
+        assert_eq!(
+            answer(&nothing, &[], &heard("named", &[&["mass@1"]])),
+            Answer::Wrong
+        );
+        let guessed = heard("wrong_value", &[&[]]);
+        assert_eq!(answer(&nothing, &[], &guessed), Answer::Right);
+        let heavy = heard("wrong_value", &[&["mass@1"]]);
+        assert_eq!(answer(&nothing, &[], &heavy), Answer::Wrong);
+        let none = heard("unexplained", &[&[]]);
+        assert_eq!(answer(&nothing, &[], &none), Answer::Unexplained);
+        let outside = case(Family::Outside, &["mass"]);
+        let hidden = ["mass@1".to_string()];
+        assert_eq!(
+            answer(&outside, &hidden, &heard("unexplained", &[])),
+            Answer::Right
+        );
+        let sets: &[&[&str]] = &[&["mass@1"], &["delay@1"]];
+        assert_eq!(
+            answer(&outside, &hidden, &heard("ambiguous", sets)),
+            Answer::Wrong
+        );
+        assert_eq!(
+            answer(&outside, &hidden, &heard("nominal", &[])),
+            Answer::Nominal
+        );
     }
 }

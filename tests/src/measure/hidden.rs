@@ -1,41 +1,59 @@
-//! `cargo xtask hidden`: how often a hidden effect is named, missed, or invented, against targets.
+//! `cargo xtask hidden`: how often hidden effects are named, missed, or invented, against targets.
 //!
-//! Every effect of the challenges on several benches, benches that hide nothing, and every effect
-//! again with a library that lacks it. Training on two motions of 20 s, held out a third. The same
-//! arguments give the same tables on any number of threads. A line goes to stderr as each diagnosis
-//! ends, whichever ends first; the tables go to stdout. Fails when a target is missed.
+//! Families of cases: one effect at the bench arm, at the robot hanging, at the robot hanging and
+//! balancing; two and three effects; none; one that the library lacks. Every rig has motions to
+//! learn from and some held out. The truth is the library's own independent equations or, with
+//! `--truth mujoco`, MuJoCo's. A line goes to stderr as each diagnosis ends, whichever ends first;
+//! the tables go to stdout. Fails when a target is missed or a case cannot be made.
+//!
+//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is not
+//! tried again: a run that was stopped goes on, and the files of shards, put together, make one
+//! table.
 
 use super::page::Page;
 use clap::builder::PossibleValuesParser;
-use handstand::challenge::{KINDS, kind_named};
-use handstand_tests::hidden::{Plan, Tally, line, misses, tables, try_all};
+use handstand::challenge::KINDS;
+use handstand::study::Shard;
+use handstand_tests::hidden::{
+    FAMILIES, Family, OUTSIDE, Outcome, Plan, Tally, Truth, install_mujoco, line, misses, tables,
+    try_all,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
 /// Measure how often hidden effects are named, missed and invented.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Benches per effect
-    #[arg(long, default_value_t = 5)]
+    /// Who makes the logs
+    #[arg(long, value_enum, default_value = "own")]
+    truth: Truth,
+    /// Only these families
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(names()))]
+    families: Vec<String>,
+    /// Rigs per effect; of pairs and triples ten sets per seed
+    #[arg(long, default_value_t = 10)]
     seeds: u64,
-    /// Benches that hide nothing
-    #[arg(long, default_value_t = 50)]
+    /// Arms that hide nothing
+    #[arg(long, default_value_t = 200)]
     nominal: u64,
-    /// First seed
-    #[arg(long, default_value_t = 1)]
+    /// First seed, from 1
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     seed0: u64,
-    /// Hide only these
-    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(KINDS))]
+    /// Hide only these, where one is hidden
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(hideable()))]
     effects: Vec<String>,
-    /// Skip the run whose library lacks the hidden effect
-    #[arg(long)]
-    no_leave_out: bool,
-    /// Only the run whose library lacks the hidden effect
-    #[arg(long, conflicts_with = "no_leave_out")]
-    leave_out: bool,
+    /// Try only this share of the cases: `2/5` is the second of five
+    #[arg(long, default_value = "1/1", value_name = "I/N")]
+    shard: Shard,
     /// Diagnoses at a time; one per core without it
     #[arg(long)]
     jobs: Option<usize>,
+    /// Append every outcome to this file of JSON lines, and leave out what it holds
+    #[arg(long, value_name = "FILE")]
+    outcomes: Option<PathBuf>,
     /// Print every outcome and the figures as JSON
     #[arg(long)]
     json: bool,
@@ -43,45 +61,105 @@ pub struct Args {
     page: Page,
 }
 
+fn names() -> Vec<&'static str> {
+    FAMILIES.into_iter().map(Family::name).collect()
+}
+
+fn hideable() -> Vec<&'static str> {
+    KINDS.into_iter().chain(OUTSIDE).collect()
+}
+
 /// Whether every target is met.
 pub fn run(args: &Args) -> bool {
-    let mut plan = Plan {
+    match measured(args) {
+        Ok(met) => met,
+        Err(why) => {
+            eprintln!("{why}");
+            false
+        }
+    }
+}
+
+fn measured(args: &Args) -> Result<bool, String> {
+    if args.truth == Truth::Mujoco && !install_mujoco() {
+        return Err("MuJoCo cannot be installed".to_string());
+    }
+    let families = args.families.iter().filter_map(|name| Family::named(name));
+    let mut families: Vec<Family> = families.collect();
+    if families.is_empty() {
+        families = FAMILIES.to_vec();
+    }
+    let plan = Plan {
+        truth: args.truth,
+        families,
+        effects: args.effects.clone(),
         seeds: args.seeds,
         nominal: args.nominal,
         seed0: args.seed0,
-        leave_out: !args.no_leave_out,
-        ..Plan::default()
     };
-    if !args.effects.is_empty() {
-        let named = args.effects.iter().filter_map(|name| kind_named(name));
-        plan.effects = named.collect();
-    }
+    let mut old = args.outcomes.as_deref().map_or(Ok(Vec::new()), outcomes)?;
     let mut cases = plan.cases();
-    cases.retain(|case| case.left_out || !args.leave_out);
+    let mut number = 0;
+    cases.retain(|_| {
+        number += 1;
+        args.shard.holds(number - 1)
+    });
+    old.retain(|outcome| cases.iter().any(|case| outcome.is_of(case)));
+    cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
+
+    let mut file = args.outcomes.as_deref().map(appended).transpose()?;
+    let journal = std::sync::Mutex::new(file.as_mut());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let bar = ProgressBar::new(cases.len() as u64).with_style(style());
-    let found = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
+    let (new, failed) = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
         bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
+        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
+            && let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}"))
+        {
+            bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
+        }
     });
     bar.finish_and_clear();
-    let outcomes = match found {
-        Ok(outcomes) => outcomes,
-        Err(error) => {
-            println!("{error}");
-            return false;
-        }
+    for (case, why) in &failed {
+        let (family, kinds) = (case.family.name(), case.hidden.join(" + "));
+        eprintln!("{family}, seed {}, {kinds}: {why}", case.seed);
+    }
+    old.extend(new);
+    let tally = Tally::of(&old);
+    let json = (args.json).then(|| json!({ "tally": tally, "outcomes": old }));
+    let measured = tables(&tally).lines(misses(&old));
+    let (name, title) = match args.truth {
+        Truth::Own => ("hidden", "Hidden effects named, missed and invented"),
+        Truth::Mujoco => (
+            "hidden-mujoco",
+            "Hidden effects named, missed and invented: MuJoCo's truth",
+        ),
     };
-    let tally = Tally::of(&outcomes);
-    let json = (args.json).then(|| json!({ "tally": tally, "outcomes": outcomes }));
-    let measured = tables(&tally).lines(misses(&outcomes));
-    let written = args.page.show(
-        json,
-        &measured,
-        "hidden",
-        "Hidden effects named, missed and invented",
-    );
-    tally.is_met() && written
+    let written = args.page.show(json, &measured, name, title);
+    Ok(tally.is_met() && failed.is_empty() && written)
+}
+
+/// The outcomes of a file of JSON lines; none where there is no file yet.
+fn outcomes(path: &Path) -> Result<Vec<Outcome>, String> {
+    let said = |why: String| format!("{}: {why}", path.display());
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(said(error.to_string())),
+    };
+    let lines = text.lines().enumerate();
+    lines
+        .map(|(k, line)| {
+            serde_json::from_str(line)
+                .map_err(|why| said(format!("line {} is no outcome: {why}", k + 1)))
+        })
+        .collect()
+}
+
+fn appended(path: &Path) -> Result<std::fs::File, String> {
+    let file = OpenOptions::new().append(true).create(true).open(path);
+    file.map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn style() -> ProgressStyle {

@@ -2,9 +2,7 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::fitting::{
-    FitData, FitOptions, Horizon, fit, fit_staged, fit_start_states, initial_guess, longest_stable,
-};
+use handstand::fitting::{FitData, FitOptions, Horizon, fit, fit_staged, fit_start_states};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
 use handstand::{Error, Model, Result};
@@ -145,8 +143,7 @@ impl Arm {
 
     /// Fits by stages from seeded starts, each parameter up to a factor 5 off.
     pub fn starts(&self, count: usize, seed: u64) -> Starts {
-        let whole = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
-        let judged = whole.recut(longest_stable(&self.model, &whole));
+        let judged = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
         let at_truth = fit(
             &self.model,
             &self.free,
@@ -169,9 +166,8 @@ impl Arm {
             let mut values = Vec::new();
             let mut left = 0.0;
             times.push(median_seconds(1, || {
-                let near = initial_guess(&start, &self.free, &whole);
-                let data = whole.recut(longest_stable(&near, &whole));
-                let found = fit_staged(&near, &self.free, &data);
+                let data = FitData::new(&start, self.motions.clone(), Horizon::Whole);
+                let found = fit_staged(&start, &self.free, &data);
                 left = fit_start_states(&found.model, &judged).rms_rad(&judged);
                 values = found.values();
             }));

@@ -4,12 +4,10 @@
 //! to compare. Restoring leaves id and baud rate as they are, writes only what differs, and reads
 //! every register back.
 
-use super::super::Outcome;
-use super::super::input;
-use super::super::port::{Ids, Port, id_list};
-use super::super::talk::Talk;
 use super::changes::{self, RegisterChange};
-use super::scan::scan;
+use super::scan::answering;
+use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::{ExitStatus, Talk};
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
 use handstand_shared::control_table::MODEL;
@@ -47,40 +45,27 @@ pub struct RestoreArgs {
 }
 
 /// Reads all, writes the file.
-pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<Outcome> {
-    input::vacant(&args.file, args.force)?;
+pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<ExitStatus> {
+    output::vacant(&args.file, args.force)?;
     let mut servos = args.port.servos()?;
-    let ids: Vec<u8> = scan(&mut servos, &args.ids.0, talk)?
-        .iter()
-        .map(|servo| servo.id)
-        .collect();
-    if ids.is_empty() {
-        return Err(handstand::link::record::no_response());
-    }
-    let mut saved = Vec::new();
-    for id in &ids {
-        saved.push(Settings::read(&mut servos, *id)?);
-    }
+    let ids = answering(&mut servos, &args.ids.0, talk)?;
+    let read = ids.iter().map(|id| Settings::read(&mut servos, *id));
+    let saved = read.collect::<Result<Vec<_>, _>>()?;
     output::write_new(&args.file, &Settings::to_toml(&saved), args.force)?;
+    let file = args.file.display().to_string();
     if talk.json {
-        talk.data(&json!({ "file": args.file.display().to_string(), "ids": ids }))?;
+        talk.data(&json!({ "file": file, "ids": ids }))?;
     }
-    talk.say(&format!(
-        "wrote {}: {} servos",
-        args.file.display(),
-        ids.len()
-    ));
-    Ok(Outcome::Done)
+    talk.say(&format!("wrote {file}: {} servos", ids.len()));
+    Ok(ExitStatus::Done)
 }
 
 /// Compares, writes what differs, reads back.
-pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
+pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut saved = Settings::load(&args.file)?;
     if let Some(Ids(ids)) = &args.ids {
-        if let Some(absent) = ids
-            .iter()
-            .find(|id| saved.iter().all(|servo| servo.id != **id))
-        {
+        let absent = |id: &&u8| saved.iter().all(|servo| servo.id != **id);
+        if let Some(absent) = ids.iter().find(absent) {
             return Err(Error::usage(
                 format!("{} has no servo {absent}", args.file.display()),
                 "leave it out of --ids",
@@ -94,48 +79,37 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<Outcome> {
     // robot from arising.
     for servo in &saved {
         let now = Settings::read(&mut servos, servo.id)?;
-        if now.get(MODEL) != servo.get(MODEL) {
+        let (id, model, wanted) = (servo.id, now.get(MODEL), servo.get(MODEL));
+        if model != wanted {
             return Err(Error::device(
                 format!(
-                    "servo {} is of another model than the saved one: {:?}, saved {:?}",
-                    servo.id,
-                    now.get(MODEL),
-                    servo.get(MODEL)
+                    "servo {id} is of another model than the saved one: {model:?}, saved {wanted:?}"
                 ),
-                "settings of one model mean other things to another: restore it with --ids from its own file",
+                "settings of one model mean other things to another: restore it with --ids from \
+                 its own file",
             ));
         }
         let differing = servo
             .restorable()
             .filter(|(register, code)| now.get(*register) != Some(*code));
         changes.extend(differing.map(|(register, code)| RegisterChange {
-            id: servo.id,
+            id,
             register,
             before: now.get(register).unwrap_or(0),
             code,
         }));
     }
-    let bar = talk.bar();
-    bar.set_length(changes.len() as u64);
+    let bar = talk.bar(changes.len() as u64);
     for change in changes.iter().filter(|_| !args.dry_run) {
         servos.set(change.id, change.register, change.code)?;
         bar.inc(1);
     }
-    bar.finish_and_clear();
-    show(args, &changes, talk)
-}
-
-fn show(args: &RestoreArgs, changes: &[RegisterChange], talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "written": !args.dry_run, "changes": changes::data(changes) }))?;
-        return Ok(Outcome::Done);
-    }
-    changes::print(changes, "Saved", talk)?;
-    let done = if args.dry_run {
-        "would be written"
-    } else {
-        "were written and read back"
+    drop(bar);
+    let data = json!({ "written": !args.dry_run, "changes": changes });
+    let done = match args.dry_run {
+        true => "would be written",
+        false => "were written and read back",
     };
-    talk.say(&format!("{} registers {done}", changes.len()));
-    Ok(Outcome::Done)
+    let said = format!("{} registers {done}", changes.len());
+    changes::report(&data, &changes, "Saved", &said, talk)
 }

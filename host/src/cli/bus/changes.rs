@@ -1,16 +1,18 @@
 //! Registers that get another content, and showing them.
 
-use super::super::show::table;
-use super::super::talk::Talk;
+use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
 use handstand_shared::control_table::Register;
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 /// A register of a servo that gets another code.
+#[derive(Serialize)]
 pub struct RegisterChange {
     /// The servo.
     pub id: u8,
     /// The register.
+    #[serde(serialize_with = "name")]
     pub register: Register,
     /// What was in it.
     pub before: u16,
@@ -18,28 +20,38 @@ pub struct RegisterChange {
     pub code: u16,
 }
 
-/// Under their keys.
-pub fn data(changes: &[RegisterChange]) -> Vec<Value> {
-    let change = |c: &RegisterChange| json!({ "id": c.id, "register": c.register.name, "before": c.before, "code": c.code });
-    changes.iter().map(change).collect()
+fn name<S: Serializer>(register: &Register, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(register.name)
 }
 
-/// As a table, if there are any; `after` heads what comes in.
+/// `data` for programs; for people a table, if there are any changes, and what was done. `after`
+/// heads what comes in.
 ///
 /// # Errors
 /// Standard output is closed.
-pub fn print(changes: &[RegisterChange], after: &str, talk: &Talk) -> Result<()> {
-    if changes.is_empty() {
-        return Ok(());
+pub fn report(
+    data: &Value,
+    changes: &[RegisterChange],
+    after: &str,
+    done: &str,
+    talk: &Talk,
+) -> Result<ExitStatus> {
+    if talk.json {
+        talk.data(data)?;
+        return Ok(ExitStatus::Done);
     }
-    let mut shown = table(["Id", "Register", "Before", after]);
-    for change in changes {
-        shown.add_row([
-            change.id.to_string(),
-            change.register.name.to_string(),
-            change.before.to_string(),
-            change.code.to_string(),
-        ]);
+    let table = table_of(
+        changes,
+        &[
+            ("Id", &|change| change.id.to_string()),
+            ("Register", &|change| change.register.name.to_string()),
+            ("Before", &|change| change.before.to_string()),
+            (after, &|change| change.code.to_string()),
+        ],
+    );
+    if !changes.is_empty() {
+        talk.print(&table.to_string())?;
     }
-    talk.print(&shown.to_string())
+    talk.say(done);
+    Ok(ExitStatus::Done)
 }

@@ -1,19 +1,18 @@
 //! `bus doctor`: why a servo gives no status packet. Likely causes first, each with what was seen
 //! and what to do.
 //!
-//! It listens for an echo, pings every servo twenty times, and where no servo answers tries a CM-5's
-//! firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all is well;
-//! 1: causes were found.
+//! It listens for an echo, pings every servo twenty times, and where no servo answers tries a
+//! CM-5's firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all
+//! is well; 1: causes were found.
 
-use super::super::Outcome;
-use super::super::port::{Ids, Port, id_list};
-use super::super::talk::Talk;
+use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
-use handstand::link::doctor::examine;
+use handstand::link::doctor::{BusDiagnosis, examine};
 
 /// Find what is wrong.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct DoctorArgs {
     #[command(flatten)]
     port: Port,
     /// Servos that should be there
@@ -22,37 +21,28 @@ pub struct Args {
 }
 
 /// Examines, shows.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
     let link = args.port.open()?;
-    let bar = talk.bar();
+    let bar = talk.bar(0);
     let diagnosis = examine(link, &args.ids.0, |step| {
         bar.set_message(step.to_string());
         bar.tick();
     })?;
-    bar.finish_and_clear();
-    let well = diagnosis.causes.is_empty();
-    if talk.json {
-        talk.data(&diagnosis)?;
-    } else if well {
-        talk.print(&format!(
+    drop(bar);
+    talk.result(&diagnosis, || text(&diagnosis))?;
+    Ok(ExitStatus::answer(diagnosis.causes.is_empty()))
+}
+
+fn text(diagnosis: &BusDiagnosis) -> String {
+    let causes = diagnosis.causes.iter().zip(1..).map(|(found, number)| {
+        let (cause, evidence, remedy) = (&found.cause, &found.evidence, &found.remedy);
+        format!("{number}. {cause}\n   seen: {evidence}\n   do:   {remedy}")
+    });
+    match diagnosis.causes.len() {
+        0 => format!(
             "All is well: {} servos answer every ping.",
             diagnosis.pings.len()
-        ))?;
-    } else {
-        let causes = diagnosis.causes.iter().enumerate().map(|(place, cause)| {
-            format!(
-                "{}. {}\n   seen: {}\n   do:   {}",
-                place + 1,
-                cause.cause,
-                cause.evidence,
-                cause.remedy
-            )
-        });
-        talk.print(&causes.collect::<Vec<_>>().join("\n"))?;
+        ),
+        _ => causes.collect::<Vec<_>>().join("\n"),
     }
-    Ok(if well {
-        Outcome::Done
-    } else {
-        Outcome::Refused
-    })
 }

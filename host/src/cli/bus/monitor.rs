@@ -1,20 +1,20 @@
 //! `bus monitor`: rounds of readings, until Ctrl-C or `--rounds`. Nothing is written to the servos.
 
-use super::super::Outcome;
-use super::super::interrupt::Interrupt;
-use super::super::port::{Ids, Port, id_list};
-use super::super::show::table;
-use super::super::talk::Talk;
+use super::scan::degrees;
+use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::show::{or_dash, table_of};
+use crate::cli::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::Result;
 use handstand::link::Reading;
 use handstand::link::record::ServoSample;
+use handstand::output::table::TableColumn;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
 use std::time::Duration;
 
 /// Watch servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MonitorArgs {
     #[command(flatten)]
     port: Port,
     /// Servos to watch
@@ -28,7 +28,7 @@ pub struct Args {
     every: f64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct ServoReading {
     id: u8,
     position_rad: Option<f64>,
@@ -46,7 +46,7 @@ struct Round {
 }
 
 /// Reads and shows round by round. With `--json` all rounds at the end.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
     let every = Duration::try_from_secs_f64(args.every).unwrap_or(Duration::from_secs(1));
     let interrupt = Interrupt::listen();
     let mut servos = args.port.servos()?;
@@ -63,7 +63,11 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
                 Ok(reading) => ServoReading::of(*id, &reading),
                 Err(error) => {
                     error.port()?;
-                    ServoReading::silent(*id)
+                    ServoReading {
+                        id: *id,
+                        error_flags: vec!["silent"],
+                        ..ServoReading::default()
+                    }
                 }
             });
         }
@@ -84,7 +88,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     if talk.json {
         talk.data(&rounds)?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
 impl ServoReading {
@@ -100,49 +104,23 @@ impl ServoReading {
             error_flags: reading.error.names().collect(),
         }
     }
-
-    fn silent(id: u8) -> Self {
-        ServoReading {
-            id,
-            position_rad: None,
-            speed_rad_s: None,
-            load_share: None,
-            supply_v: None,
-            temperature_celsius: None,
-            error_flags: vec!["silent"],
-        }
-    }
 }
 
 fn text(seen: &[ServoReading]) -> String {
-    let mut shown = table([
-        "Id",
-        "Position",
-        "Speed",
-        "Load",
-        "Supply",
-        "Temp",
-        "Error flags",
-    ]);
-    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_string());
-    for servo in seen {
-        shown.add_row([
-            servo.id.to_string(),
-            or_dash(
-                servo
-                    .position_rad
-                    .map(|value| format!("{:.1} deg", value.to_degrees())),
-            ),
-            or_dash(servo.speed_rad_s.map(|value| format!("{value:.2} rad/s"))),
-            or_dash(
-                servo
-                    .load_share
-                    .map(|value| format!("{:.0} %", value * 100.0)),
-            ),
-            or_dash(servo.supply_v.map(|value| format!("{value:.1} V"))),
-            or_dash(servo.temperature_celsius.map(|value| format!("{value} C"))),
-            servo.error_flags.join(", "),
-        ]);
-    }
-    shown.to_string()
+    let columns: &[TableColumn<ServoReading>] = &[
+        ("Id", &|s| s.id.to_string()),
+        ("Position", &|s| or_dash(s.position_rad, degrees)),
+        ("Speed", &|s| {
+            or_dash(s.speed_rad_s, |w| format!("{w:.2} rad/s"))
+        }),
+        ("Load", &|s| {
+            or_dash(s.load_share, |share| format!("{:.0} %", 100.0 * share))
+        }),
+        ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
+        ("Temp", &|s| {
+            or_dash(s.temperature_celsius, |t| format!("{t} C"))
+        }),
+        ("Error flags", &|s| s.error_flags.join(", ")),
+    ];
+    table_of(seen, columns).to_string()
 }

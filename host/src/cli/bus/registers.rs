@@ -1,13 +1,12 @@
 //! `bus read`, `bus write`: single registers.
 
-use super::super::Outcome;
-use super::super::port::Port;
-use super::super::show::table;
-use super::super::talk::Talk;
+use crate::cli::{ExitStatus, Talk, port::Port, show::table_of};
 use handstand::model::suggest::suggest;
+use handstand::output::table::{TableColumn, or_empty};
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
+use serde::Serialize;
 use serde_json::json;
 
 /// Read registers of a servo.
@@ -36,6 +35,17 @@ pub struct WriteArgs {
     port: Port,
 }
 
+/// What a register of a servo holds.
+#[derive(Serialize)]
+struct RegisterContent {
+    address: u8,
+    register: &'static str,
+    code: u16,
+    means: String,
+    #[serde(skip)]
+    default: Option<u16>,
+}
+
 /// A register by name, however spelt, or by address.
 pub fn register(text: &str) -> Result<Register, String> {
     let found = match text.parse() {
@@ -49,40 +59,39 @@ pub fn register(text: &str) -> Result<Register, String> {
 }
 
 /// Reads, shows.
-pub fn read(args: &ReadArgs, talk: &Talk) -> Result<Outcome> {
+pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let wanted = if args.registers.is_empty() {
         REGISTERS
     } else {
         &args.registers
     };
-    let mut rows = Vec::new();
-    let mut shown = table(["Address", "Register", "Code", "Means", "Default"]);
+    let mut contents = Vec::new();
     for register in wanted {
         let code = servos.get(args.id, *register)?;
-        let meaning = meaning(*register, code);
-        shown.add_row([
-            register.address.to_string(),
-            register.name.to_string(),
-            code.to_string(),
-            meaning.clone(),
-            if register.access == Access::Write {
-                register.default.to_string()
-            } else {
-                String::new()
-            },
-        ]);
-        rows.push(json!({ "address": register.address, "register": register.name, "code": code, "means": meaning }));
+        contents.push(RegisterContent {
+            address: register.address,
+            register: register.name,
+            code,
+            means: meaning(*register, code),
+            default: (register.access == Access::Write).then_some(register.default),
+        });
     }
-    match talk.json {
-        true => talk.data(&rows)?,
-        false => talk.print(&shown.to_string())?,
-    }
-    Ok(Outcome::Done)
+    talk.result(&contents, || {
+        let columns: &[TableColumn<RegisterContent>] = &[
+            ("Address", &|c| c.address.to_string()),
+            ("Register", &|c| c.register.to_string()),
+            ("Code", &|c| c.code.to_string()),
+            ("Means", &|c| c.means.clone()),
+            ("Default", &|c| or_empty(c.default)),
+        ];
+        table_of(&contents, columns).to_string()
+    })?;
+    Ok(ExitStatus::Done)
 }
 
 /// Writes, reads back, shows.
-pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
+pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
     let WriteArgs {
         id, register, code, ..
     } = args;
@@ -101,12 +110,10 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<Outcome> {
     let mut servos = args.port.servos()?;
     let before = servos.get(*id, *register)?;
     servos.set(*id, *register, *code)?;
-    if talk.json {
-        talk.data(&json!({ "id": id, "register": register.name, "before": before, "code": code }))?;
-    } else {
-        talk.print(&format!("servo {id}: {} {before} -> {code}", register.name))?;
-    }
-    Ok(Outcome::Done)
+    let name = register.name;
+    let data = json!({ "id": id, "register": name, "before": before, "code": code });
+    talk.result(&data, || format!("servo {id}: {name} {before} -> {code}"))?;
+    Ok(ExitStatus::Done)
 }
 
 /// A code in words.

@@ -1,11 +1,11 @@
 //! `bus scan`: pings every id and reads what answers.
 
-use super::super::Outcome;
-use super::super::port::{AnyLink, Ids, Port, id_list};
-use super::super::show::table;
-use super::super::talk::Talk;
+use crate::cli::port::{AnyLink, Ids, Port, id_list};
+use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
+use handstand::link::record::no_response;
 use handstand::link::{ServoError, ServoResult, Servos};
+use handstand::output::table::TableColumn;
 use handstand_shared::control_table as ct;
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::Position;
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// Scan the bus for servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct ScanArgs {
     #[command(flatten)]
     port: Port,
     /// Ids to ask
@@ -36,53 +36,53 @@ pub struct Found {
 }
 
 /// Asks, shows.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let found = scan(&mut servos, &args.ids.0, talk)?;
-    if talk.json {
-        talk.data(&found)?;
-    } else {
-        let mut shown = table([
-            "Id",
-            "Model",
-            "Firmware",
-            "Return delay",
-            "Status level",
-            "Position",
-            "Supply",
-            "Temp",
-            "Error flags",
-        ]);
-        for servo in &found {
-            shown.add_row([
-                servo.id.to_string(),
-                model(servo.model),
-                servo.firmware.to_string(),
-                format!("{} us", servo.return_delay_us),
-                servo.status_level.to_string(),
-                format!("{:.1} deg", servo.position_rad.to_degrees()),
-                format!("{:.1} V", servo.supply_v),
-                format!("{} C", servo.temperature_celsius),
-                servo.error_flags.join(", "),
-            ]);
-        }
-        talk.print(&shown.to_string())?;
+    talk.result(&found, || table(&found))?;
+    let asked = args.ids.0.len();
+    talk.say(&format!("{} of {asked} ids answer", found.len()));
+    match found.is_empty() {
+        true => Err(no_response()),
+        false => Ok(ExitStatus::Done),
     }
-    talk.say(&format!(
-        "{} of {} ids answer",
-        found.len(),
-        args.ids.0.len()
-    ));
-    if found.is_empty() {
-        return Err(handstand::link::record::no_response());
+}
+
+fn table(found: &[Found]) -> String {
+    let columns: &[TableColumn<Found>] = &[
+        ("Id", &|s| s.id.to_string()),
+        ("Model", &|s| model(s.model)),
+        ("Firmware", &|s| s.firmware.to_string()),
+        ("Return delay", &|s| format!("{} us", s.return_delay_us)),
+        ("Status level", &|s| s.status_level.to_string()),
+        ("Position", &|s| degrees(s.position_rad)),
+        ("Supply", &|s| format!("{:.1} V", s.supply_v)),
+        ("Temp", &|s| format!("{} C", s.temperature_celsius)),
+        ("Error flags", &|s| s.error_flags.join(", ")),
+    ];
+    table_of(found, columns).to_string()
+}
+
+/// An angle for people.
+pub fn degrees(rad: f64) -> String {
+    format!("{:.1} deg", rad.to_degrees())
+}
+
+/// The ids of those that answer.
+///
+/// # Errors
+/// None answers.
+pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<u8>> {
+    let found = scan(servos, ids, talk)?;
+    match found.is_empty() {
+        true => Err(no_response()),
+        false => Ok(found.iter().map(|servo| servo.id).collect()),
     }
-    Ok(Outcome::Done)
 }
 
 /// Pings these ids and reads what answers.
 pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
-    let bar = talk.bar();
-    bar.set_length(ids.len() as u64);
+    let bar = talk.bar(ids.len() as u64);
     let mut found = Vec::new();
     for id in ids {
         // A silent id is asked once: most are. One that says anything gets its tries.
@@ -97,13 +97,15 @@ pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
                 if let Ok(error) = servos.ping(*id) {
                     found.push(read(servos, *id, error)?);
                 } else {
-                    talk.say(&format!("id {id}: bytes came, but no sound answer: two servos of this id, or a bad line"));
+                    talk.say(&format!(
+                        "id {id}: bytes came, but no sound answer: two servos of this id, or a \
+                         bad line"
+                    ));
                 }
             }
         }
         bar.inc(1);
     }
-    bar.finish_and_clear();
     Ok(found)
 }
 

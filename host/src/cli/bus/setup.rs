@@ -4,18 +4,17 @@
 //! status level 1 spares the answers to writes. A new id is given only while a single servo is
 //! connected: two of one id cannot be told apart.
 
-use super::super::Outcome;
-use super::super::port::{Ids, Port, id_list};
-use super::super::talk::Talk;
 use super::changes::{self, RegisterChange};
-use super::scan::scan;
+use super::scan::answering;
+use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::{ExitStatus, Talk};
 use handstand::{Error, Result};
 use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
 use serde_json::json;
 
 /// Prepare servos.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct SetupArgs {
     #[command(flatten)]
     port: Port,
     /// Servos to prepare
@@ -33,13 +32,9 @@ pub struct Args {
 }
 
 /// Scans, sets what differs, reads back.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
-    let found = scan(&mut servos, &args.ids.0, talk)?;
-    let mut ids: Vec<u8> = found.iter().map(|servo| servo.id).collect();
-    if ids.is_empty() {
-        return Err(handstand::link::record::no_response());
-    }
+    let mut ids = answering(&mut servos, &args.ids.0, talk)?;
     let mut changes = Vec::new();
     if let Some(new) = args.new_id {
         let [only] = ids[..] else {
@@ -65,8 +60,7 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         ids = vec![new];
     }
-    let bar = talk.bar();
-    bar.set_length(ids.len() as u64);
+    let bar = talk.bar(ids.len() as u64);
     for id in &ids {
         for (register, code) in [
             (RETURN_DELAY, args.return_delay),
@@ -85,20 +79,9 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         bar.inc(1);
     }
-    bar.finish_and_clear();
-    show(&ids, &changes, talk)
-}
-
-fn show(ids: &[u8], changes: &[RegisterChange], talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        talk.data(&json!({ "ids": ids, "changes": changes::data(changes) }))?;
-        return Ok(Outcome::Done);
-    }
-    changes::print(changes, "Now", talk)?;
-    talk.say(&format!(
-        "{} servos are ready; {} registers were changed",
-        ids.len(),
-        changes.len()
-    ));
-    Ok(Outcome::Done)
+    drop(bar);
+    let (ready, changed) = (ids.len(), changes.len());
+    let said = format!("{ready} servos are ready; {changed} registers were changed");
+    let data = json!({ "ids": ids, "changes": changes });
+    changes::report(&data, &changes, "Now", &said, talk)
 }

@@ -1,29 +1,32 @@
 //! The controllers and the conditions there are.
 
-use super::super::talk::Talk;
-use super::super::{Outcome, show};
+use crate::cli::{ExitStatus, Talk, show};
 use handstand::Result;
 use handstand::controllers::{DESIGNS, Speeds};
 use handstand::study::CONDITIONS;
 use serde_json::json;
 
 /// Lists them.
-pub fn run(talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        let infos = DESIGNS.iter().map(|design| {
-            let info = design.info();
-            json!({
-                "controller": info.id,
-                "title": info.title,
-                "law": info.law,
-                "speeds": speeds(info.speeds),
-                "known_equilibrium": info.known_equilibrium,
-                "reference": info.reference,
-            })
-        });
-        talk.data(&infos.collect::<Vec<_>>())?;
-        return Ok(Outcome::Done);
+pub fn run(talk: &Talk) -> Result<ExitStatus> {
+    let infos = DESIGNS.iter().map(|design| {
+        let info = design.info();
+        json!({
+            "controller": info.id,
+            "title": info.title,
+            "law": info.law,
+            "speeds": speeds(info.speeds),
+            "known_equilibrium": info.known_equilibrium,
+            "reference": info.reference,
+        })
+    });
+    talk.result(&infos.collect::<Vec<_>>(), text)?;
+    if !talk.json {
+        talk.say("`handstand controllers MODEL` tries them");
     }
+    Ok(ExitStatus::Done)
+}
+
+fn text() -> String {
     let mut table = show::table(["Controller", "What it is", "Speeds", "Known equilibrium"]);
     for design in DESIGNS {
         let info = design.info();
@@ -35,9 +38,7 @@ pub fn run(talk: &Talk) -> Result<Outcome> {
     for condition in CONDITIONS {
         conditions.add_row([condition.id, condition.title]);
     }
-    talk.print(&format!("{table}\n\n{conditions}"))?;
-    talk.say("`handstand controllers MODEL` tries them");
-    Ok(Outcome::Done)
+    format!("{table}\n\n{conditions}")
 }
 
 fn speeds(speeds: Speeds) -> &'static str {

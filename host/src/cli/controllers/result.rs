@@ -1,55 +1,47 @@
-//! Results of the trials: tables, CSV, JSON, a plot.
+//! Results of the trials: tables, CSV, a plot.
 
-use super::super::show;
-use super::Row;
-use handstand::controllers::Design;
+use super::ControllerTrial;
+use crate::cli::show;
+use handstand::controllers::ControllerDesign;
+use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::plot::heat_map;
-use handstand::study::{Condition, Region};
-use serde_json::{Value, json};
+use handstand::study::LoopCondition;
 
 /// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    trials: &[ControllerTrial],
+    designs: &[&'static dyn ControllerDesign],
+    conditions: &[&'static LoopCondition],
 ) -> String {
     let mut parts = vec![format!(
         "Robots stabilised, % of {}:\n{}",
-        rows.first().map_or(0, |row| row.figures.runs),
-        matrix(rows, designs, conditions, |row| percent(
-            row.figures.stabilised_share
+        trials.first().map_or(0, |trial| trial.robots),
+        matrix(trials, designs, conditions, |trial| percent(
+            trial.stabilised
         ))
     )];
-    if rows.iter().any(|row| row.region.is_some()) {
+    if trials.iter().any(|trial| trial.region_rad.is_some()) {
         parts.push(format!(
             "Region: largest spread of starts of which 95 % are stabilised, deg:\n{}",
-            matrix(rows, designs, conditions, |row| row
-                .region
-                .map_or(String::new(), degrees))
+            matrix(trials, designs, conditions, region)
         ));
     }
-    for condition in conditions
-        .iter()
-        .filter(|c| conditions.len() <= 2 || c.id.starts_with("all"))
-    {
-        let mut table = show::table([
-            "Controller",
-            "stabilised %",
-            "fallen %",
-            "rms deg",
-            "limit cycle deg",
-            "rms N m",
-        ]);
-        for row in rows.iter().filter(|row| row.condition.id == condition.id) {
-            table.add_row([
-                row.design.info().id.to_string(),
-                percent(row.figures.stabilised_share),
-                percent(row.figures.fallen_share),
-                or_dash(row.figures.rms_angle_rad.map(f64::to_degrees)),
-                or_dash(row.figures.limit_cycle_rad.map(f64::to_degrees)),
-                or_dash(row.figures.rms_torque_nm),
-            ]);
-        }
+    let degrees = |rad: Option<f64>| or_dash(rad.map(f64::to_degrees));
+    let columns: &[TableColumn<ControllerTrial>] = &[
+        ("Controller", &|t| t.controller.to_string()),
+        ("stabilised %", &|t| percent(t.stabilised)),
+        ("fallen %", &|t| percent(t.fallen)),
+        ("rms deg", &|t| degrees(t.rms_angle_rad)),
+        ("limit cycle deg", &|t| degrees(t.limit_cycle_rad)),
+        ("rms N m", &|t| or_dash(t.rms_torque_nm)),
+    ];
+    // Each by itself would fill pages; the file has them all.
+    let few = conditions.len() <= 2;
+    for condition in conditions.iter().filter(|c| few || c.id.starts_with("all")) {
+        let own = trials
+            .iter()
+            .filter(|trial| trial.condition == condition.id);
+        let table = show::table_of(own, columns);
         parts.push(format!(
             "{}, of those stabilised:\n{table}",
             condition.title
@@ -58,20 +50,19 @@ pub fn text(
     parts.join("\n\n")
 }
 
+/// A line for each controller, a column for each condition.
 fn matrix(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
-    cell: impl Fn(&Row) -> String,
+    trials: &[ControllerTrial],
+    designs: &[&'static dyn ControllerDesign],
+    conditions: &[&'static LoopCondition],
+    cell: impl Fn(&ControllerTrial) -> String,
 ) -> String {
     let mut table = show::wide_table();
     let header = std::iter::once("").chain(conditions.iter().map(|condition| condition.id));
     table.set_header(header);
-    for design in designs {
-        let own = rows
-            .iter()
-            .filter(|row| row.design.info().id == design.info().id);
-        table.add_row(std::iter::once(design.info().id.to_string()).chain(own.map(&cell)));
+    for id in designs.iter().map(|design| design.info().id) {
+        let own = trials.iter().filter(|trial| trial.controller == id);
+        table.add_row(std::iter::once(id.to_string()).chain(own.map(&cell)));
     }
     table.to_string()
 }
@@ -84,72 +75,46 @@ fn or_dash(value: Option<f64>) -> String {
     value.map_or("-".into(), |value| format!("{value:.2}"))
 }
 
-fn degrees(region: Region) -> String {
-    let sign = if region.open { ">" } else { "" };
-    format!("{sign}{:.1}", region.spread_rad.to_degrees())
+fn region(trial: &ControllerTrial) -> String {
+    let sign = if trial.region_open == Some(true) {
+        ">"
+    } else {
+        ""
+    };
+    let degrees = |rad: f64| format!("{sign}{:.1}", rad.to_degrees());
+    trial.region_rad.map_or(String::new(), degrees)
 }
 
-/// Heat map of the shares that were stabilised.
+/// The shares as a heat map.
 pub fn plot(
-    rows: &[Row],
-    designs: &[&'static dyn Design],
-    conditions: &[&'static Condition],
+    trials: &[ControllerTrial],
+    designs: &[&'static dyn ControllerDesign],
+    conditions: &[&'static LoopCondition],
 ) -> String {
     let ids: Vec<&str> = designs.iter().map(|design| design.info().id).collect();
     let titles: Vec<&str> = conditions.iter().map(|condition| condition.title).collect();
-    let fields: Vec<Vec<f64>> = ids
-        .iter()
-        .map(|id| {
-            let own = rows.iter().filter(|row| row.design.info().id == *id);
-            own.map(|row| row.figures.stabilised_share).collect()
-        })
-        .collect();
-    heat_map(
-        "Robots stabilised by each controller under each condition",
-        &ids,
-        &titles,
-        &fields,
-    )
+    let shares = |id: &&str| {
+        let own = trials.iter().filter(|trial| trial.controller == *id);
+        own.map(|trial| trial.stabilised).collect()
+    };
+    let fields: Vec<Vec<f64>> = ids.iter().map(shares).collect();
+    let title = "Robots stabilised by each controller under each condition";
+    heat_map(title, &ids, &titles, &fields)
 }
 
-/// One line for each trial.
-pub fn csv(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "controller,condition,robots,stabilised,fallen,rms_angle_rad,limit_cycle_rad,rms_torque_nm,region_rad,region_open\n",
-    );
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for row in rows {
-        let fields = [
-            row.design.info().id.to_string(),
-            row.condition.id.to_string(),
-            row.figures.runs.to_string(),
-            row.figures.stabilised_share.to_string(),
-            row.figures.fallen_share.to_string(),
-            number(row.figures.rms_angle_rad),
-            number(row.figures.limit_cycle_rad),
-            number(row.figures.rms_torque_nm),
-            number(row.region.map(|region| region.spread_rad)),
-            row.region
-                .map_or(String::new(), |region| region.open.to_string()),
-        ];
-        text += &fields.join(",");
-        text.push('\n');
-    }
-    text
-}
-
-/// One trial under its keys.
-pub fn data(row: &Row) -> Value {
-    json!({
-        "controller": row.design.info().id,
-        "condition": row.condition.id,
-        "robots": row.figures.runs,
-        "stabilised": row.figures.stabilised_share,
-        "fallen": row.figures.fallen_share,
-        "rms_angle_rad": row.figures.rms_angle_rad,
-        "limit_cycle_rad": row.figures.limit_cycle_rad,
-        "rms_torque_nm": row.figures.rms_torque_nm,
-        "region_rad": row.region.map(|region| region.spread_rad),
-        "region_open": row.region.map(|region| region.open),
-    })
+/// Everything, a line per trial.
+pub fn csv(trials: &[ControllerTrial]) -> String {
+    let columns: &[TableColumn<ControllerTrial>] = &[
+        ("controller", &|t| t.controller.to_string()),
+        ("condition", &|t| t.condition.to_string()),
+        ("robots", &|t| t.robots.to_string()),
+        ("stabilised", &|t| t.stabilised.to_string()),
+        ("fallen", &|t| t.fallen.to_string()),
+        ("rms_angle_rad", &|t| or_empty(t.rms_angle_rad)),
+        ("limit_cycle_rad", &|t| or_empty(t.limit_cycle_rad)),
+        ("rms_torque_nm", &|t| or_empty(t.rms_torque_nm)),
+        ("region_rad", &|t| or_empty(t.region_rad)),
+        ("region_open", &|t| or_empty(t.region_open)),
+    ];
+    csv_of(trials, columns)
 }

@@ -1,7 +1,7 @@
 //! Arguments for servos, limits and sensors of the robot.
 
 use crate::cli::port::id_list;
-use handstand::controllers::Timing;
+use handstand::controllers::BoardTiming;
 use handstand::deploy::{Board, ServoPair};
 use handstand::{Error, Result};
 use handstand_shared::message::Attitude;
@@ -55,10 +55,10 @@ fn joints(text: &str) -> Result<Joints, String> {
 
 impl BoardArgs {
     /// When readings are taken and torques act.
-    pub fn timing(&self) -> Timing {
+    pub fn timing(&self) -> BoardTiming {
         match self.gyro_per_code {
-            Some(_) => Timing::GYRO,
-            None => Timing::HOST_ATTITUDE,
+            Some(_) => BoardTiming::GYRO,
+            None => BoardTiming::HOST_ATTITUDE,
         }
     }
 

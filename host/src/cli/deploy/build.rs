@@ -36,7 +36,8 @@ pub fn build(root: &Path, plan: &Path) -> Result<PathBuf> {
         Some(bin) if output.status.success() => Ok(bin),
         _ => Err(Error::device(
             "the firmware could not be built: cargo's own words are above",
-            "`cargo xtask firmware` says which toolchain is missing; or upload to a firmware that runs: leave --flash out",
+            "`cargo xtask firmware` says which toolchain is missing; or upload to a firmware that \
+             runs: leave --flash out",
         )),
     }
 }

@@ -31,8 +31,7 @@ mod build;
 
 use super::flash::{Loader, write};
 use super::port::Port;
-use super::talk::Talk;
-use super::{Outcome, gains};
+use super::{ExitStatus, Talk, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
 use handstand::deploy::{self, BoardLaw, plan_file};
@@ -47,9 +46,9 @@ use std::path::{Path, PathBuf};
 /// Bring gains onto the CM-5.
 #[derive(Debug, clap::Args)]
 #[group(id = "deploy")]
-pub struct Args {
+pub struct DeployArgs {
     #[command(flatten)]
-    gains: gains::Args,
+    gains: gains::GainsArgs,
     #[command(flatten)]
     board: BoardArgs,
     #[command(flatten)]
@@ -96,17 +95,17 @@ pub struct GainsCommand {
     #[command(subcommand)]
     then: Option<Then>,
     #[command(flatten)]
-    gains: Option<gains::Args>,
+    gains: Option<gains::GainsArgs>,
 }
 
 #[derive(Debug, clap::Subcommand)]
 enum Then {
     /// Deploy the gains to the CM-5, and read them back
-    Deploy(Box<Args>),
+    Deploy(Box<DeployArgs>),
 }
 
 /// Designs; deploys if told to.
-pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<Outcome> {
+pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<ExitStatus> {
     match (&args.then, &args.gains) {
         (Some(Then::Deploy(args)), _) => run(args, talk),
         (None, Some(args)) => gains::run(args, talk),
@@ -131,17 +130,15 @@ impl DeploySteps<'_> {
 }
 
 /// The plan; the files of a design are written.
-fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
+fn planned(args: &DeployArgs, talk: &Talk) -> Result<Plan> {
     let model = Model::load(args.gains.model())?;
     let board = args.board.board()?;
     if args.law == LawKind::Observer {
         if let Some(option) = args.gains.for_plain_states() {
-            return Err(Error::usage(
-                format!(
-                    "{option} is for gains on plain states, which `--law observer` does not run"
-                ),
-                "leave it out, or say --law state",
-            ));
+            let what = format!(
+                "{option} is for gains on plain states, which `--law observer` does not run"
+            );
+            return Err(Error::usage(what, "leave it out, or say --law state"));
         }
         let machine = deploy::observer_design(&model, &board, &args.board.timing())?;
         return deploy::plan(&model, BoardLaw::Observer(&machine), &board);
@@ -155,7 +152,7 @@ fn planned(args: &Args, talk: &Talk) -> Result<Plan> {
 }
 
 /// Designs, brings over, reads back, replays.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut steps = DeploySteps {
         done: Vec::new(),
         talk,
@@ -182,13 +179,10 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
             "flash the firmware that belongs to this program",
         )
     })?;
-    let bar = talk.bar();
-    bar.set_length(args.states);
-    let replayed = deploy::replay(&back.law, args.states, args.seed, |done| {
-        bar.set_position(done)
-    });
-    bar.finish_and_clear();
-    replayed?;
+    let bar = talk.bar(args.states);
+    let done = |done| bar.set_position(done);
+    deploy::replay(&back.law, args.states, args.seed, done)?;
+    drop(bar);
     steps.say(format!(
         "replayed: its law on its tables equals wide integers bit for bit over {} states",
         args.states
@@ -198,45 +192,45 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         (false, true) => Some("flash"),
         (false, false) => Some("upload"),
     };
-    if talk.json {
-        return talk
-            .data(&json!({
-                "law": args.law.to_possible_value().map(|law| law.get_name().to_string()),
-                "steps": steps.done,
-                "way": way,
-                "fingerprint": format!("{fingerprint:08X}"),
-                "bytes": bytes.len(),
-                "uploaded": way.is_some(),
-                "states_replayed": args.states,
-            }))
-            .map(|()| Outcome::Done);
-    }
-    talk.print(&format!(
-        "fingerprint {fingerprint:08X}, {} bytes",
-        bytes.len()
-    ))?;
-    talk.say(match way {
-        None => "nothing was sent",
-        Some(_) => "the CM-5 has these gains; torque is off",
+    let (fingerprint, bytes) = (format!("{fingerprint:08X}"), bytes.len());
+    let data = json!({
+        "law": args.law.to_possible_value().map(|law| law.get_name().to_string()),
+        "steps": steps.done,
+        "way": way,
+        "fingerprint": fingerprint,
+        "bytes": bytes,
+        "uploaded": way.is_some(),
+        "states_replayed": args.states,
     });
-    Ok(Outcome::Done)
+    talk.result(&data, || {
+        format!("fingerprint {fingerprint}, {bytes} bytes")
+    })?;
+    match way {
+        _ if talk.json => {}
+        None => talk.say("nothing was sent"),
+        Some(_) => talk.say("the CM-5 has these gains; torque is off"),
+    }
+    Ok(ExitStatus::Done)
 }
 
-fn upload(args: &Args, bytes: &[u8], fingerprint: u32, steps: &mut DeploySteps) -> Result<Vec<u8>> {
+fn upload(
+    args: &DeployArgs,
+    bytes: &[u8],
+    fingerprint: u32,
+    steps: &mut DeploySteps,
+) -> Result<Vec<u8>> {
     if args.dry_run {
         return Ok(bytes.to_vec());
     }
     let mut session = Session::open(args.port.open()?)?;
-    let bar = steps.talk.bar();
-    bar.set_length(bytes.len() as u64);
-    let sent = deploy::upload(&mut session, bytes, |sent| bar.set_position(sent));
-    bar.finish_and_clear();
-    sent?;
+    let bar = steps.talk.bar(bytes.len() as u64);
+    deploy::upload(&mut session, bytes, |sent| bar.set_position(sent))?;
+    drop(bar);
     steps.say("uploaded: the CM-5 keeps it in EEPROM".to_string());
     verified(&mut session, bytes, fingerprint, steps)
 }
 
-fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Result<Vec<u8>> {
+fn flash(args: &DeployArgs, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()
         .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
     let file = folder.path().join("plan.rs");
@@ -260,7 +254,8 @@ fn flash(args: &Args, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) -> Res
     if theirs != ours {
         return Err(Error::device(
             format!(
-                "the CM-5 balances by {theirs:08X}, not by {ours:08X} that was compiled in: a plan in its EEPROM wins"
+                "the CM-5 balances by {theirs:08X}, not by {ours:08X} that was compiled in: a plan \
+                 in its EEPROM wins"
             ),
             "replace that plan: the same without --flash",
         ));

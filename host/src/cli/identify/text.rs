@@ -1,17 +1,19 @@
 //! What was identified, in words and tables.
 
-use super::super::show;
 use super::Data;
+use crate::cli::show::{self, ends, known};
 use handstand::output::number::exact;
+use handstand::output::table::TableColumn;
 use handstand::sysid::{
-    Candidate, Estimate, FittedModel, Interval, Pole, Record, dynamics, transfer_function,
+    Estimate, FittedModel, IntervalEstimate, Pole, Record, TriedStructure, dynamics,
+    transfer_function,
 };
 
 /// Rows of the table of orders.
 const SHOWN: usize = 12;
 
 /// The whole answer in words.
-pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String {
+pub fn text(data: &Data, trials: &[TriedStructure], chosen: Option<usize>) -> String {
     let count = |records: &[Record]| records.iter().map(Record::count).sum::<usize>();
     let head = format!(
         "{} samples to learn from, {} to judge by, Ts = {} ms; from {} to {}.",
@@ -23,15 +25,15 @@ pub fn text(data: &Data, trials: &[Candidate], chosen: Option<usize>) -> String 
     );
     let mut parts = vec![head, table(trials, chosen)];
     match chosen.map(|index| &trials[index]) {
-        Some(Candidate {
+        Some(TriedStructure {
             outcome: Ok(fitted),
             ..
         }) => parts.push(model(data, fitted)),
         _ => {
-            let mut why: Vec<String> = trials
+            let unfitted = trials
                 .iter()
-                .filter_map(|trial| trial.outcome.as_ref().err().map(ToString::to_string))
-                .collect();
+                .filter_map(|trial| trial.outcome.as_ref().err());
+            let mut why: Vec<String> = unfitted.map(ToString::to_string).collect();
             why.sort();
             why.dedup();
             parts.push(format!("No model could be fitted: {}.", why.join("; ")));
@@ -45,8 +47,8 @@ fn unit(unit: &str) -> &str {
 }
 
 /// Best first; the chosen one marked.
-fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
-    let mut rows: Vec<(usize, &Candidate, &FittedModel)> = trials
+fn table(trials: &[TriedStructure], chosen: Option<usize>) -> String {
+    let mut rows: Vec<(usize, &TriedStructure, &FittedModel)> = trials
         .iter()
         .enumerate()
         .filter_map(|(k, trial)| Some((k, trial, trial.outcome.as_ref().ok()?)))
@@ -68,32 +70,36 @@ fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
         }
         rows.truncate(SHOWN);
     }
-    let mut table = show::table([
-        "Orders", "p", "Error", "Fit", "Free fit", "+AIC", "+BIC", "White", "Indep.", "",
-    ]);
-    for (k, trial, fitted) in rows {
-        let score = &fitted.validation;
-        let passed = |index: usize| match score.tests.get(index) {
-            Some(test) if test.passed => "yes",
-            Some(_) => "no",
-            None => "-",
-        };
-        table.add_row([
-            trial.structure.to_string(),
-            trial.structure.count().to_string(),
-            exact(score.error_rms),
-            format!("{:.2} %", score.predicted_fit_percent),
-            format!("{:.2} %", score.simulated_fit_percent),
-            format!("{:.1}", fitted.estimate.aic() - least_aic),
-            format!("{:.1}", fitted.estimate.bic() - least_bic),
-            passed(0).to_string(),
-            passed(1).to_string(),
-            if Some(k) == chosen { "kept" } else { "" }.to_string(),
-        ]);
-    }
+    let passed = |fitted: &FittedModel, index: usize| match fitted.validation.tests.get(index) {
+        Some(test) if test.passed => "yes".to_string(),
+        Some(_) => "no".to_string(),
+        None => "-".to_string(),
+    };
+    let kept = |k: usize| if Some(k) == chosen { "kept" } else { "" };
+    let columns: &[TableColumn<(usize, &TriedStructure, &FittedModel)>] = &[
+        ("Orders", &|(_, trial, _)| trial.structure.to_string()),
+        ("p", &|(_, trial, _)| trial.structure.count().to_string()),
+        ("Error", &|(.., fitted)| exact(fitted.validation.error_rms)),
+        ("Fit", &|(.., fitted)| {
+            percent(fitted.validation.predicted_fit_percent)
+        }),
+        ("Free fit", &|(.., fitted)| {
+            percent(fitted.validation.simulated_fit_percent)
+        }),
+        ("+AIC", &|(.., fitted)| {
+            format!("{:.1}", fitted.estimate.aic() - least_aic)
+        }),
+        ("+BIC", &|(.., fitted)| {
+            format!("{:.1}", fitted.estimate.bic() - least_bic)
+        }),
+        ("White", &|(.., fitted)| passed(fitted, 0)),
+        ("Indep.", &|(.., fitted)| passed(fitted, 1)),
+        ("", &|(k, ..)| kept(*k).to_string()),
+    ];
     let mut text = format!(
-        "{table}\nOn what was held out: RMS error and fit one step ahead, fit from the input alone, residual tests. AIC \
-         and BIC\nof the fit, above the least."
+        "{}\nOn what was held out: RMS error and fit one step ahead, fit from the input alone, \
+         residual tests. AIC and BIC\nof the fit, above the least.",
+        show::table_of(&rows, columns)
     );
     let failed = trials.iter().filter(|trial| trial.outcome.is_err()).count();
     if left_out > 0 || failed > 0 {
@@ -102,29 +108,25 @@ fn table(trials: &[Candidate], chosen: Option<usize>) -> String {
     text
 }
 
+fn percent(percent: f64) -> String {
+    format!("{percent:.2} %")
+}
+
 fn model(data: &Data, fitted: &FittedModel) -> String {
     let estimate = &fitted.estimate;
     let (model, structure) = (&estimate.model, &estimate.structure);
-    let mut coefficients = show::table(["Coefficient", "Value", "95 % interval"]);
-    let values = model.values(structure);
-    for ((name, value), half) in structure
-        .names()
-        .into_iter()
-        .zip(values)
-        .zip(estimate.half_widths())
-    {
-        coefficients.add_row([name, exact(value), ends(&Interval::around(value, half))]);
-    }
+    let columns: &[TableColumn<(String, IntervalEstimate)>] = &[
+        ("Coefficient", &|(name, _)| name.clone()),
+        ("Value", &|(_, known)| exact(known.value)),
+        ("95 % interval", &|(_, known)| ends(known)),
+    ];
+    let coefficients = show::table_of(&estimate.coefficients(), columns);
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
         format!("{structure} has the transfer function"),
         format!("  {}", transfer_function(&model.b, &model.denominator(), 4)),
         coefficients.to_string(),
-        format!(
-            "static gain {} ({})",
-            exact(dynamics.gain.value),
-            ends(&dynamics.gain)
-        ),
+        format!("static gain {}", known(&dynamics.gain)),
     ];
     for pole in dynamics.poles.iter().filter(|pole| pole.im.value >= 0.0) {
         lines.push(format!("pole {}", pole_text(pole)));
@@ -144,30 +146,11 @@ fn model(data: &Data, fitted: &FittedModel) -> String {
 }
 
 fn pole_text(pole: &Pole) -> String {
-    let place = match pole.im.value == 0.0 {
-        true => format!("z = {} ({})", exact(pole.re.value), ends(&pole.re)),
-        false => format!(
-            "z = {} ({}) +- {} j ({})",
-            exact(pole.re.value),
-            ends(&pole.re),
-            exact(pole.im.value),
-            ends(&pole.im)
-        ),
-    };
-    format!(
-        "{place}, |z| = {}: {} rad/s",
-        exact(pole.radius.value),
-        match pole.im.value == 0.0 {
-            true => exact(pole.decay_rad_s),
-            false => format!(
-                "{} +- {} j",
-                exact(pole.decay_rad_s),
-                exact(pole.turn_rad_s)
-            ),
-        }
-    )
-}
-
-fn ends(known: &Interval) -> String {
-    format!("{} to {}", exact(known.low), exact(known.high))
+    let (mut place, mut rate) = (known(&pole.re), exact(pole.decay_rad_s));
+    if pole.im.value != 0.0 {
+        place += &format!(" +- {} j ({})", exact(pole.im.value), ends(&pole.im));
+        rate += &format!(" +- {} j", exact(pole.turn_rad_s));
+    }
+    let radius = exact(pole.radius.value);
+    format!("z = {place}, |z| = {radius}: {rate} rad/s")
 }

@@ -7,15 +7,15 @@
 //! `--json` prints `complete`, and `summary` or `missing` (`first_run`, `last_run`) with `torn`
 //! (`file`, `bytes`).
 
-use super::super::{Outcome, talk::Talk};
+use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::study::{Missing, merge};
-use serde_json::json;
-use std::path::PathBuf;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// Merge a study's shards.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MergeArgs {
     /// Journals, or folders that hold them
     #[arg(required = true, value_name = "JOURNAL|FOLDER")]
     journals: Vec<PathBuf>,
@@ -28,42 +28,41 @@ pub struct Args {
 }
 
 /// Merges, or says what is missing.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
-    match merge(&args.journals)? {
-        Ok(merged) => {
-            super::write::finished(&merged, &args.output, args.force, talk)?;
-            Ok(Outcome::Done)
-        }
-        Err(missing) => {
-            lacking(&missing, talk)?;
-            Ok(Outcome::Refused)
-        }
-    }
+pub fn run(args: &MergeArgs, talk: &Talk) -> Result<ExitStatus> {
+    merged(&args.journals, &args.output, args.force, talk)
 }
 
-/// Says what is missing.
-pub fn lacking(missing: &Missing, talk: &Talk) -> Result<()> {
-    if talk.json {
-        let runs = missing.runs.iter();
-        let runs: Vec<_> = runs
-            .map(|(first, last)| json!({ "first_run": first, "last_run": last }))
-            .collect();
-        let torn = missing.torn.iter();
-        let torn: Vec<_> = torn
-            .map(|(file, bytes)| json!({ "file": file.display().to_string(), "bytes": bytes }))
-            .collect();
-        return talk.data(&json!({ "complete": false, "missing": runs, "torn": torn }));
+/// Merges journals into a folder and prints the summary, or says what is missing.
+pub fn merged(journals: &[PathBuf], into: &Path, force: bool, talk: &Talk) -> Result<ExitStatus> {
+    let merged = merge(journals)?;
+    match &merged {
+        Ok(merged) => super::write::finished(merged, into, force, talk)?,
+        Err(missing) => talk.result(&data(missing), || text(missing))?,
     }
+    Ok(ExitStatus::answer(merged.is_ok()))
+}
+
+fn data(missing: &Missing) -> Value {
+    let run = |(first, last): &(usize, usize)| json!({ "first_run": first, "last_run": last });
+    let torn = |(file, bytes): &(PathBuf, u64)| {
+        let file = file.display().to_string();
+        json!({ "file": file, "bytes": bytes })
+    };
+    json!({
+        "complete": false,
+        "missing": missing.runs.iter().map(run).collect::<Vec<_>>(),
+        "torn": missing.torn.iter().map(torn).collect::<Vec<_>>(),
+    })
+}
+
+fn text(missing: &Missing) -> String {
     let mut text = format!("{} chunks are missing:\n", missing.chunks.len());
     for (first, last) in &missing.runs {
         text += &format!("  runs {first} to {last}\n");
     }
     for (file, bytes) in &missing.torn {
-        text += &format!(
-            "{}: {bytes} bytes at its end are torn and not used\n",
-            file.display()
-        );
+        let file = file.display();
+        text += &format!("{file}: {bytes} bytes at its end are torn and not used\n");
     }
-    text += "Start the shards again that hold them: they go on where they were.";
-    talk.print(&text)
+    text + "Start the shards again that hold them: they go on where they were."
 }

@@ -16,27 +16,26 @@ mod monte_carlo;
 mod sweep;
 mod write;
 
-use super::Outcome;
-use super::talk::Talk;
+use super::{ExitStatus, Talk};
 use clap::Subcommand;
 use handstand::Result;
 
 /// What can be done with studies.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum StudyCommand {
     /// Sweep one parameter of the closed loop
-    Sweep(sweep::Args),
+    Sweep(sweep::SweepArgs),
     /// Simulate robots drawn from the uncertain quantities
-    MonteCarlo(monte_carlo::Args),
+    MonteCarlo(monte_carlo::MonteCarloArgs),
     /// Merge a study's shards
-    Merge(merge::Args),
+    Merge(merge::MergeArgs),
 }
 
 /// Does it.
-pub fn run(command: &Command, talk: &Talk) -> Result<Outcome> {
+pub fn run(command: &StudyCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
-        Command::Sweep(args) => sweep::run(args, talk),
-        Command::MonteCarlo(args) => monte_carlo::run(args, talk),
-        Command::Merge(args) => merge::run(args, talk),
+        StudyCommand::Sweep(args) => sweep::run(args, talk),
+        StudyCommand::MonteCarlo(args) => monte_carlo::run(args, talk),
+        StudyCommand::Merge(args) => merge::run(args, talk),
     }
 }

@@ -8,20 +8,15 @@
 //!
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
-use super::super::{Outcome, talk::Talk};
-use handstand::study::{
-    CHUNK, Designed, FORMAT, Header, Journal, Shard, Study, chunk_rows, chunks, columns, merge,
-};
-use handstand::{Error, Result};
-use indicatif::ProgressBar;
-use rayon::prelude::*;
+use crate::cli::{ExitStatus, Talk};
+use handstand::Result;
+use handstand::study::{CHUNK, Header, Journal, Shard, Study, fill};
 use serde_json::json;
 use std::path::PathBuf;
-use std::sync::mpsc;
 
 /// Simulate robots drawn from the uncertain quantities.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct MonteCarloArgs {
     /// Study file
     study: PathBuf,
     /// Folder for the journal, and for table, summary and plot
@@ -42,7 +37,7 @@ pub struct Args {
 }
 
 /// Runs what is not done yet.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut study = Study::load(&args.study)?;
     if let Some(runs) = args.runs {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
@@ -52,95 +47,39 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
     // What would stop every run stops before the first.
     study.case.closed_loop()?;
     let shard = args.shard.unwrap_or(Shard::WHOLE);
-    let header = Header {
-        handstand_study: FORMAT,
-        fingerprint: study.fingerprint(),
-        runs: study.judging.runs,
-        chunk: CHUNK,
-        columns: columns(&study),
-    };
+    let header = Header::of(&study);
     super::write::folder(&args.output)?;
     let name = format!("shard-{}-of-{}.journal", shard.index, shard.of);
     let path = args.output.join(name);
+    let shown = path.display();
     let mut journal = Journal::open(&path, &header)?;
     if journal.torn_bytes > 0 {
         let torn = journal.torn_bytes;
+        talk.say(&format!("{shown}: cut off {torn} bytes of a torn chunk"));
+    }
+    let own = (0..header.chunks()).filter(|&chunk| shard.holds(chunk));
+    let (done, left): (Vec<usize>, Vec<usize>) = own.partition(|own| journal.done.contains(own));
+    let chunks = done.len() + left.len();
+    if !done.is_empty() {
         talk.say(&format!(
-            "{}: cut off {torn} bytes of a torn chunk",
-            path.display()
+            "{} of {chunks} chunks are done already",
+            done.len()
         ));
     }
-    let own: Vec<usize> = (0..chunks(&study))
-        .filter(|&chunk| shard.holds(chunk))
-        .collect();
-    let left: Vec<usize> = own
-        .iter()
-        .copied()
-        .filter(|chunk| !journal.done.contains(chunk))
-        .collect();
-    if left.len() < own.len() {
-        let done = own.len() - left.len();
-        talk.say(&format!("{done} of {} chunks are done already", own.len()));
-    }
-    let bar = talk.bar();
-    bar.set_length(own.len() as u64);
-    bar.set_position((own.len() - left.len()) as u64);
+    let bar = talk.bar(chunks as u64);
+    bar.set_position(done.len() as u64);
     bar.set_message(format!("chunks of {CHUNK} runs"));
-    fill(&mut journal, &study, &designed, &left, &bar)?;
-    bar.finish_and_clear();
-    if shard != Shard::WHOLE {
-        let chunks = own.len();
-        if talk.json {
-            let path = path.display().to_string();
-            talk.data(&json!({ "complete": true, "journal": path, "chunks": chunks }))?;
-        } else {
-            talk.print(&format!(
-                "{}: {chunks} chunks, all of shard {shard}",
-                path.display()
-            ))?;
-        }
-        return Ok(Outcome::Done);
+    fill(&mut journal, &study, &designed, &left, || bar.inc(1))?;
+    drop(bar);
+    if shard == Shard::WHOLE {
+        // Its lock goes with it; the merge reads the file.
+        drop(journal);
+        return super::merge::merged(&[path], &args.output, args.force, talk);
     }
-    drop(journal);
-    match merge(&[path])? {
-        Ok(merged) => super::write::finished(&merged, &args.output, args.force, talk)?,
-        // Somebody has cut the journal meanwhile.
-        Err(missing) => {
-            super::merge::lacking(&missing, talk)?;
-            return Ok(Outcome::Refused);
-        }
-    }
-    Ok(Outcome::Done)
-}
-
-/// Computes chunks on all cores; this thread alone writes them, as they come.
-fn fill(
-    journal: &mut Journal,
-    study: &Study,
-    designed: &Designed,
-    left: &[usize],
-    bar: &ProgressBar,
-) -> Result<()> {
-    let (send, receive) = mpsc::channel();
-    std::thread::scope(|scope| {
-        let computing = scope.spawn(move || {
-            left.par_iter().try_for_each_with(send, |send, &chunk| {
-                let rows = chunk_rows(study, designed, chunk)?;
-                // Nobody listens any more after a write has failed.
-                send.send((chunk, rows))
-                    .map_err(|_| Error::usage("writing has stopped", "see the error before"))
-            })
-        });
-        // Taken by value: once this loop ends early, the computing stops.
-        let written = receive.into_iter().try_for_each(|(chunk, rows)| {
-            journal.add(chunk, &rows)?;
-            bar.inc(1);
-            Ok(())
-        });
-        let computed = match computing.join() {
-            Ok(computed) => computed,
-            Err(panic) => std::panic::resume_unwind(panic),
-        };
-        written.and(computed)
-    })
+    let journal = path.display().to_string();
+    let data = json!({ "complete": true, "journal": journal, "chunks": chunks });
+    talk.result(&data, || {
+        format!("{journal}: {chunks} chunks, all of shard {shard}")
+    })?;
+    Ok(ExitStatus::Done)
 }

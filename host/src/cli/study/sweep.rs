@@ -8,18 +8,21 @@
 //! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`,
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
-use super::super::show::table;
-use super::super::{Outcome, input, talk::Talk};
+use crate::cli::show::{or_dash, table, table_of};
+use crate::cli::{ExitStatus, Talk};
 use handstand::controllers::{DESIGNS, design};
 use handstand::output::number::exact;
-use handstand::study::{Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps};
+use handstand::output::table::{TableColumn, csv_of, or_empty};
+use handstand::study::{
+    Figures, Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps,
+};
 use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
 /// Sweep one parameter of the closed loop.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub struct SweepArgs {
     /// Sweeps, or `all`
     #[arg(value_name = "NAME", value_parser = known)]
     names: Vec<String>,
@@ -70,7 +73,7 @@ fn controller(id: &str) -> Result<&'static str, String> {
 }
 
 /// Sweeps, prints, writes.
-pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
+pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if args.names.is_empty() {
         return list(talk);
     }
@@ -99,17 +102,16 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         for (quantity, _) in &chosen {
             for ending in ["csv", "svg"] {
                 let file = folder.join(format!("{}.{ending}", quantity.id));
-                input::vacant(&file, args.force)?;
+                output::vacant(&file, args.force)?;
             }
         }
         super::write::folder(folder)?;
     }
-    let bar = talk.bar();
     let levels = |levels: &Levels| match args.levels.is_empty() {
         true => levels.values.to_vec(),
         false => args.levels.clone(),
     };
-    bar.set_length(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
+    let bar = talk.bar(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
     let mut all = Vec::new();
     for one in chosen {
         bar.set_message(one.0.title);
@@ -127,113 +129,98 @@ pub fn run(args: &Args, talk: &Talk) -> Result<Outcome> {
         }
         all.push(ran);
     }
-    bar.finish_and_clear();
+    drop(bar);
     if talk.json {
         talk.data(&all)?;
     }
-    Ok(Outcome::Done)
+    Ok(ExitStatus::Done)
 }
 
-fn list(talk: &Talk) -> Result<Outcome> {
-    if talk.json {
-        let all = sweeps().map(|(quantity, levels)| {
-            json!({
-                "id": quantity.id,
-                "unit": levels.unit,
-                "meaning": quantity.meaning,
-                "levels": levels.values,
-            })
-        });
-        talk.data(&all.collect::<Vec<_>>())?;
-        return Ok(Outcome::Done);
-    }
-    let mut rows = table(["Sweep", "Unit", "What is varied"]);
-    for (quantity, levels) in sweeps() {
-        rows.add_row([quantity.id, levels.unit, quantity.meaning]);
-    }
-    talk.print(&rows.to_string())?;
-    Ok(Outcome::Done)
+fn list(talk: &Talk) -> Result<ExitStatus> {
+    let data = sweeps().map(|(quantity, levels)| {
+        json!({
+            "id": quantity.id,
+            "unit": levels.unit,
+            "meaning": quantity.meaning,
+            "levels": levels.values,
+        })
+    });
+    talk.result(&data.collect::<Vec<_>>(), || {
+        let mut table = table(["Sweep", "Unit", "What is varied"]);
+        let rows = sweeps().map(|(quantity, levels)| [quantity.id, levels.unit, quantity.meaning]);
+        table.add_rows(rows);
+        table.to_string()
+    })?;
+    Ok(ExitStatus::Done)
 }
 
+/// The levels as a table, and why some have no controller.
 fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
     let level = match levels.unit {
         "" => quantity.title.to_string(),
         unit => format!("{}, {unit}", quantity.title),
     };
-    let mut rows = table([
-        level.as_str(),
-        "stabilised",
-        "95 % interval",
-        "tilt, deg",
-        "rms, deg",
-        "cycle, deg",
-        "torque, N m",
-        "settles, s",
-    ]);
-    for level in &ran.levels {
-        rows.add_row(cells(level));
-    }
+    let figure = |level: &Level, of: fn(&Figures) -> Option<f64>| {
+        or_dash(level.figures.as_ref().and_then(of), exact)
+    };
+    let share = |level: &Level, of: fn(&Figures) -> String| or_dash(level.figures.as_ref(), of);
+    let degrees = |rad: f64| format!("{:.1}", rad.to_degrees());
+    let columns: &[TableColumn<Level>] = &[
+        (&level, &|l| l.label.clone()),
+        ("stabilised", &|l| share(l, |f| percent(f.stabilised_share))),
+        ("95 % interval", &|l| share(l, stabilised_interval)),
+        ("tilt, deg", &|l| or_dash(l.tilt_border_rad, degrees)),
+        ("rms, deg", &|l| {
+            figure(l, |f| f.rms_angle_rad.map(f64::to_degrees))
+        }),
+        ("cycle, deg", &|l| {
+            figure(l, |f| f.limit_cycle_rad.map(f64::to_degrees))
+        }),
+        ("torque, N m", &|l| figure(l, |f| f.rms_torque_nm)),
+        ("settles, s", &|l| figure(l, |f| f.settle_s)),
+    ];
     let refused = ran.levels.iter().filter_map(|level| {
         let why = level.refused.as_ref()?;
         Some(format!("{}: no controller, {why}", level.label))
     });
     let refused: Vec<String> = refused.collect();
-    format!("{rows}\n{}\n", refused.join("\n"))
+    format!(
+        "{}\n{}\n",
+        table_of(&ran.levels, columns),
+        refused.join("\n")
+    )
 }
 
-fn cells(level: &Level) -> Vec<String> {
-    let Some(figures) = &level.figures else {
-        let mut cells = vec![level.label.clone()];
-        cells.resize(8, "–".to_string());
-        return cells;
-    };
-    let or = |value: Option<f64>| value.map_or("–".to_string(), exact);
-    let degrees = |rad: Option<f64>| or(rad.map(f64::to_degrees));
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    vec![
-        level.label.clone(),
-        percent(figures.stabilised_share),
-        format!(
-            "{:.0} to {}",
-            100.0 * figures.stabilised_low,
-            percent(figures.stabilised_high)
-        ),
-        level
-            .tilt_border_rad
-            .map_or("–".to_string(), |rad| format!("{:.1}", rad.to_degrees())),
-        degrees(figures.rms_angle_rad),
-        degrees(figures.limit_cycle_rad),
-        or(figures.rms_torque_nm),
-        or(figures.settle_s),
-    ]
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
+fn stabilised_interval(figures: &Figures) -> String {
+    let low = 100.0 * figures.stabilised_low;
+    format!("{low:.0} to {}", percent(figures.stabilised_high))
 }
 
 fn csv(ran: &Sweep) -> String {
-    let mut text = String::from(
-        "level,unit,runs,stabilised,stabilised_share,stabilised_low,stabilised_high,tilt_border_rad,rms_angle_rad,rms_torque_nm,limit_cycle_rad,settle_s\n",
-    );
-    for level in &ran.levels {
-        let Some(f) = &level.figures else {
-            text += &format!("{},{},,,,,,,,,,\n", level.level, ran.unit);
-            continue;
-        };
-        let or = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-        let fields = [
-            level.level.to_string(),
-            ran.unit.to_string(),
-            f.runs.to_string(),
-            f.stabilised.to_string(),
-            f.stabilised_share.to_string(),
-            f.stabilised_low.to_string(),
-            f.stabilised_high.to_string(),
-            or(level.tilt_border_rad),
-            or(f.rms_angle_rad),
-            or(f.rms_torque_nm),
-            or(f.limit_cycle_rad),
-            or(f.settle_s),
-        ];
-        text += &fields.join(",");
-        text.push('\n');
-    }
-    text
+    let figure = |level: &Level, of: fn(&Figures) -> Option<f64>| {
+        or_empty(level.figures.as_ref().and_then(of))
+    };
+    let columns: &[TableColumn<Level>] = &[
+        ("level", &|l| l.level.to_string()),
+        ("unit", &|_| ran.unit.to_string()),
+        ("runs", &|l| figure(l, |f| Some(f.runs as f64))),
+        ("stabilised", &|l| figure(l, |f| Some(f.stabilised as f64))),
+        ("stabilised_share", &|l| {
+            figure(l, |f| Some(f.stabilised_share))
+        }),
+        ("stabilised_low", &|l| figure(l, |f| Some(f.stabilised_low))),
+        ("stabilised_high", &|l| {
+            figure(l, |f| Some(f.stabilised_high))
+        }),
+        ("tilt_border_rad", &|l| or_empty(l.tilt_border_rad)),
+        ("rms_angle_rad", &|l| figure(l, |f| f.rms_angle_rad)),
+        ("rms_torque_nm", &|l| figure(l, |f| f.rms_torque_nm)),
+        ("limit_cycle_rad", &|l| figure(l, |f| f.limit_cycle_rad)),
+        ("settle_s", &|l| figure(l, |f| f.settle_s)),
+    ];
+    csv_of(&ran.levels, columns)
 }

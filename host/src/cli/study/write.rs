@@ -1,9 +1,9 @@
 //! A finished Monte Carlo study, printed and written.
 
-use super::super::show::table;
-use super::super::talk::Talk;
+use crate::cli::{Talk, show::table_of};
 use handstand::output::number::exact;
-use handstand::study::{Merged, Summary, monte_carlo_svg};
+use handstand::output::table::TableColumn;
+use handstand::study::{FigureQuantiles, Influence, Merged, Summary, monte_carlo_svg};
 use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::Path;
@@ -32,21 +32,32 @@ pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Resul
         }
         output::write_new(&file, &text, force)?;
     }
-    if talk.json {
-        return talk.data(&json!({ "complete": true, "summary": summary }));
+    let data = json!({ "complete": true, "summary": summary });
+    talk.result(&data, || shown(&summary))?;
+    if !talk.json {
+        let into = into.display();
+        talk.say(&format!("{into}: runs.csv, summary.json, stabilised.svg"));
     }
-    talk.print(&shown(&summary))?;
-    talk.say(&format!(
-        "{}: runs.csv, summary.json, stabilised.svg",
-        into.display()
-    ));
     Ok(())
 }
 
 fn shown(summary: &Summary) -> String {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let quantile = |figure: &FigureQuantiles, place: usize| match figure.quantiles.map(|q| q[place])
+    {
+        Some(value) if value.is_finite() => exact(value),
+        Some(_) => "never".to_string(),
+        None => "–".to_string(),
+    };
+    let figures: &[TableColumn<FigureQuantiles>] = &[
+        ("Of the stabilised", &|f| f.figure.clone()),
+        ("5 %", &|f| quantile(f, 0)),
+        ("median", &|f| quantile(f, 1)),
+        ("95 %", &|f| quantile(f, 2)),
+    ];
     let mut text = format!(
-        "{} of {} runs are stabilised: {} (95 % interval {} to {}), {} fall\n{} of the robots are unstable in the small\n\n",
+        "{} of {} runs are stabilised: {} (95 % interval {} to {}), {} fall\n\
+         {} of the robots are unstable in the small\n\n{}\n",
         summary.stabilised,
         summary.runs,
         percent(summary.stabilised_share),
@@ -54,31 +65,17 @@ fn shown(summary: &Summary) -> String {
         percent(summary.stabilised_high),
         percent(summary.fallen_share),
         percent(summary.unstable),
+        table_of(&summary.figures, figures)
     );
-    let mut figures = table(["Of the stabilised", "5 %", "median", "95 %"]);
-    for figure in &summary.figures {
-        let quantile = |place: usize| match figure.quantiles.map(|q| q[place]) {
-            Some(value) if value.is_finite() => exact(value),
-            Some(_) => "never".to_string(),
-            None => "–".to_string(),
-        };
-        figures.add_row([figure.figure.clone(), quantile(0), quantile(1), quantile(2)]);
-    }
-    text += &format!("{figures}\n");
+    let influence: &[TableColumn<Influence>] = &[
+        ("Uncertain", &|o| o.value.clone()),
+        ("correlation with being stabilised", &|o| {
+            format!("{:+.2}", o.correlation)
+        }),
+        ("of its size", &|o| format!("{:+.2}", o.correlation_of_size)),
+    ];
     if !summary.influence.is_empty() {
-        let mut influence = table([
-            "Uncertain",
-            "correlation with being stabilised",
-            "of its size",
-        ]);
-        for value in &summary.influence {
-            influence.add_row([
-                value.value.clone(),
-                format!("{:+.2}", value.correlation),
-                format!("{:+.2}", value.correlation_of_size),
-            ]);
-        }
-        text += &format!("\n{influence}\n");
+        text += &format!("\n{}\n", table_of(&summary.influence, influence));
     }
     text
 }

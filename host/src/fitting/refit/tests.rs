@@ -86,7 +86,14 @@ fn an_added_effect_gets_its_true_value_and_new_motions_are_predicted() {
     let mut truth = pendulum();
     truth.effects.push(candidate("coulomb").instance(&[0.004]));
     let split = swings(&truth);
-    let refitted = refit_with(&pendulum(), candidate("coulomb"), &split, None, &|_, _| {}).unwrap();
+    let refitted = refit_with(
+        &pendulum(),
+        &[candidate("coulomb")],
+        &split,
+        None,
+        &|_, _| {},
+    )
+    .unwrap();
     let value = &refitted.values[0];
     assert_eq!(value.path, "coulomb@1.torque_nm");
     assert_eq!(refitted.model.free, refitted.free);

@@ -6,6 +6,7 @@
 mod adapter;
 mod cdr;
 mod csv;
+mod follow;
 mod latency;
 mod mcap;
 mod motion;
@@ -17,6 +18,7 @@ mod stream;
 mod tally;
 
 pub use adapter::Adapter;
+pub use follow::{FollowedMotion, MotionStop, follow};
 pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
 pub use read::{Recording, read};

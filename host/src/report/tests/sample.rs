@@ -6,9 +6,10 @@ use crate::compare::{
 };
 use crate::diagnose::{
     Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
+    WrongValue,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
-use crate::report::{LogFile, ModelFile, Provenance, Report};
+use crate::report::{LogFile, ModelFile, Report, ReportProvenance};
 
 pub(in crate::report) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
@@ -29,7 +30,7 @@ pub(in crate::report) fn report() -> Report {
             comparison("named.toml", 6.31),
         ],
         diagnosis: Some(diagnosis()),
-        provenance: Provenance {
+        provenance: ReportProvenance {
             program_version: "0.1.0".into(),
             model_files: vec![model("ideal.toml"), model("named.toml")],
             logs: vec![log("swing.csv", false), log("sines.csv", true)],
@@ -42,6 +43,7 @@ pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison 
     Comparison {
         model: model.into(),
         horizon_s: None,
+        windows: Vec::new(),
         signals: vec![signal(error_mrad)],
         horizons: [(Some(0.1), 0.3), (Some(0.5), 0.6), (None, 1.0)]
             .map(|(horizon_s, share)| HorizonError {
@@ -121,13 +123,15 @@ fn failures(error_mrad: f64) -> Vec<Failure> {
             "within 80 ms after a reversal",
             0.62,
             0.11,
-            "62 % of the squared error lies within 80 ms after a reversal, which covers 11 % of the samples.",
+            "62 % of the squared error lies within 80 ms after a reversal, which covers 11 % of the \
+             samples.",
         ),
         failure(
             "slower than 0.2 rad/s",
             0.48,
             0.16,
-            "48 % of the squared error lies where the joint is slower than 0.2 rad/s, 16 % of the samples.",
+            "48 % of the squared error lies where the joint is slower than 0.2 rad/s, 16 % of the \
+             samples.",
         ),
     ]
 }
@@ -182,10 +186,22 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
         verdict: Verdict::Named,
         effects: vec![
             effect("coulomb", "Coulomb friction", vec![coulomb]),
-            effect("backlash", "Backlash", vec![FittedValue { on_bound: true, ..fitted("backlash@1.gap_rad", "rad", [0.012, 0.009, 0.0152]) }]),
+            effect(
+                "backlash",
+                "Backlash",
+                vec![FittedValue {
+                    on_bound: true,
+                    ..fitted("backlash@1.gap_rad", "rad", [0.012, 0.009, 0.0152])
+                }],
+            ),
         ],
+        wrong_values: vec![WrongValue {
+            given: 1.2,
+            fitted: fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]),
+        }],
         error: ErrorReduction {
             before_rad: 41.2e-3,
+            refitted_rad: Some(30.7e-3),
             after_rad: 6.31e-3,
             floor_rad: 5.1e-3,
             held_out: true,
@@ -193,6 +209,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
         },
         alternatives: vec![Alternative {
             effects: vec![effect("dead_zone", "Dead zone", vec![dead_zone])],
+            wrong_values: Vec::new(),
             error_rad: 6.5e-3,
         }],
         base: vec![fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]), delay],
@@ -210,14 +227,19 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
                 after_rad: 1e-3 * after,
             })
             .into(),
+        folds: Vec::new(),
         collinear: vec![("coulomb@1.torque_nm".into(), "motor.torque_nm".into(), 0.97)],
         summary: vec![
-            "Joint 1 resists with about 0.082 N m at every speed, which the model leaves out.".into(),
-            "With it the error on held-out motions falls from 41.2 to 6.31 mrad; the floor is 5.1 mrad.".into(),
+            "Joint 1 resists with about 0.082 N m at every speed, which the model leaves out."
+                .into(),
+            "With it the error on held-out motions falls from 41.2 to 6.31 mrad; the floor is 5.1 \
+             mrad."
+                .into(),
         ],
         next: vec!["Add the effect: handstand add coulomb@1 --torque_nm 0.0821.".into()],
         warnings: vec!["backlash@1.gap_rad lies on its bound.".into()],
         horizon_s: None,
+        windows: Vec::new(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::lanes;
 use super::run::{Run, Sample};
-use super::{Clock, Commands, Controller, Limits, Outcome, PosedPlant, Sensor, stream};
+use super::{Clock, Commands, Controller, Outcome, PosedPlant, Sensor, StabilityCriteria, stream};
 use crate::error::Result;
 use crate::model::Model;
 use rand::Rng as _;
@@ -22,7 +22,7 @@ pub struct ClosedLoop {
     /// When the controller is called.
     pub clock: Clock,
     /// What counts as fallen, stabilised and settled.
-    pub limits: Limits,
+    pub limits: StabilityCriteria,
     /// Smallest step of a command, in its unit; 0 takes every value.
     pub command_step: f64,
 }
@@ -100,7 +100,7 @@ impl ClosedLoop {
             plant,
             sensor: Sensor::EXACT,
             clock: Clock::every(period_s),
-            limits: Limits::default(),
+            limits: StabilityCriteria::default(),
             command_step: 0.0,
         }
     }

@@ -1,7 +1,6 @@
 //! What limits the drives of a robot, all alike, as effects of its model.
 
-use crate::effects;
-use crate::model::{Drive, EffectInstance, Model, Motor};
+use crate::model::{Drive, Model, Motor};
 
 /// Non-idealities of all drives, as studies vary them. Those of the model itself come on top.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,20 +59,13 @@ impl Drives {
                 Drive::Torque => self.dead_zone * self.full_torque_nm,
                 _ => self.dead_zone,
             };
-            let off = [dead_zone == 0.0, self.supply == 1.0, delay_s == 0.0];
             let effects = [
-                ("dead_zone", vec![dead_zone, 0.0]),
-                ("torque_scale", vec![self.supply]),
-                ("delay", vec![delay_s]),
+                ("dead_zone", vec![dead_zone, 0.0], dead_zone == 0.0),
+                ("torque_scale", vec![self.supply], self.supply == 1.0),
+                ("delay", vec![delay_s], delay_s == 0.0),
             ];
-            for ((id, values), off) in effects.into_iter().zip(off) {
-                if let Some(effect) = effects::named(id).filter(|_| !off) {
-                    model.effects.push(EffectInstance {
-                        effect,
-                        joint: Some(index),
-                        values,
-                    });
-                }
+            for (id, values, _) in effects.into_iter().filter(|(.., off)| !off) {
+                model.add_effect(id, index, values);
             }
         }
         model
@@ -82,17 +74,10 @@ impl Drives {
 
 /// Gives every drive this delay, s, in place of its own.
 pub(crate) fn set_delay(model: &mut Model, delay_s: f64) {
-    let Some(effect) = effects::named("delay") else {
-        return;
-    };
-    model.effects.retain(|e| e.effect != effect);
-    for joint in 0..model.joints.len() {
-        if model.joints[joint].drive.is_driven() && delay_s > 0.0 {
-            model.effects.push(EffectInstance {
-                effect,
-                joint: Some(joint),
-                values: vec![delay_s],
-            });
+    model.effects.retain(|e| e.effect.info().id != "delay");
+    for joint in model.driven_joints() {
+        if delay_s > 0.0 {
+            model.add_effect("delay", joint, vec![delay_s]);
         }
     }
 }

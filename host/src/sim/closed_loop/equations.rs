@@ -3,6 +3,7 @@
 
 use crate::dynamics::Dense;
 use crate::sim::Plant;
+use std::any::Any;
 
 /// What advances the plant.
 #[derive(Debug, Clone)]
@@ -34,32 +35,16 @@ impl Equations {
         .unwrap_or(Equations::General)
     }
 
-    pub(super) fn one(&self) -> Option<&Dense<1>> {
-        match self {
-            Equations::One(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn two(&self) -> Option<&Dense<2>> {
-        match self {
-            Equations::Two(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn three(&self) -> Option<&Dense<3>> {
-        match self {
-            Equations::Three(dense) => Some(dense),
-            _ => None,
-        }
-    }
-
-    pub(super) fn four(&self) -> Option<&Dense<4>> {
-        match self {
-            Equations::Four(dense) => Some(dense),
-            _ => None,
-        }
+    /// The dense equations, if they advance the plant and it has `N` links.
+    pub(super) fn dense<const N: usize>(&self) -> Option<&Dense<N>> {
+        let dense: &dyn Any = match self {
+            Equations::One(dense) => dense,
+            Equations::Two(dense) => dense,
+            Equations::Three(dense) => dense,
+            Equations::Four(dense) => dense,
+            Equations::General => return None,
+        };
+        dense.downcast_ref()
     }
 }
 

@@ -15,10 +15,10 @@ const WIDTH: usize = 4;
 /// Finishes all runs; outcomes in their order.
 pub(super) fn finish(runs: Vec<Run<'_>>) -> Vec<Outcome> {
     match runs.first().map(|run| &run.closed.plant.equations) {
-        Some(Equations::One(_)) => in_lanes(runs, Equations::one),
-        Some(Equations::Two(_)) => in_lanes(runs, Equations::two),
-        Some(Equations::Three(_)) => in_lanes(runs, Equations::three),
-        Some(Equations::Four(_)) => in_lanes(runs, Equations::four),
+        Some(Equations::One(_)) => in_lanes::<1>(runs),
+        Some(Equations::Two(_)) => in_lanes::<2>(runs),
+        Some(Equations::Three(_)) => in_lanes::<3>(runs),
+        Some(Equations::Four(_)) => in_lanes::<4>(runs),
         Some(Equations::General) | None => alone(runs),
     }
 }
@@ -28,7 +28,7 @@ fn alone(runs: Vec<Run<'_>>) -> Vec<Outcome> {
 }
 
 /// A run in its lane.
-struct Active<'a, const N: usize> {
+struct LaneRun<'a, const N: usize> {
     index: usize,
     run: Run<'a>,
     dense: &'a Dense<N>,
@@ -37,7 +37,7 @@ struct Active<'a, const N: usize> {
     step_s: f64,
 }
 
-impl<const N: usize> Active<'_, N> {
+impl<const N: usize> LaneRun<'_, N> {
     /// To the next span; the outcome if there is none.
     #[inline]
     fn next(&mut self) -> Option<Outcome> {
@@ -51,21 +51,15 @@ impl<const N: usize> Active<'_, N> {
     }
 }
 
-fn in_lanes<'a, const N: usize>(
-    runs: Vec<Run<'a>>,
-    dense: fn(&Equations) -> Option<&Dense<N>>,
-) -> Vec<Outcome> {
+fn in_lanes<'a, const N: usize>(runs: Vec<Run<'a>>) -> Vec<Outcome> {
+    let dense = |run: &Run<'a>| run.closed.plant.equations.dense::<N>();
     let mut outcomes = vec![None; runs.len()];
-    if runs.len() < 2
-        || !runs
-            .iter()
-            .all(|run| dense(&run.closed.plant.equations).is_some())
-    {
+    if runs.len() < 2 || runs.iter().any(|run| dense(run).is_none()) {
         return alone(runs);
     }
     let mut waiting = runs.into_iter().enumerate().filter_map(|(index, run)| {
-        let dense = dense(&run.closed.plant.equations)?;
-        Some(Active {
+        let dense = dense(&run)?;
+        Some(LaneRun {
             index,
             run,
             dense,
@@ -73,7 +67,7 @@ fn in_lanes<'a, const N: usize>(
             step_s: 0.0,
         })
     });
-    let mut lanes: [Option<Active<'a, N>>; WIDTH] = from_fn(|_| None);
+    let mut lanes: [Option<LaneRun<'a, N>>; WIDTH] = from_fn(|_| None);
     let mut packed = None;
     loop {
         for lane in &mut lanes {
@@ -122,7 +116,7 @@ fn in_lanes<'a, const N: usize>(
 /// States of all lanes after `steps` steps.
 #[inline]
 fn stepped<const N: usize>(
-    lanes: &[Option<Active<'_, N>>; WIDTH],
+    lanes: &[Option<LaneRun<'_, N>>; WIDTH],
     packed: &Dense<N, Lanes<WIDTH>>,
     steps: usize,
 ) -> [Absolute<N>; WIDTH] {

@@ -5,13 +5,15 @@
 //! during a run is kept apart. A run allocates at its beginning only.
 //!
 //! ```text
-//! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay -> drives with their effects -> torque -> plant
+//! plant x(t) -> sensor -> y(k) -> controller -> u(k) -> delay
+//!            -> drives with their effects -> torque -> plant
 //! ```
 
 mod body;
 mod clock;
 mod closed;
 mod controller;
+mod convention;
 mod drives;
 mod equations;
 mod general;
@@ -32,7 +34,7 @@ pub use closed::{ClosedLoop, InitialState, Job, run_jobs};
 pub use controller::{Controller, Measurement};
 pub use drives::Drives;
 pub(crate) use drives::set_delay;
-pub use outcome::{Limits, Outcome};
+pub use outcome::{Outcome, StabilityCriteria};
 pub use posed_plant::{Commands, PosedPlant};
 pub use random::{normal, stream};
 pub use run::Sample;

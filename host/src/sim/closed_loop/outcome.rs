@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// What counts as fallen, as stabilised and as settled: one definition for every study.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct StabilityCriteria {
     /// A link that leans further off its pose than this has fallen, rad.
     pub fall_rad: f64,
     /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the
@@ -16,9 +16,9 @@ pub struct Limits {
     pub settle_rad: f64,
 }
 
-impl Default for Limits {
+impl Default for StabilityCriteria {
     fn default() -> Self {
-        Limits {
+        StabilityCriteria {
             fall_rad: 45f64.to_radians(),
             stable_rad: 10f64.to_radians(),
             stable_s: 2.0,
@@ -27,7 +27,7 @@ impl Default for Limits {
     }
 }
 
-impl Limits {
+impl StabilityCriteria {
     /// Whether a link leans too far, or the numbers have run away.
     #[inline]
     pub(crate) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
@@ -45,7 +45,7 @@ impl Limits {
 pub struct Outcome {
     /// When it fell, s; none if it never did.
     pub fell_s: Option<f64>,
-    /// Whether it was stabilised, as [`Limits`] define it.
+    /// Whether it was stabilised, as [`StabilityCriteria`] define it.
     pub stabilised: bool,
     /// Root mean square angle over all joints and samples, rad.
     pub rms_angle_rad: f64,
@@ -91,7 +91,7 @@ impl Tally {
         &mut self,
         time_s: f64,
         angle_rad: &[f64],
-        limits: &Limits,
+        limits: &StabilityCriteria,
         late: bool,
         ends: &mut [[f64; 2]],
     ) {
@@ -128,7 +128,7 @@ impl Tally {
         end_s: f64,
         fell: bool,
         drives: usize,
-        limits: &Limits,
+        limits: &StabilityCriteria,
         ends: &[[f64; 2]],
     ) -> Outcome {
         let swing = ends.iter().map(|[low, high]| high - low);

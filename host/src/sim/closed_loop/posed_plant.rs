@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::log::Motion;
 use crate::model::{Drive, Model};
 use crate::sim::drive::DriveInput;
+use crate::sim::stepper::steps;
 use crate::sim::{Plant, bare_motors};
 
 /// An upright robot is faster than the arms that models' own steps are made for, s.
@@ -68,7 +69,7 @@ impl PosedPlant {
             }
         };
         let plant = Plant::without_log(model);
-        PosedPlant::around(plant, pose_rad, commands, model.step_s)
+        PosedPlant::around(plant, model, pose_rad, commands)
     }
 
     /// The plant of a model under the conditions of a motion (payload, attitude), commanded as its
@@ -78,14 +79,14 @@ impl PosedPlant {
     /// As [`PosedPlant::new`].
     pub fn of_motion(model: &Model, pose_rad: &[f64], motion: &Motion) -> Result<PosedPlant> {
         let plant = Plant::new(model, motion);
-        PosedPlant::around(plant, pose_rad, Commands::Own, model.step_s)
+        PosedPlant::around(plant, model, pose_rad, Commands::Own)
     }
 
     fn around(
         plant: Plant,
+        model: &Model,
         pose_rad: &[f64],
         commands: Commands,
-        step_s: f64,
     ) -> Result<PosedPlant> {
         if pose_rad.len() != plant.len() {
             return Err(Error::design(
@@ -93,22 +94,20 @@ impl PosedPlant {
                 "give the pose one angle per joint",
             ));
         }
-        let drives: Vec<DrivenJoint> = (0..plant.len())
-            .filter(|&joint| plant.joints[joint].drive.is_driven())
-            .map(|joint| {
-                let plan = &plant.joints[joint];
-                let is_duty = matches!(plan.drive, Drive::Duty(_));
-                DrivenJoint {
-                    joint,
-                    input_per_command: match (commands, is_duty) {
-                        (Commands::Torque, true) => 1.0 / plan.full_torque_nm,
-                        _ => 1.0,
-                    },
-                    largest_input: if is_duty { 1.0 } else { f64::INFINITY },
-                    delay_s: plan.delay_s,
-                }
-            })
-            .collect();
+        let driven = |joint: usize| {
+            let plan = &plant.joints[joint];
+            let is_duty = matches!(plan.drive, Drive::Duty(_));
+            DrivenJoint {
+                joint,
+                input_per_command: match (commands, is_duty) {
+                    (Commands::Torque, true) => 1.0 / plan.full_torque_nm,
+                    _ => 1.0,
+                },
+                largest_input: if is_duty { 1.0 } else { f64::INFINITY },
+                delay_s: plan.delay_s,
+            }
+        };
+        let drives: Vec<DrivenJoint> = model.driven_joints().into_iter().map(driven).collect();
         if drives.is_empty() {
             return Err(Error::design(
                 "no joint is driven, so nothing can hold the robot up",
@@ -119,8 +118,8 @@ impl PosedPlant {
             equations: Equations::of(&plant),
             drives,
             disturbance_nm: vec![0.0; plant.len()],
-            step_s: step_s.min(LONGEST_STEP_S),
-            pose_rad: plant.pose_rad(pose_rad),
+            step_s: model.step_s.min(LONGEST_STEP_S),
+            pose_rad: model.relative_rad(pose_rad),
             plant,
         })
     }
@@ -152,79 +151,32 @@ impl PosedPlant {
         self.drives.iter().map(|drive| drive.joint)
     }
 
-    /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
-    /// masses in balance.
-    pub fn balanced_rad(&self) -> Vec<f64> {
-        let chain = &self.plant.rig.chain;
-        let turn = self.plant.base_m_s2[0].atan2(self.plant.base_m_s2[1]);
-        let (mut beyond_kg, mut absolute) = (0.0, vec![0.0; chain.len()]);
-        for (i, link) in chain.links.iter().enumerate().rev() {
-            let (sin, cos) = link.com_angle_rad.sin_cos();
-            let moment = link.mass_kg * link.com_m;
-            let along = moment * cos + link.length_m * beyond_kg;
-            absolute[i] = std::f64::consts::PI - (moment * sin).atan2(along) - turn;
-            beyond_kg += link.mass_kg;
-        }
-        let relative = |i: usize| absolute[i] - if i > 0 { absolute[i - 1] } else { 0.0 };
-        let off = (0..absolute.len()).map(|i| relative(i) - self.pose_rad[i]);
-        // The nearest turn.
-        off.map(|a| a - std::f64::consts::TAU * (a / std::f64::consts::TAU).round())
-            .collect()
-    }
-
-    /// Deviations of the joints, rad, as deviations in the model's convention of angles.
-    pub fn in_convention(&self, angle_rad: &[f64]) -> Vec<f64> {
-        let carry = if self.plant.absolute { 1.0 } else { 0.0 };
-        let sum = |sum: &mut f64, angle: &f64| {
-            *sum = carry * *sum + angle;
-            Some(*sum)
-        };
-        angle_rad.iter().scan(0.0, sum).collect()
-    }
-
-    /// Angles and speeds of the joints as deviations from the pose, each relative to the link
-    /// before, rad and rad/s, where the encoders read `reading_rad`, rad in the model's
-    /// convention, and their readings change by `rate_rad_s`.
-    pub fn deviations(&self, reading_rad: &[f64], rate_rad_s: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut angle_rad = self.plant.decode_rad(reading_rad);
-        for (angle, pose) in angle_rad.iter_mut().zip(&self.pose_rad) {
-            *angle -= pose;
-        }
-        (angle_rad, self.plant.decode_rad_s(rate_rad_s))
-    }
-
-    /// What the encoders read at the pose, rad in the model's convention.
-    pub fn pose_reading_rad(&self) -> Vec<f64> {
-        let joints = 0..self.joints();
-        joints
-            .map(|joint| self.plant.encoded_rad(joint, &self.pose_rad))
-            .collect()
-    }
-
-    /// Input of a drive for a command.
+    /// Gives a drive its command: its input, and its torque at the state.
     #[inline]
-    pub(super) fn input(&self, drive: usize, command: f64) -> DriveInput {
+    pub(super) fn obey(
+        &self,
+        drive: usize,
+        command: f64,
+        inputs: &mut [DriveInput],
+        body: &mut Body,
+    ) {
         let driven = &self.drives[drive];
+        let joint = driven.joint;
         let input = driven.input_per_command * command;
-        DriveInput {
+        let input = DriveInput {
             input: input.clamp(-driven.largest_input, driven.largest_input),
-            disturbance_nm: self.disturbance_nm[driven.joint],
+            disturbance_nm: self.disturbance_nm[joint],
             ..DriveInput::ZERO
-        }
-    }
-
-    /// Torque of a drive at the state, N m.
-    #[inline]
-    pub(super) fn drive_torque_nm(&self, drive: usize, input: DriveInput, body: &Body) -> f64 {
-        let joint = self.drives[drive].joint;
+        };
+        inputs[joint] = input;
         let plan = &self.plant.joints[joint];
-        match &body.general {
+        body.drive_nm[drive] = match &body.general {
             None => plan.drive_torque_nm(input, 0.0, 0.0),
             Some(general) => {
                 let reading = self.plant.encoded_rad(joint, general.angle_rad());
                 plan.drive_torque_nm(input, reading, body.speed_rad_s[joint])
             }
-        }
+        };
     }
 
     /// Readings of the encoders as deviations from those of the pose, in the model's convention:
@@ -251,8 +203,7 @@ impl PosedPlant {
     /// Into how many steps of what length a span is cut, s.
     #[inline]
     pub(super) fn steps(&self, span_s: f64) -> (usize, f64) {
-        let steps = (span_s / self.step_s - 1e-6).ceil().max(1.0);
-        (steps as usize, span_s / steps)
+        steps(span_s, self.step_s)
     }
 
     /// Advances by `span_s` under constant inputs.

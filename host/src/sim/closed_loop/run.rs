@@ -105,18 +105,10 @@ impl<'a> Run<'a> {
             sample_s: 0.0,
         };
         for drive in 0..drives {
-            run.obey(drive, start.command.get(drive).copied().unwrap_or(0.0));
+            let command = start.command.get(drive).copied().unwrap_or(0.0);
+            plant.obey(drive, command, &mut run.inputs, &mut run.body);
         }
         run
-    }
-
-    /// Gives a drive its command.
-    #[inline]
-    fn obey(&mut self, drive: usize, command: f64) {
-        let plant = &self.closed.plant;
-        let input = plant.input(drive, command);
-        self.inputs[plant.drives[drive].joint] = input;
-        self.body.drive_nm[drive] = plant.drive_torque_nm(drive, input, &self.body);
     }
 
     /// Does all that is due now; what comes next. After a span the robot must have moved.
@@ -148,9 +140,7 @@ impl<'a> Run<'a> {
         let plant = &self.closed.plant;
         let (inputs, body) = (&mut self.inputs, &mut self.body);
         self.pending.pop(self.now_s + AT_ONCE_S, |drive, command| {
-            let input = plant.input(drive, command);
-            inputs[plant.drives[drive].joint] = input;
-            body.drive_nm[drive] = plant.drive_torque_nm(drive, input, body);
+            plant.obey(drive, command, inputs, body);
         });
     }
 

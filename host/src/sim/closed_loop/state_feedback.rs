@@ -1,4 +1,4 @@
-//! u = u0 - K (x - x0), on past torques too if the gains have columns for them.
+//! u = u0 - K x, on past torques too if the gains have columns for them.
 
 use super::{Controller, Measurement};
 
@@ -9,10 +9,9 @@ pub struct StateFeedback {
     /// each joint's speed, then, for designs with a delay, per command of one sample ago, two
     /// samples ago, ...
     pub gains: Vec<Vec<f64>>,
-    /// State that is held: deviations of angles, rad, then of speeds, rad/s. Eccentric masses are
-    /// compensated here.
-    pub hold: Vec<f64>,
-    /// Command that is given at that state.
+    /// Numbers of angles and speeds.
+    states: usize,
+    /// Command that is given at the pose.
     pub feed: Vec<f64>,
 }
 
@@ -20,30 +19,23 @@ impl StateFeedback {
     /// Holds the pose of a robot of `joints` joints, with command 0.
     pub fn new(joints: usize, gains: Vec<Vec<f64>>) -> Self {
         StateFeedback {
-            hold: vec![0.0; 2 * joints],
+            states: 2 * joints,
             feed: vec![0.0; gains.len()],
             gains,
         }
     }
 
-    /// Feeds these commands at the state that is held.
+    /// Feeds these commands at the pose.
     #[must_use]
     pub fn feeding(mut self, command: &[f64]) -> Self {
         self.feed.copy_from_slice(command);
-        self
-    }
-
-    /// Holds other angles, rad from the pose: the compensation of eccentric masses.
-    #[must_use]
-    pub fn holding(mut self, angle_rad: &[f64]) -> Self {
-        self.hold[..angle_rad.len()].copy_from_slice(angle_rad);
         self
     }
 }
 
 impl Controller for StateFeedback {
     fn memory_len(&self) -> usize {
-        self.gains.first().map_or(0, Vec::len) - self.hold.len()
+        self.gains.first().map_or(0, Vec::len) - self.states
     }
 
     fn reset(&self, memory: &mut [f64]) {
@@ -55,13 +47,11 @@ impl Controller for StateFeedback {
     #[inline]
     fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command: &mut [f64]) {
         let joints = measured.angle_rad.len();
-        let (hold_angle, hold_speed) = self.hold.split_at(joints);
         for ((command, row), feed) in command.iter_mut().zip(&self.gains).zip(&self.feed) {
             let (angle_gain, rest) = row.split_at(joints);
             let (speed_gain, past_gain) = rest.split_at(joints);
-            *command = feed
-                - dot(angle_gain, measured.angle_rad, hold_angle)
-                - dot(speed_gain, measured.speed_rad_s, hold_speed);
+            *command =
+                feed - dot(angle_gain, measured.angle_rad) - dot(speed_gain, measured.speed_rad_s);
             let past = memory.iter().zip(self.feed.iter().cycle());
             for (gain, (past, feed)) in past_gain.iter().zip(past) {
                 *command -= gain * (past - feed);
@@ -82,12 +72,7 @@ pub(crate) fn remember(memory: &mut [f64], command: &[f64]) {
     memory[..command.len()].copy_from_slice(command);
 }
 
-/// Sum of k (x - x0).
 #[inline]
-fn dot(gain: &[f64], x: &[f64], hold: &[f64]) -> f64 {
-    gain.iter()
-        .zip(x)
-        .zip(hold)
-        .map(|((k, x), x0)| k * (x - x0))
-        .sum()
+pub(crate) fn dot(gain: &[f64], x: &[f64]) -> f64 {
+    gain.iter().zip(x).map(|(k, x)| k * x).sum()
 }

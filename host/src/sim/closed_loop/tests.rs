@@ -1,4 +1,5 @@
 use super::*;
+use crate::controllers::KnownEquilibrium;
 use crate::model::Model;
 use std::path::Path;
 
@@ -111,7 +112,8 @@ fn eccentric_masses_are_held_with_compensation_only_at_their_balance() {
     assert!(balance.iter().any(|a| a.abs() > 0.01), "{balance:?}");
     let closed = ClosedLoop::around(plant, 0.01);
     let start = InitialState::at(balance.clone());
-    let held = one(&closed, &paper_gains().holding(&balance), &start, 5.0);
+    let compensated = KnownEquilibrium::new(Box::new(paper_gains()), balance.clone());
+    let held = one(&closed, &compensated, &start, 5.0);
     assert!(held.rms_torque_nm < 1e-9, "{held:?}");
     let plain = one(&closed, &paper_gains(), &start, 5.0);
     assert!(plain.rms_torque_nm > 0.01, "{plain:?}");
@@ -193,9 +195,10 @@ fn drives_are_as_far_from_ideal_as_their_effects_say() {
         };
         let closed = loop_of(&drives.on(&model(), 0.01));
         let torque = |command: f64| {
-            let body = body::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
-            let input = closed.plant.input(0, command);
-            closed.plant.drive_torque_nm(0, input, &body)
+            let mut body = body::Body::new(&closed.plant, &[0.0; 3], &[0.0; 3]);
+            let mut inputs = [crate::sim::drive::DriveInput::ZERO; 3];
+            closed.plant.obey(0, command, &mut inputs, &mut body);
+            body.drive_nm[0]
         };
         assert_eq!([torque(0.19), torque(-0.2)], [0.0, 0.0]);
         assert!((torque(0.21) - 0.21).abs() < 1e-12);

@@ -232,7 +232,7 @@ fn what_limits_a_design_is_named() {
     let made = Design::of(&model, &request).unwrap();
     let left_out = left_out(&model, &model, &made);
     assert_eq!(left_out.len(), 2);
-    let verified = verify(&model, &made, &request, &left_out).unwrap();
+    let verified = verify(&model, &made, &request, &left_out, &|| ()).unwrap();
     let limiting = verified.limiting().unwrap();
     assert_eq!(
         (limiting.effect, limiting.joint),

@@ -1,7 +1,6 @@
 mod controllers;
 
 use super::*;
-use crate::error::Error;
 use crate::sim::closed_loop::Velocity;
 use std::path::{Path, PathBuf};
 
@@ -27,21 +26,11 @@ fn study(text: &str) -> crate::Result<Study> {
     Study::load(&file)
 }
 
-fn header(study: &Study) -> Header {
-    Header {
-        handstand_study: FORMAT,
-        fingerprint: study.fingerprint(),
-        runs: study.judging.runs,
-        chunk: CHUNK,
-        columns: columns(study),
-    }
-}
-
 /// Writes a shard's journal as the command does.
 fn shard(study: &Study, shard: Shard, file: &Path) {
     let designed = study.case.designed().unwrap();
-    let mut journal = Journal::open(file, &header(study)).unwrap();
-    for chunk in (0..chunks(study)).filter(|&chunk| shard.holds(chunk)) {
+    let mut journal = Journal::open(file, &Header::of(study)).unwrap();
+    for chunk in (0..Header::of(study).chunks()).filter(|&chunk| shard.holds(chunk)) {
         let rows = chunk_rows(study, &designed, chunk).unwrap();
         journal.add(chunk, &rows).unwrap();
     }
@@ -96,7 +85,8 @@ fn what_a_file_cannot_say_is_refused_with_its_line() {
             "whole robot",
         ),
         (
-            "[[uncertain]]\nwhat = \"mass\"\nsize = 1\n[[uncertain]]\nwhat = \"mass\"\nlink = 2\nsize = 1\n",
+            "[[uncertain]]\nwhat = \"mass\"\nsize = 1\n\
+             [[uncertain]]\nwhat = \"mass\"\nlink = 2\nsize = 1\n",
             ":5:8",
             "drawn twice",
         ),
@@ -168,7 +158,7 @@ fn a_torn_end_is_cut_off_and_done_again() {
             _ => 3,
         };
         assert!(before > 0);
-        let journal = Journal::open(&path, &header(&study)).unwrap();
+        let journal = Journal::open(&path, &Header::of(&study)).unwrap();
         assert_eq!(journal.done.len(), 3 - before);
         drop(journal);
         shard_rest(&study, &path);
@@ -182,8 +172,8 @@ fn a_torn_end_is_cut_off_and_done_again() {
 
 fn shard_rest(study: &Study, file: &Path) {
     let designed = study.case.designed().unwrap();
-    let mut journal = Journal::open(file, &header(study)).unwrap();
-    for chunk in 0..chunks(study) {
+    let mut journal = Journal::open(file, &Header::of(study)).unwrap();
+    for chunk in 0..Header::of(study).chunks() {
         if !journal.done.contains(&chunk) {
             journal
                 .add(chunk, &chunk_rows(study, &designed, chunk).unwrap())
@@ -203,19 +193,19 @@ fn what_does_not_belong_together_is_not_merged() {
     let files = [path("a.journal"), path("b.journal")];
     let error = merge(&files).unwrap_err();
     assert!(
-        matches!(&error, Error::Data { reason, .. } if reason.to_string().contains("another study")),
+        matches!(error.reason(), Some(StudyError::StudiesDiffer(_))),
         "{error}"
     );
-    let error = Journal::open(&files[0], &header(&other)).unwrap_err();
+    let error = Journal::open(&files[0], &Header::of(&other)).unwrap_err();
     assert_eq!(error.exit_code(), 3);
 
     // One digit changed, its sum made to fit.
-    let mut journal = Journal::open(&path("c.journal"), &header(&one)).unwrap();
+    let mut journal = Journal::open(&path("c.journal"), &Header::of(&one)).unwrap();
     let rows = chunk_rows(&one, &one.case.designed().unwrap(), 1).unwrap();
     journal.add(1, &rows.replacen("0.0", "0.1", 1)).unwrap();
     let error = merge(&[path("a.journal"), path("c.journal")]).unwrap_err();
     assert!(error.to_string().contains("chunk 1 differs"), "{error}");
-    let held = Journal::open(&path("c.journal"), &header(&one)).unwrap_err();
+    let held = Journal::open(&path("c.journal"), &Header::of(&one)).unwrap_err();
     assert!(
         held.to_string().contains("another program is writing it"),
         "{held}"
@@ -226,7 +216,7 @@ fn what_does_not_belong_together_is_not_merged() {
     let endless = Header {
         runs: usize::MAX,
         chunk: 1,
-        ..header(&one)
+        ..Header::of(&one)
     };
     let line = serde_json::to_string(&endless).unwrap() + "\n";
     std::fs::write(path("e.journal"), line).unwrap();

@@ -3,7 +3,7 @@
 use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use crate::synth::{Design, Fixed};
+use crate::synth::{Design, Fixed, rows};
 use std::fmt::Write as _;
 
 const LAW: &str = "\
@@ -35,7 +35,8 @@ pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
         let _ = writeln!(text, " * {}", line.replace("*/", "* /"));
     }
     let row = |values: &mut dyn Iterator<Item = &i64>| format!("{{{}}}", list(values));
-    let rows = (0..m).map(|i| row(&mut law.k.row(i).iter().copied().collect::<Vec<_>>().iter()));
+    let gains = rows(&law.k);
+    let gains = gains.iter().map(|gains| row(&mut gains.iter()));
     let limits = law.limits.iter().map(|limits| row(&mut limits.iter()));
     let vectors = golden(law);
     let of = |values: Vec<String>| values.join(",\n    ");
@@ -78,7 +79,7 @@ static const int16_t gains_golden_u[GAINS_GOLDEN][GAINS_INPUTS] = {{
 ",
         law.fingerprint(),
         vectors.len(),
-        list(rows),
+        list(gains),
         list(&law.bias),
         list(&law.shift),
         list(limits),

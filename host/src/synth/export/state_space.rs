@@ -1,24 +1,17 @@
 //! The design for other programs: JSON, CSV, and a script for MATLAB and Octave.
 
 use super::Provenance;
-use crate::synth::Discrete;
-use crate::synth::{Design, Estimation, Fixed, OmittedEffect, Signal};
+use super::values::names;
+use crate::synth::{Design, Discrete, Estimation, Fixed, OmittedEffect, Signal, rows};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// K with a line per input, a column per state, every digit.
 pub fn csv(design: &Design) -> String {
-    let names: Vec<&str> = design.states.iter().map(|s| s.name.as_str()).collect();
-    let mut text = format!("input,{}\n", names.join(","));
-    for (i, input) in design.inputs.iter().enumerate() {
-        let row: Vec<String> = design
-            .gains
-            .k
-            .row(i)
-            .iter()
-            .map(|k| format!("{k:?}"))
-            .collect();
+    let mut text = format!("input,{}\n", names(&design.states).join(","));
+    for (input, row) in design.inputs.iter().zip(rows(&design.gains.k)) {
+        let row: Vec<String> = row.iter().map(|k| format!("{k:?}")).collect();
         let _ = writeln!(text, "{},{}", input.name, row.join(","));
     }
     text
@@ -46,12 +39,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
         "zeros_1_s": complex(&design.zeros),
         "controllability_rank": design.controllability.rank,
         "observability_rank": design.observability.rank,
-        "continuous": {
-            "a": rows(&design.plant.a),
-            "b": rows(&design.plant.b),
-            "c": rows(&design.plant.c),
-            "d": rows(&DMatrix::zeros(design.plant.c.nrows(), design.plant.b.ncols())),
-        },
+        "continuous": plant(&design.plant.a, &design.plant.b, &design.plant.c),
         "sampled": design.sampled.as_ref().map(|(plant, delay_s)| sampled(plant, *delay_s)),
         "estimator": design.estimator.as_ref().map(estimator),
         "fixed": design.fixed.as_ref().map(fixed),
@@ -72,16 +60,18 @@ fn omitted(omitted: &OmittedEffect) -> Value {
     })
 }
 
-fn sampled(plant: &Discrete, delay_s: f64) -> Value {
-    json!({
-        "a": rows(&plant.a),
-        "b": rows(&plant.b),
-        "c": rows(&plant.c),
-        "d": rows(&DMatrix::zeros(plant.c.nrows(), plant.b.ncols())),
-        "ts_s": plant.ts_s,
-        "delay_s": delay_s,
-        "delayed_inputs": plant.delayed_inputs,
-    })
+/// A plant without feedthrough.
+fn plant(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Value {
+    let d = DMatrix::zeros(c.nrows(), b.ncols());
+    json!({ "a": rows(a), "b": rows(b), "c": rows(c), "d": rows::<f64>(&d) })
+}
+
+fn sampled(sampled: &Discrete, delay_s: f64) -> Value {
+    let mut value = plant(&sampled.a, &sampled.b, &sampled.c);
+    value["ts_s"] = json!(sampled.ts_s);
+    value["delay_s"] = json!(delay_s);
+    value["delayed_inputs"] = json!(sampled.delayed_inputs);
+    value
 }
 
 fn estimator(estimation: &Estimation) -> Value {
@@ -106,7 +96,7 @@ fn fixed(fixed: &Fixed) -> Value {
     let (law, loss) = (&fixed.law, &fixed.loss);
     json!({
         "bits": law.bits,
-        "k": (0..law.k.nrows()).map(|i| law.k.row(i).iter().copied().collect()).collect::<Vec<Vec<i64>>>(),
+        "k": rows(&law.k),
         "bias": law.bias,
         "shift": law.shift,
         "limits": law.limits,
@@ -128,13 +118,6 @@ fn fixed(fixed: &Fixed) -> Value {
 fn signals(signals: &[Signal]) -> Vec<Value> {
     let value = |s: &Signal| json!({ "name": s.name, "unit": s.unit });
     signals.iter().map(value).collect()
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix
-        .row_iter()
-        .map(|row| row.iter().copied().collect())
-        .collect()
 }
 
 fn complex(values: &[Complex<f64>]) -> Vec<[f64; 2]> {
@@ -170,14 +153,9 @@ pub fn matlab(design: &Design, made: &Provenance) -> String {
     put("Q", &design.weights[0]);
     put("R", &design.weights[1]);
     put("K", &design.gains.k);
-    put(
-        "x0",
-        &DMatrix::from_row_slice(1, design.x0.len(), &design.x0),
-    );
-    put(
-        "u0",
-        &DMatrix::from_row_slice(1, design.u0.len(), &design.u0),
-    );
+    for (name, values) in [("x0", &design.x0), ("u0", &design.u0)] {
+        put(name, &DMatrix::from_row_slice(1, values.len(), values));
+    }
     if let Some(estimation) = &design.estimator {
         let controller = &estimation.compensator;
         put("L", &estimation.estimator.gain);

@@ -1,10 +1,12 @@
 //! A design for people.
 
 use super::format::{digits, plain, several};
+use super::values::{list, names};
 use crate::output::number::short;
+use crate::synth::eigen::largest;
 use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 /// Wider matrices are left to `--csv` and `--json`.
 const WIDEST: usize = 12;
@@ -12,13 +14,7 @@ const WIDEST: usize = 12;
 /// Gains, poles, zeros, what fixed point costs.
 pub fn text(design: &Design) -> String {
     let joints = design.plant.a.nrows() / 2;
-    let joined = |values: &[f64]| {
-        values
-            .iter()
-            .map(|v| plain(*v))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
+    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v)));
     let mut parts = vec![format!(
         "`{}` at q = [{}] rad, held by u = [{}]",
         design.model,
@@ -80,15 +76,8 @@ fn gain_table(design: &Design) -> String {
             design.states.len()
         );
     }
-    let names = |signals: &[crate::synth::Signal]| -> Vec<String> {
-        signals.iter().map(|signal| signal.name.clone()).collect()
-    };
-    matrix(
-        "K",
-        &names(&design.inputs),
-        &names(&design.states),
-        &design.gains.k,
-    )
+    let (rows, columns) = (names(&design.inputs), names(&design.states));
+    matrix("K", &rows, &columns, &design.gains.k)
 }
 
 fn matrix(corner: &str, rows: &[String], columns: &[String], values: &DMatrix<f64>) -> String {
@@ -170,11 +159,7 @@ fn loop_lines(design: &Design) -> Vec<String> {
         several(&design.gains.poles)
     )];
     if design.sampled.is_some() {
-        let radius = design
-            .gains
-            .poles
-            .iter()
-            .fold(0.0, |r: f64, pole| r.max(pole.norm()));
+        let radius = largest(&design.gains.poles);
         lines.push(format!("Spectral radius       {radius:.6}"));
     }
     let residual = match design.gains.residual {
@@ -190,26 +175,20 @@ fn loop_lines(design: &Design) -> Vec<String> {
 
 fn estimator_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
     let own = estimation.plant.plant_states();
-    let names = estimation.outputs.iter().map(|output| output.name.clone());
-    let states: Vec<String> = design.states[..own]
-        .iter()
-        .map(|s| s.name.clone())
-        .collect();
-    let names: Vec<String> = names.collect();
+    let (states, outputs) = (names(&design.states[..own]), names(&estimation.outputs));
     let mut lines = Vec::new();
-    if names.len() <= WIDEST {
+    if outputs.len() <= WIDEST {
         let gain = estimation.estimator.gain.rows(0, own).into_owned();
-        lines.push(matrix("L", &states, &names, &gain));
+        lines.push(matrix("L", &states, &outputs, &gain));
         lines.push(String::new());
     }
-    let radius = |poles: &[Complex<f64>]| poles.iter().fold(0.0, |r: f64, p| r.max(p.norm()));
     lines.push(format!(
         "Poles of the filter   {}",
         several(&estimation.estimator.poles)
     ));
     lines.push(format!(
         "With filter and gains the loop's spectral radius is {:.6}",
-        radius(&estimation.compensator.loop_poles)
+        largest(&estimation.compensator.loop_poles)
     ));
     lines
 }
@@ -240,19 +219,9 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
         ]);
     }
     right(&mut table);
-    let ranges = fixed
-        .ranges
-        .state
-        .iter()
-        .zip(&law.state_step)
-        .zip(&design.states);
-    let ranges = ranges.map(|((range, step), state)| {
-        format!(
-            "{} ±{} in steps of {}",
-            state.name,
-            plain(*range),
-            short(*step)
-        )
+    let ranges = design.states.iter().enumerate().map(|(i, state)| {
+        let (range, step) = (plain(fixed.ranges.state[i]), short(law.state_step[i]));
+        format!("{} ±{range} in steps of {step}", state.name)
     });
     let ranges: Vec<String> = ranges.collect();
     vec![
@@ -262,7 +231,9 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
             true => format!("Ranges: {}", ranges.join("; ")),
             false => format!("Ranges: of {} states, see --json", ranges.len()),
         },
-        "No states whatever overflow the sum; errors are the most that is possible within the ranges.".to_string(),
+        "No states whatever overflow the sum; errors are the most that is possible within the \
+         ranges."
+            .to_string(),
         format!(
             "Spectral radius with these gains {:.6}; fingerprint {:08X}",
             loss.radius_fixed,

@@ -11,12 +11,19 @@ pub(super) fn list<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     values.join(", ")
 }
 
+/// Names of signals.
+pub(super) fn names(signals: &[Signal]) -> Vec<String> {
+    signals.iter().map(|signal| signal.name.clone()).collect()
+}
+
 /// What the head of a file says, a line each.
 pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<String> {
     let law = &fixed.law;
-    let names =
+    let with_units =
         |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));
     let plain = |values: &[f64]| list(values.iter());
+    let margins = fixed.loss.margin_bits.iter();
+    let margins = margins.map(|bits| format!("{bits:.2}"));
     let mut lines = vec![
         format!(
             "Gains of `{}`: u = sat(u0 - K (x - x0)) in fixed point.",
@@ -29,21 +36,15 @@ pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<Str
         ),
         format!("  sha256 {}", made.sha256),
         format!("  $ {}", made.command),
-        format!("States x: {}", names(&design.states)),
+        format!("States x: {}", with_units(&design.states)),
         format!("  SI value of one step: {}", plain(&law.state_step)),
         format!("  ranges about x0: {}", plain(&fixed.ranges.state)),
-        format!("Inputs u: {}", names(&design.inputs)),
+        format!("Inputs u: {}", with_units(&design.inputs)),
         format!("  SI value of one step: {}", plain(&law.input_step)),
         format!("  limits: {}", plain(&fixed.ranges.input)),
         format!(
             "No states whatever overflow the 32-bit sum: {} bits of margin.",
-            list(
-                fixed
-                    .loss
-                    .margin_bits
-                    .iter()
-                    .map(|bits| format!("{bits:.2}"))
-            )
+            list(margins)
         ),
         format!(
             "Spectral radius of the loop: {:.6} as designed, {:.6} with these gains.",

@@ -14,3 +14,4 @@ mod twofold;
 
 use doubling::symmetrise;
 pub(super) use problem::{Problem, TimeDomain};
+pub(super) use stein::stein;

@@ -9,8 +9,12 @@ use nalgebra::DMatrix;
 /// not.
 const MOST_DOUBLINGS: usize = 60;
 
-/// The solution to about `accuracy`; `None` if M does not decay.
-pub(super) fn stein(mut m: DMatrix<f64>, f: DMatrix<f64>, accuracy: f64) -> Option<DMatrix<f64>> {
+/// E, the sum of M'^k F M^k over all k, to about `accuracy`; `None` if M does not decay.
+pub(in crate::synth) fn stein(
+    mut m: DMatrix<f64>,
+    f: DMatrix<f64>,
+    accuracy: f64,
+) -> Option<DMatrix<f64>> {
     let mut e = f;
     for _ in 0..MOST_DOUBLINGS {
         let more = transposed_product(&m, &product(&e, &m));

@@ -186,7 +186,8 @@ mod tests {
             small in -1.0f64..1.0,
         ) {
             let row: Vec<f64> = values.iter().chain(&values).copied().chain([1e-20]).collect();
-            let column: Vec<f64> = values.iter().copied().chain(values.iter().map(|v| -v)).chain([small]).collect();
+            let both = values.iter().copied().chain(values.iter().map(|v| -v));
+            let column: Vec<f64> = both.chain([small]).collect();
             let product = SplitMatrix::new(DMatrix::from_row_slice(1, 13, &row))
                 .times(&Twofold::exact(DMatrix::from_column_slice(13, 1, &column)));
             prop_assert!((product.rounded()[0] - 1e-20 * small).abs() < 1e-30);

@@ -9,7 +9,7 @@ use serde_json::json;
 /// In ten different tenths of the servos' motor interrupts.
 #[cfg(simavr)]
 pub(super) fn readings(args: &Args, built: Option<&Built>) -> Vec<Row> {
-    use handstand::controllers::Timing;
+    use handstand::controllers::BoardTiming;
     use handstand_tests::bench::{Ages, REPORT_MS, Spread, ages};
     let Some(built) = built else {
         return Vec::new();
@@ -31,9 +31,9 @@ pub(super) fn readings(args: &Args, built: Option<&Built>) -> Vec<Row> {
         let most = parts.iter().map(|part| part[2]).fold(0.0, f64::max);
         [least, mean, most]
     };
-    let Timing {
+    let BoardTiming {
         age_s, effect_s, ..
-    } = Timing::HOST_ATTITUDE;
+    } = BoardTiming::HOST_ATTITUDE;
     let row = |name, part, designed_s: f64| {
         let [least, middle, most] = over(part);
         let designed_ms = designed_s * 1e3;

@@ -1,0 +1,249 @@
+//! Three links on a bar, carried forward at 20 kHz: the laws of a chain, written down a second
+//! time on purpose.
+//!
+//! As the arm: the midpoint rule, drift-kick-drift, and dry friction as impulses that can stop
+//! joints but never reverse them. Forces are those of absolute angles, where the equations are
+//! shortest; state, drives and friction are the joints'.
+
+use super::encoder::Encoder;
+use super::physics::{DriveCommand, GRAVITY_M_S2, Physics};
+
+/// Links of the robot.
+pub const LINKS: usize = 3;
+/// A value per joint, or per link.
+pub type Joints = [f64; LINKS];
+/// Longest integration step, s.
+const STEP_S: f64 = 1.0 / 20_000.0;
+/// Rounds in which the joints' dry friction settles, and the change of speed, rad/s, that ends
+/// them.
+const ROUNDS: (usize, f64) = (60, 1e-13);
+
+/// The robot's laws: what each joint and its link is, how far the next joint is, and how it hangs.
+#[derive(Debug, Clone)]
+pub struct Laws {
+    /// Joint and link, from the bar outwards; a passive joint has a stall torque of 0.
+    pub joints: [Physics; LINKS],
+    /// Joint to next joint, m.
+    pub length_m: Joints,
+    /// Whether the rig is turned by 180 degrees about the vertical.
+    pub turned: bool,
+}
+
+/// Forces on the chain at one state.
+struct Forces {
+    mass: [Joints; LINKS],
+    /// Torques that gravity and velocities ask of the joints at rest of acceleration, N m.
+    needed: Joints,
+}
+
+impl Laws {
+    /// Angle from the vertical by which gravity is turned, rad.
+    fn tilt(&self) -> f64 {
+        let tilt: f64 = self.joints.iter().map(|joint| joint.tilt).sum();
+        if self.turned { -tilt } else { tilt }
+    }
+
+    /// Mass matrix, kg m^2, and needed torques in relative angles.
+    fn forces(&self, angle: &Joints, speed: &Joints) -> Forces {
+        let (theta, omega) = (summed(angle), summed(speed));
+        let tilt = self.tilt();
+        let mut mass = [[0.0; LINKS]; LINKS];
+        let mut needed = [0.0; LINKS];
+        for (i, link) in self.joints.iter().enumerate() {
+            // The way from the bar to this link's centre of mass: its parts' lengths and angles.
+            let part = |k: usize| match k == i {
+                true => (link.com_m, theta[i] + link.com_angle),
+                false => (self.length_m[k], theta[k]),
+            };
+            for k in 0..=i {
+                let (long_k, at_k) = part(k);
+                let weight = link.mass_kg * GRAVITY_M_S2;
+                needed[k] += weight * long_k * (at_k - tilt).sin();
+                for l in 0..=i {
+                    let (long_l, at_l) = part(l);
+                    let share = link.mass_kg * long_k * long_l;
+                    mass[k][l] += share * (at_k - at_l).cos();
+                    needed[k] += share * (at_k - at_l).sin() * omega[l] * omega[l];
+                }
+            }
+            mass[i][i] += link.inertia_kg_m2;
+        }
+        // A joint turns all links from its own on: torques and inertias add up from the end.
+        for k in (0..LINKS - 1).rev() {
+            needed[k] += needed[k + 1];
+            let outer = mass[k + 1];
+            for (sum, part) in mass[k].iter_mut().zip(outer) {
+                *sum += part;
+            }
+        }
+        for row in &mut mass {
+            for l in (0..LINKS - 1).rev() {
+                row[l] += row[l + 1];
+            }
+        }
+        for (k, joint) in self.joints.iter().enumerate() {
+            mass[k][k] += joint.armature;
+        }
+        Forces { mass, needed }
+    }
+
+    /// Torques of the drives, N m, at these speeds.
+    fn drives(&self, push: &[DriveCommand; LINKS], speed: &Joints) -> Joints {
+        std::array::from_fn(|k| match self.joints[k].stall_nm > 0.0 {
+            true => self.joints[k].drive(push[k], speed[k]),
+            false => 0.0,
+        })
+    }
+
+    /// Torques that hold the robot still at a pose by the joints' springs and gravity, N m.
+    pub fn holding(&self, angle: &Joints) -> Joints {
+        let needed = self.forces(angle, &[0.0; LINKS]).needed;
+        std::array::from_fn(|k| needed[k] - self.joints[k].smooth(angle[k], 0.0))
+    }
+}
+
+/// Running sums: absolute from relative angles.
+fn summed(relative: &Joints) -> Joints {
+    let mut sum = 0.0;
+    relative.map(|angle| {
+        sum += angle;
+        sum
+    })
+}
+
+/// The inverse of a symmetric positive matrix of three rows, by its adjugate.
+fn inverse(m: &[Joints; LINKS]) -> [Joints; LINKS] {
+    let minor = |a: usize, b: usize| {
+        let (r, s) = ((a + 1) % 3, (a + 2) % 3);
+        let (c, d) = ((b + 1) % 3, (b + 2) % 3);
+        m[r][c] * m[s][d] - m[r][d] * m[s][c]
+    };
+    let whole = (0..3).map(|k| m[0][k] * minor(0, k)).sum::<f64>();
+    std::array::from_fn(|a| std::array::from_fn(|b| minor(b, a) / whole))
+}
+
+/// State of the robot and its encoders.
+#[derive(Debug, Clone)]
+pub struct Robot<'a> {
+    laws: &'a Laws,
+    /// Joint angles, rad.
+    pub angle: Joints,
+    /// Joint speeds, rad/s.
+    pub speed: Joints,
+    encoders: [Encoder; LINKS],
+    /// Torques of dry friction in the last kick, N m: where the next one begins to settle.
+    dry: Joints,
+}
+
+impl<'a> Robot<'a> {
+    /// At these angles and speeds, the encoders in the middle of their play.
+    pub fn new(laws: &'a Laws, angle: Joints, speed: Joints) -> Self {
+        let encoder = |k: usize| Encoder::at_rest(laws.joints[k].encoded(angle[k]));
+        Robot {
+            laws,
+            angle,
+            speed,
+            encoders: std::array::from_fn(encoder),
+            dry: [0.0; LINKS],
+        }
+    }
+
+    /// Goes on for `span_s`; `push` tells the drives' state, given the seconds since the beginning
+    /// of the span.
+    pub fn advance(&mut self, span_s: f64, push: impl Fn(f64) -> [DriveCommand; LINKS]) {
+        let steps = (span_s / STEP_S).ceil().max(1.0);
+        let h = span_s / steps;
+        for step in 0..steps as usize {
+            self.step(h, &push((step as f64 + 0.5) * h));
+        }
+    }
+
+    fn step(&mut self, h: f64, push: &[DriveCommand; LINKS]) {
+        self.drift(0.5 * h);
+        let (halfway, dry) = self.kicked(0.5 * h, push, &self.speed);
+        self.dry = dry;
+        (self.speed, self.dry) = self.kicked(h, push, &halfway);
+        self.drift(0.5 * h);
+        for (k, encoder) in self.encoders.iter_mut().enumerate() {
+            let physics = &self.laws.joints[k];
+            encoder.follow(physics, physics.encoded(self.angle[k]), h);
+        }
+    }
+
+    fn drift(&mut self, h: f64) {
+        for (angle, speed) in self.angle.iter_mut().zip(&self.speed) {
+            *angle += h * speed;
+        }
+    }
+
+    /// Speeds after all torques have acted for `h` seconds, as they are at this pose and
+    /// `at_speed`, and the torques of dry friction, N m.
+    fn kicked(&self, h: f64, push: &[DriveCommand; LINKS], at_speed: &Joints) -> (Joints, Joints) {
+        let joints = &self.laws.joints;
+        let Forces { mass, needed } = self.laws.forces(&self.angle, at_speed);
+        let drive = self.laws.drives(push, at_speed);
+        let inverse = inverse(&mass);
+        let pull: Joints = std::array::from_fn(|k| {
+            drive[k] - needed[k] + joints[k].smooth(self.angle[k], at_speed[k])
+        });
+        let mut speed: Joints = std::array::from_fn(|k| {
+            let gained: f64 = (0..LINKS).map(|l| inverse[k][l] * pull[l]).sum();
+            self.speed[k] + h * gained
+        });
+        // Impulses of dry friction, least and most.
+        let limits: [(f64, f64); LINKS] = std::array::from_fn(|k| {
+            let load = match joints[k].stall_nm > 0.0 {
+                true => (drive[k] + needed[k]).abs(),
+                false => 0.0,
+            };
+            let most = |direction| h * joints[k].friction(at_speed[k], direction, load);
+            (-most(1.0), most(-1.0))
+        });
+        let mut impulse: Joints =
+            std::array::from_fn(|k| (h * self.dry[k]).clamp(limits[k].0, limits[k].1));
+        for (k, speed) in speed.iter_mut().enumerate() {
+            *speed += (0..LINKS).map(|l| inverse[k][l] * impulse[l]).sum::<f64>();
+        }
+        for _ in 0..ROUNDS.0 {
+            let mut moved = 0.0_f64;
+            for k in 0..LINKS {
+                let (least, most) = limits[k];
+                let wanted = impulse[k] - speed[k] / inverse[k][k];
+                let change = wanted.clamp(least, most) - impulse[k];
+                impulse[k] += change;
+                for (l, speed) in speed.iter_mut().enumerate() {
+                    *speed += inverse[l][k] * change;
+                }
+                moved = moved.max((inverse[k][k] * change).abs());
+            }
+            if moved < ROUNDS.1 {
+                break;
+            }
+        }
+        (speed, impulse.map(|impulse| impulse / h))
+    }
+
+    /// The encoders' values before noise and rounding, rad.
+    pub fn sensed(&self) -> Joints {
+        std::array::from_fn(|k| self.encoders[k].sensed())
+    }
+
+    /// Kinetic and potential energy in gravity, J, without tilt; tests only look at its change.
+    #[cfg(test)]
+    pub fn energy_j(&self) -> f64 {
+        let mass = self.laws.forces(&self.angle, &self.speed).mass;
+        let kinetic: f64 = (0..LINKS)
+            .flat_map(|k| (0..LINKS).map(move |l| (k, l)))
+            .map(|(k, l)| 0.5 * mass[k][l] * self.speed[k] * self.speed[l])
+            .sum();
+        let theta = summed(&self.angle);
+        let mut joint_height = 0.0;
+        let mut potential = 0.0;
+        for (k, link) in self.laws.joints.iter().enumerate() {
+            let height = joint_height - link.com_m * (theta[k] + link.com_angle).cos();
+            potential += link.mass_kg * GRAVITY_M_S2 * height;
+            joint_height -= self.laws.length_m[k] * theta[k].cos();
+        }
+        kinetic + potential
+    }
+}

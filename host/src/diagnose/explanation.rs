@@ -1,0 +1,194 @@
+//! The simplest explanation that the evidence allows, and its rivals.
+
+use super::evaluator::Evaluator;
+use super::findings::{Fold, ResidualStructure, Verdict};
+use super::hypothesis::Hypothesis;
+use super::verdict::{Kind, Signs};
+
+/// Everything the verdict rests on.
+pub(super) struct Evidence<'a> {
+    pub evaluator: &'a Evaluator<'a>,
+    /// Every set that was tried.
+    pub hypotheses: Vec<Hypothesis>,
+    /// Every single value of the given model that was refitted.
+    pub values: Vec<Hypothesis>,
+    /// The same along with the free values, for values that are not free.
+    pub values_refitted: Vec<Hypothesis>,
+    /// The smallest set that improves.
+    pub best: Option<Hypothesis>,
+    pub residual_structure: Option<ResidualStructure>,
+    /// Share of what is left that goes when every motion has values of its own.
+    pub per_motion_reduction: Option<f64>,
+    /// The explanation with other motions held out.
+    pub folds: Vec<Fold>,
+    pub seed: u64,
+}
+
+/// What explains the measurement, the simplest that does.
+#[derive(Clone, Copy)]
+pub(super) enum Explanation<'a> {
+    /// The model as given.
+    Given(&'a Hypothesis),
+    /// One other value in the model file.
+    Value(&'a Hypothesis),
+    /// Other values for all that are free.
+    Refit(&'a Hypothesis),
+    /// Other values for all that are free, and for one that is not.
+    ValueAndRefit(&'a Hypothesis),
+    /// Missing effects.
+    Effects(&'a Hypothesis),
+}
+
+impl<'a> Explanation<'a> {
+    pub fn hypothesis(self) -> &'a Hypothesis {
+        match self {
+            Explanation::Given(h) | Explanation::Value(h) => h,
+            Explanation::Refit(h) | Explanation::ValueAndRefit(h) => h,
+            Explanation::Effects(h) => h,
+        }
+    }
+
+    /// What it changes, for people.
+    pub fn name(self) -> String {
+        match self {
+            Explanation::Given(_) => "the model as given".to_string(),
+            Explanation::Refit(_) => "the refitted model".to_string(),
+            _ => self.hypothesis().names().join(" + "),
+        }
+    }
+}
+
+impl Evidence<'_> {
+    /// The simplest explanation that is not clearly worse than the best.
+    pub fn explanation(&self) -> Explanation<'_> {
+        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
+        let base = &evaluator.base;
+        let champion = match &self.best {
+            Some(best) => Explanation::Effects(best),
+            None if evaluator.improves(given, base) => Explanation::Refit(base),
+            None => Explanation::Given(given),
+        };
+        let best = champion.hypothesis();
+        if let Some(value) = evaluator.accepted(given, &self.values)
+            && !evaluator.clearly_worse(value, best, given)
+        {
+            return Explanation::Value(value);
+        }
+        match evaluator.accepted(base, &self.values_refitted) {
+            Some(value) if !evaluator.clearly_worse(value, best, base) => {
+                Explanation::ValueAndRefit(value)
+            }
+            _ => champion,
+        }
+    }
+
+    pub fn chosen(&self) -> &Hypothesis {
+        self.explanation().hypothesis()
+    }
+
+    /// Explanations no less simple than the chosen one that the data do not tell from it.
+    pub fn rivals(&self) -> Vec<&Hypothesis> {
+        match self.explanation() {
+            Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
+            Explanation::Value(value) => self.rivals_of_value(value),
+            Explanation::ValueAndRefit(value) => {
+                let base = &self.evaluator.base;
+                self.rivals_among(
+                    value,
+                    base,
+                    self.values_refitted.iter().chain(self.singles()),
+                )
+            }
+            Explanation::Effects(best) => self.rivals_of_set(best),
+        }
+    }
+
+    /// Other values, and single effects unless the value is one that would be refitted anyway.
+    fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&Hypothesis> {
+        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
+        let refit_explains = !evaluator.clearly_worse(&evaluator.base, value, given);
+        let effects = self.singles().filter(|_| !refit_explains);
+        self.rivals_among(value, given, self.values.iter().chain(effects))
+    }
+
+    fn singles(&self) -> impl Iterator<Item = &Hypothesis> {
+        self.hypotheses.iter().filter(|h| h.set.len() == 1)
+    }
+
+    fn rivals_among<'a>(
+        &self,
+        value: &Hypothesis,
+        reference: &Hypothesis,
+        others: impl Iterator<Item = &'a Hypothesis>,
+    ) -> Vec<&'a Hypothesis> {
+        others
+            .filter(|h| h.value != value.value)
+            .filter(|h| self.evaluator.improves(reference, h))
+            .filter(|h| !self.evaluator.clearly_worse(h, value, reference))
+            .collect()
+    }
+
+    /// Sets with no more values.
+    fn rivals_of_set(&self, best: &Hypothesis) -> Vec<&Hypothesis> {
+        let (evaluator, base) = (self.evaluator, &self.evaluator.base);
+        let others = self.hypotheses.iter().filter(|h| !h.adds(&best.set));
+        others
+            .filter(|h| h.added_values() <= best.added_values())
+            .filter(|h| evaluator.improves(base, h))
+            .filter(|h| !evaluator.clearly_worse(h, best, base))
+            .collect()
+    }
+
+    /// Whether the best explanation needs other values in every motion.
+    pub fn values_vary(&self) -> bool {
+        self.signs(false).values_vary()
+    }
+
+    /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the
+    /// error.
+    pub fn placebo_ranks(&self) -> bool {
+        let base = &self.evaluator.base;
+        let gain = |t: &Hypothesis| (base.deciding_mean() / t.deciding_mean()).ln();
+        self.evaluator.placebos.iter().any(|placebo| {
+            self.evaluator.improves(base, placebo) && gain(placebo) > 0.5 * gain(self.chosen())
+        })
+    }
+
+    pub fn verdict(&self, rivals: &[&Hypothesis]) -> Verdict {
+        self.signs(!rivals.is_empty()).verdict()
+    }
+
+    /// What the explanation improves on: the model as given, or the refitted one.
+    pub fn reference(&self) -> &Hypothesis {
+        match self.explanation() {
+            Explanation::Given(given) => given,
+            Explanation::Value(_) | Explanation::Refit(_) => &self.evaluator.given,
+            Explanation::ValueAndRefit(_) | Explanation::Effects(_) => &self.evaluator.base,
+        }
+    }
+
+    fn signs(&self, rivals: bool) -> Signs {
+        let (evaluator, explanation) = (self.evaluator, self.explanation());
+        let chosen = explanation.hypothesis();
+        let structure = self.residual_structure.as_ref();
+        let tolerance = evaluator.tolerance_rad.unwrap_or(0.0);
+        let kind = match explanation {
+            Explanation::Given(_) => Kind::Given,
+            Explanation::Effects(_) => Kind::Effects,
+            _ => Kind::Values,
+        };
+        Signs {
+            kind,
+            before: self.reference().deciding_mean(),
+            left: chosen.deciding_mean(),
+            at_noise_floor: evaluator.at_noise_floor(chosen),
+            held_out: evaluator.held_out.is_some(),
+            tolerated: chosen.deciding_rms_rad() <= tolerance,
+            free_form_share: structure.map_or(0.0, |s| s.explainable_share),
+            free_form_low: structure.map_or(0.0, |s| s.explainable_low),
+            per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
+            placebo_ranks: kind == Kind::Effects && self.placebo_ranks(),
+            rivals,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Whether a value of the model file is wrong: the simplest explanation there is, so it is tried
+//! before any missing effect.
+
+use super::budget::{FINALISTS, FINISH, LOOK};
+use super::evaluator::Evaluator;
+use super::findings::WrongValue;
+use super::hypothesis::Hypothesis;
+use crate::fitting::{FitData, FitOptions, FittedValue, fit};
+use crate::model::{JointField, LinkField, Model, ParameterPath};
+use rayon::prelude::*;
+
+impl Evaluator<'_> {
+    /// Every value of the given model fitted alone, free or not; the best are evaluated.
+    pub fn try_values(&self) -> Vec<Hypothesis> {
+        self.fit_values(&self.given, &values_of(&self.start))
+    }
+
+    /// Every value that is not free fitted along with those that are; the best are evaluated.
+    pub fn try_values_refitted(&self) -> Vec<Hypothesis> {
+        let free = &self.base.search.free;
+        if free.is_empty() {
+            return Vec::new();
+        }
+        let mut paths = values_of(&self.start);
+        paths.retain(|path| !free.contains(path));
+        self.fit_values(&self.base, &paths)
+    }
+
+    fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
+        let look = |&path: &ParameterPath| {
+            let from = &from.search;
+            let free = [from.free.as_slice(), &[path]].concat();
+            let options = FitOptions::iterations(LOOK).rough();
+            let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
+            Hypothesis {
+                value: Some(path),
+                ..Hypothesis::new(Vec::new(), search)
+            }
+        };
+        let mut values: Vec<Hypothesis> = paths.par_iter().map(look).collect();
+        values.sort_by(Hypothesis::by_error);
+        values.truncate(FINALISTS);
+        values.par_iter_mut().for_each(|value| {
+            value.resume(&self.search, FitOptions::iterations(FINISH));
+            self.evaluate(value);
+        });
+        values
+    }
+}
+
+/// The model as given, nothing fitted but start states.
+pub(super) fn as_given(model: &Model, search: &FitData) -> Hypothesis {
+    let options = FitOptions::iterations(LOOK);
+    Hypothesis::new(Vec::new(), fit(model, &[], search, None, options))
+}
+
+/// Addresses of the model's values that may be wrong. The length of the last link moves nothing, a
+/// passive or ideal drive has no figures, and what is infinite is switched off.
+fn values_of(model: &Model) -> Vec<ParameterPath> {
+    let last = model.link_count() - 1;
+    let links = (0..=last).flat_map(|index| {
+        let fields = LinkField::ALL.into_iter();
+        let fields = fields.filter(move |field| index < last || *field != LinkField::Length);
+        fields.map(move |field| ParameterPath::Link { index, field })
+    });
+    let joints = (0..=last).flat_map(|index| {
+        let fields = JointField::ALL.into_iter();
+        fields.map(move |field| ParameterPath::Joint { index, field })
+    });
+    let effects = model.effects.iter().flat_map(ParameterPath::of_effect);
+    let all = links.chain(joints).chain(effects);
+    all.filter(|path| path.get(model).is_some_and(f64::is_finite))
+        .collect()
+}
+
+/// Fitted values beside those in the file.
+pub(super) fn compared(given: &Model, fitted: &[FittedValue]) -> Vec<WrongValue> {
+    let values = fitted.iter().filter_map(|fitted| {
+        let path: ParameterPath = fitted.path.parse().ok()?;
+        Some(WrongValue {
+            given: path.get(given)?,
+            fitted: fitted.clone(),
+        })
+    });
+    values.collect()
+}
+
+/// Those of the fitted values whose interval leaves out the one in the file.
+pub(super) fn contradicted(given: &Model, fitted: &[FittedValue]) -> Vec<WrongValue> {
+    let mut wrong = compared(given, fitted);
+    wrong.retain(|value| !(value.fitted.low..=value.fitted.high).contains(&value.given));
+    wrong
+}

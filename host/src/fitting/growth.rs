@@ -1,0 +1,120 @@
+//! How errors of the state grow along a motion, and so how long the model may run uncorrected.
+//!
+//! A small error of a window's start state grows where the motion is unstable or chaotic, until it
+//! swamps what the model's own errors do. How fast is a property of the motion: the growth is taken
+//! along the measured states, from one to the next, and not along a simulation, which may have left
+//! the motion long before (Lyapunov growth: Benettin et al. 1980, Meccanica 15, 9).
+
+use super::data::{Horizon, Window};
+use super::node::Node;
+use crate::log::Motion;
+use crate::model::Model;
+use crate::sim::{Plant, SensorState, Start, predict};
+use nalgebra::DMatrix;
+
+/// Growth of a small start error beyond which a run says little about the model.
+const MOST_GROWTH: f64 = 30.0;
+/// From one state to the next, s.
+const STEP_S: f64 = 0.05;
+/// Step of the differences, rad and rad/s.
+const DIFFERENCE: f64 = 1e-6;
+/// A window is no shorter than this, s, nor than so many samples.
+const LEAST_S: f64 = 0.1;
+const LEAST_SAMPLES: usize = 8;
+
+/// The longest windows of a motion in which no start error grows more than thirty times; the whole
+/// motion where none does. `sigma_rad` as in [`super::FitData`].
+pub(super) fn stable_horizon(model: &Model, sigma_rad: &[f64], motion: &Motion) -> Horizon {
+    Growth::along(model, sigma_rad, motion).longest()
+}
+
+/// Transition matrices along a motion.
+struct Growth {
+    duration_s: f64,
+    least_s: f64,
+    /// From each state to the next: change of the relative angles and speeds per change of them.
+    steps: Vec<DMatrix<f64>>,
+}
+
+impl Growth {
+    fn along(model: &Model, sigma_rad: &[f64], motion: &Motion) -> Growth {
+        let plant = Plant::new(model, motion);
+        let duration_s = motion.duration_s();
+        let spacing_s = duration_s / motion.len().max(2) as f64;
+        let most = motion.len().saturating_sub(1).max(1);
+        let pieces = ((duration_s / STEP_S).ceil() as usize).clamp(1, most);
+        let edge = |piece: usize| piece * motion.len().saturating_sub(1) / pieces;
+        let transition = |piece: usize| {
+            let samples = edge(piece)..(edge(piece + 1) + 1).min(motion.len());
+            let window = Window { motion: 0, samples };
+            let start = Node::guess(motion, sigma_rad, &window).start(&plant);
+            transition(&plant, motion, &window, &start)
+        };
+        Growth {
+            duration_s,
+            least_s: LEAST_S.max(LEAST_SAMPLES as f64 * spacing_s),
+            steps: (0..pieces).map(transition).collect(),
+        }
+    }
+
+    /// The longest windows whose growth stays below the limit.
+    fn longest(&self) -> Horizon {
+        let mut pieces = 1;
+        loop {
+            let seconds = self.duration_s / pieces as f64;
+            if pieces > 1 && seconds < self.least_s {
+                return Horizon::Seconds(self.least_s.min(self.duration_s));
+            }
+            if self.most(pieces) <= MOST_GROWTH {
+                return match pieces {
+                    1 => Horizon::Whole,
+                    _ => Horizon::Seconds(seconds),
+                };
+            }
+            pieces += pieces.div_ceil(4);
+        }
+    }
+
+    /// Most growth of an angle's error in any of so many windows.
+    fn most(&self, pieces: usize) -> f64 {
+        let joints = self.steps.first().map_or(0, |step| step.nrows() / 2);
+        let edge = |piece: usize| piece * self.steps.len() / pieces;
+        let mut most: f64 = 0.0;
+        for piece in 0..pieces {
+            let mut product = DMatrix::identity(2 * joints, 2 * joints);
+            for step in &self.steps[edge(piece)..edge(piece + 1)] {
+                product = step * product;
+                let angles = product.view((0, 0), (joints, joints));
+                let columns = angles.column_iter().map(|column| column.norm());
+                let largest = columns.fold(0.0, f64::max);
+                if !largest.is_finite() {
+                    return f64::INFINITY;
+                }
+                most = most.max(largest);
+            }
+        }
+        most
+    }
+}
+
+/// How the state at a window's end follows the one at its start.
+fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) -> DMatrix<f64> {
+    let joints = plant.len();
+    let mut readings = vec![0.0; joints * window.samples.len()];
+    let mut end = |moved: Option<usize>| {
+        let mut from = start.clone();
+        match moved {
+            Some(i) if i < joints => from.angle_rad[i] += DIFFERENCE,
+            Some(i) => from.speed_rad_s[i - joints] += DIFFERENCE,
+            None => {}
+        }
+        let (samples, mut memory) = (window.samples.clone(), SensorState::default());
+        let to = predict(plant, motion, samples, &from, &mut memory, &mut readings);
+        [to.angle_rad, to.speed_rad_s].concat()
+    };
+    let base = end(None);
+    let columns: Vec<Vec<f64>> = (0..2 * joints).map(|i| end(Some(i))).collect();
+    DMatrix::from_fn(2 * joints, 2 * joints, |row, column| {
+        (columns[column][row] - base[row]) / DIFFERENCE
+    })
+}

@@ -1,0 +1,307 @@
+"""A planar chain with drives, encoders and physical effects, simulated by MuJoCo.
+
+Every quantity is SI. The chain moves in the x-y plane; at angle 0 every link hangs along -y;
+joint angles are relative to the link before and counter-clockwise. Nothing here is taken from
+the library whose diagnosis is measured: masses, gravity, damping, armature, springs, dry
+friction, torque limits and back-EMF are MuJoCo's own; dead zone, delay, supply and encoder are
+applied outside of it.
+
+MuJoCo's dry friction is a soft constraint: with its defaults a joint at rest creeps. Here its
+time constant is two steps and its impedance 0.9999, so that the torque reaches its limit at
+some mrad/s and a loaded joint at rest creeps by less than 1e-6 rad/s: Coulomb's law to within
+the encoder's steps.
+"""
+
+import math
+
+import mujoco
+import numpy as np
+
+STEP_S = 0.25e-3
+SAMPLE_S = 0.01
+STEPS = round(SAMPLE_S / STEP_S)
+GRAVITY_M_S2 = 9.81
+ENCODER_RAD = math.radians(300.0) / 1024
+PAYLOAD_AT_M = 0.15
+# Length of a hidden pendulum, m, and its damping, N m s/rad.
+PENDULUM = (0.05, 2e-5)
+# Effects that have a derivative at rest and act on the motion, not on what is read of it.
+LINEAR = (
+    "viscous base_tilt com_angle com_shift mass armature cable_spring delay torque_scale speed_limit"
+).split()
+
+
+class Rig:
+    """One rig with its effects under one mount.
+
+    links: rows of length, centre of mass, mass, inertia about it. stall_nm: per joint, torque at
+    full duty, None for a passive joint. friction: per joint (viscous, Coulomb). effects: dicts
+    with kind, joint (from 1, None for the whole rig) and parameters.
+    """
+
+    def __init__(self, links, stall_nm, nominal_supply_v, friction, effects, mount):
+        self.n = len(links)
+        self.made_of = (links, stall_nm, nominal_supply_v, friction, effects, mount)
+        self.stall_nm = stall_nm
+        self.nominal_supply_v = nominal_supply_v
+        self.payload_kg, self.turned = mount
+        self.by_joint = [[] for _ in links]
+        self.tilt = 0.0
+        for effect in effects:
+            values = effect["parameters"]
+            if effect["kind"] == "base_tilt":
+                self.tilt += values["angle_rad"]
+            else:
+                self.by_joint[effect["joint"] - 1].append((effect["kind"], values))
+        self.friction = friction
+        self.model = mujoco.MjModel.from_xml_string(self._xml(links))
+        self.data = mujoco.MjData(self.model)
+        self.driven = [j for j, stall in enumerate(stall_nm) if stall is not None]
+        self.back_emf = self.model.actuator_biasprm[:, 2].copy()
+        self.hooks = [hook for j in range(self.n) for hook in self._hooks(j)]
+        self.torques = [torque for j in range(self.n) for torque in self._torques(j)]
+        self.delay_steps = {
+            j: round(self.value(j, "delay", "delay_s", 0.0) / STEP_S) for j in self.driven
+        }
+        self.sent = []
+        self.encoders = [Encoder(self, j) for j in range(self.n)]
+        self.dense = bool(self.hooks) or any(e.remembers for e in self.encoders)
+
+    def smooth(self):
+        """The same rig with only those effects that a linear model holds, without dry friction."""
+        links, stall_nm, supply_v, friction, effects, mount = self.made_of
+        kept = [effect for effect in effects if effect["kind"] in LINEAR]
+        viscous = [(b, 0.0) for b, _ in friction]
+        return Rig(links, stall_nm, supply_v, viscous, kept, mount)
+
+    def value(self, joint, kind, key, otherwise):
+        """A value of an effect of this joint (from 0), or what holds without it."""
+        for name, values in self.by_joint[joint]:
+            if name == kind:
+                return values[key]
+        return otherwise
+
+    def has(self, joint, kind):
+        return any(name == kind for name, _ in self.by_joint[joint])
+
+    def _xml(self, links):
+        lean = -self.tilt if self.turned else self.tilt
+        gravity = (GRAVITY_M_S2 * math.sin(lean), -GRAVITY_M_S2 * math.cos(lean))
+        head, tail, drives, y = [], [], [], 0.0
+        for j, (length, com, mass, inertia) in enumerate(links):
+            value = lambda kind, key, otherwise, j=j: self.value(j, kind, key, otherwise)
+            share = 1.0 + value("mass", "added_kg", 0.0) / mass
+            com += value("com_shift", "shift_m", 0.0)
+            side = value("com_angle", "angle_rad", 0.0)
+            viscous, coulomb = self.friction[j]
+            viscous += value("viscous", "coefficient_nm_s_rad", 0.0)
+            coulomb += value("coulomb", "torque_nm", 0.0)
+            drag = value("air_drag", "coefficient_nm_s2_rad2", 0.0)
+            spring = value("cable_spring", "stiffness_nm_rad", 0.0)
+            bent = value("quadratic_stiffness", "stiffness_nm_rad2", 0.0)
+            rest = value("cable_spring", "rest_angle_rad", 0.0)
+            slides = coulomb > 0.0 or self._varies(j)
+            # The limit of a constraint that is absent at first cannot be raised later.
+            loss = max(coulomb, 1e-12) if slides else 0.0
+            head.append(
+                f'<body pos="0 {-y!r} 0"><joint name="j{j}" axis="0 0 1"'
+                f' damping="{viscous!r} {drag!r}" stiffness="{spring!r} {bent!r}"'
+                f' springref="{math.degrees(rest)!r}"'
+                f' armature="{value("armature", "inertia_kg_m2", 0.0)!r}"'
+                f' frictionloss="{loss!r}" solreffriction="{2 * STEP_S!r} 1"'
+                f' solimpfriction="0.9999 0.9999 0.001 0.5 2"/>'
+                + inertial((com * math.sin(side), -com * math.cos(side)), share * mass, share * inertia)
+            )
+            end = ""
+            if j == self.n - 1 and self.payload_kg > 0.0:
+                # A point: the least inertia that MuJoCo takes.
+                place = f'<body pos="0 {-PAYLOAD_AT_M!r} 0">'
+                end += place + inertial((0.0, 0.0), self.payload_kg, 1e-9) + "</body>"
+            if self.has(j, "hidden_pendulum"):
+                swings = value("hidden_pendulum", "mass_kg", 0.0)
+                end += (
+                    f'<body pos="0 {-length!r} 0"><joint axis="0 0 1" damping="{PENDULUM[1]!r}"/>'
+                    + inertial((0.0, -PENDULUM[0]), swings, 1e-7)
+                    + "</body>"
+                )
+            tail.append(end + "</body>")
+            y = length
+            if self.stall_nm[j] is not None:
+                drives.append(self._drive(j))
+        return (
+            f'<mujoco><compiler angle="degree"/><option gravity="{gravity[0]!r} {gravity[1]!r} 0"'
+            f' timestep="{STEP_S!r}" integrator="RK4" tolerance="1e-12">'
+            f'<flag contact="disable"/></option><worldbody>{"".join(head)}{"".join(tail[::-1])}'
+            f'</worldbody><actuator>{"".join(drives)}</actuator></mujoco>'
+        )
+
+    def _drive(self, j):
+        stall = self.stall_nm[j]
+        gain = stall * self.value(j, "torque_scale", "factor", 1.0)
+        no_load = self.value(j, "speed_limit", "no_load_speed_rad_s", math.inf)
+        limit = self.value(j, "torque_saturation", "limit_nm", math.inf)
+        clipped = f' forcelimited="true" forcerange="{-limit!r} {limit!r}"'
+        return (
+            f'<general joint="j{j}" gaintype="fixed" gainprm="{gain!r}" biastype="affine"'
+            f' biasprm="0 0 {-stall / no_load!r}"{clipped if limit < math.inf else ""}/>'
+        )
+
+    def _varies(self, j):
+        return any(self.has(j, kind) for kind in ("stribeck", "one_sided_friction", "warm_up"))
+
+    def _hooks(self, j):
+        """What happens before each step."""
+        if self._varies(j):
+            base = self.friction[j][1] + self.value(j, "coulomb", "torque_nm", 0.0)
+            yield lambda: self._set_loss(j, base)
+        if self.has(j, "viscoelastic"):
+            stiffness = self.value(j, "viscoelastic", "stiffness_nm_rad", 0.0)
+            forgets = self.value(j, "viscoelastic", "time_constant_s", 1.0)
+            stretch = [0.0]
+            kept = math.exp(-STEP_S / forgets)
+
+            def pull():
+                # Spring and damper in series: what is stretched is forgotten.
+                speed = self.data.qvel[j]
+                stretch[0] = kept * stretch[0] + (1.0 - kept) * forgets * speed
+                self.data.qfrc_applied[j] = -stiffness * stretch[0]
+
+            yield pull
+
+    def _set_loss(self, j, base):
+        speed, angle = abs(self.data.qvel[j]), self.data.qpos[j]
+        loss = base
+        for kind, values in self.by_joint[j]:
+            if kind == "stribeck":
+                loss += values["excess_nm"] * math.exp(-speed / values["speed_rad_s"])
+            elif kind == "one_sided_friction" and angle > values["from_rad"]:
+                loss += values["torque_nm"]
+            elif kind == "warm_up":
+                loss += values["torque_nm"] * math.exp(-self.data.time / values["time_constant_s"])
+        self.model.dof_frictionloss[j] = max(loss, 1e-12)
+
+    def _torques(self, j):
+        """Torques on the joint that MuJoCo has no element for, as functions of the angle."""
+        for kind, values in self.by_joint[j]:
+            if kind == "cogging":
+                a, n, p = (values[k] for k in ("amplitude_nm", "periods_per_turn", "phase_rad"))
+                yield j, lambda q, a=a, n=n, p=p: a * math.sin(n * q + p)
+            elif kind == "direction_asymmetry":
+                # With Coulomb friction of at least the half: the limits of both directions.
+                yield j, lambda q, half=values["half_difference_nm"]: -half
+            elif kind == "position_trap":
+                a, at, w = (values[k] for k in ("peak_nm", "at_rad", "width_rad"))
+
+                def trap(q, a=a, at=at, w=w):
+                    x = (q - at) / w
+                    return -a * x * math.exp(0.5 - 0.5 * x * x)
+
+                yield j, trap
+
+    def _passive(self, _model, data):
+        for j, torque in self.torques:
+            data.qfrc_passive[j] += torque(data.qpos[j])
+
+    def start(self, angles, speeds=None):
+        """Puts the rig at these joint angles, its encoders in the middle of their play."""
+        mujoco.mj_resetData(self.model, self.data)
+        self.data.qpos[: self.n] = angles
+        self.data.qvel[: self.n] = 0.0 if speeds is None else speeds
+        self.sent = []
+        for encoder in self.encoders:
+            encoder.start()
+
+    def advance(self, duty, supply_v, torque_on):
+        """One sample: the duties (of driven joints) are sent at its beginning."""
+        self.sent.append((duty, supply_v, torque_on))
+        late = sorted({0, STEPS} | {d % STEPS for d in self.delay_steps.values()})
+        mujoco.set_mjcb_passive(self._passive if self.torques else None)
+        try:
+            for begin, end in zip(late, late[1:]):
+                self._drive_from(begin)
+                if not self.dense:
+                    mujoco.mj_step(self.model, self.data, nstep=end - begin)
+                    continue
+                for _ in range(end - begin):
+                    for hook in self.hooks:
+                        hook()
+                    mujoco.mj_step(self.model, self.data)
+                    for encoder in self.encoders:
+                        encoder.follow()
+        finally:
+            mujoco.set_mjcb_passive(None)
+
+    def _drive_from(self, begin):
+        """Sets the drives as they are from this step of the sample on."""
+        _, supply_v, torque_on = self.sent[-1]
+        for drive, j in enumerate(self.driven):
+            ago = -(-(self.delay_steps[j] - begin) // STEPS)
+            sent = self.sent[-1 - ago] if ago < len(self.sent) else None
+            duty = sent[0][drive] if sent is not None else 0.0
+            on = torque_on
+            self.data.ctrl[drive] = self._applied(j, duty, supply_v) if on else 0.0
+            self.model.actuator_biasprm[drive, 2] = self.back_emf[drive] if on else 0.0
+
+    def _applied(self, j, duty, supply_v):
+        width = self.value(j, "dead_zone", "width", 0.0)
+        if abs(duty) <= width:
+            duty = 0.0
+        sensitivity = self.value(j, "supply_sensitivity", "sensitivity", 0.0)
+        sag = self.value(j, "supply_sag", "drop_share", 0.0)
+        share = 1.0 + sensitivity * (supply_v / self.nominal_supply_v - 1.0)
+        return duty * share * (1.0 - sag * abs(duty))
+
+    def angles(self):
+        return self.data.qpos[: self.n].copy()
+
+    def speeds(self):
+        return self.data.qvel[: self.n].copy()
+
+    def sensed(self):
+        """What the encoders would read without steps."""
+        return np.array([encoder.sensed() for encoder in self.encoders])
+
+
+class Encoder:
+    """Scale, zero, play and lag of one joint's encoder."""
+
+    def __init__(self, rig, joint):
+        self.rig, self.joint = rig, joint
+        self.factor = rig.value(joint, "encoder_scale", "factor", 1.0)
+        self.offset = rig.value(joint, "encoder_zero", "offset_rad", 0.0)
+        self.half = 0.5 * rig.value(joint, "backlash", "gap_rad", 0.0)
+        self.lag_s = rig.value(joint, "sensor_lag", "time_constant_s", 0.0)
+        self.remembers = self.half > 0.0 or self.lag_s > 0.0
+        self.start()
+
+    def encoded(self):
+        return self.factor * self.rig.data.qpos[self.joint] + self.offset
+
+    def start(self):
+        self.follower = self.lagged = self.encoded()
+
+    def follow(self):
+        before, now = self.follower, self.encoded()
+        self.follower = min(max(before, now - self.half), now + self.half)
+        if self.lag_s > 0.0:
+            middle = 0.5 * (before + self.follower)
+            self.lagged += (middle - self.lagged) * STEP_S / (self.lag_s + 0.5 * STEP_S)
+        else:
+            self.lagged = self.follower
+
+    def sensed(self):
+        return self.lagged if self.remembers else self.encoded()
+
+
+def inertial(place, mass, inertia):
+    """An inertial element; only the inertia about z acts in the plane."""
+    x, y = place
+    return (
+        f'<inertial pos="{x!r} {y!r} 0" mass="{mass!r}"'
+        f' diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>'
+    )
+
+
+def quantised(angle):
+    """To steps of 300/1024 degrees; never a negative zero."""
+    return round(angle / ENCODER_RAD) * ENCODER_RAD + 0.0

@@ -1,0 +1,145 @@
+//! A case: what is hidden in which rig at which seed, and the files of it.
+
+use super::family::Family;
+use super::mujoco;
+use handstand::challenge::{Bench, BenchEffect, Motions, bench};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Who makes the logs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Truth {
+    /// The independent equations of the library's challenges
+    Own,
+    /// MuJoCo, by tests/peers/hidden_mujoco.py
+    Mujoco,
+}
+
+/// A rig to diagnose.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Case {
+    /// Who makes its logs.
+    pub truth: Truth,
+    /// Its family.
+    pub family: Family,
+    /// Kinds of the effects it hides.
+    pub hidden: Vec<&'static str>,
+    /// Its seed.
+    pub seed: u64,
+}
+
+/// An effect that is hidden, with its values.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct HiddenEffect {
+    /// Its kind.
+    pub kind: String,
+    /// Joint it acts on, counted from 1; none when it acts on the whole rig.
+    pub joint: Option<usize>,
+    /// Its values by key.
+    pub parameters: serde_json::Map<String, Value>,
+}
+
+/// The files of a case.
+#[derive(Debug, Clone)]
+pub struct Files {
+    /// The model its owner believes in.
+    pub nominal: PathBuf,
+    /// The true model, where the library can write it.
+    pub truth: Option<PathBuf>,
+    /// Logs to learn from.
+    pub fit: Vec<PathBuf>,
+    /// Logs held out.
+    pub held_out: Vec<PathBuf>,
+    /// What is hidden.
+    pub effects: Vec<HiddenEffect>,
+}
+
+/// What a script writes of the truth.
+#[derive(Debug, Deserialize)]
+pub(super) struct TruthFile {
+    pub effects: Vec<HiddenEffect>,
+    pub in_library: bool,
+    pub fit: Vec<String>,
+    pub held_out: Vec<String>,
+}
+
+impl HiddenEffect {
+    /// As results name it: `coulomb@1`.
+    pub fn address(&self) -> String {
+        match self.joint {
+            Some(joint) => format!("{}@{joint}", self.kind),
+            None => self.kind.clone(),
+        }
+    }
+}
+
+impl Case {
+    /// Effects that the library is to lack.
+    pub fn without(&self) -> Vec<String> {
+        match (self.truth, self.family) {
+            (Truth::Own, Family::Outside) => {
+                self.hidden.iter().map(|kind| kind.to_string()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Name of the rig's motions as the script takes it.
+    pub(super) fn motions(&self) -> &'static str {
+        match self.family.motions() {
+            Motions::Arm => "arm",
+            Motions::Hanging => "hanging",
+            Motions::Balancing => "balancing",
+        }
+    }
+
+    /// Writes the case into an empty folder.
+    ///
+    /// # Errors
+    /// A file that cannot be written, a rig that cannot be balanced, a script that fails.
+    pub fn write(&self, dir: &Path) -> Result<Files, String> {
+        match self.truth {
+            Truth::Own => {
+                let Some(bench) = bench(self.family.motions(), self.seed, &self.hidden) else {
+                    return Err("the robot cannot be balanced".to_string());
+                };
+                written(&bench, dir)
+            }
+            Truth::Mujoco => mujoco::write(self, dir),
+        }
+    }
+}
+
+fn written(bench: &Bench, dir: &Path) -> Result<Files, String> {
+    let write = |name: &str, content: &str| {
+        let path = dir.join(name);
+        std::fs::write(&path, content).map_err(|error| format!("{}: {error}", path.display()))?;
+        Ok::<PathBuf, String>(path)
+    };
+    let mut files = Files {
+        nominal: write("nominal.toml", &bench.model_toml)?,
+        truth: Some(write("true.toml", &bench.true_model_toml)?),
+        fit: Vec::new(),
+        held_out: Vec::new(),
+        effects: bench.effects.iter().map(known).collect(),
+    };
+    for log in &bench.logs {
+        let path = write(&log.name, &log.csv)?;
+        match log.held_out {
+            true => files.held_out.push(path),
+            false => files.fit.push(path),
+        }
+    }
+    Ok(files)
+}
+
+fn known(effect: &BenchEffect) -> HiddenEffect {
+    let value = |(key, value): &(&'static str, f64)| (key.to_string(), Value::from(*value));
+    HiddenEffect {
+        kind: effect.kind.to_string(),
+        joint: effect.joint,
+        parameters: effect.parameters.iter().map(value).collect(),
+    }
+}

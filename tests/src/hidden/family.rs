@@ -1,0 +1,200 @@
+//! What is hidden in which rig: families of cases, each with its target.
+
+use super::case::{Case, Truth};
+use handstand::challenge::{KINDS, Motions};
+
+/// A family of cases.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Family {
+    /// One effect at the bench arm.
+    Single,
+    /// One effect at the robot of three links, hanging.
+    Hanging,
+    /// The same, with logs of balancing too.
+    Balancing,
+    /// Two effects at the bench arm.
+    Pairs,
+    /// Three effects at the bench arm.
+    Triples,
+    /// The bench arm that hides nothing.
+    Nothing,
+    /// The hanging robot that hides nothing.
+    NothingHanging,
+    /// The hanging and balancing robot that hides nothing.
+    NothingBalancing,
+    /// One effect at the bench arm that the library lacks.
+    Outside,
+}
+
+/// All families, in the order of the tables.
+pub const FAMILIES: [Family; 9] = [
+    Family::Single,
+    Family::Hanging,
+    Family::Balancing,
+    Family::Pairs,
+    Family::Triples,
+    Family::Nothing,
+    Family::NothingHanging,
+    Family::NothingBalancing,
+    Family::Outside,
+];
+
+/// Effects that MuJoCo simulates and the library does not know.
+pub const OUTSIDE: [&str; 6] = [
+    "position_trap",
+    "quadratic_stiffness",
+    "viscoelastic",
+    "hidden_pendulum",
+    "one_sided_friction",
+    "warm_up",
+];
+
+/// What counts as right in a family, and how often it must be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// What the share is of.
+    pub name: &'static str,
+    /// Least share.
+    pub share: f64,
+}
+
+impl Family {
+    /// Its name in options and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Single => "single",
+            Family::Hanging => "hanging",
+            Family::Balancing => "balancing",
+            Family::Pairs => "pairs",
+            Family::Triples => "triples",
+            Family::Nothing => "nothing",
+            Family::NothingHanging => "nothing-hanging",
+            Family::NothingBalancing => "nothing-balancing",
+            Family::Outside => "outside",
+        }
+    }
+
+    /// The family of this name.
+    pub fn named(name: &str) -> Option<Family> {
+        FAMILIES.into_iter().find(|family| family.name() == name)
+    }
+
+    /// Which rig moves how.
+    pub fn motions(self) -> Motions {
+        match self {
+            Family::Hanging | Family::NothingHanging => Motions::Hanging,
+            Family::Balancing | Family::NothingBalancing => Motions::Balancing,
+            _ => Motions::Arm,
+        }
+    }
+
+    /// Whether its cases hide nothing.
+    pub fn hides_nothing(self) -> bool {
+        matches!(
+            self,
+            Family::Nothing | Family::NothingHanging | Family::NothingBalancing
+        )
+    }
+
+    /// What must be reached.
+    pub fn target(self) -> Target {
+        let (name, share) = match self {
+            Family::Single => ("named, or in an equivalent set", 0.97),
+            Family::Hanging | Family::Balancing | Family::Pairs => {
+                ("named, or in an equivalent set", 0.9)
+            }
+            Family::Triples => ("named, or in an equivalent set", 0.75),
+            Family::Nothing | Family::NothingHanging | Family::NothingBalancing => {
+                ("nothing is said to be missing", 0.99)
+            }
+            Family::Outside => ("unexplained", 0.95),
+        };
+        Target { name, share }
+    }
+}
+
+/// Which cases to try.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Who makes the logs.
+    pub truth: Truth,
+    /// Families.
+    pub families: Vec<Family>,
+    /// Effects to hide singly; all that the truth has if empty.
+    pub effects: Vec<String>,
+    /// Rigs per effect; of pairs and triples ten sets per seed.
+    pub seeds: u64,
+    /// Arms that hide nothing; of the robot as many as seeds.
+    pub nominal: u64,
+    /// First seed of each kind.
+    pub seed0: u64,
+}
+
+impl Plan {
+    /// Every case, family by family.
+    pub fn cases(&self) -> Vec<Case> {
+        self.families
+            .iter()
+            .flat_map(|&family| self.of(family))
+            .collect()
+    }
+
+    fn of(&self, family: Family) -> Vec<Case> {
+        let case = |hidden: Vec<&'static str>, seed| Case {
+            truth: self.truth,
+            family,
+            hidden,
+            seed,
+        };
+        let seeds = self.seed0..self.seed0 + self.seeds;
+        let wanted = |kind: &&str| {
+            self.effects.is_empty() || self.effects.iter().any(|effect| effect == kind)
+        };
+        let each = |kinds: &[&'static str]| -> Vec<Case> {
+            let kinds = kinds.iter().filter(|kind| wanted(kind));
+            kinds
+                .flat_map(|kind| seeds.clone().map(|seed| case(vec![kind], seed)))
+                .collect()
+        };
+        match family {
+            Family::Single | Family::Hanging | Family::Balancing => each(&kinds(self.truth)),
+            Family::Outside => match self.truth {
+                Truth::Own => each(&kinds(self.truth)),
+                Truth::Mujoco => each(&OUTSIDE),
+            },
+            Family::Pairs => self.sets(2, &case),
+            Family::Triples => self.sets(3, &case),
+            Family::Nothing => (self.seed0..self.seed0 + self.nominal)
+                .map(|seed| case(Vec::new(), seed))
+                .collect(),
+            Family::NothingHanging | Family::NothingBalancing => {
+                seeds.map(|seed| case(Vec::new(), seed)).collect()
+            }
+        }
+    }
+
+    /// Ten random sets of so many effects per seed.
+    fn sets(&self, size: usize, case: &dyn Fn(Vec<&'static str>, u64) -> Case) -> Vec<Case> {
+        use rand::{SeedableRng, seq::IndexedRandom};
+        let kinds = kinds(self.truth);
+        let first = 10 * (self.seed0 - 1) + 1;
+        (first..first + 10 * self.seeds)
+            .map(|seed| {
+                let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+                rng.set_stream(size as u64);
+                let mut set: Vec<&str> = kinds.choose_multiple(&mut rng, size).copied().collect();
+                set.sort_unstable();
+                case(set, seed)
+            })
+            .collect()
+    }
+}
+
+/// Effects of the library that this truth can hide.
+pub fn kinds(truth: Truth) -> Vec<&'static str> {
+    let has = |kind: &&str| truth == Truth::Own || *kind != "load_friction";
+    KINDS.into_iter().filter(has).collect()
+}
