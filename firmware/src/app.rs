@@ -1,8 +1,9 @@
 //! What the firmware does: its states, one tick, and the commands.
 
+use crate::age::Age;
 use crate::balance::Balance;
 use crate::board::{Board, since_us};
-use crate::design::TICK_US;
+use crate::design::{INSIST_US, START_TICKS, TICK_US};
 use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::Buttons;
@@ -11,6 +12,7 @@ use crate::servos::Servos;
 use crate::{boot_counter, bus};
 use handstand_shared::message::{Attitude, Cause, Condition, ServoList, Statistics};
 use handstand_shared::packed::{Positions, Speeds};
+use handstand_shared::raw::TorqueLimit;
 
 mod buttons;
 mod command;
@@ -42,17 +44,33 @@ pub struct App {
     goal: Goal,
     balance: Balance,
     attitude: Attitude,
+    /// Since it arrived.
+    attitude_age: Age,
     /// Sequence number of the frame `goal` came in.
     obeyed: u8,
     /// What arming must bring; none before a greeting and after every fault.
     token: Option<u16>,
+    /// Whether it has armed: it does so once.
+    is_used: bool,
     /// Number of this start, and of the greetings in it from a number of chance on: what tokens are
     /// made of.
     boot_count: u8,
     greetings: Option<u8>,
     ticks: u32,
-    /// Ticks since the last sound frame.
-    silent: u8,
+    /// Since the host's last goals, attitude or keep-alive: nothing else is a sign of life.
+    life: Age,
+    /// The longest of it since arming, ms.
+    longest_silence_ms: u16,
+    /// When nothing from the PC was left to be taken: later than this, what is taken now arrived.
+    emptied: u16,
+    /// Since torque was switched off; old where somebody else may have switched it on.
+    off: Age,
+    /// Since the torque limit began to fall.
+    fading: Age,
+    /// The torque limit that arming brought.
+    torque_limit: TorqueLimit,
+    /// Ticks since one was too long.
+    calm: u8,
     /// Rounds in a row with a low supply, and the round last looked at.
     low: (u8, u8),
     overruns: u16,
@@ -66,7 +84,7 @@ pub struct App {
 impl App {
     /// Torque off first of all, then everything else. A watchdog's reset is a fault.
     pub fn boot<B: Board>(board: &mut B) -> Self {
-        bus::torque_off(board);
+        bus::torque_off_at_start(board);
         let state = if board.reset_cause().is_watchdog() {
             State::Fault(Cause::Watchdog)
         } else {
@@ -83,12 +101,20 @@ impl App {
             goal: Goal::Hold,
             balance: Balance::NONE,
             attitude: Attitude::default(),
+            attitude_age: Age::NEVER,
             obeyed: 0,
             token: None,
+            is_used: false,
             boot_count: boot_counter::count(board) as u8,
             greetings: None,
             ticks: 0,
-            silent: 0,
+            life: Age::NEVER,
+            longest_silence_ms: 0,
+            emptied: board.clock(),
+            off: Age::from(board.clock()),
+            fading: Age::NEVER,
+            torque_limit: TorqueLimit::NONE,
+            calm: 0,
             low: (0, 0),
             overruns: 0,
             tick_us: 0,
@@ -108,6 +134,16 @@ impl App {
         self.state.condition()
     }
 
+    /// CRC-32 of the plan it balances with; none if it has none.
+    pub fn plan_fingerprint(&self) -> Option<u32> {
+        self.balance.fingerprint()
+    }
+
+    /// Whether a plan is being written to EEPROM.
+    pub fn is_writing(&self) -> bool {
+        self.writer.is_busy()
+    }
+
     /// One turn of the main loop: passes bytes on, and runs a tick when it is due.
     pub fn run<B: Board>(&mut self, board: &mut B) {
         if !self.has_looked {
@@ -117,8 +153,10 @@ impl App {
         }
         self.pump(board);
         if board.tick_due() {
+            // Here and nowhere else: only ticks that come and end prove that the firmware is alive.
+            // Fed at their ends alone, a long one after a short one would come too late.
+            board.feed_watchdog();
             self.tick(board);
-            // Here and nowhere else: only a completed tick proves that the firmware is alive.
             board.feed_watchdog();
         }
     }
@@ -128,6 +166,7 @@ impl App {
         // Bounded, so that a babbling line cannot starve the tick.
         for _ in 0..64 {
             let Some(byte) = board.link_receive() else {
+                self.emptied = board.clock();
                 break;
             };
             self.take(board, byte);
@@ -145,14 +184,17 @@ impl App {
     #[inline(never)]
     fn take<B: Board>(&mut self, board: &mut B, byte: u8) {
         if self.state == State::Bridge && self.filter.push(byte) == Way::Bus {
-            board.bus_send(&[byte]);
+            // What was being said when the controller restarted switches no torque on.
+            if self.ticks >= START_TICKS {
+                self.off = Age::NEVER;
+                board.bus_send(&[byte]);
+            }
             return;
         }
         if byte == 0 && !self.link.is_idle() {
             self.filter.end_frame();
         }
         if let Some(command) = self.link.push(byte, &mut self.statistics) {
-            self.silent = 0;
             self.obey(board, command);
         }
     }
@@ -164,8 +206,11 @@ impl App {
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();
         self.ticks = self.ticks.wrapping_add(1);
-        self.silent = self.silent.saturating_add(1);
+        self.pass(started);
         self.panel(board);
+        if self.off.us() < INSIST_US && !self.is_armed() {
+            bus::torque_off(board);
+        }
         if self.filter.tick() {
             self.link.reset();
         }
@@ -181,23 +226,41 @@ impl App {
             State::Fault(_) => self.insist(board, started),
             State::Stream(Torque::On) => self.stream(board, started),
             State::Balance(Torque::On) => self.balance(board, started),
-            State::Stream(Torque::Fading { left, cause }) => {
-                self.fade(board, left, cause, State::Stream);
+            State::Stream(Torque::Fading { cause }) => {
+                self.fade(board, cause, State::Stream);
                 self.watch(board, started);
             }
-            State::Balance(Torque::Fading { left, cause }) => {
-                self.fade(board, left, cause, State::Balance);
+            State::Balance(Torque::Fading { cause }) => {
+                self.fade(board, cause, State::Balance);
                 self.watch(board, started);
             }
         }
         self.account(board, started);
     }
 
+    /// Time passes.
+    fn pass(&mut self, clock: u16) {
+        for age in [
+            &mut self.life,
+            &mut self.attitude_age,
+            &mut self.off,
+            &mut self.fading,
+        ] {
+            age.pass(clock);
+        }
+        if self.is_armed() {
+            let silence_ms = u16::try_from(self.life.us() / 1000).unwrap_or(u16::MAX);
+            self.longest_silence_ms = self.longest_silence_ms.max(silence_ms);
+        }
+    }
+
     fn account<B: Board>(&mut self, board: &mut B, started: u16) {
         self.tick_us = since_us(board, started);
         self.longest_tick_us = self.longest_tick_us.max(self.tick_us);
+        self.calm = self.calm.saturating_add(1);
         if self.tick_us > TICK_US {
             self.overruns = self.overruns.saturating_add(1);
+            self.calm = 0;
         }
         let lost = u16::from(board.link_overruns());
         self.statistics.overruns = self.statistics.overruns.saturating_add(lost);

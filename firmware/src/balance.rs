@@ -6,7 +6,7 @@ use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
 use handstand_shared::message::Attitude;
 use handstand_shared::observer::{self, FINE, READINGS};
-use handstand_shared::plan::{AppliedInput, Law, Moment, Plan};
+use handstand_shared::plan::{AppliedInput, Gyro, Joint, Law, Moment, Plan};
 use handstand_shared::raw::{Position, Signed};
 use handstand_shared::velocity;
 use micromath::F32Ext;
@@ -16,6 +16,10 @@ const LOST_AFTER: u8 = 3;
 
 /// A joint further off than 10 degrees, in codes, was not put there on purpose.
 const POSE_CODES: u16 = 34;
+
+/// Of a reading there was none before. Zero, as all of [`Balance::NONE`]: another value would take a
+/// constant of its whole size from the AVR's RAM.
+const NEVER_HEARD: u8 = 0;
 
 /// What balancing remembers from tick to tick.
 #[derive(Debug, Clone)]
@@ -33,6 +37,8 @@ pub struct Balance {
     angle: i32,
     rate: i16,
     missed: u8,
+    /// Both joints' readings of the tick before, and how many ticks ago each was heard.
+    before: [(i16, u8); 2],
 }
 
 /// Why it cannot go on.
@@ -40,6 +46,10 @@ pub struct Balance {
 pub enum Stop {
     /// Too far from where the gains hold.
     Fallen,
+    /// A joint is out of its range.
+    JointRange,
+    /// A joint turns faster than it may.
+    JointSpeed,
     /// A joint's servo does not answer, the mirrored one included.
     ServoLost,
 }
@@ -56,6 +66,7 @@ impl Balance {
         angle: 0,
         rate: 0,
         missed: 0,
+        before: [(0, NEVER_HEARD); 2],
     };
 
     /// Takes a plan from its bytes, in place: RAM has no room for two. Whether it can be used.
@@ -79,6 +90,7 @@ impl Balance {
         self.velocities = [velocity::Memory::NONE; 2];
         self.applied = [AppliedInput::NOTHING; 2];
         self.missed = 0;
+        self.before = [(0, NEVER_HEARD); 2];
         self.rate = 0;
         self.compensation = compensation(&self.plan.moments);
         let [angle, ..] = self.point();
@@ -120,8 +132,48 @@ impl Balance {
         if angle.abs_diff(x0) > self.plan.range {
             return Err(Stop::Fallen);
         }
-        let [q2, q3] = [shoulder.angle(first.position), hip.angle(second.position)];
+        let mut joints = [0; 2];
+        let both = [(shoulder, first), (hip, second)];
+        for ((q, before), (joint, servo)) in joints.iter_mut().zip(&mut self.before).zip(both) {
+            *q = joint.angle(servo.position);
+            if !joint.is_in_range(*q) {
+                return Err(Stop::JointRange);
+            }
+            let (last, ago) = *before;
+            if !servo.present {
+                if ago != NEVER_HEARD {
+                    *before = (last, ago.saturating_add(1));
+                }
+                continue;
+            }
+            if ago != NEVER_HEARD && !joint.is_slow(q.wrapping_sub(last), ago) {
+                return Err(Stop::JointSpeed);
+            }
+            *before = (*q, 1);
+        }
+        let [q2, q3] = joints;
         Ok([angle, q2, q3, self.rate])
+    }
+
+    /// Whether the host must say the first link's attitude.
+    pub fn needs_attitude(&self) -> bool {
+        self.plan.gyro.from_host
+    }
+
+    /// The gyro as the plan has it; zero and scale are 0 without a plan.
+    pub fn gyro(&self) -> Gyro {
+        match self.fingerprint {
+            Some(_) => self.plan.gyro,
+            None => Plan::ZERO.gyro,
+        }
+    }
+
+    /// Whether all servos it commands turn without end: others would take its commands for speeds
+    /// on the way to their goals.
+    pub fn are_wheels(&self, servos: &Servos) -> bool {
+        let is_wheel = |id: u8| id >= 254 || servos.is_wheel(id);
+        let are_wheels = |joint: &Joint| is_wheel(joint.id) && is_wheel(joint.mirror);
+        self.plan.joints.iter().all(are_wheels)
     }
 
     /// Whether the driven joints are near the operating point.

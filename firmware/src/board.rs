@@ -11,7 +11,8 @@ pub trait Board {
     /// True once per tick.
     fn tick_due(&mut self) -> bool;
 
-    /// Puts the watchdog off for another 30 ms.
+    /// Puts the watchdog off for another 28 ms. Only a tick does so, when it begins and when it
+    /// ends, and what reads a plan from EEPROM, while torque is off, once per piece.
     fn feed_watchdog(&mut self);
 
     /// Sends bytes to the servos, and turns the bus to listening after the last stop bit. They may
@@ -26,18 +27,25 @@ pub trait Board {
     /// The next byte from the servos, waiting at most this long for it, us, once all is sent.
     fn bus_receive(&mut self, within_us: u16) -> Option<u8>;
 
-    /// Bytes from the servos, until `out` is full or nothing comes for so long; how many came. The
-    /// first may take another time than the others, us.
-    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
-        let mut within_us = first_us;
-        let mut used = 0;
-        for slot in out {
-            let Some(byte) = self.bus_receive(within_us) else {
+    /// Bytes from the servos, until `out` is full, nothing comes for so long, or they have come for
+    /// `all_us`; how many came. The first may take another time than the others, us.
+    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16, all_us: u16) -> usize {
+        let Some((first, rest)) = out.split_first_mut() else {
+            return 0;
+        };
+        let Some(byte) = self.bus_receive(first_us) else {
+            return 0;
+        };
+        *first = byte;
+        let began = self.clock();
+        let mut used = 1;
+        for slot in rest {
+            let left_us = all_us.saturating_sub(since_us(self, began));
+            let Some(byte) = self.bus_receive(between_us.min(left_us)) else {
                 break;
             };
             *slot = byte;
             used += 1;
-            within_us = between_us;
         }
         used
     }
@@ -88,6 +96,6 @@ pub trait Board {
 }
 
 /// Microseconds from `start` until now.
-pub fn since_us(board: &impl Board, start: u16) -> u16 {
+pub fn since_us(board: &(impl Board + ?Sized), start: u16) -> u16 {
     board.clock().wrapping_sub(start) / crate::design::CLOCK_PER_US
 }

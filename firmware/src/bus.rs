@@ -4,7 +4,7 @@
 //! it.
 
 use crate::board::Board;
-use crate::design::{BETWEEN_BYTES_US, FIRST_BYTE_US};
+use crate::design::{ANSWER_US, BETWEEN_BYTES_US, FIRST_BYTE_US, FLUSH_BYTES};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{
     BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, check_byte, sync_write_head,
@@ -12,8 +12,8 @@ use handstand_shared::dynamixel::{
 use handstand_shared::message::Statistics;
 use handstand_shared::raw::ReturnDelay;
 
-/// Most bytes of registers read at once: position, speed, load, supply and temperature.
-pub const MOST_READ: usize = 8;
+/// Most bytes of registers read at once: from torque enable to temperature.
+pub const MOST_READ: usize = 20;
 
 /// An answer's bytes as they came; fewer than were asked for if the servo fell silent.
 #[derive(Debug, Clone, Default)]
@@ -50,7 +50,7 @@ pub fn hear<B: Board>(board: &mut B, count: u8, delay: ReturnDelay, answer: &mut
     let first_us = delay.to_us().saturating_add(FIRST_BYTE_US);
     let whole = (OVERHEAD + usize::from(count)).min(answer.bytes.len());
     let out = answer.bytes.get_mut(..whole).unwrap_or(&mut []);
-    answer.used = board.bus_hear(out, first_us, BETWEEN_BYTES_US) as u8;
+    answer.used = board.bus_hear(out, first_us, BETWEEN_BYTES_US, ANSWER_US) as u8;
 }
 
 /// The `N` registers in an answer, if it is one of this servo, whole and undamaged.
@@ -100,6 +100,17 @@ pub fn write_all<B: Board>(board: &mut B, register: Register, value: u16) {
     if let Some(length) = request.emit(BROADCAST, &mut out) {
         board.bus_send(out.get(..length).unwrap_or(&[]));
     }
+}
+
+/// Torque off, everywhere, when nothing is known of what the servos were hearing: a restart within
+/// a packet leaves them waiting for its rest, which would swallow what follows.
+pub fn torque_off_at_start<B: Board>(board: &mut B) {
+    write_all(board, TORQUE_ENABLE, 0);
+    const PIECE: u16 = 32;
+    for _ in 0..FLUSH_BYTES / PIECE {
+        board.bus_send(&[0xff; PIECE as usize]);
+    }
+    torque_off(board);
 }
 
 /// Torque off, everywhere. Twice, for nobody answers a broadcast.

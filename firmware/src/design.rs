@@ -26,17 +26,45 @@ pub const FIRST_BYTE_US: u16 = 320;
 /// Longest silence inside an answer, us: the servo's motor interrupt stalls it for up to 130 us.
 pub const BETWEEN_BYTES_US: u16 = 250;
 
+/// From the first byte of an answer to its last, us: 26 bytes of 10 us, and three motor interrupts
+/// of 130 us. Noise that goes on and on ends here.
+pub const ANSWER_US: u16 = 800;
+
+/// No servo is asked later than this in a tick, us. 18 servos with the factory's return delay take
+/// 13.2 ms. The last answer may take 500 + [`FIRST_BYTE_US`] + [`ANSWER_US`] more, commands and the
+/// report 1.5 ms: a tick ends within 18 ms.
+pub const ROUND_US: u16 = 14_000;
+
 /// No request is repeated later than this in a tick, us: what follows (writing goals, the report)
 /// needs about 2 ms.
-pub const LAST_RETRY_US: u16 = 7_000;
+pub const LAST_RETRY_US: u16 = 7_600;
 
-/// Ticks without a sound frame after which an armed robot goes soft: 8 x 10 ms, at most 90 ms after
-/// the last frame.
-pub const SILENT_TICKS: u8 = 8;
+/// Time without a sign of life from the host after which an armed robot goes soft, us. It is noticed
+/// at the next tick, at most [`LONGEST_PERIOD_US`] later.
+pub const SILENT_US: u32 = 80_000;
 
-/// Ticks in which the torque limit falls to nothing: 16 x 10 ms, so torque is off at most 260 ms
-/// after the last frame.
-pub const FADE_TICKS: u8 = 16;
+/// Oldest attitude that is balanced with, us: three reports of the host's.
+pub const ATTITUDE_US: u32 = 30_000;
+
+/// Time in which the torque limit falls to nothing, us. Torque is off at the tick that follows.
+pub const FADE_US: u32 = 160_000;
+
+/// Ticks begin no further apart, us: after one that is longer than its period the next one begins at
+/// once.
+pub const LONGEST_PERIOD_US: u32 = 2 * TICK_US as u32;
+
+/// For so long torque off is said again in every tick, us: a servo may have missed it in noise.
+pub const INSIST_US: u32 = 200_000;
+
+/// Ticks after a start in which nothing from the PC passes to the servos: 200 ms.
+pub const START_TICKS: u32 = INSIST_US / TICK_US as u32;
+
+/// Bytes of `FF` that complete, with a wrong checksum, whatever packet the servos were hearing when
+/// the controller restarted: the longest has 255 bytes behind its length.
+pub const FLUSH_BYTES: u16 = 256;
+
+/// Ticks in a row that must have kept their period before torque comes on: 100 ms.
+pub const CALM_TICKS: u8 = 10;
 
 /// Below this supply arming is refused; 8 NiMH cells are empty at about 1.1 V each.
 pub const LOW_SUPPLY: handstand_shared::raw::Supply = handstand_shared::raw::Supply(88);
@@ -56,6 +84,9 @@ pub const DEBOUNCE_TICKS: u8 = 3;
 const _: () = {
     let line_baud = CPU_HZ / 8 / (LINK_UBRR as u32 + 1);
     assert!(line_baud.abs_diff(LINK_BAUD) * 100 < 2 * LINK_BAUD);
-    let soft_ms = (SILENT_TICKS as u32 + 1) * TICK_US as u32 / 1000;
-    assert!(soft_ms <= 100 && soft_ms + (FADE_TICKS as u32 + 1) * TICK_US as u32 / 1000 <= 300);
+    let soft_us = SILENT_US + LONGEST_PERIOD_US;
+    assert!(soft_us <= 100_000);
+    // Soft begins with one step down, so the fall takes a period less than it would.
+    assert!(soft_us + FADE_US + LONGEST_PERIOD_US <= 300_000);
+    assert!(START_TICKS == 20);
 };

@@ -2,7 +2,7 @@
 //! own.
 //!
 //! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the host
-//! board of `handstand-cm5-sim`. Read downward only: `design` -> `board` -> `bus` -> `servos`;
+//! board of `handstand-cm5-sim`. Read downward only: `design` -> `age`; `board` -> `bus` -> `servos`;
 //! `link`, `filter`, `plan_store`, `boot_counter`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
@@ -11,6 +11,7 @@
 #[cfg(not(target_arch = "avr"))]
 extern crate std;
 
+pub mod age;
 pub mod app;
 pub mod balance;
 pub mod board;

@@ -43,6 +43,11 @@ pub struct Buttons {
 }
 
 impl Buttons {
+    /// Whether one is down, bouncing or not.
+    pub fn is_down(&self) -> bool {
+        self.down != 0
+    }
+
     /// Once per tick: the buttons pressed by now that were not before.
     pub fn pressed(&mut self, down: u8) -> u8 {
         if down != self.down {
@@ -75,7 +80,7 @@ pub fn leds(condition: Condition, ticks: u32, heard: bool, all_answer: bool) -> 
     led::POWER | state | when(heard, led::TXD) | when(all_answer, led::RXD)
 }
 
-/// As many flashes as the cause's number, of 160 ms each 320 ms, within 2.56 s.
+/// As many flashes as the cause's number, of 160 ms each 320 ms, within 5.12 s.
 fn blinks(cause: Cause, ticks: u32) -> bool {
     let flashes = match cause {
         Cause::LinkLost => 1,
@@ -84,8 +89,12 @@ fn blinks(cause: Cause, ticks: u32) -> bool {
         Cause::ServoError => 4,
         Cause::Fallen => 5,
         Cause::Watchdog => 6,
+        Cause::AttitudeLost => 7,
+        Cause::JointRange => 8,
+        Cause::JointSpeed => 9,
+        Cause::TorqueLost => 10,
     };
-    let phase = (ticks & 0xff) as u8;
+    let phase = (ticks & 0x1ff) as u16;
     phase & 0x10 == 0 && phase >> 5 < flashes
 }
 
@@ -103,9 +112,13 @@ mod tests {
 
     #[test]
     fn a_fault_flashes_as_often_as_its_number() {
-        for (cause, number) in [(Cause::LinkLost, 1), (Cause::Watchdog, 6)] {
+        for (cause, number) in [
+            (Cause::LinkLost, 1),
+            (Cause::Watchdog, 6),
+            (Cause::TorqueLost, 10),
+        ] {
             let lit = |tick: u32| blinks(cause, tick);
-            let rises = (0..256).filter(|tick| lit(tick + 1) && !lit(*tick)).count();
+            let rises = (0..512).filter(|tick| lit(tick + 1) && !lit(*tick)).count();
             assert_eq!(rises, number);
         }
     }

@@ -14,7 +14,8 @@ const _: () =
 
 /// Longest gain table, bytes.
 pub const MAX_TABLE: u16 = 1000;
-const STARTS: [u16; 2] = [0x000, 0x400];
+/// Not from 0 on: a supply that breaks down while a byte is written may spoil the one at address 0.
+const STARTS: [u16; 2] = [0x010, 0x400];
 const HEADER: u16 = 8;
 /// Behind the last byte of the last slot.
 pub const END: u16 = STARTS[1] + HEADER + MAX_TABLE;
@@ -40,16 +41,17 @@ impl Stored {
         }
     }
 
-    /// The table's bytes.
+    /// The table's bytes. Torque must be off: reading them feeds the watchdog.
     pub fn bytes<B: Board>(self, board: &mut B) -> impl Iterator<Item = u8> {
         let body = start(self.slot) + HEADER;
-        (body..body + self.length).map(|at| board.eeprom_read(at))
+        (body..body + self.length).map(|at| read_fed(board, at))
     }
 
     /// The table's bytes from `offset` on, as many as `out` holds; beyond its end zeros.
     pub fn read(&self, board: &mut impl Board, offset: u16, out: &mut [u8]) {
         let body = start(self.slot) + HEADER;
-        for (at, byte) in (offset..).zip(out.iter_mut()) {
+        for (at, byte) in out.iter_mut().enumerate() {
+            let at = offset.saturating_add(at as u16);
             *byte = if at < self.length {
                 board.eeprom_read(body + at)
             } else {
@@ -91,7 +93,19 @@ fn slot_check(sequence: u16, length: u16, body: u32) -> u32 {
 fn body_check(board: &mut impl Board, slot: u8, length: u16) -> u32 {
     let body = start(slot) + HEADER;
     let bytes = body..body + length.min(MAX_TABLE);
-    !bytes.fold(u32::MAX, |crc, at| extend32(crc, &[board.eeprom_read(at)]))
+    !bytes.fold(u32::MAX, |crc, at| extend32(crc, &[read_fed(board, at)]))
+}
+
+/// Bytes read between two feedings of the watchdog.
+const PIECE: u16 = 64;
+
+/// A byte of a whole table, which takes as long to read as the watchdog waits. There are at most
+/// [`MAX_TABLE`], so whoever reads them comes to an end.
+fn read_fed(board: &mut impl Board, at: u16) -> u8 {
+    if at.is_multiple_of(PIECE) {
+        board.feed_watchdog();
+    }
+    board.eeprom_read(at)
 }
 
 /// Bytes on their way into the slot that does not count.

@@ -1,11 +1,15 @@
 //! The servos as a group: who they are, where they are, and what they last said.
 
-use handstand_shared::message::{Housekeeping, ServoList, TrippedServo};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::message::{Cause, Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
 mod commands;
 mod round;
+
+/// Error bits of a servo that drops its torque, or is about to.
+const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
 
 /// One servo.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +18,8 @@ pub struct Servo {
     pub id: u8,
     /// Its return delay; the factory's until it was asked.
     delay: ReturnDelay,
+    /// Whether it turns without end; none until it was asked.
+    is_wheel: Option<bool>,
     /// Where it was when it last answered.
     pub position: Position,
     /// Whether it answered in this tick.
@@ -31,7 +37,7 @@ pub struct Servos {
     count: u8,
     /// Their positions, as they are reported.
     pub positions: Positions,
-    /// How many have been asked for their return delay.
+    /// Place of the servo that is asked next for its return delay and mode.
     asked: u8,
     /// Place of the first servo whose housekeeping are read in this tick.
     pub housekeeping_from: u8,
@@ -43,7 +49,8 @@ pub struct Servos {
     lowest: Supply,
     /// Rounds of housekeeping so far, modulo 256.
     pub rounds: u8,
-    /// The first commanded servo since arming that said it was overloaded or too hot.
+    /// The first commanded servo since arming that said it was overloaded or too hot, or that its
+    /// torque was off.
     pub tripped: Option<TrippedServo>,
 }
 
@@ -53,6 +60,7 @@ impl Servos {
         let unknown = Servo {
             id: 0,
             delay: ReturnDelay::FACTORY,
+            is_wheel: None,
             position: Position::CENTRE,
             present: false,
             armed: false,
@@ -90,6 +98,29 @@ impl Servos {
     /// The servo with this id.
     pub fn with_id(&self, id: u8) -> Option<&Servo> {
         self.all().iter().find(|servo| servo.id == id)
+    }
+
+    /// Why it must stop, if a servo that was commanded is no more.
+    pub fn gave_up(&self) -> Option<Cause> {
+        let error = self.tripped?.error;
+        match error & GAVE_UP {
+            0 => Some(Cause::TorqueLost),
+            _ => Some(Cause::ServoError),
+        }
+    }
+
+    /// Whether the servo with this id was found to turn without end.
+    pub fn is_wheel(&self, id: u8) -> bool {
+        self.with_id(id)
+            .is_some_and(|servo| servo.is_wheel == Some(true))
+    }
+
+    /// Asks all for their return delay and mode once more, one per tick.
+    pub fn ask_again(&mut self) {
+        self.asked = 0;
+        for servo in self.all_mut() {
+            servo.is_wheel = None;
+        }
     }
 
     /// Those that did not answer in this tick: a bit each.

@@ -3,8 +3,13 @@
 //! COBS (Cheshire & Baker 1999) leaves no zero inside, so a zero always ends a frame and one
 //! frame's damage stays in it. The CRC-16 runs over the *stuffed* bytes as they lie on the line:
 //! over the body alone, one flipped COBS byte would move bytes about and the code's Hamming
-//! distance would be lost. Its 16 bits are sent as `1ccccccc 1ccccccc 100000cc`, which are never
+//! distance would be lost. Its 16 bits are sent as `1ccccccc 1ccccccc 1sssss cc`, which are never
 //! zero; the fixed bits are checked too.
+//!
+//! A byte may be kept off the line: the body's bytes are combined with the mask `s` * 8 by an
+//! exclusive or before they are stuffed, and the sender chooses an `s` that leaves no such byte. The
+//! CRC runs over `s` as over a byte in front, so it is as safe as the rest; with `s` = 0 a frame is
+//! what it would be without masks.
 
 use crate::crc::{START_16, crc16};
 
@@ -31,8 +36,30 @@ pub enum FrameError {
     Stuffing,
 }
 
+/// Masks there are.
+const MASKS: u8 = 32;
+
 /// Writes the frame of `body` into `out`; its length, or nothing if the body is too long.
 pub fn encode(body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    encode_masked(0, body, out)
+}
+
+/// The same without this byte, other than zero and below 128, between the zeros of the line. Only a
+/// body made for it leaves none of the masks: its bytes would have to be 32 different ones.
+pub fn encode_without(byte: u8, body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    for selector in 0..MASKS {
+        let length = encode_masked(selector, body, out)?;
+        if out
+            .get(..length)
+            .is_some_and(|frame| !frame.contains(&byte))
+        {
+            return Some(length);
+        }
+    }
+    encode(body, out)
+}
+
+fn encode_masked(selector: u8, body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
     if body.len() > MAX_BODY {
         return None;
     }
@@ -40,12 +67,13 @@ pub fn encode(body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
     // From the back: how far the next zero is, is then known.
     let mut distance = 1;
     for (at, byte) in body.iter().enumerate().rev() {
-        let zero = *byte == 0;
-        *out.get_mut(at + 1)? = if zero { distance } else { *byte };
+        let byte = *byte ^ mask(selector);
+        let zero = byte == 0;
+        *out.get_mut(at + 1)? = if zero { distance } else { byte };
         distance = if zero { 1 } else { distance + 1 };
     }
     *out.first_mut()? = distance;
-    let check = check_bytes(out.get(..stuffed)?);
+    let check = check_bytes(selector, out.get(..stuffed)?);
     let tail = out.get_mut(stuffed..stuffed + CHECK + 1)?;
     let ending = check.iter().chain(&[0]);
     tail.iter_mut()
@@ -66,9 +94,11 @@ pub fn decode(frame: &mut [u8]) -> Result<&[u8], FrameError> {
     let (stuffed, check) = frame
         .split_at_mut_checked(stuffed)
         .ok_or(FrameError::Length)?;
-    if check_bytes(stuffed) != check {
+    let selector = check.last().map_or(0, |last| last >> 2 & (MASKS - 1));
+    if check_bytes(selector, stuffed) != check {
         return Err(FrameError::Check);
     }
+    let mask = mask(selector);
     let (&mut first, body) = stuffed.split_first_mut().ok_or(FrameError::Length)?;
     let mut until_zero = first;
     for byte in body.iter_mut() {
@@ -77,9 +107,9 @@ pub fn decode(frame: &mut [u8]) -> Result<&[u8], FrameError> {
             (_, 0) => return Err(FrameError::Stuffing),
             (0, next) => {
                 until_zero = next;
-                *byte = 0;
+                *byte = mask;
             }
-            _ => {}
+            (_, other) => *byte = other ^ mask,
         }
     }
     match until_zero {
@@ -88,12 +118,19 @@ pub fn decode(frame: &mut [u8]) -> Result<&[u8], FrameError> {
     }
 }
 
-fn check_bytes(stuffed: &[u8]) -> [u8; CHECK] {
-    let crc = crc16(START_16, stuffed);
+fn mask(selector: u8) -> u8 {
+    selector << 3
+}
+
+fn check_bytes(selector: u8, stuffed: &[u8]) -> [u8; CHECK] {
+    // A CRC is linear: this is the start from which the selector as a first byte leads on, shifted
+    // so that 0 leads to the start of a frame without masks.
+    let start = START_16 ^ crc16(0, &[selector]);
+    let crc = crc16(start, stuffed);
     [
         0x80 | (crc >> 9) as u8,
         0x80 | (crc >> 2) as u8,
-        0x80 | (crc & 3) as u8,
+        0x80 | selector << 2 | (crc & 3) as u8,
     ]
 }
 
@@ -169,6 +206,45 @@ mod tests {
     }
 
     #[test]
+    fn a_frame_without_a_byte_literally() {
+        // `#` is 0x23; mask 8 of selector 1 makes 0x2b of it, and a zero of 8.
+        let mut out = [0; MAX_FRAME];
+        let length = encode_without(b'#', &[0x23, 0x08, 0x11], &mut out).unwrap();
+        let crc = crc16(START_16 ^ crc16(0, &[1]), &[2, 0x2b, 2, 0x19]);
+        assert_eq!(
+            crc16(START_16, &[2, 0x2b, 2, 0x19]) ^ crc,
+            crc16(0, &[1, 0, 0, 0, 0])
+        );
+        let check = [
+            0x80 | (crc >> 9) as u8,
+            0x80 | (crc >> 2) as u8,
+            0x84 | (crc & 3) as u8,
+        ];
+        assert_eq!(&out[..4], [2, 0x2b, 2, 0x19]);
+        assert_eq!(&out[4..length], [check[0], check[1], check[2], 0]);
+        // Nothing to avoid: as without masks.
+        let length = encode_without(b'#', &[0x11, 0x00, 0x22], &mut out).unwrap();
+        assert_eq!(out[..length], framed(&[0x11, 0x00, 0x22]).0[..length]);
+    }
+
+    /// One or two wrong bits anywhere, those that choose the mask among them.
+    #[test]
+    fn a_wrong_mask_is_noticed() {
+        let mut out = [0; MAX_FRAME];
+        let length = encode_without(b'#', &[0x23, 0x08, 0x11, 0], &mut out).unwrap() - 1;
+        for first in 0..length * 8 {
+            for second in 0..=first {
+                let mut damaged = out;
+                damaged[first / 8] ^= 1 << (first % 8);
+                if second < first {
+                    damaged[second / 8] ^= 1 << (second % 8);
+                }
+                assert!(decode(&mut damaged[..length]).is_err(), "{first} {second}");
+            }
+        }
+    }
+
+    #[test]
     fn too_long_a_body_is_not_framed_and_too_long_a_frame_not_accepted() {
         assert_eq!(encode(&[1; MAX_BODY + 1], &mut [0; MAX_FRAME]), None);
         let mut decoder = Decoder::default();
@@ -184,6 +260,14 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_byte_is_kept_off_the_line(body in proptest::collection::vec(prop_oneof![Just(0u8), Just(b'#'), any::<u8>()], 0..=MAX_BODY)) {
+            let mut out = [0; MAX_FRAME];
+            let length = encode_without(b'#', &body, &mut out).unwrap();
+            prop_assert!(!out[..length].contains(&b'#'));
+            prop_assert_eq!(decode(&mut out[..length - 1]), Ok(&body[..]));
+        }
+
         #[test]
         fn every_body_survives(body in proptest::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..=MAX_BODY)) {
             let (out, length) = framed(&body);

@@ -16,10 +16,6 @@ use avr::{finish, one_sum};
 /// Exact up to its one rounding for every `x`, if the table is safe ([`GainTable::is_safe`]).
 #[inline]
 pub fn control<const M: usize, const N: usize>(table: &GainTable<M, N>, x: &[i16; N]) -> [i16; M] {
-    #[cfg(target_arch = "avr")]
-    if let Some(u) = avr::fast(table, x) {
-        return u;
-    }
     let departure = departure(&table.x0, x);
     let mut u = [0; M];
     for (u, row) in u.iter_mut().zip(&table.rows) {

@@ -4,6 +4,7 @@
 //! table.
 
 use core::f64::consts::PI;
+use serde::{Deserialize, Serialize};
 
 /// A goal or present position: 0..=1023 over 300 degrees, 512 in the middle, counted
 /// counter-clockwise.
@@ -32,7 +33,7 @@ impl Position {
 
 /// Speed limit of a movement in joint mode (register 32); code 0 means "as fast as possible", not
 /// standstill.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MovingSpeed(pub u16);
 
 impl MovingSpeed {
@@ -129,7 +130,7 @@ impl ReturnDelay {
 }
 
 /// Torque limit (registers 14 and 34): 1023 is the servo's full torque.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TorqueLimit(pub u16);
 
 impl TorqueLimit {

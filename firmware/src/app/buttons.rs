@@ -2,7 +2,7 @@
 
 use super::{App, State, Torque};
 use crate::board::Board;
-use crate::design::SILENT_TICKS;
+use crate::design::SILENT_US;
 use crate::panel::{button, leds};
 use handstand_shared::message::Mode;
 
@@ -18,14 +18,14 @@ impl App {
         let lit = leds(
             self.condition(),
             self.ticks,
-            self.silent <= SILENT_TICKS,
+            self.life.us() <= SILENT_US,
             all_answer,
         );
         board.set_leds(lit);
     }
 
-    /// Any button stops a robot that is armed. Start chooses balancing while torque is off; the
-    /// host arms.
+    /// Any button stops a robot that is armed, and an adapter, whose user may have switched torque
+    /// on: it passes nothing on any more. Start chooses balancing while torque is off; the host arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
             State::Stream(Torque::On | Torque::Fading { .. }) => {
@@ -36,11 +36,11 @@ impl App {
                 self.disarm(board);
                 self.state = State::Balance(Torque::Off);
             }
-            State::Bridge | State::Stream(Torque::Off) => {
-                if pressed & button::START != 0 {
-                    self.enter(board, Mode::Balance);
-                }
+            State::Bridge | State::Stream(Torque::Off) if pressed & button::START != 0 => {
+                self.enter(board, Mode::Balance);
             }
+            State::Bridge => self.enter(board, Mode::Stream),
+            State::Stream(Torque::Off) => {}
             State::Balance(Torque::Off) | State::Fault(_) => {}
         }
     }

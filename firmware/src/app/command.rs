@@ -1,13 +1,14 @@
 //! What each command of the host does.
 
 use super::{App, Goal, State, Torque};
+use crate::age::Age;
 use crate::board::Board;
-use crate::design::LOW_SUPPLY;
+use crate::design::{CALM_TICKS, LOW_SUPPLY};
 use crate::plan_store::MAX_TABLE;
 use crate::servos::Servos;
 use handstand_shared::message::{
-    Answer, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report, ServoList, Subject,
-    Telemetry, VERSION,
+    Answer, ArmLimits, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report, ServoList,
+    Subject, Telemetry, VERSION,
 };
 
 /// What a command comes to.
@@ -24,6 +25,9 @@ impl App {
     #[inline(never)]
     pub(super) fn obey<B: Board>(&mut self, board: &mut B, command: Numbered<Command>) {
         let Numbered { sequence, message } = command;
+        if message.is_life() {
+            self.life = Age::from(self.emptied);
+        }
         let outcome = self.outcome(board, sequence, message);
         if let Outcome::Answer(outcome) = outcome {
             let report = Report::Answer(Answer { sequence, outcome });
@@ -48,9 +52,10 @@ impl App {
             Command::Speeds(speeds) => self.set_goal(sequence, Goal::Speeds(speeds)),
             Command::Attitude(attitude) => {
                 self.attitude = attitude;
+                self.attitude_age = Age::from(self.emptied);
                 Outcome::Quiet
             }
-            Command::Arm { token } => Outcome::Answer(self.arm(board, token)),
+            Command::Arm { token, limits } => Outcome::Answer(self.arm(board, token, limits)),
             Command::PlanChunk { offset, bytes } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
                 false => match self.writer.chunk(offset, &bytes, sequence) {
@@ -79,7 +84,8 @@ impl App {
                 stored.length
             }
             None => {
-                for (at, byte) in (offset..).zip(bytes.iter_mut()) {
+                for (at, byte) in bytes.iter_mut().enumerate() {
+                    let at = offset.saturating_add(at as u16);
                     *byte = board.compiled_plan(at).unwrap_or(0);
                 }
                 (0..MAX_TABLE)
@@ -102,6 +108,7 @@ impl App {
         self.link.greet(&mut self.statistics);
         let token = self.new_token(board);
         self.token = (version == VERSION).then_some(token);
+        self.is_used = false;
         let hello = Hello {
             version: VERSION,
             token,
@@ -137,9 +144,9 @@ impl App {
         if self.token.is_none() {
             return Err(Refusal::Version);
         }
+        // It needs no new greeting; arming does.
         let token = self.token;
         self.enter(board, mode);
-        // A mode chosen while nothing was armed needs no new greeting.
         self.token = token;
         Ok(())
     }
@@ -165,36 +172,72 @@ impl App {
         Outcome::Quiet
     }
 
+    /// Torque on, if everything speaks for it. A greeting serves once.
     #[inline(never)]
-    fn arm<B: Board>(&mut self, board: &mut B, token: u16) -> Result<(), Refusal> {
+    fn arm<B: Board>(
+        &mut self,
+        board: &mut B,
+        token: u16,
+        limits: ArmLimits,
+    ) -> Result<(), Refusal> {
+        if self.is_armed() {
+            return Err(Refusal::Armed);
+        }
         match self.token {
             None => return Err(Refusal::Version),
-            Some(right) if right != token => return Err(Refusal::Token),
+            Some(right) if right != token || self.is_used => return Err(Refusal::Token),
             Some(_) => {}
         }
-        match self.state {
-            State::Stream(Torque::Off) => {
-                self.has_supply()?;
-                self.goal = Goal::Hold;
-                self.low = (0, self.servos.rounds);
-                self.servos.arm(board);
-                self.state = State::Stream(Torque::On);
-                Ok(())
-            }
-            State::Balance(Torque::Off) => self.arm_balance(board),
-            State::Stream(Torque::On | Torque::Fading { .. })
-            | State::Balance(Torque::On | Torque::Fading { .. }) => Err(Refusal::Armed),
-            State::Bridge | State::Fault(_) => Err(Refusal::State),
+        let is_balance = match self.state {
+            State::Stream(_) => false,
+            State::Balance(_) => true,
+            State::Bridge | State::Fault(_) => return Err(Refusal::State),
+        };
+        if !limits.is_sound() {
+            return Err(Refusal::Limits);
         }
+        // It would have to be let go and pressed again to stop the robot.
+        if self.buttons.is_down() {
+            return Err(Refusal::Button);
+        }
+        // The plan that is being written would be taken while the robot is armed.
+        if self.writer.is_busy() {
+            return Err(Refusal::Busy);
+        }
+        self.has_supply()?;
+        if self.calm < CALM_TICKS {
+            return Err(Refusal::Overrun);
+        }
+        if is_balance {
+            self.prepare_balance(board)?;
+        }
+        self.is_used = true;
+        self.goal = Goal::Hold;
+        self.low = (0, self.servos.rounds);
+        self.life = Age::from(board.clock());
+        self.longest_silence_ms = 0;
+        self.off = Age::NEVER;
+        self.torque_limit = limits.torque;
+        self.servos.arm(board, limits);
+        self.state = match is_balance {
+            true => State::Balance(Torque::On),
+            false => State::Stream(Torque::On),
+        };
+        Ok(())
     }
 
     /// Balances from the next tick on, if the robot stands where its gains hold.
     #[inline(never)]
-    fn arm_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
-        self.has_supply()?;
+    fn prepare_balance<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         self.balance.fingerprint().ok_or(Refusal::NoPlan)?;
         if !self.balance.has_servos(&self.servos) {
             return Err(Refusal::Servo);
+        }
+        if !self.balance.are_wheels(&self.servos) {
+            return Err(Refusal::Wheel);
+        }
+        if !self.has_attitude(board) {
+            return Err(Refusal::Attitude);
         }
         self.balance.start();
         self.balance.sense(self.attitude, board.gyro());
@@ -204,10 +247,6 @@ impl App {
             return Err(Refusal::Pose);
         }
         self.balance.begin(&readings);
-        self.goal = Goal::Hold;
-        self.low = (0, self.servos.rounds);
-        self.servos.arm(board);
-        self.state = State::Balance(Torque::On);
         Ok(())
     }
 
@@ -233,7 +272,10 @@ impl App {
             stack_size,
             supply: self.servos.supply.map_or(0, |supply| supply.0),
             gyro: board.gyro(),
+            gyro_zero: self.balance.gyro().zero,
+            gyro_scale: self.balance.gyro().scale,
             tripped: self.servos.tripped,
+            longest_silence_ms: self.longest_silence_ms,
         };
         if self.link.send(board, &Report::Telemetry(telemetry)) {
             self.longest_tick_us = 0;
@@ -249,7 +291,8 @@ impl App {
         self.link.send(board, &report);
     }
 
-    fn is_armed(&self) -> bool {
+    /// Whether torque is on, falling included.
+    pub fn is_armed(&self) -> bool {
         match self.state {
             State::Stream(drive) | State::Balance(drive) => drive != Torque::Off,
             State::Bridge | State::Fault(_) => false,

@@ -55,10 +55,11 @@ impl App {
             return self.watch(board, started);
         }
         self.read(board, started);
-        match self.servos.tripped {
-            None => self.command(board),
+        match self.servos.gave_up() {
+            None if self.has_attitude(board) => self.command(board),
+            None => self.soften(board, Cause::AttitudeLost, State::Balance),
             // It leaves the other ones to throw the robot: not one command more.
-            Some(_) => self.soften(board, Cause::ServoError, State::Balance),
+            Some(cause) => self.soften(board, cause, State::Balance),
         }
         self.report(board);
     }
@@ -72,6 +73,8 @@ impl App {
         let readings = match self.balance.readings(&self.servos) {
             Ok(readings) => readings,
             Err(Stop::Fallen) => return self.give_up(board, Cause::Fallen),
+            Err(Stop::JointRange) => return self.give_up(board, Cause::JointRange),
+            Err(Stop::JointSpeed) => return self.give_up(board, Cause::JointSpeed),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
         let commands = self.balance.commands(&readings);
@@ -92,6 +95,7 @@ impl App {
             missing: [m0, m1, m2],
             housekeeping_from: self.servos.housekeeping_from,
             housekeeping: self.servos.housekeeping,
+            gyro: board.gyro(),
         };
         self.link.send(board, &Report::Stream(report));
     }

@@ -1,13 +1,13 @@
 //! How torque goes off, and when it must.
 
 use super::{App, Goal, State, Torque};
+use crate::age::Age;
 use crate::board::Board;
 use crate::bus;
-use crate::design::{FADE_TICKS, LOW_ROUNDS, LOW_SUPPLY, SILENT_TICKS};
+use crate::design::{ATTITUDE_US, FADE_US, LOW_ROUNDS, LOW_SUPPLY, SILENT_US, TICK_US};
 use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{Cause, Mode};
 use handstand_shared::packed::SERVOS;
-use handstand_shared::raw::TorqueLimit;
 
 impl App {
     /// Whether an armed robot must be let down.
@@ -20,15 +20,21 @@ impl App {
                 self.servos.rounds,
             );
         }
-        if self.servos.tripped.is_some() {
-            Some(Cause::ServoError)
-        } else if self.silent > SILENT_TICKS {
+        if let Some(cause) = self.servos.gave_up() {
+            Some(cause)
+        } else if self.life.us() >= SILENT_US {
             Some(Cause::LinkLost)
         } else if self.low.0 >= LOW_ROUNDS {
             Some(Cause::LowSupply)
         } else {
             None
         }
+    }
+
+    /// Whether the law may act on the first link's attitude: the gyro's is always new.
+    pub(super) fn has_attitude<B: Board>(&mut self, board: &B) -> bool {
+        self.attitude_age.pass(board.clock());
+        !self.balance.needs_attitude() || self.attitude_age.us() <= ATTITUDE_US
     }
 
     /// Holds the positions and begins to fade.
@@ -49,26 +55,30 @@ impl App {
         } else {
             self.servos.hold(board);
         }
-        self.fade(board, FADE_TICKS, cause, within);
+        self.fading = Age::from(board.clock());
+        self.fade(board, cause, within);
     }
 
-    /// Lowers every servo's torque limit in equal steps; at none, torque goes off.
+    /// Lowers every servo's torque limit as time passes; at none, torque goes off.
     #[inline(never)]
     pub(super) fn fade<B: Board>(
         &mut self,
         board: &mut B,
-        left: u8,
         cause: Cause,
         within: fn(Torque) -> State,
     ) {
-        const STEP: u16 = TorqueLimit::FULL.0 / FADE_TICKS as u16;
-        match left.checked_sub(1) {
-            Some(left) => {
-                bus::write_all(board, TORQUE_LIMIT, STEP * u16::from(left));
-                self.state = within(Torque::Fading { left, cause });
-            }
-            None => self.give_up(board, cause),
+        // 1/16 of the time is the least that counts; it stays within 16 bits, 1023 * 16.
+        const SIXTEENTH_US: u32 = FADE_US / 16;
+        let faded_us = self.fading.us();
+        if faded_us >= FADE_US {
+            return self.give_up(board, cause);
         }
+        // The limit that the period ends with, so that it falls from the first one on.
+        let left_us = FADE_US.saturating_sub(faded_us + u32::from(TICK_US));
+        let sixteenths = (left_us / SIXTEENTH_US) as u16;
+        let limit = self.torque_limit.0 / 16 * sixteenths;
+        bus::write_all(board, TORQUE_LIMIT, limit);
+        self.state = within(Torque::Fading { cause });
     }
 
     /// Torque off at once.
@@ -80,6 +90,7 @@ impl App {
     /// Torque off, and nothing that was said before arms again.
     pub(super) fn disarm<B: Board>(&mut self, board: &mut B) {
         self.servos.disarm(board);
+        self.off = Age::from(board.clock());
         self.token = None;
         self.goal = Goal::Hold;
     }
@@ -88,6 +99,8 @@ impl App {
     #[inline(never)]
     pub(super) fn enter<B: Board>(&mut self, board: &mut B, mode: Mode) {
         self.disarm(board);
+        // An adapter's user may have changed them.
+        self.servos.ask_again();
         self.state = match mode {
             Mode::Bridge => State::Bridge,
             Mode::Stream => State::Stream(Torque::Off),

@@ -24,8 +24,6 @@ pub enum Torque {
     On,
     /// Positions held, torque limit falling.
     Fading {
-        /// Ticks until torque is off.
-        left: u8,
         /// Why.
         cause: Cause,
     },

@@ -91,9 +91,10 @@ impl Board for Cm5 {
     }
 
     #[inline(always)]
-    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16) -> usize {
-        let [first, between] = [first_us, between_us].map(|us| us.saturating_mul(CLOCK_PER_US));
-        usart::bus::hear(&self.registers, out, first, between)
+    fn bus_hear(&mut self, out: &mut [u8], first_us: u16, between_us: u16, all_us: u16) -> usize {
+        let counts = |us: u16| us.saturating_mul(CLOCK_PER_US);
+        let [first, between, all] = [first_us, between_us, all_us].map(counts);
+        usart::bus::hear(&self.registers, out, first, between, all)
     }
 
     #[inline(always)]

@@ -7,20 +7,26 @@ use crate::design::GOAL_SLEW;
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
+use handstand_shared::message::ArmLimits;
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::{Position, Signed, TorqueLimit};
+use handstand_shared::raw::{Position, Signed};
 use heapless::Vec;
 
 impl Servos {
-    /// Torque on where a servo answered: full limit, and the goal where it stands.
-    pub fn arm<B: Board>(&mut self, board: &mut B) {
+    /// Torque on where a servo answered, within these limits, and the goal where it stands. What
+    /// limits the speed of a servo with a goal is the speed of one that turns without end: that
+    /// gets 0, and so does one whose mode is not known.
+    pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.tripped = None;
         for servo in self.all_mut() {
             servo.armed = servo.present;
             servo.goal = servo.position;
         }
-        bus::write_all(board, TORQUE_LIMIT, TorqueLimit::FULL.0);
-        self.write_each(board, MOVING_SPEED, |_| 0);
+        bus::write_all(board, TORQUE_LIMIT, limits.torque.0);
+        self.write_each(board, MOVING_SPEED, |servo| match servo.is_wheel {
+            Some(false) => limits.speed.0,
+            Some(true) | None => 0,
+        });
         self.write_each(board, GOAL_POSITION, |servo| servo.goal.0);
         self.write_each(board, TORQUE_ENABLE, |_| 1);
     }

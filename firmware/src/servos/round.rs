@@ -1,10 +1,10 @@
 //! Reading: every tick all positions, and the housekeeping of two servos in turn.
 
-use super::Servos;
+use super::{GAVE_UP, Servos};
 use crate::board::{Board, since_us};
 use crate::bus::{self, Answer, ReadPacket, look};
-use crate::design::LAST_RETRY_US;
-use handstand_shared::control_table::{PRESENT_POSITION, RETURN_DELAY};
+use crate::design::{LAST_RETRY_US, ROUND_US};
+use handstand_shared::control_table::{PRESENT_POSITION, RETURN_DELAY, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{ErrorBits, read_packet};
 use handstand_shared::message::{Housekeeping, Statistics, TrippedServo};
 use handstand_shared::packed::SERVOS;
@@ -12,10 +12,17 @@ use handstand_shared::raw::{Position, ReturnDelay, Supply};
 use heapless::Vec;
 
 /// Bytes from the position on that hold the housekeeping too.
-const ALL_CHANNELS: u8 = bus::MOST_READ as u8;
+const ALL_CHANNELS: u8 = 8;
 
-/// Error bits of a servo that drops its torque, or is about to.
-const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
+/// Bytes from torque enable on that hold all of these: one servo a tick is asked for them, for
+/// twelve bytes more of each would take a fiftieth of the period.
+const WITH_TORQUE: u8 = bus::MOST_READ as u8;
+const _: () =
+    assert!(TORQUE_ENABLE.address + WITH_TORQUE == PRESENT_POSITION.address + ALL_CHANNELS);
+
+/// Bytes from the return delay on that hold both angle limits too: 0 in a servo that turns without
+/// end.
+const MODE: u8 = 5;
 
 /// Of a servo that did not answer.
 pub(super) const SILENT: Housekeeping = Housekeeping {
@@ -46,13 +53,20 @@ impl Servos {
         let mut answer = Answer::default();
         let first = self.request(0);
         bus::ask(board, &first);
+        let mut is_asked = true;
         for place in 0..self.count {
+            if !is_asked {
+                self.leave_out(place, statistics);
+                continue;
+            }
             // Made while this answer is awaited, sent as soon as it is there: it is looked at while
             // that goes out.
             let next = self.request(place + 1);
             meanwhile();
             self.hear(board, place, &mut answer);
-            if place + 1 < self.count {
+            // Noise could hold each answer until its time-out: the round ends in time.
+            is_asked = since_us(board, started) < ROUND_US;
+            if is_asked && place + 1 < self.count {
                 bus::ask(board, &next);
             }
             let was_present = self.is_present(place);
@@ -78,7 +92,24 @@ impl Servos {
                 miss(statistics, place);
             }
         }
-        self.ask_delay(board, statistics);
+        if since_us(board, started) < ROUND_US {
+            self.ask_mode(board, statistics);
+        }
+    }
+
+    /// There was no time to ask it.
+    #[cold]
+    fn leave_out(&mut self, place: u8, statistics: &mut Statistics) {
+        if let Some(servo) = self.servos.get_mut(usize::from(place)) {
+            servo.present = false;
+        }
+        if let Some(slot) = self
+            .turn_of(place)
+            .and_then(|turn| self.housekeeping.get_mut(turn))
+        {
+            *slot = SILENT;
+        }
+        miss(statistics, place);
     }
 
     fn is_present(&self, place: u8) -> bool {
@@ -98,8 +129,20 @@ impl Servos {
         }
     }
 
+    /// Whether it says in this tick that its torque is on: each in turn, over two rounds. Not if it
+    /// was not heard in the last one: long answers of two servos of one id spoil their neighbour's.
+    fn tells_torque(&self, place: u8) -> bool {
+        if !self.is_present(place) {
+            return false;
+        }
+        let turn = usize::from(self.rounds & 1);
+        self.turn_of(place)
+            .is_some_and(|own| own == turn || self.count == 1)
+    }
+
     fn bytes_of(&self, place: u8) -> u8 {
         match self.turn_of(place) {
+            Some(_) if self.tells_torque(place) => WITH_TORQUE,
             Some(_) => ALL_CHANNELS,
             None => PRESENT_POSITION.size,
         }
@@ -109,7 +152,11 @@ impl Servos {
     fn request(&self, place: u8) -> ReadPacket {
         let servo = self.servos.get(usize::from(place));
         let id = servo.map_or(0, |servo| servo.id);
-        read_packet(id, PRESENT_POSITION.address, self.bytes_of(place))
+        let address = match self.tells_torque(place) {
+            true => TORQUE_ENABLE.address,
+            false => PRESENT_POSITION.address,
+        };
+        read_packet(id, address, self.bytes_of(place))
     }
 
     #[inline(always)]
@@ -123,13 +170,25 @@ impl Servos {
     #[inline(never)]
     fn take(&mut self, place: u8, answer: &Answer, statistics: &mut Statistics) -> bool {
         let turn = self.turn_of(place);
+        let tells_torque = self.tells_torque(place);
         let Some(servo) = self.servos.get_mut(usize::from(place)) else {
             return false;
         };
+        let mut has_torque = true;
         let reading = match turn {
             None => look::<2>(answer, servo.id),
             Some(turn) => {
-                let reading = look::<{ ALL_CHANNELS as usize }>(answer, servo.id);
+                let reading = match tells_torque {
+                    false => look::<{ ALL_CHANNELS as usize }>(answer, servo.id),
+                    true => {
+                        look::<{ WITH_TORQUE as usize }>(answer, servo.id).map(|(all, error)| {
+                            let [torque, ..] = all;
+                            has_torque = torque != 0;
+                            let [.., p0, p1, s0, s1, l0, l1, supply, temperature] = all;
+                            ([p0, p1, s0, s1, l0, l1, supply, temperature], error)
+                        })
+                    }
+                };
                 let housekeeping = reading.map_or(SILENT, housekeeping_of);
                 if reading.is_ok() {
                     self.lowest = self.lowest.min(Supply(housekeeping.supply));
@@ -146,7 +205,7 @@ impl Servos {
             let code = u16::from_le_bytes(position) & Position::MAX.0;
             servo.position = Position(code);
             self.positions.set(usize::from(place), code);
-            if servo.armed && error.0 & GAVE_UP != 0 {
+            if servo.armed && (error.0 & GAVE_UP != 0 || !has_torque) {
                 servo.armed = false;
                 let (id, error) = (servo.id, error.0);
                 self.tripped = self.tripped.or(Some(TrippedServo { id, error }));
@@ -171,20 +230,21 @@ impl Servos {
         if place + 1 < self.count { place + 1 } else { 0 }
     }
 
-    /// Asks one servo per tick for its return delay, until all were asked.
-    fn ask_delay<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics) {
+    /// Asks one servo per tick for its return delay and mode, until all were asked.
+    fn ask_mode<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics) {
         let asked = usize::from(self.asked);
         let Some(servo) = self.all_mut().get_mut(asked) else {
             return;
         };
         let mut answer = Answer::default();
-        let request = read_packet(servo.id, RETURN_DELAY.address, RETURN_DELAY.size);
+        let request = read_packet(servo.id, RETURN_DELAY.address, MODE);
         bus::ask(board, &request);
-        bus::hear(board, RETURN_DELAY.size, servo.delay, &mut answer);
-        let delay = look::<1>(&answer, servo.id);
-        bus::count(statistics, &delay);
-        if let Ok(([code], _)) = delay {
+        bus::hear(board, MODE, servo.delay, &mut answer);
+        let mode = look::<{ MODE as usize }>(&answer, servo.id);
+        bus::count(statistics, &mode);
+        if let Ok(([code, limits @ ..], _)) = mode {
             servo.delay = ReturnDelay(code);
+            servo.is_wheel = Some(limits == [0; 4]);
         }
         self.asked += 1;
     }

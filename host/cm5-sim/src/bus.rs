@@ -23,6 +23,9 @@ pub struct Bus {
     pub torque_offs: Vec<u64>,
     /// Speed of the controller, baud; servos set to another speed do not understand it.
     pub line_baud: u32,
+    /// Time from one byte of noise to the next, ns, if there is noise.
+    noise_ns: Option<u64>,
+    next_noise_ns: u64,
 }
 
 impl Bus {
@@ -45,7 +48,16 @@ impl Bus {
             now_ns: 0,
             torque_offs: Vec::new(),
             line_baud: 1_000_000,
+            noise_ns: None,
+            next_noise_ns: 0,
         }
+    }
+
+    /// From `now_ns` on the controller hears a byte of noise every `every_ns`, at least a byte's
+    /// time; `None` ends it. Where both meet, the noise is heard instead of the servos.
+    pub fn set_noise(&mut self, now_ns: u64, every_ns: Option<u64>) {
+        self.noise_ns = every_ns.map(|every_ns| every_ns.max(BYTE_NS));
+        self.next_noise_ns = now_ns + self.noise_ns.unwrap_or(0);
     }
 
     /// The servo with this id.
@@ -120,15 +132,44 @@ impl Bus {
         put(&mut self.line, from_ns, &replies);
     }
 
-    /// End of the next byte from the servos, ns, if one is pending.
+    /// End of the next byte to the controller, ns, if one is pending.
     pub fn next_ns(&self) -> Option<u64> {
+        let servo_ns = self.line.front().map(|(end, _)| *end);
+        let noise_ns = self.noise_ns.map(|_| self.next_noise_ns);
+        servo_ns.into_iter().chain(noise_ns).min()
+    }
+
+    /// The next byte to the controller that has ended by `now_ns`, and its end, ns.
+    pub fn take(&mut self, now_ns: u64) -> Option<(u64, u8)> {
+        let end_ns = self.next_ns().filter(|end| *end <= now_ns)?;
+        let Some(every_ns) = self.noise_ns.filter(|_| self.next_noise_ns == end_ns) else {
+            return self.line.pop_front();
+        };
+        self.next_noise_ns += every_ns;
+        // What a servo sends meanwhile is spoilt.
+        while self
+            .next_servo_ns()
+            .is_some_and(|servo_ns| servo_ns < end_ns + BYTE_NS)
+        {
+            self.line.pop_front();
+        }
+        Some((end_ns, (end_ns / 1000 * 101 / 7) as u8))
+    }
+
+    fn next_servo_ns(&self) -> Option<u64> {
         self.line.front().map(|(end, _)| *end)
     }
 
-    /// The next byte from the servos that has ended by `now_ns`, and its end, ns.
-    pub fn take(&mut self, now_ns: u64) -> Option<(u64, u8)> {
-        self.next_ns().filter(|end| *end <= now_ns)?;
-        self.line.pop_front()
+    /// Discard the bytes to the controller that end by `now_ns`.
+    pub fn miss(&mut self, now_ns: u64) {
+        while self.next_servo_ns().is_some_and(|end_ns| end_ns <= now_ns) {
+            self.line.pop_front();
+        }
+        if let Some(every_ns) = self.noise_ns
+            && now_ns >= self.next_noise_ns
+        {
+            self.next_noise_ns += ((now_ns - self.next_noise_ns) / every_ns + 1) * every_ns;
+        }
     }
 
     /// Whether any servo's torque is on.

@@ -49,14 +49,24 @@ pub struct HostBoard {
     pub dead: bool,
     /// Why the controller started.
     pub reset_cause: ResetCause,
+    /// How often the watchdog was fed.
+    pub feeds: u64,
+    fed_ns: u64,
+    /// The longest the watchdog was not fed, ns.
+    pub longest_unfed_ns: u64,
 }
 
 impl HostBoard {
     /// Power on in front of these servos, the EEPROM erased.
     pub fn new(bus: Bus) -> Self {
+        Self::at(0, bus)
+    }
+
+    /// The same at this time since power came to the servos, ns.
+    pub fn at(now_ns: u64, bus: Bus) -> Self {
         HostBoard {
-            now_ns: 0,
-            next_tick_ns: TICK_NS,
+            now_ns,
+            next_tick_ns: now_ns + TICK_NS,
             bus,
             from_pc: VecDeque::new(),
             to_pc: VecDeque::new(),
@@ -70,6 +80,9 @@ impl HostBoard {
             cut: None,
             dead: false,
             reset_cause: ResetCause(ResetCause::POWER),
+            feeds: 0,
+            fed_ns: now_ns,
+            longest_unfed_ns: 0,
         }
     }
 
@@ -83,6 +96,11 @@ impl HostBoard {
         let last_ns = self.from_pc.back().map_or(0, |(ends, _)| *ends);
         let ends = (1..).map(|count| last_ns.max(self.now_ns) + count * LINK_BYTE_NS);
         self.from_pc.extend(ends.zip(bytes.iter().copied()));
+    }
+
+    /// When the last byte queued by the PC arrives, ns; in the past if all have.
+    pub fn last_byte_ns(&self) -> u64 {
+        self.from_pc.back().map_or(0, |(ends, _)| *ends)
     }
 
     /// The next byte that has arrived at the PC, and the end of its stop bit, ns.
@@ -128,7 +146,11 @@ impl Board for HostBoard {
         due
     }
 
-    fn feed_watchdog(&mut self) {}
+    fn feed_watchdog(&mut self) {
+        self.feeds += 1;
+        self.longest_unfed_ns = self.longest_unfed_ns.max(self.now_ns - self.fed_ns);
+        self.fed_ns = self.now_ns;
+    }
 
     fn bus_send(&mut self, bytes: &[u8]) {
         for byte in bytes {
@@ -136,7 +158,7 @@ impl Board for HostBoard {
             self.bus.receive(self.now_ns, *byte);
         }
         // Who drives the bus does not hear it: a byte that began meanwhile is missed.
-        while self.bus.take(self.now_ns + BYTE_NS - 1).is_some() {}
+        self.bus.miss(self.now_ns + BYTE_NS - 1);
     }
 
     fn bus_receive(&mut self, within_us: u16) -> Option<u8> {
@@ -154,7 +176,7 @@ impl Board for HostBoard {
     }
 
     fn bus_flush(&mut self) {
-        while self.bus.take(self.now_ns).is_some() {}
+        self.bus.miss(self.now_ns);
     }
 
     fn link_receive(&mut self) -> Option<u8> {

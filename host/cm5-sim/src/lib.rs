@@ -32,7 +32,7 @@ pub use fault::Faults;
 pub use host_board::HostBoard;
 pub use pc::Pc;
 pub use plant::{Plant, Start};
-pub use port::{Cm5Port, SimulatedPort};
+pub use port::{Cm5Port, STARTED_MS, SimulatedPort};
 pub use protection::Protection;
 pub use regulator::Regulator;
 pub use robot::{DrivenJoint, Robot, RobotState};

@@ -2,7 +2,7 @@
 //! same replies.
 
 use super::bus::Bus;
-use super::cm5::VirtualCm5;
+use super::cm5::{SimulatedCm5 as _, VirtualCm5};
 use super::host_board::HostBoard;
 use handstand_firmware::design::LINK_BAUD;
 use std::time::Duration;
@@ -21,7 +21,7 @@ pub trait SimulatedPort: Send {
     fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> usize;
     /// Discard bytes that arrived and were not received.
     fn clear(&mut self);
-    /// Simulated time since power-on.
+    /// Simulated time since the port was there.
     fn now(&self) -> Duration;
     /// Let simulated time pass.
     fn pause(&mut self, time: Duration);
@@ -29,23 +29,35 @@ pub trait SimulatedPort: Send {
     fn latency(&self) -> Duration;
 }
 
+/// A CM-5 passes nothing on to the servos before, ms.
+pub const STARTED_MS: f64 = 250.0;
+
 /// The PC line of a CM-5 that runs the firmware's logic in process.
 #[derive(Debug)]
 pub struct Cm5Port {
     cm5: VirtualCm5,
     baud: u32,
+    began_ns: u64,
 }
 
 impl Cm5Port {
-    /// Power on a CM-5 in front of these servos.
+    /// A CM-5 in front of these servos that has been on for [`STARTED_MS`].
     pub fn new(bus: Bus) -> Self {
+        let mut cm5 = VirtualCm5::start(HostBoard::new(bus));
+        cm5.run_ms(STARTED_MS);
         Cm5Port {
-            cm5: VirtualCm5::start(HostBoard::new(bus)),
+            began_ns: cm5.board.now_ns(),
+            cm5,
             baud: LINK_BAUD,
         }
     }
 
     fn run(&mut self, time: Duration, until_byte: bool) {
+        // No time is none: a tick that is due would take its own, call by call, and whoever asks
+        // often enough would make the CM-5 run away from real time.
+        if time.is_zero() {
+            return;
+        }
         let VirtualCm5 { board, app, .. } = &mut self.cm5;
         board.run(app, board.now_ns() + nanoseconds(time), until_byte);
     }
@@ -85,7 +97,7 @@ impl SimulatedPort for Cm5Port {
     }
 
     fn now(&self) -> Duration {
-        Duration::from_nanos(self.cm5.board.now_ns())
+        Duration::from_nanos(self.cm5.board.now_ns() - self.began_ns)
     }
 
     fn pause(&mut self, time: Duration) {

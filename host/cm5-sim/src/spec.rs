@@ -6,7 +6,7 @@ use super::fault::Faults;
 use super::plant::Start;
 use handstand_shared::control_table::{BAUD, RETURN_DELAY, Register, STATUS_LEVEL};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with
@@ -177,10 +177,24 @@ impl FromStr for BusSpec {
     type Err = SpecError;
 
     fn from_str(text: &str) -> Result<Self, SpecError> {
+        BusSpec::with_robot(text, None)
+    }
+}
+
+impl BusSpec {
+    /// What `text` describes, with this model as its robot, whose `joints` and `start` the text may
+    /// then name.
+    ///
+    /// # Errors
+    /// The text describes no bus.
+    pub fn with_robot(text: &str, model: Option<&Path>) -> Result<Self, SpecError> {
         let mut spec = BusSpec::default();
         for part in text.split(',').filter(|part| !part.is_empty()) {
             let (key, value) = part.split_once('=').unwrap_or((part, ""));
             spec.set(key, value)?;
+        }
+        if let Some(model) = model {
+            spec.robot.get_or_insert_default().model = model.into();
         }
         match &spec.robot {
             Some(robot) if robot.model.as_os_str().is_empty() => Err(SpecError::NoModel),
@@ -206,6 +220,13 @@ mod tests {
         let bus = spec.bus();
         assert_eq!(bus.servos[3].get(RETURN_DELAY), 0);
         assert!(bus.servos[1].faults.dead && !bus.servos[0].faults.dead);
+        let beside = BusSpec::with_robot("joints=3/4,start=upright", Some(Path::new("a.toml")));
+        let expected = RobotSpec {
+            model: "a.toml".into(),
+            joints: Some(vec![vec![3], vec![4]]),
+            start: Start::Upright,
+        };
+        assert_eq!(beside.unwrap().robot, Some(expected));
         assert_eq!("".parse(), Ok(BusSpec::default()));
         for (wrong, said) in [
             ("idz=1", "`idz`"),

@@ -62,6 +62,9 @@ pub struct Loader {
     /// Do not start the application at power-on
     #[arg(long)]
     no_app: bool,
+    /// Take any program for the AVR, not only Handstand's
+    #[arg(long)]
+    pub any_program: bool,
 }
 
 /// Checks the image, then writes it.
@@ -69,7 +72,10 @@ pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(programmer) = &args.isp {
         return isp(args, programmer, talk);
     }
-    let image = Image::load(&args.image)?;
+    let image = match args.loader.any_program {
+        true => Image::load_any(&args.image)?,
+        false => Image::load(&args.image)?,
+    };
     let facts = format!(
         "{}: {} bytes, checksum {:02X}",
         args.image.display(),
@@ -97,6 +103,8 @@ pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) ->
     let patience = Duration::from_secs(how.wait);
     let pace = Duration::from_micros(how.pace_us);
     let mut loader = BootLoader::enter(link, pace, patience, || !interrupt.has_come())?;
+    // A write that is interrupted leaves half a program: it must not start.
+    loader.stay_at_power_on()?;
     let bar = talk.bar(image.bytes().len() as u64);
     bar.set_message("bytes; do not switch off");
     loader.load(image, |sent| bar.set_position(sent as u64))?;

@@ -70,12 +70,9 @@ pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", unix))]
 pub fn run(args: &VirtualArgs, talk: &Talk) -> Result<ExitStatus> {
-    use handstand::link::virtual_cm5::{StateLog, serve, set_up, spec};
+    use handstand::link::virtual_cm5::{StateLog, serve, set_up, spec_with_robot};
 
-    let mut spec = spec(&args.words)?;
-    if let Some(model) = &args.robot {
-        spec.robot.get_or_insert_default().model = model.clone();
-    }
+    let spec = spec_with_robot(&args.words, args.robot.as_deref())?;
     if !args.seconds.unwrap_or(1.0).is_finite() {
         return Err(Error::usage(
             "--seconds is no time",

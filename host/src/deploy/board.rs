@@ -43,6 +43,10 @@ pub struct Board {
     pub gyro: Gyro,
     /// Deviation of the first link from upright at which the robot has fallen, rad.
     pub range_rad: f64,
+    /// Deviation of a driven joint from its zero at which torque goes off, rad.
+    pub joint_range_rad: f64,
+    /// Speed of a driven joint at which torque goes off, rad/s.
+    pub joint_speed_rad_s: f64,
 }
 
 impl Board {
@@ -75,6 +79,8 @@ impl Board {
             scale: 16,
         },
         range_rad: 0.8,
+        joint_range_rad: 1.2,
+        joint_speed_rad_s: 6.0,
     };
 }
 
@@ -104,8 +110,8 @@ impl Board {
             Some(back) if back == plan => Ok(plan),
             _ => Err(Error::design(
                 "the firmware would refuse this plan",
-                "check the servos' ids, centres and dead zone; the slew limit must exceed the \
-                 dead zone",
+                "check the servos' ids, centres, dead zone, range and speed; the slew limit must \
+                 exceed the dead zone",
             )),
         }
     }
@@ -120,6 +126,8 @@ impl Board {
             true => (codes, 0, 1023 - codes),
             false => (0, steps(MARGIN * self.dead_zone * self.full_nm), 1023),
         };
+        let range = (self.joint_range_rad / Position::LSB_RAD).floor() as i16;
+        let fastest = self.joint_speed_rad_s * self.period_s / Position::LSB_RAD;
         let gain = (input_step_nm / self.full_nm * f64::from(span) * 65_536.0).round();
         if !(1.0..=65_535.0).contains(&gain) {
             return Err(Error::design(
@@ -141,6 +149,9 @@ impl Board {
             least,
             most: steps(self.most_nm),
             slew: steps(self.slew_nm),
+            lowest: -range,
+            highest: range,
+            fastest: fastest.round() as u16,
         })
     }
 }

@@ -102,6 +102,24 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
             "the list of servos is empty, too long, or names an id twice",
             "give 1 to 18 different ids",
         ),
+        Refusal::Busy => ("a plan is being written", "wait a second and try again"),
+        Refusal::Button => ("a button is held down", "let it go: any button stops"),
+        Refusal::Overrun => (
+            "its ticks last longer than their period",
+            "`handstand bus setup` sets the servos' return delay to 0; noise or absent servos cost time too",
+        ),
+        Refusal::Attitude => (
+            "no attitude of the first link came in the last 30 ms",
+            "send it 100 times a second, before arming too",
+        ),
+        Refusal::Limits => (
+            "a torque or speed limit lies outside 1 to 1023",
+            "give limits a servo knows",
+        ),
+        Refusal::Wheel => (
+            "a servo that the plan drives is not in wheel mode",
+            "write 0 to both its angle limits: `handstand bus write`",
+        ),
         Refusal::Pose => (
             "the robot is too far from the pose its gains are for",
             "bring it there by hand, then arm",
@@ -123,6 +141,10 @@ pub fn condition_words(condition: Condition) -> &'static str {
         Condition::Fault(Cause::ServoLost) => "stopped: a servo stopped answering",
         Condition::Fault(Cause::ServoError) => "stopped: a servo is overloaded or too hot",
         Condition::Fault(Cause::Fallen) => "stopped: it left the range its gains hold in",
+        Condition::Fault(Cause::AttitudeLost) => "stopped: no attitude came",
+        Condition::Fault(Cause::JointRange) => "stopped: a joint left its range",
+        Condition::Fault(Cause::JointSpeed) => "stopped: a joint turned too fast",
+        Condition::Fault(Cause::TorqueLost) => "stopped: a servo lost its torque",
         Condition::Fault(Cause::Watchdog) => "stopped: the watchdog reset the controller",
     }
 }

@@ -124,6 +124,7 @@ fn report_bytes() -> usize {
         missing: [0; 3],
         housekeeping_from: 0,
         housekeeping: Default::default(),
+        gyro: 0,
     };
     encode(0, &Report::Stream(report), &mut [0; MAX_FRAME]).unwrap_or(MAX_FRAME)
 }

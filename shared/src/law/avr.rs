@@ -1,11 +1,13 @@
 //! The law in the AVR's own words.
 //!
 //! The compiler's product of two 16-bit values takes 110 cycles. Here it takes 31 in a row of any
-//! length, and 25 in the law of two inputs and six states, which is unrolled: four 8-bit products
-//! and their sum. A shift by bits is a product with a power of two.
+//! length: four 8-bit products and their sum. A shift by bits is a product with a power of two.
+//!
+//! Products leave their result in r0 and r1. The compiler wants both as they were: r1 zero, r0
+//! whatever it was.
 #![allow(unsafe_code)]
 
-use crate::gains::{GainTable, Row};
+use crate::gains::Row;
 use core::arch::asm;
 use core::mem::{MaybeUninit, offset_of, size_of};
 
@@ -148,101 +150,6 @@ macro_rules! forget {
     };
 }
 
-/// The inputs, if the table is of two inputs and six states.
-#[inline(always)]
-pub fn fast<const M: usize, const N: usize>(
-    table: &GainTable<M, N>,
-    x: &[i16; N],
-) -> Option<[i16; M]> {
-    if M != 2 || N != 6 {
-        return None;
-    }
-    // SAFETY: with M = 2 and N = 6 these are the same types.
-    let (table, x) = unsafe {
-        let table = (&raw const *table).cast::<GainTable<2, 6>>();
-        (&*table, &*(&raw const *x).cast::<[i16; 6]>())
-    };
-    let inputs = two_by_six(table, x);
-    let mut out = [0; M];
-    out.iter_mut().zip(inputs).for_each(|(out, u)| *out = u);
-    Some(out)
-}
-
-/// Both inputs for the states `x`.
-#[inline(always)]
-fn two_by_six(table: &GainTable<2, 6>, x: &[i16; 6]) -> [i16; 2] {
-    const ROWS: usize = offset_of!(GainTable<2, 6>, rows);
-    const ROW: usize = size_of::<Row<6>>();
-    const X0: usize = offset_of!(GainTable<2, 6>, x0);
-    // Every field is reached by a displacement from one pointer, of which the AVR has six bits.
-    const { assert!(ROWS + 2 * ROW <= 64 && X0 + 12 <= 64) };
-    let (first, second): (i16, i16);
-    // SAFETY: reads 12 bytes from X and within the table from Z; r1 is zero again at the end.
-    unsafe {
-        asm!(
-            mac!(),
-            finish!(),
-            "clr r11",
-            "ldd r14, Z+{bias}",
-            "ldd r15, Z+{bias}+1",
-            "ldd r18, Z+{bias}+2",
-            "ldd r19, Z+{bias}+3",
-            "ldd r12, Z+{row}+{bias}",
-            "ldd r13, Z+{row}+{bias}+1",
-            "ldd r16, Z+{row}+{bias}+2",
-            "ldd r17, Z+{row}+{bias}+3",
-            ".irp j, 0, 2, 4, 6, 8, 10",
-            "ld r20, X+",
-            "ld r21, X+",
-            "ldd r22, Z+{x0}+\\j",
-            "ldd r23, Z+{x0}+\\j+1",
-            "sub r20, r22",
-            "sbc r21, r23",
-            "brvc 2f",
-            // Beyond 16 bits: 7fff where the unsigned difference borrowed, else 8000.
-            "sbc r20, r20",
-            "mov r21, r20",
-            "subi r21, 0x80",
-            "2: ldd r22, Z+{k}+\\j",
-            "ldd r23, Z+{k}+\\j+1",
-            "handstand_mac r14, r15, r18, r19",
-            "ldd r22, Z+{row}+{k}+\\j",
-            "ldd r23, Z+{row}+{k}+\\j+1",
-            "handstand_mac r12, r13, r16, r17",
-            ".endr",
-            "handstand_finish r14, r15, r18, r19, r26, r27, {shift}, {low}, {high}",
-            "handstand_finish r12, r13, r16, r17, r22, r23, {row}+{shift}, {row}+{low}, {row}+{high}",
-            "clr r1",
-            forget!("mac" "power" "scale" "finish"),
-            x0 = const X0,
-            row = const ROW,
-            k = const ROWS + offset_of!(Row<6>, k),
-            bias = const ROWS + offset_of!(Row<6>, bias),
-            shift = const ROWS + offset_of!(Row<6>, shift),
-            low = const ROWS + offset_of!(Row<6>, low),
-            high = const ROWS + offset_of!(Row<6>, high),
-            in("Z") table,
-            inout("X") x.as_ptr() => first,
-            out("r23r22") second,
-            out("r11") _,
-            out("r12") _,
-            out("r13") _,
-            out("r14") _,
-            out("r15") _,
-            out("r16") _,
-            out("r17") _,
-            out("r18") _,
-            out("r19") _,
-            out("r20") _,
-            out("r21") _,
-            out("r24") _,
-            out("r25") _,
-            options(nostack, readonly),
-        );
-    }
-    [first, second]
-}
-
 /// How far the states `x` are from the operating point `x0`, saturating: 19 cycles each, where the
 /// compiler takes 45.
 #[inline(always)]
@@ -292,14 +199,17 @@ pub fn departure<const N: usize>(x0: &[i16; N], x: &[i16; N]) -> [i16; N] {
 pub fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
     const { assert!(size_of::<Row<N>>() <= 64) };
     let input: i16;
-    // SAFETY: reads within the row from Z; r1 is zero again at the end.
+    // SAFETY: reads within the row from Z; r0 and r1 are again what they were at the end.
     unsafe {
         asm!(
             finish!(),
+            "mov {kept}, r0",
             "clr r11",
             "handstand_finish {low:l}, {low:h}, r18, r19, r22, r23, {shift}, {least}, {most}",
             "clr r1",
+            "mov r0, {kept}",
             forget!("power" "scale" "finish"),
+            kept = out(reg) _,
             shift = const offset_of!(Row<N>, shift),
             least = const offset_of!(Row<N>, low),
             most = const offset_of!(Row<N>, high),
@@ -325,10 +235,12 @@ pub fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
         return bias;
     }
     let (mut low, mut high) = (bias as u16, (bias >> 16) as u16);
-    // SAFETY: reads `count` words from X and from Z, which both have; r1 is zero again at the end.
+    // SAFETY: reads `count` words from X and from Z, which both have; r0 and r1 are again what they
+    // were at the end.
     unsafe {
         asm!(
             mac!(),
+            "mov {kept}, r0",
             "clr r11",
             "2: ld r20, X+",
             "ld r21, X+",
@@ -338,7 +250,9 @@ pub fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
             "dec {count}",
             "brne 2b",
             "clr r1",
+            "mov r0, {kept}",
             forget!("mac"),
+            kept = out(reg) _,
             low = inout(reg_pair) low,
             high = inout(reg_pair) high,
             count = inout(reg) count => _,

@@ -1,6 +1,7 @@
 //! From the host to the CM-5.
 
 use crate::packed::{Positions, SERVOS, Speeds};
+use crate::raw::{MovingSpeed, TorqueLimit};
 use serde::{Deserialize, Serialize};
 
 /// Bytes of gain table in one message.
@@ -37,9 +38,11 @@ pub enum Command {
     },
     /// Torque on. Critical.
     Arm {
-        /// The token of the last [`super::Hello`]: a new one after every boot and every fault, so
-        /// that an old frame arms nothing.
+        /// The token of the last [`super::Hello`]. It serves once, so that an old frame arms
+        /// nothing.
         token: u16,
+        /// What the servos may do.
+        limits: ArmLimits,
     },
     /// A piece of a new gain table. Critical; refused while armed.
     PlanChunk {
@@ -55,6 +58,49 @@ pub enum Command {
         /// CRC-32 of them.
         check: u32,
     },
+}
+
+impl Command {
+    /// Whether it shows that the host is in command: an armed robot that hears no such command is
+    /// let down.
+    pub fn is_life(&self) -> bool {
+        match self {
+            Command::Goals(_) | Command::Speeds(_) | Command::Attitude(_) | Command::KeepAlive => {
+                true
+            }
+            Command::Hello { .. }
+            | Command::Mode(_)
+            | Command::ServoList(_)
+            | Command::Disarm
+            | Command::Ask(_)
+            | Command::PlanRead { .. }
+            | Command::Arm { .. }
+            | Command::PlanChunk { .. }
+            | Command::PlanStore { .. } => false,
+        }
+    }
+}
+
+/// What the servos may do once they are armed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ArmLimits {
+    /// Torque limit of every servo, 1 to 1023.
+    pub torque: TorqueLimit,
+    /// Largest speed of a servo on the way to its goal, 1 to 1023; none is not to be had.
+    pub speed: MovingSpeed,
+}
+
+impl ArmLimits {
+    /// As much as a servo has.
+    pub const FULL: ArmLimits = ArmLimits {
+        torque: TorqueLimit::FULL,
+        speed: MovingSpeed(1023),
+    };
+
+    /// Whether both are limits a servo knows.
+    pub fn is_sound(&self) -> bool {
+        (1..=1023).contains(&self.torque.0) && (1..=1023).contains(&self.speed.0)
+    }
 }
 
 /// What the firmware does.

@@ -8,7 +8,7 @@
 mod command;
 mod report;
 
-pub use command::{Attitude, Command, Mode, PLAN_CHUNK, ServoList, Subject};
+pub use command::{ArmLimits, Attitude, Command, Mode, PLAN_CHUNK, ServoList, Subject};
 pub use report::{
     Answer, Cause, Condition, Hello, Housekeeping, Refusal, Report, ResetCause, Statistics,
     StreamReport, Telemetry, TrippedServo,
@@ -19,15 +19,22 @@ use crate::frame::{self, MAX_BODY, MAX_FRAME};
 use serde::{Deserialize, Serialize};
 
 /// Version of the messages; host and firmware must have the same.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 
 /// A message for one direction of the line.
 pub trait Message: Serialize + for<'de> Deserialize<'de> {
+    /// A byte that its frames do not hold.
+    const WITHOUT: Option<u8>;
+
     /// Whether it carries a CRC-32 of its own.
     fn is_critical(&self) -> bool;
 }
 
 impl Message for Command {
+    /// The CM-5's boot loader takes it, during a reset, for the wish to stay in it: a restart of the
+    /// controller while the host speaks would leave the servos torqued.
+    const WITHOUT: Option<u8> = Some(b'#');
+
     fn is_critical(&self) -> bool {
         match self {
             Command::Arm { .. } | Command::PlanChunk { .. } | Command::PlanStore { .. } => true,
@@ -46,6 +53,8 @@ impl Message for Command {
 }
 
 impl Message for Report {
+    const WITHOUT: Option<u8> = None;
+
     fn is_critical(&self) -> bool {
         matches!(self, Report::PlanChunk { .. })
     }
@@ -70,7 +79,7 @@ pub enum MessageError {
 }
 
 /// Writes the frame of a message into `out`; its length, or nothing if it does not fit.
-pub fn encode(sequence: u8, message: &impl Message, out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+pub fn encode<M: Message>(sequence: u8, message: &M, out: &mut [u8; MAX_FRAME]) -> Option<usize> {
     let mut body = [0; MAX_BODY];
     let (first, content) = body.split_first_mut()?;
     *first = sequence;
@@ -84,7 +93,11 @@ pub fn encode(sequence: u8, message: &impl Message, out: &mut [u8; MAX_FRAME]) -
             .for_each(|(slot, byte)| *slot = byte);
         length += check.len();
     }
-    frame::encode(body.get(..length)?, out)
+    let body = body.get(..length)?;
+    match M::WITHOUT {
+        None => frame::encode(body, out),
+        Some(byte) => frame::encode_without(byte, body, out),
+    }
 }
 
 /// Reads the body of a frame.

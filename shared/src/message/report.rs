@@ -75,6 +75,14 @@ pub enum Cause {
     Fallen,
     /// The watchdog reset the controller.
     Watchdog,
+    /// The host said no attitude for too long, and the robot was balanced with it.
+    AttitudeLost,
+    /// A joint left the range of its plan.
+    JointRange,
+    /// A joint turned faster than its plan allows.
+    JointSpeed,
+    /// A servo that was commanded said that its torque was off.
+    TorqueLost,
 }
 
 /// The outcome of a command.
@@ -109,6 +117,18 @@ pub enum Refusal {
     ServoList,
     /// The robot is too far from the pose its gains are for.
     Pose,
+    /// A plan is being written.
+    Busy,
+    /// A button is held down.
+    Button,
+    /// Ticks took longer than their period lately.
+    Overrun,
+    /// The host said no attitude lately, and the plan needs it.
+    Attitude,
+    /// A torque or speed limit that no servo knows.
+    Limits,
+    /// A servo that the plan drives is not in wheel mode, or has not said so.
+    Wheel,
 }
 
 /// One tick's measurements.
@@ -130,6 +150,9 @@ pub struct StreamReport {
     pub housekeeping_from: u8,
     /// Slower channels of two servos in turn.
     pub housekeeping: [Housekeeping; 2],
+    /// The gyro's voltage, ADC code 0..=1023.
+    #[serde(with = "postcard::fixint::le")]
+    pub gyro: u16,
 }
 
 impl StreamReport {
@@ -194,8 +217,14 @@ pub struct Telemetry {
     pub supply: u8,
     /// The gyro's last reading, ADC code.
     pub gyro: u16,
+    /// Its code at rest, as the plan has it; 0 without a plan.
+    pub gyro_zero: u16,
+    /// [`super::Attitude::RATE_LSB_RAD_S`] per code, times 16, as the plan has it; 0 without a plan.
+    pub gyro_scale: i16,
     /// The servo that let the robot down, until it is armed again.
     pub tripped: Option<TrippedServo>,
+    /// The longest time without a sign of life from the host since arming, ms.
+    pub longest_silence_ms: u16,
 }
 
 /// A servo that gave up under torque.
@@ -203,7 +232,8 @@ pub struct Telemetry {
 pub struct TrippedServo {
     /// Its id.
     pub id: u8,
-    /// What it said: [`crate::dynamixel::ErrorBits`].
+    /// What it said: [`crate::dynamixel::ErrorBits`]. Without overload and overheat its torque was
+    /// off and nobody had switched it off.
     pub error: u8,
 }
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::frame::{Decoder, wire_length};
 use crate::packed::{Positions, SERVOS, Speeds};
+use crate::raw::{MovingSpeed, TorqueLimit};
 use proptest::prelude::*;
 
 fn round_trip<M: Message + PartialEq + core::fmt::Debug>(sequence: u8, message: M) -> usize {
@@ -23,13 +24,14 @@ fn stream_report() -> StreamReport {
         missing: [0; 3],
         housekeeping_from: 17,
         housekeeping: [Housekeeping::default(); 2],
+        gyro: 1023,
     }
 }
 
 /// 57600 baud carries 57 bytes per 10 ms each way.
 #[test]
 fn what_goes_every_tick_fits_the_line() {
-    assert_eq!(round_trip(255, Report::Stream(stream_report())), 53);
+    assert_eq!(round_trip(255, Report::Stream(stream_report())), 55);
     assert_eq!(
         round_trip(255, Command::Goals(Positions::pack([1023; SERVOS]))),
         30
@@ -70,11 +72,18 @@ fn the_largest_messages_fit_a_frame() {
 
 #[test]
 fn a_critical_message_without_its_own_check_is_refused() {
-    let arm = [9, 10, 0x34];
+    // Token 0x34, torque limit 1023, speed 100.
+    let arm = [9, 10, 0x34, 0xff, 7, 100];
     assert_eq!(decode::<Command>(&arm), Err(MessageError::Check));
-    let mut checked = [9, 10, 0x34, 0, 0, 0, 0];
-    checked[3..].copy_from_slice(&crc32(&arm).to_le_bytes());
-    let message = Command::Arm { token: 0x34 };
+    let mut checked = [9, 10, 0x34, 0xff, 7, 100, 0, 0, 0, 0];
+    checked[6..].copy_from_slice(&crc32(&arm).to_le_bytes());
+    let message = Command::Arm {
+        token: 0x34,
+        limits: ArmLimits {
+            torque: TorqueLimit(1023),
+            speed: MovingSpeed(100),
+        },
+    };
     assert_eq!(
         decode(&checked),
         Ok(Numbered {
@@ -132,13 +141,16 @@ proptest! {
     #[test]
     fn commands_survive(sequence: u8, codes: [u16; SERVOS], token: u16, length: u16, check: u32, bytes: [u8; PLAN_CHUNK], angle: i16, rate: i16, ids: [u8; SERVOS], count: u8) {
         for command in [
-            Command::Goals(Positions::pack(codes)), Command::Speeds(Speeds::pack(codes)), Command::Arm { token },
+            Command::Goals(Positions::pack(codes)), Command::Speeds(Speeds::pack(codes)), Command::Arm { token, limits: ArmLimits::FULL },
             Command::PlanChunk { offset: length, bytes }, Command::PlanStore { length, check }, Command::Disarm, Command::KeepAlive,
             Command::Attitude(Attitude { angle, rate }), Command::ServoList(ServoList { count, ids }),
             Command::Mode(Mode::Balance), Command::Ask(Subject::Statistics), Command::PlanRead { offset: length },
         ] {
             let length = round_trip(sequence, command);
             prop_assert!(length <= wire_length(MAX_BODY));
+            let mut out = [0; MAX_FRAME];
+            let length = encode(sequence, &command, &mut out).unwrap();
+            prop_assert!(!out[..length].contains(&b'#'), "{:?}", command);
         }
     }
 

@@ -26,6 +26,12 @@ pub struct Joint {
     pub most: i16,
     /// Largest change of the input in one tick, in steps.
     pub slew: i16,
+    /// Least angle at which the robot may be driven, position codes from the centre.
+    pub lowest: i16,
+    /// Largest one.
+    pub highest: i16,
+    /// Largest change of the angle in one tick, position codes.
+    pub fastest: u16,
 }
 
 /// What was applied last, and what is still owed, in steps of the input.
@@ -42,7 +48,7 @@ impl AppliedInput {
 }
 
 impl Joint {
-    pub(super) const LENGTH: usize = 15;
+    pub(super) const LENGTH: usize = 21;
 
     pub(super) const ZERO: Joint = Joint {
         id: 0,
@@ -54,12 +60,25 @@ impl Joint {
         least: 0,
         most: 0,
         slew: 0,
+        lowest: 0,
+        highest: 0,
+        fastest: 0,
     };
 
     /// Angle in position codes from the centre.
     pub fn angle(&self, position: Position) -> i16 {
         let angle = (position.0 as i16).wrapping_sub(self.centre as i16);
         if self.reversed { -angle } else { angle }
+    }
+
+    /// Whether the robot may be driven at this angle, position codes from the centre.
+    pub fn is_in_range(&self, angle: i16) -> bool {
+        (self.lowest..=self.highest).contains(&angle)
+    }
+
+    /// Whether the angle may change so much, position codes, in so many ticks.
+    pub fn is_slow(&self, change: i16, ticks: u8) -> bool {
+        u32::from(change.unsigned_abs()) <= u32::from(self.fastest) * u32::from(ticks)
     }
 
     /// The input that is applied for one that is commanded: within the limits of size and change,
@@ -123,6 +142,17 @@ impl Joint {
         there.map(|(id, command)| (id, Signed::new(command)))
     }
 
+    /// Whether the servo has a code for this angle that is not the last of its range: in wheel mode
+    /// it says that one, or any, beyond.
+    fn is_measured(&self, angle: i16) -> bool {
+        let angle = i32::from(if self.reversed {
+            angle.wrapping_neg()
+        } else {
+            angle
+        });
+        (1..=1022).contains(&(i32::from(self.centre) + angle))
+    }
+
     pub(super) fn is_sound(&self) -> bool {
         self.id < 254
             && self.centre <= 1023
@@ -130,6 +160,10 @@ impl Joint {
             && (0..=self.most).contains(&self.least)
             // Else it could never leave nothing.
             && self.slew >= self.least.max(1)
+            && self.is_in_range(0)
+            && self.is_measured(self.lowest)
+            && self.is_measured(self.highest)
+            && (1..=1023).contains(&self.fastest)
     }
 
     pub(super) fn bytes(&self, sink: &mut impl FnMut(u8)) {
@@ -138,8 +172,12 @@ impl Joint {
             .for_each(&mut *sink);
         let codes = [self.centre, self.dead, self.gain].map(u16::to_le_bytes);
         let steps = [self.least, self.most, self.slew].map(i16::to_le_bytes);
-        let words = codes.into_iter().chain(steps);
-        words.flatten().for_each(sink);
+        let range = [self.lowest, self.highest].map(i16::to_le_bytes);
+        let words = codes.into_iter().chain(steps).chain(range);
+        words
+            .chain([self.fastest.to_le_bytes()])
+            .flatten()
+            .for_each(sink);
     }
 
     pub(super) fn from_bytes(bytes: [u8; Joint::LENGTH]) -> Self {
@@ -159,6 +197,12 @@ impl Joint {
             m1,
             s0,
             s1,
+            a0,
+            a1,
+            b0,
+            b1,
+            f0,
+            f1,
         ] = bytes;
         Joint {
             id,
@@ -170,6 +214,9 @@ impl Joint {
             least: i16::from_le_bytes([l0, l1]),
             most: i16::from_le_bytes([m0, m1]),
             slew: i16::from_le_bytes([s0, s1]),
+            lowest: i16::from_le_bytes([a0, a1]),
+            highest: i16::from_le_bytes([b0, b1]),
+            fastest: u16::from_le_bytes([f0, f1]),
         }
     }
 }

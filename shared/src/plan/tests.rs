@@ -14,6 +14,9 @@ const JOINT: Joint = Joint {
     least: 0,
     most: 1840,
     slew: 1840,
+    lowest: -200,
+    highest: 220,
+    fastest: 10,
 };
 
 fn plan(law: Law) -> Plan {
@@ -91,6 +94,27 @@ fn a_plan_survives_its_bytes_and_others_are_refused() {
         unsound = plan;
         (unsound.joints[1].least, unsound.joints[1].slew) = (20, 19);
         assert_eq!(Plan::from_bytes(&bytes_of(&unsound)), None);
+        for (lowest, highest, fastest) in [
+            (1, 220, 10),
+            (-200, -1, 10),
+            (-512, 220, 10),
+            (-200, 511, 10),
+            (i16::MIN, i16::MAX, 10),
+            (-200, 220, 0),
+            (-200, 220, 1024),
+        ] {
+            for place in 0..2 {
+                unsound = plan;
+                let joint = &mut unsound.joints[place];
+                (joint.lowest, joint.highest, joint.fastest) = (lowest, highest, fastest);
+                let bytes = bytes_of(&unsound);
+                assert_eq!(
+                    Plan::from_bytes(&bytes),
+                    None,
+                    "{lowest} {highest} {fastest}"
+                );
+            }
+        }
     }
     assert_eq!(bytes_of(&plan(laws()[1])).len(), Plan::MOST);
     assert_eq!(Plan::from_bytes(&bytes_of(&Plan::ZERO)), None);
@@ -110,6 +134,26 @@ fn commands_jump_over_the_dead_zone_and_stop_at_the_last_code() {
     let both: Vec<_> = JOINT.commands(-180).collect();
     assert_eq!(both, [(1, Signed::new(-180)), (2, Signed::new(180))]);
     assert_eq!(reversed.commands(5).count(), 1);
+}
+
+#[test]
+fn range_and_speed_are_told_at_their_edges() {
+    let angles = [-201, -200, 0, 220, 221];
+    assert_eq!(
+        angles.map(|angle| JOINT.is_in_range(angle)),
+        [false, true, true, true, false]
+    );
+    for (change, ticks, is_slow) in [
+        (10, 1, true),
+        (-10, 1, true),
+        (11, 1, false),
+        (-11, 1, false),
+        (20, 2, true),
+        (21, 2, false),
+        (i16::MIN, 255, false),
+    ] {
+        assert_eq!(JOINT.is_slow(change, ticks), is_slow, "{change} in {ticks}");
+    }
 }
 
 #[test]

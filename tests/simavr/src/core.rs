@@ -35,6 +35,10 @@ unsafe extern "C" {
     fn rig_pin(rig: *mut Raw, port: c_char, pin: c_int, level: c_int);
     fn rig_adc(rig: *mut Raw, channel: c_int, millivolts: u32);
     fn rig_eeprom(rig: *mut Raw) -> *mut u8;
+    fn rig_watchdog(rig: *mut Raw, us: u32);
+    fn rig_longest_unfed(rig: *mut Raw) -> u64;
+    fn rig_reset_to(rig: *mut Raw, pc: u32);
+    fn rig_jump(rig: *mut Raw, pc: u32);
     fn rig_power_cycle(rig: *mut Raw);
 }
 
@@ -147,6 +151,28 @@ impl Core {
     /// EEPROM.
     pub fn eeprom(&mut self) -> &mut [u8] {
         unsafe { std::slice::from_raw_parts_mut(rig_eeprom(self.0), 0x1000) }
+    }
+
+    /// Sets the watchdog's period, us of the 32,768 cycles of its oscillator that the firmware
+    /// chooses; 28,100 is the data sheet's typical one at 5 V.
+    pub fn set_watchdog_us(&mut self, us: u32) {
+        unsafe { rig_watchdog(self.0, us) }
+    }
+
+    /// The longest the watchdog was not fed since the last call, ms.
+    pub fn longest_unfed_ms(&mut self) -> f64 {
+        let cycles = unsafe { rig_longest_unfed(self.0) };
+        cycles as f64 / (CPU_HZ as f64 * 1e-3)
+    }
+
+    /// Sets the byte address where a reset leads.
+    pub fn reset_to(&mut self, pc: u32) {
+        unsafe { rig_reset_to(self.0, pc) }
+    }
+
+    /// Goes on at this byte address.
+    pub fn jump(&mut self, pc: u32) {
+        unsafe { rig_jump(self.0, pc) }
     }
 
     /// Power off and on again.

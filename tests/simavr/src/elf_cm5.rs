@@ -19,6 +19,15 @@ fn to_cycle(ns: u64) -> u64 {
     (ns * CPU_HZ).div_ceil(1_000_000_000)
 }
 
+/// Buttons up, link plugged in. simavr passes on changes only.
+fn release(core: &mut Core) {
+    for level in [false, true] {
+        (4..8).for_each(|pin| core.pin('E', pin, level));
+        core.pin('D', 0, level);
+        core.pin('D', 7, level);
+    }
+}
+
 const TRANSMIT: u8 = 1 << 2;
 const RECEIVE: u8 = 1 << 3;
 
@@ -36,6 +45,22 @@ pub struct Observed {
     pub charged: bool,
 }
 
+/// The CM-5's boot loader as far as it matters to a robot: a reset leads into it, it waits for `#`
+/// from the PC, and starts the program if none comes. How long it waits is not known; it is to be
+/// measured on a CM-5.
+#[derive(Debug, Clone, Copy)]
+pub struct BootLoader {
+    /// How long it waits, cycles.
+    window: u64,
+    /// When it starts the program, while it waits.
+    until: Option<u64>,
+    /// `#` came: it waits for commands, and the program does not start.
+    pub has_prompt: bool,
+}
+
+/// Where it lies; a loop stands for it.
+const BOOT_LOADER: usize = 0x1e000;
+
 /// A CM-5 that executes the ELF.
 pub struct ElfCm5 {
     /// The controller.
@@ -50,6 +75,8 @@ pub struct ElfCm5 {
     /// Bytes on the bus with the cycles their stop bits end, whoever sent them; kept where there is
     /// a list.
     pub trace: Option<Vec<(u64, u8)>>,
+    /// The boot loader, if there is one.
+    pub loader: Option<BootLoader>,
     port_e: u8,
     /// When the bus was last turned around.
     turned: u64,
@@ -68,10 +95,8 @@ impl ElfCm5 {
     /// The ELF cannot be loaded.
     pub fn new(elf: &Path) -> Result<ElfCm5, String> {
         let mut core = Core::load(elf)?;
-        // Buttons up, link plugged in, gyro at rest.
-        (4..8).for_each(|pin| core.pin('E', pin, true));
-        core.pin('D', 0, true);
-        core.pin('D', 7, true);
+        release(&mut core);
+        // The gyro at rest.
         core.adc(3, 2500);
         // Erased, not zero.
         core.eeprom().fill(0xff);
@@ -81,6 +106,7 @@ impl ElfCm5 {
             bus_ahead_ns: 0,
             seen: Observed::default(),
             trace: None,
+            loader: None,
             port_e: 0,
             turned: 0,
             bus_free: 0,
@@ -90,10 +116,42 @@ impl ElfCm5 {
         })
     }
 
+    /// Puts a boot loader in front of the program, which waits so long after every reset.
+    pub fn set_boot_loader(&mut self, window_ms: f64) {
+        self.core.flash()[BOOT_LOADER..BOOT_LOADER + 2].copy_from_slice(&[0xff, 0xcf]);
+        self.core.reset_to(BOOT_LOADER as u32);
+        self.loader = Some(BootLoader {
+            window: (window_ms * CPU_HZ as f64 / 1000.0) as u64,
+            until: None,
+            has_prompt: false,
+        });
+    }
+
+    /// The boot loader hears a byte; whether it is the one that runs.
+    fn loader_hears(&mut self, byte: u8) -> bool {
+        let Some(loader) = self.loader.as_mut().filter(|loader| loader.until.is_some()) else {
+            return false;
+        };
+        loader.has_prompt |= byte == b'#';
+        true
+    }
+
+    fn run_loader(&mut self) {
+        let now = self.core.cycle();
+        if let Some(loader) = &mut self.loader
+            && !loader.has_prompt
+            && loader.until.is_some_and(|until| until <= now)
+        {
+            loader.until = None;
+            self.core.jump(0);
+        }
+    }
+
     /// Runs until this cycle.
     pub fn run_until(&mut self, until: u64) {
         while self.core.cycle() < until {
             self.feed();
+            self.run_loader();
             let next = self.next_event().min(until).max(self.core.cycle() + 1);
             for event in self.core.run(next) {
                 self.notice(event);
@@ -138,7 +196,9 @@ impl ElfCm5 {
             && end <= now
         {
             self.to_link.pop_front();
-            self.core.uart_in(1, byte);
+            if !self.loader_hears(byte) {
+                self.core.uart_in(1, byte);
+            }
         }
     }
 
@@ -179,6 +239,11 @@ impl ElfCm5 {
             Event::Mark(..) => {}
             Event::Reset(cycle) => {
                 self.seen.resets.push(cycle);
+                // simavr forgets the pins' levels.
+                release(&mut self.core);
+                if let Some(loader) = &mut self.loader {
+                    loader.until = Some(cycle + loader.window);
+                }
                 self.port_e = 0;
                 self.bus_free = 0;
                 self.link_free = 0;

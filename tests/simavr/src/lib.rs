@@ -17,6 +17,6 @@ mod law;
 #[cfg(simavr)]
 pub use core::{Core, Event};
 #[cfg(simavr)]
-pub use elf_cm5::{ElfCm5, Observed};
+pub use elf_cm5::{BootLoader, ElfCm5, Observed};
 #[cfg(simavr)]
 pub use law::{Law, ObserverTick};

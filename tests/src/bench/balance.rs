@@ -9,8 +9,8 @@ use handstand::deploy::{self, Board, BoardLaw};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{
-    Attitude, Command, Condition, Hello, Mode, PLAN_CHUNK, Refusal, Report, Subject, Telemetry,
-    VERSION,
+    ArmLimits, Attitude, Command, Condition, Hello, Mode, PLAN_CHUNK, Refusal, Report, Subject,
+    Telemetry, VERSION,
 };
 use handstand_shared::plan::{Gyro, Plan};
 
@@ -147,7 +147,30 @@ pub fn ready(
 /// What the firmware refused; nothing if it did not answer.
 pub fn arm_balance(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refusal>> {
     let (token, _) = ready(bench, plan, Attitude::default())?;
-    command(bench, &Command::Arm { token })
+    bench.clear();
+    let sequence = bench.send(&arm(token));
+    for _ in 0..60 {
+        // It goes on being said: an old one is not balanced with.
+        bench.send(&Command::Attitude(Attitude::default()));
+        bench.run_ms(10.0);
+        let outcome = bench
+            .reports()
+            .into_iter()
+            .find_map(|(_, report)| match report {
+                Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome),
+                _ => None,
+            });
+        if let Some(outcome) = outcome {
+            return outcome.map_err(Some);
+        }
+    }
+    Err(None)
+}
+
+/// Torque on, with all the servos have.
+fn arm(token: u16) -> Command {
+    let limits = ArmLimits::FULL;
+    Command::Arm { token, limits }
 }
 
 /// Arms and lets the robot go; the host says the first link's attitude after every report.
@@ -164,7 +187,7 @@ pub fn balance(
     robot.place(bench);
     let (token, before) = ready(bench, plan, robot.attitude())?;
     bench.clear();
-    let sequence = bench.send(&Command::Arm { token });
+    let sequence = bench.send(&arm(token));
     let mut run = Run::default();
     // Somebody holds it until torque is on.
     let begun_ms = bench.now_ms();
@@ -237,7 +260,7 @@ fn wait<T>(
 }
 
 /// Uploads a plan and has it kept.
-fn upload(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refusal>> {
+pub(super) fn upload(bench: &mut impl SimulatedCm5, plan: &Plan) -> Result<(), Option<Refusal>> {
     let mut table = Vec::new();
     plan.bytes(|byte| table.push(byte));
     // As an adapter it takes our frames after a zero only; another mode needs none.

@@ -2,7 +2,9 @@
 
 use super::SimulatedCm5;
 use handstand_shared::control_table::TORQUE_LIMIT;
-use handstand_shared::message::{Command, Mode, Refusal, Report, VERSION};
+use handstand_shared::message::{ArmLimits, Command, Mode, Refusal, Report, VERSION};
+#[cfg(simavr)]
+use handstand_shared::packed::{Positions, SERVOS};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -93,7 +95,7 @@ pub fn arm(bench: &mut impl SimulatedCm5) {
     assert_eq!(outcome, Ok(()), "arming");
 }
 
-fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusal>> {
+pub(super) fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusal>> {
     // Until the controller has started.
     bench.run_ms(10.0);
     bench.clear();
@@ -109,7 +111,10 @@ fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusal>> {
         bench.send(&Command::KeepAlive);
         bench.run_ms(10.0);
     }
-    let sequence = bench.send(&Command::Arm { token });
+    let sequence = bench.send(&Command::Arm {
+        token,
+        limits: ArmLimits::FULL,
+    });
     let answer = awaited(bench, |report| match report {
         Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome),
         _ => None,
@@ -171,7 +176,8 @@ pub fn link_loss(bench: &mut impl SimulatedCm5, rng: &mut ChaCha8Rng) -> Option<
     None
 }
 
-/// Lets the controller hang at a random instruction, and times until torque is off on the wire.
+/// Lets the controller hang at a random instruction, and times until torque is off on the wire. The
+/// host goes on saying goals all the while: its bytes meet the boot loader, if there is one.
 #[cfg(simavr)]
 pub fn hang(rig: &mut handstand_simavr::ElfCm5, rng: &mut ChaCha8Rng) -> Option<Loss> {
     arm(rig);
@@ -187,7 +193,13 @@ pub fn hang(rig: &mut handstand_simavr::ElfCm5, rng: &mut ChaCha8Rng) -> Option<
     let (resets, started) = (rig.seen.resets.len(), rig.now_ms());
     rig.bus.torque_offs.clear();
     let mut reset = false;
+    let mut said_ms = started;
     while rig.now_ms() - started < 1000.0 {
+        if rig.now_ms() >= said_ms + 10.0 {
+            said_ms = rig.now_ms();
+            let goals = [(); SERVOS].map(|()| rng.random_range(0..1024));
+            rig.send(&Command::Goals(Positions::pack(goals)));
+        }
         rig.run_ms(0.05);
         if !reset && rig.seen.resets.len() > resets {
             reset = true;
@@ -196,7 +208,7 @@ pub fn hang(rig: &mut handstand_simavr::ElfCm5, rng: &mut ChaCha8Rng) -> Option<
         if reset && !rig.bus.any_torque() && !rig.bus.torque_offs.is_empty() {
             let off_ms = rig.now_ms() - started;
             // It must stay off, whatever the host goes on saying.
-            for _ in 0..5 {
+            for _ in 0..30 {
                 rig.send(&Command::KeepAlive);
                 rig.run_ms(10.0);
             }

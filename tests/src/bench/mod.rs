@@ -4,6 +4,8 @@
 #[cfg(simavr)]
 mod ages;
 mod balance;
+#[cfg(simavr)]
+mod boot;
 mod frames;
 #[cfg(simavr)]
 mod law;
@@ -21,6 +23,8 @@ pub use ages::{Ages, Spread, ages};
 pub use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 
 pub use balance::{Balanced, Conditions, Source, Tick, arm_balance, balance, plan};
+#[cfg(simavr)]
+pub use boot::{Boot, boot, eeprom_with, noise};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};
 #[cfg(simavr)]
 pub use law::{CHOSEN, Cycles, LawRun, ObserverRun, SHIFTS, law, observer_law};

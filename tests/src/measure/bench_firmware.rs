@@ -61,9 +61,13 @@ struct Row {
 /// Whether every promise holds.
 pub fn run(args: &Args) -> bool {
     let built = find_built();
+    if let Err(why) = &built {
+        eprintln!("{why}");
+    }
+    let built = built.ok();
     let on = match (&built, handstand_simavr::AVAILABLE) {
         (Some(_), true) => "the ELF in simavr",
-        (None, true) => "the logic in process: there is no ELF, `cargo xtask firmware` builds it",
+        (None, true) => "the logic in process: `cargo xtask firmware` builds the ELF",
         (_, false) => "the logic in process: simavr is not installed (Debian: libsimavr-dev)",
     };
     eprintln!("Measured on {on}.");
@@ -99,6 +103,9 @@ const ROWS: &[(&str, Measure)] = &[
     ("stream", streams::streams),
     ("link loss", safety::losses),
     ("hang", safety::hangs),
+    ("start", safety::starts),
+    ("noise", safety::noises),
+    ("invariants", safety::invariants),
     ("law", laws::laws),
     ("age of readings", ages::readings),
     ("closed loop", loops::loops),

@@ -40,7 +40,7 @@ fn served(args: &Args) -> Result<(), String> {
     #[cfg(simavr)]
     if !args.in_process {
         match handstand_tests::firmware::find_built() {
-            Some(built) => {
+            Ok(built) => {
                 let mut rig = handstand_simavr::ElfCm5::new(&built.elf)?;
                 rig.bus = bus;
                 eprintln!(
@@ -49,7 +49,7 @@ fn served(args: &Args) -> Result<(), String> {
                 );
                 return offer(&mut rig, args.seconds);
             }
-            None => eprintln!("There is no ELF: `cargo xtask firmware` builds it."),
+            Err(why) => eprintln!("{why}"),
         }
     }
     let mut rig = VirtualCm5::new();

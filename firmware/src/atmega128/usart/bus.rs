@@ -14,8 +14,9 @@ use crate::atmega128::timer::clock;
 use crate::design::{BUS_UBRR, CLOCK_PER_US};
 use avr_device::atmega128a::Peripherals;
 
-/// From the servos. A whole answer of 14 bytes can wait here.
-static IN: Ring<64> = Ring::new();
+/// From the servos. A whole answer of 26 bytes can wait here.
+static IN: Ring<RING> = Ring::new();
+const RING: usize = 64;
 /// To the servos: a SYNC_WRITE to 18 of them has 62 bytes.
 static OUT: Ring<64> = Ring::new();
 
@@ -118,15 +119,19 @@ pub fn receive(r: &Peripherals, within: u16) -> Option<u8> {
 /// Forgets what came and was not taken.
 #[inline(always)]
 pub fn flush() {
-    // Bounded by the ring's size; nobody sends while the bus is ours.
-    while IN.pop().is_some() {}
+    // As many as were there: noise may go on filling it.
+    for _ in 0..RING {
+        if IN.pop().is_none() {
+            break;
+        }
+    }
 }
 
 /// Takes bytes from the servos until `out` is full, or nothing comes for `first` counts of the
-/// clock, or `between` after the first byte; how many came. It polls: an interrupt costs half of
-/// the time a byte lasts.
+/// clock, or `between` after the first byte, or bytes have come for `all`; how many came. It polls:
+/// an interrupt costs half of the time a byte lasts.
 #[inline(always)]
-pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize {
+pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16, all: u16) -> usize {
     finish(r);
     let mut used = 0;
     // What came meanwhile, while the interrupt still takes the next ones: the receiver itself holds
@@ -140,8 +145,12 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize 
     let receiver = |bits| unsafe { r.USART0.ucsr0b().write(|w| w.bits(bits)) };
     receiver(RECEIVER_ON | TRANSMITTER);
     let mut limit = if used == 0 { first } else { between };
+    let mut began = clock(r);
     'bytes: for slot in out.iter_mut().skip(used) {
         let start = clock(r);
+        if used > 0 && start.wrapping_sub(began) >= all {
+            break;
+        }
         *slot = loop {
             // What came before the interrupt was off.
             if let Some(byte) = IN.pop() {
@@ -154,6 +163,9 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16) -> usize 
                 break 'bytes;
             }
         };
+        if used == 0 {
+            began = clock(r);
+        }
         used += 1;
         limit = between;
     }

@@ -36,6 +36,12 @@ pub struct BoardArgs {
     /// Departure of the first link at which it counts as fallen, rad
     #[arg(long, default_value_t = 0.5)]
     fallen: f64,
+    /// Departure of a driven joint from straight at which torque goes off, rad
+    #[arg(long, default_value_t = Board::BIOLOID.joint_range_rad)]
+    joint_range: f64,
+    /// Speed of a driven joint at which torque goes off, rad/s
+    #[arg(long, default_value_t = Board::BIOLOID.joint_speed_rad_s)]
+    joint_speed: f64,
 }
 
 /// Servos of each joint.
@@ -84,6 +90,8 @@ impl BoardArgs {
             slew_nm: within("--slew", self.slew, 1e-3, 1e3)?,
             gyro: self.gyro()?,
             range_rad: range * Attitude::ANGLE_LSB_RAD,
+            joint_range_rad: within("--joint-range", self.joint_range, 0.01, 2.6)?,
+            joint_speed_rad_s: within("--joint-speed", self.joint_speed, 0.3, 100.0)?,
         })
     }
 

@@ -89,6 +89,12 @@ pub enum ImageError {
     /// The first word is no jump.
     #[error("this is no program for the AVR: it does not begin with a jump")]
     NoJump,
+    /// The mark that `cargo xtask firmware` puts behind a program is missing.
+    #[error("this is not Handstand's firmware, or its end is missing: there is no mark at its end")]
+    NoMark,
+    /// The program is not the one that the mark is of.
+    #[error("this program is damaged: it is not the one that the mark at its end is of")]
+    Damaged,
 }
 
 impl ImageError {
@@ -96,6 +102,10 @@ impl ImageError {
     pub fn remedy(&self) -> &'static str {
         match self {
             ImageError::TooLong(_) => "make the program smaller",
+            ImageError::NoMark => {
+                "give the `.bin` that `cargo xtask firmware` writes, or pass --any-program if you mean another one"
+            }
+            ImageError::Damaged => "build or copy it again",
             _ => "give the raw binary, the `.bin` that `cargo xtask firmware` writes",
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! `#` during reset until the banner, `\r`, prompt `- `; `load 0` -> `Ready..` -> the raw bytes and
 //! their sum modulo 256; 150 ms of silence end them -> `Success` or `Error`, `Size:`,
-//! `Checksum:XX-YY`; then `verify`, `app` (start the application at power-on), `go`. 57600 8N1. It
-//! lies at 0x1E000, so an image has at most 122,880 bytes.
+//! `Checksum:XX-YY`; then `verify`, `app` (start the application at power-on), `go`. `sys` undoes
+//! `app`: sent before an image, it keeps half of one from being started. 57600 8N1. It lies at 0x1E000, so an image has at most 122,880 bytes.
 
 mod error;
 mod image;
@@ -111,6 +111,15 @@ impl<L: SerialLink> BootLoader<L> {
             true => Err(BootLoaderError::Verify { reply: said.into() }),
             false => Ok(said.to_string()),
         }
+    }
+
+    /// From now on the boot loader waits at power-on, and no application starts: what is in flash
+    /// may be half of one.
+    ///
+    /// # Errors
+    /// [`BootLoaderError`] if it does not answer.
+    pub fn stay_at_power_on(&mut self) -> Result<()> {
+        self.command("sys", ANSWER).map(|_| ())
     }
 
     /// From now on the application starts at power-on.

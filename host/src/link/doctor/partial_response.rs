@@ -9,6 +9,7 @@ use super::{Cause, cause};
 use crate::error::Result;
 use handstand_shared::control_table::{PRESENT_SUPPLY, RETURN_DELAY, STATUS_LEVEL};
 use handstand_shared::dynamixel::ErrorBits;
+use std::collections::BTreeMap;
 
 /// Some servos respond: causes for the others, and for replies that are not valid.
 pub(super) fn partial_response<L: SerialLink>(
@@ -26,10 +27,44 @@ pub(super) fn partial_response<L: SerialLink>(
         let supply = servos.get(test.id, PRESENT_SUPPLY).ok();
         causes.push(error_flags(test, supply));
     }
+    let mut delays = BTreeMap::<u16, Vec<u8>>::new();
     for test in pings.iter().filter(|test| test.answered > 0) {
-        settings(servos, test.id, causes)?;
+        if let Some(code @ 1..) = settings(servos, test.id, causes)? {
+            delays.entry(code).or_default().push(test.id);
+        }
     }
+    causes.extend(delays.iter().map(|(code, ids)| slow(*code, ids)));
     Ok(())
+}
+
+/// Servos with one return delay are one cause.
+fn slow(code: u16, ids: &[u8]) -> Cause {
+    let who = match ids {
+        [id] => format!("servo {id} waits"),
+        several => format!("servos {} wait", ranges(several)),
+    };
+    cause(
+        0.05 + f64::from(code) * 4e-4,
+        format!("{who} {} us before answering", 2 * code),
+        format!("return delay time is {code}"),
+        "too slow for 100 Hz with 18 servos: handstand bus setup",
+    )
+}
+
+/// Ids in words, `1-3, 7`; neighbours are drawn together.
+fn ranges(ids: &[u8]) -> String {
+    let mut runs: Vec<(u8, u8)> = Vec::new();
+    for id in ids {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(*id) => *last = *id,
+            _ => runs.push((*id, *id)),
+        }
+    }
+    let word = |(first, last): &(u8, u8)| match first == last {
+        true => first.to_string(),
+        false => format!("{first}-{last}"),
+    };
+    runs.iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
 fn twice(test: &PingTest) -> Cause {
@@ -93,8 +128,12 @@ fn error_flags(test: &PingTest, supply: Option<u16>) -> Cause {
     )
 }
 
-/// Settings under which a good servo looks silent or slow.
-fn settings<L: SerialLink>(servos: &mut Servos<L>, id: u8, causes: &mut Vec<Cause>) -> Result<()> {
+/// Settings under which a good servo looks silent; its return delay, if it tells it.
+fn settings<L: SerialLink>(
+    servos: &mut Servos<L>,
+    id: u8,
+    causes: &mut Vec<Cause>,
+) -> Result<Option<u16>> {
     servos.tries = 3;
     let level = servos.get(id, STATUS_LEVEL);
     let delay = servos.get(id, RETURN_DELAY);
@@ -109,13 +148,5 @@ fn settings<L: SerialLink>(servos: &mut Servos<L>, id: u8, causes: &mut Vec<Caus
         )),
         _ => {}
     }
-    if let Ok(code @ 1..) = delay {
-        causes.push(cause(
-            0.05 + f64::from(code) * 4e-4,
-            format!("servo {id} waits {} us before it answers", 2 * code),
-            format!("return delay time is {code}"),
-            "too slow for 100 Hz with 18 servos: handstand bus setup",
-        ));
-    }
-    Ok(())
+    Ok(delay.ok())
 }

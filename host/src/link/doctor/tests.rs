@@ -39,7 +39,7 @@ fn every_fault_is_named_first() {
         ("ids=1-4,delay=0,hot=2", "servo 2 reports: overheat"),
         ("ids=1-4,delay=0,supply=5", "reports: voltage"),
         ("ids=1-4,delay=0,level=0", "has status level 0"),
-        ("ids=1-4,delay=250", "waits 500 us"),
+        ("ids=1-4,delay=250", "servos 1-4 wait 500 us"),
         ("ids=1-4,dead=1-4", "the servos have no power"),
         (
             "ids=1-4,dead=1-4,echo",

@@ -90,6 +90,7 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
         Ok(Some(RobotSample {
             time_s: (now - self.begun).as_secs_f64(),
             joints,
+            gyro: None,
         }))
     }
 

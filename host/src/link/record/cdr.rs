@@ -1,5 +1,5 @@
-//! `sensor_msgs/msg/JointState` as ROS 2 serialises it: CDR, little endian (OMG DDS-XTypes 1.3,
-//! XCDR1).
+//! `sensor_msgs/msg/JointState` and `Imu` as ROS 2 serialises them: CDR, little endian (OMG
+//! DDS-XTypes 1.3, XCDR1).
 
 /// The schema's name.
 pub const NAME: &str = "sensor_msgs/msg/JointState";
@@ -68,6 +68,74 @@ impl JointStateMessage {
     }
 }
 
+/// Name of the schema of a gyro's measurements.
+pub const IMU_NAME: &str = "sensor_msgs/msg/Imu";
+/// The schema, as ROS 2 writes it into recordings.
+pub const IMU_SCHEMA: &str = "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n\
+float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n\
+float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n\
+float64[9] linear_acceleration_covariance\n\
+================================================================================\nMSG: std_msgs/Header\n\
+builtin_interfaces/Time stamp\nstring frame_id\n\
+================================================================================\nMSG: builtin_interfaces/Time\n\
+int32 sec\nuint32 nanosec\n\
+================================================================================\nMSG: geometry_msgs/Quaternion\n\
+float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n\
+================================================================================\nMSG: geometry_msgs/Vector3\n\
+float64 x\nfloat64 y\nfloat64 z\n";
+/// The frame a gyro is fixed to.
+const IMU_FRAME: &str = "link1";
+
+/// A gyro's measurement: the rate about y, the bar's axis; orientation and acceleration are not
+/// measured, which -1 in front of their covariances says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ImuMessage {
+    /// Stamp, ns.
+    pub stamp_ns: u64,
+    /// Angular rate of the first link, rad/s.
+    pub rate_rad_s: f64,
+}
+
+/// Numbers of an Imu: orientation, rate and acceleration, each with a covariance behind it.
+const IMU_NUMBERS: usize = 4 + 9 + 3 + 9 + 3 + 9;
+const IMU_RATE: usize = 4 + 9 + 1;
+
+impl ImuMessage {
+    /// The bytes.
+    pub fn to_bytes(self) -> Vec<u8> {
+        let mut numbers = [0.0f64; IMU_NUMBERS];
+        (numbers[3], numbers[4]) = (1.0, -1.0);
+        numbers[IMU_RATE] = self.rate_rad_s;
+        numbers[IMU_NUMBERS - 9] = -1.0;
+        let mut out = HEADER.to_vec();
+        let second = i32::try_from(self.stamp_ns / 1_000_000_000).unwrap_or(i32::MAX);
+        out.extend(second.to_le_bytes());
+        out.extend(((self.stamp_ns % 1_000_000_000) as u32).to_le_bytes());
+        put_text(&mut out, IMU_FRAME);
+        align(&mut out, 8);
+        numbers
+            .iter()
+            .for_each(|number| out.extend(number.to_le_bytes()));
+        out
+    }
+
+    /// Reads the bytes; none if they are no such message.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let mut reader = CdrReader { bytes, at: 4 };
+        (bytes.get(..4)? == HEADER).then_some(())?;
+        let second = u64::try_from(i32::from_le_bytes(reader.take(4)?)).ok()?;
+        let nanosecond = u64::from(reader.length()?);
+        reader.text()?;
+        let numbers: Option<Vec<f64>> = (0..IMU_NUMBERS)
+            .map(|_| reader.take(8).map(f64::from_le_bytes))
+            .collect();
+        Some(ImuMessage {
+            stamp_ns: second * 1_000_000_000 + nanosecond,
+            rate_rad_s: *numbers?.get(IMU_RATE)?,
+        })
+    }
+}
+
 fn align(out: &mut Vec<u8>, to: usize) {
     let after = out.len() - HEADER.len();
     out.resize(HEADER.len() + after.next_multiple_of(to), 0);
@@ -120,6 +188,36 @@ impl CdrReader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_imu_literally() {
+        let imu = ImuMessage {
+            stamp_ns: 2_000_000_003,
+            rate_rad_s: 1.0,
+        };
+        let bytes = imu.to_bytes();
+        #[rustfmt::skip]
+        let begin = [
+            0, 1, 0, 0,
+            2, 0, 0, 0, 3, 0, 0, 0,                            // stamp
+            6, 0, 0, 0, b'l', b'i', b'n', b'k', b'1', 0, 0, 0, // frame_id, then padding
+            0, 0, 0, 0,
+        ];
+        assert_eq!(bytes[..28], begin);
+        assert_eq!(bytes.len(), 28 + 8 * 37);
+        let number = |at: usize| {
+            let from = 28 + 8 * at;
+            f64::from_le_bytes(bytes[from..from + 8].try_into().unwrap())
+        };
+        let not_zero: Vec<(usize, f64)> = (0..37)
+            .map(|at| (at, number(at)))
+            .filter(|(_, number)| *number != 0.0)
+            .collect();
+        // w of no turn, no orientation, the rate about y, no acceleration.
+        assert_eq!(not_zero, [(3, 1.0), (4, -1.0), (14, 1.0), (28, -1.0)]);
+        assert_eq!(ImuMessage::of(&bytes), Some(imu));
+        assert!((0..bytes.len()).all(|length| ImuMessage::of(&bytes[..length]).is_none()));
+    }
 
     #[test]
     fn a_message_literally() {

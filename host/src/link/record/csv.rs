@@ -1,8 +1,9 @@
 //! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`,
-//! `supply1_v`, `temperature1_celsius`, `error1`. What a servo did not say is an empty field.
+//! `supply1_v`, `temperature1_celsius`, `error1`; where a CM-5 reads the servos, `gyro_code`,
+//! `gyro_zero`, `gyro_rad_s` behind them. What a servo did not say is an empty field.
 
 use super::recorder::Writer;
-use super::sample::{RobotSample, ServoSample};
+use super::sample::{GyroSample, RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,32 +14,54 @@ use std::path::Path;
 pub(super) struct CsvWriter {
     file: File,
     row: String,
+    ids: Vec<u8>,
+    /// Whether there are columns of a gyro, once the header is written.
+    has_gyro: Option<bool>,
 }
 
 impl CsvWriter {
-    /// Writes the header.
-    pub fn new(mut file: File, ids: &[u8]) -> std::io::Result<Self> {
+    /// The header follows with the first sample, which says whether there is a gyro.
+    pub fn new(file: File, ids: &[u8]) -> Self {
+        CsvWriter {
+            file,
+            row: String::new(),
+            ids: ids.to_vec(),
+            has_gyro: None,
+        }
+    }
+
+    fn begin(&mut self, has_gyro: bool) -> std::io::Result<()> {
         let mut header = String::from("time_s");
-        for id in ids {
+        for id in &self.ids {
             for (before, behind) in ServoSample::NAMES {
                 // Writing to a string does not fail.
                 let _ = write!(header, ",{before}{id}{behind}");
             }
         }
+        for name in GyroSample::NAMES.iter().filter(|_| has_gyro) {
+            let _ = write!(header, ",{name}");
+        }
         header.push('\n');
-        file.write_all(header.as_bytes())?;
-        Ok(CsvWriter {
-            file,
-            row: String::new(),
-        })
+        self.has_gyro = Some(has_gyro);
+        self.file.write_all(header.as_bytes())
     }
 }
 
 impl Writer for CsvWriter {
     fn write(&mut self, sample: &RobotSample) -> std::io::Result<()> {
+        if self.has_gyro.is_none() {
+            self.begin(sample.gyro.is_some())?;
+        }
+        let gyro = sample.gyro.map_or([None; 3], |gyro| gyro.values());
+        let gyro = gyro.into_iter().filter(|_| self.has_gyro == Some(true));
         self.row.clear();
         let _ = write!(self.row, "{:.6}", sample.time_s);
-        for value in sample.joints.iter().flat_map(ServoSample::values) {
+        for value in sample
+            .joints
+            .iter()
+            .flat_map(ServoSample::values)
+            .chain(gyro)
+        {
             self.row.push(',');
             if let Some(value) = value {
                 // Six digits behind the point are 1000 times finer than any register.
@@ -55,7 +78,10 @@ impl Writer for CsvWriter {
     }
 
     fn finish(&mut self) -> std::io::Result<()> {
-        Ok(())
+        match self.has_gyro {
+            Some(_) => Ok(()),
+            None => self.begin(false),
+        }
     }
 }
 
@@ -69,10 +95,10 @@ pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<RobotSample>
         .filter_map(|name| name.strip_prefix('q')?.strip_suffix("_rad")?.parse().ok())
         .collect();
     let per_joint = ServoSample::NAMES.len();
-    if header.first() != Some(&"time_s")
-        || ids.is_empty()
-        || header.len() != 1 + per_joint * ids.len()
-    {
+    let of_joints = 1 + per_joint * ids.len();
+    let has_gyro = header.ends_with(&GyroSample::NAMES);
+    let of_gyro = if has_gyro { GyroSample::NAMES.len() } else { 0 };
+    if header.first() != Some(&"time_s") || ids.is_empty() || header.len() != of_joints + of_gyro {
         let what = "this is no recording: its first line must begin `time_s,q1_rad,dq1_rad_s,..`";
         return Err(Error::data(
             Place::at(path, 1, 1),
@@ -114,7 +140,8 @@ pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<RobotSample>
             |values: &[Option<f64>]| values.try_into().map(ServoSample::of).unwrap_or_default();
         samples.push(RobotSample {
             time_s: values[0].unwrap_or(0.0),
-            joints: values[1..].chunks(per_joint).map(joint).collect(),
+            joints: values[1..of_joints].chunks(per_joint).map(joint).collect(),
+            gyro: values[of_joints..].try_into().ok().and_then(GyroSample::of),
         });
     }
     Ok((ids, samples, whole < text.len()))

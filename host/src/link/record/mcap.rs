@@ -1,10 +1,11 @@
 //! Recordings as MCAP: `/joint_states` and `/joint_goals` (ROS 2 `sensor_msgs/msg/JointState`;
-//! `effort` is the load as a share of full output), and `/servo_health` (JSON: supply, temperature,
-//! error bits). What a servo did not say is NaN or null.
+//! `effort` is the load as a share of full output), `/imu` (`sensor_msgs/msg/Imu`: the gyro's rate,
+//! where its zero and scale are known), and `/servo_health` (JSON: supply, temperature, error bits,
+//! the gyro's code and zero). What a servo did not say is NaN or null.
 
-use super::cdr::{JointStateMessage, NAME, SCHEMA};
+use super::cdr::{IMU_NAME, IMU_SCHEMA, ImuMessage, JointStateMessage, NAME, SCHEMA};
 use super::recorder::Writer;
-use super::sample::{RobotSample, ServoSample};
+use super::sample::{GyroSample, RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, MessageStream, WriteOptions, read::Options};
@@ -15,8 +16,9 @@ use std::path::Path;
 
 const STATES: &str = "/joint_states";
 const GOALS: &str = "/joint_goals";
+const IMU: &str = "/imu";
 const HEALTH: &str = "/servo_health";
-const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}}}}"#;
+const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]}}}"#;
 
 /// Health of all servos, as JSON.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -24,6 +26,10 @@ struct Health {
     supply_v: Vec<Option<f64>>,
     temperature_celsius: Vec<Option<f64>>,
     error: Vec<Option<u8>>,
+    #[serde(default)]
+    gyro_code: Option<f64>,
+    #[serde(default)]
+    gyro_zero: Option<f64>,
 }
 
 /// Writes chunks of about half a second, each with its own check.
@@ -33,6 +39,8 @@ pub(super) struct McapWriter {
     states: u16,
     goals: u16,
     health: u16,
+    /// Once there is a rate.
+    imu: Option<u16>,
     count: u32,
     begun_ns: u64,
 }
@@ -74,12 +82,30 @@ impl McapWriter {
                 .add_channel(health, HEALTH, "json", &none)
                 .map_err(broken)?,
             writer,
+            imu: None,
             names: ids.iter().map(|id| format!("servo{id}")).collect(),
             count: 0,
             begun_ns: u64::try_from(since_epoch.as_nanos()).unwrap_or(0),
         };
         writer.flush()?;
         Ok(writer)
+    }
+
+    /// The channel of rates; made for the first of them.
+    fn imu(&mut self) -> std::io::Result<u16> {
+        if let Some(channel) = self.imu {
+            return Ok(channel);
+        }
+        let schema = self
+            .writer
+            .add_schema(IMU_NAME, "ros2msg", IMU_SCHEMA.as_bytes());
+        let schema = schema.map_err(broken)?;
+        let channel = self
+            .writer
+            .add_channel(schema, IMU, "cdr", &BTreeMap::new());
+        let channel = channel.map_err(broken)?;
+        self.imu = Some(channel);
+        Ok(channel)
     }
 
     fn put(&mut self, channel_id: u16, time_ns: u64, bytes: &[u8]) -> std::io::Result<()> {
@@ -122,7 +148,17 @@ impl Writer for McapWriter {
             };
             self.put(self.goals, time_ns, &goals.to_bytes())?;
         }
+        if let Some(rate_rad_s) = sample.gyro.and_then(|gyro| gyro.rate_rad_s) {
+            let imu = ImuMessage {
+                stamp_ns: time_ns,
+                rate_rad_s,
+            };
+            let channel = self.imu()?;
+            self.put(channel, time_ns, &imu.to_bytes())?;
+        }
         let health = Health {
+            gyro_code: sample.gyro.map(|gyro| gyro.code),
+            gyro_zero: sample.gyro.and_then(|gyro| gyro.zero),
             supply_v: sample.joints.iter().map(|joint| joint.supply_v).collect(),
             temperature_celsius: sample
                 .joints
@@ -193,9 +229,21 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
                     joint.goal_rad = said(goal);
                 }
             }
+            IMU => {
+                let imu = ImuMessage::of(&message.data)
+                    .ok_or_else(|| refused(format!("{IMU}: no measurement of a gyro")))?;
+                if let Some(sample) = samples.last_mut() {
+                    sample.gyro.get_or_insert_default().rate_rad_s = said(imu.rate_rad_s);
+                }
+            }
             HEALTH => {
                 let health: Health = serde_json::from_slice(&message.data)
                     .map_err(|error| refused(format!("{HEALTH}: {error}")))?;
+                if let Some(sample) = samples.last_mut() {
+                    let rate_rad_s = sample.gyro.and_then(|gyro| gyro.rate_rad_s);
+                    let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
+                    sample.gyro = GyroSample::of(values);
+                }
                 for (at, joint) in newest(&mut samples).iter_mut().enumerate() {
                     joint.supply_v = health.supply_v.get(at).copied().flatten();
                     joint.temperature_celsius =
@@ -233,5 +281,6 @@ fn sample(state: &JointStateMessage, time_s: f64) -> RobotSample {
     RobotSample {
         time_s,
         joints: joints.collect(),
+        gyro: None,
     }
 }

@@ -23,7 +23,7 @@ pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
 pub use read::{Recording, read};
 pub use recorder::{FileFormat, RobotRecorder};
-pub use sample::{RobotSample, ServoSample};
+pub use sample::{GyroSample, RobotSample, ServoSample};
 pub use source::{EmergencyOff, SampleSource};
 pub use stream::Stream;
 pub use tally::{Quantiles, RecordingTally, Rms};

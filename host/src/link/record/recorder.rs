@@ -80,7 +80,7 @@ impl RobotRecorder {
         .map_err(refused)?;
         let own = file.try_clone().map_err(refused)?;
         let writer: Box<dyn Writer> = match format {
-            FileFormat::Csv => Box::new(CsvWriter::new(own, ids).map_err(refused)?),
+            FileFormat::Csv => Box::new(CsvWriter::new(own, ids)),
             FileFormat::Mcap => Box::new(McapWriter::new(own, ids).map_err(refused)?),
         };
         Ok(RobotRecorder {

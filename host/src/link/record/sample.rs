@@ -100,6 +100,36 @@ impl ServoSample {
     ];
 }
 
+/// The gyro on the first link, as a CM-5 measures it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GyroSample {
+    /// ADC code, 0..=1023.
+    pub code: f64,
+    /// Code at rest, as the plan on the CM-5 has it; none without a plan.
+    pub zero: Option<f64>,
+    /// Angular rate of the first link, rad/s; none where zero or scale are not known.
+    pub rate_rad_s: Option<f64>,
+}
+
+impl GyroSample {
+    /// Columns of a recording.
+    pub const NAMES: [&str; 3] = ["gyro_code", "gyro_zero", "gyro_rad_s"];
+
+    /// Its values in the order of [`GyroSample::NAMES`].
+    pub fn values(&self) -> [Option<f64>; 3] {
+        [Some(self.code), self.zero, self.rate_rad_s]
+    }
+
+    /// The inverse of [`GyroSample::values`]; none without a code.
+    pub fn of([code, zero, rate_rad_s]: [Option<f64>; 3]) -> Option<Self> {
+        Some(GyroSample {
+            code: code?,
+            zero,
+            rate_rad_s,
+        })
+    }
+}
+
 /// All servos at one moment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RobotSample {
@@ -107,4 +137,6 @@ pub struct RobotSample {
     pub time_s: f64,
     /// In the recording's order of ids.
     pub joints: Vec<ServoSample>,
+    /// The gyro, where the source has one.
+    pub gyro: Option<GyroSample>,
 }

@@ -1,13 +1,18 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
-use super::sample::{RobotSample, ServoSample};
+use super::sample::{GyroSample, RobotSample, ServoSample};
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
 use crate::link::{SerialLink, Session, condition_words};
-use handstand_shared::message::{Command, Condition, Mode, Report, ServoList};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::message::{
+    ArmLimits, Attitude, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
+};
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::Position;
+use handstand_shared::raw::{Position, Supply};
 use std::time::Duration;
+
+const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
 
 /// Servos behind a CM-5 that reads them itself and reports 100 times a second.
 pub struct Stream<L: SerialLink> {
@@ -18,8 +23,12 @@ pub struct Stream<L: SerialLink> {
     /// Where all stood in the newest report that has them all.
     stood: Option<Vec<Position>>,
     housekeeping: Vec<ServoSample>,
+    /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
+    gyro: Option<(u16, f64)>,
     armed: bool,
     condition: Condition,
+    /// The CM-5's account of itself when it began to let the robot down.
+    account: Option<Telemetry>,
 }
 
 impl<L: SerialLink> Stream<L> {
@@ -43,8 +52,14 @@ impl<L: SerialLink> Stream<L> {
         session.obey(&Command::Mode(Mode::Bridge), "stop")?;
         session.obey(&Command::ServoList(list), "take the list of servos")?;
         session.obey(&Command::Mode(Mode::Stream), "stream")?;
+        let telemetry: Telemetry = session.fetch(&TELEMETRY, |report| match report {
+            Report::Telemetry(telemetry) => Some(*telemetry),
+            _ => None,
+        })?;
+        let scale = f64::from(telemetry.gyro_scale) / 16.0 * Attitude::RATE_LSB_RAD_S;
         let begun = session.link().now();
         Ok(Stream {
+            gyro: (scale != 0.0).then_some((telemetry.gyro_zero, scale)),
             session,
             count: ids.len(),
             begun,
@@ -53,7 +68,21 @@ impl<L: SerialLink> Stream<L> {
             housekeeping: vec![ServoSample::default(); ids.len()],
             armed: false,
             condition: Condition::Stream,
+            account: None,
         })
+    }
+
+    /// Asks the CM-5 for its account when it lets the robot down, once.
+    fn ask_why(&mut self) {
+        if !self.armed || self.account.is_some() || !is_let_down(self.condition) {
+            return;
+        }
+        let told = self.session.fetch(&TELEMETRY, |report| match report {
+            Report::Telemetry(telemetry) => Some(*telemetry),
+            _ => None,
+        });
+        // A line that has died cannot tell.
+        self.account = told.ok();
     }
 
     /// The talk with the firmware.
@@ -83,6 +112,7 @@ impl<L: SerialLink> SampleSource for Stream<L> {
                 continue;
             };
             self.condition = report.condition;
+            self.ask_why();
             for (place, housekeeping) in report.housekeeping(self.count) {
                 if housekeeping.error == 0xff {
                     continue;
@@ -113,9 +143,15 @@ impl<L: SerialLink> SampleSource for Stream<L> {
                 ..std::mem::take(&mut self.housekeeping[place])
             });
             let joints = joints.collect();
+            let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
             return Ok(Some(RobotSample {
                 time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
                 joints,
+                gyro: Some(GyroSample {
+                    code: f64::from(report.gyro),
+                    zero: self.gyro.map(|(zero, _)| f64::from(zero)),
+                    rate_rad_s: self.gyro.map(rate),
+                }),
             }));
         }
     }
@@ -127,8 +163,9 @@ impl<L: SerialLink> SampleSource for Stream<L> {
         }
         self.session.greet()?;
         let token = self.session.hello.token;
+        let limits = ArmLimits::FULL;
         self.session
-            .obey(&Command::Arm { token }, "switch torque on")?;
+            .obey(&Command::Arm { token, limits }, "switch torque on")?;
         self.armed = true;
         // The firmware's first goals: where they stand.
         self.goals = self.stood.clone();
@@ -147,13 +184,34 @@ impl<L: SerialLink> SampleSource for Stream<L> {
     }
 
     fn danger(&self) -> Option<String> {
-        match self.condition {
-            Condition::Soft | Condition::Fault(_) if self.armed => {
-                Some(format!("the CM-5 is {}", condition_words(self.condition)))
-            }
-            _ => None,
-        }
+        let is_down = self.armed && is_let_down(self.condition);
+        is_down.then(|| {
+            let why = self
+                .account
+                .map_or(String::new(), |account| words(&account));
+            format!("the CM-5 is {}{why}", condition_words(self.condition))
+        })
     }
+}
+
+fn is_let_down(condition: Condition) -> bool {
+    matches!(condition, Condition::Soft | Condition::Fault(_))
+}
+
+/// What may have been the cause: silence of the line, a servo, the supply.
+fn words(account: &Telemetry) -> String {
+    let servo = account.tripped.map_or(String::new(), |tripped| {
+        let names: Vec<&str> = ErrorBits(tripped.error).names().collect();
+        match names.is_empty() {
+            true => format!(", servo {} lost its torque", tripped.id),
+            false => format!(", servo {} reports {}", tripped.id, names.join(" and ")),
+        }
+    });
+    format!(
+        ": the line was silent for {} ms at most{servo}, supply {:.1} V",
+        account.longest_silence_ms,
+        Supply(account.supply).to_v()
+    )
 }
 
 impl<L: SerialLink> Drop for Stream<L> {

@@ -29,7 +29,9 @@ fn same(a: &RobotSample, b: &RobotSample) -> bool {
         (Some(a), Some(b)) => (a - b).abs() < 1e-6,
         (a, b) => a.is_none() && b.is_none(),
     };
+    let gyro = |sample: &RobotSample| sample.gyro.map_or([None; 3], |gyro| gyro.values());
     (a.time_s - b.time_s).abs() < 1e-6
+        && (gyro(a).into_iter().zip(gyro(b))).all(|(a, b)| near(a, b))
         && (a.joints.iter().zip(&b.joints)).all(|(a, b)| {
             a.values()
                 .into_iter()
@@ -112,4 +114,59 @@ fn what_is_no_recording_is_refused() {
         let error = read(&path).unwrap_err();
         assert!(error.to_string().contains(said), "{name}: {error}");
     }
+}
+
+/// From a CM-5, without a plan and with one that has zero and scale.
+#[test]
+fn the_gyro_is_recorded_in_both_formats() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.csv", "a.mcap"] {
+        for scale in [None, Some(0.02)] {
+            let path = folder.path().join(format!("{}{name}", scale.is_some()));
+            let samples: Vec<RobotSample> = (0..40)
+                .map(|at| RobotSample {
+                    time_s: f64::from(at) * 0.01,
+                    joints: vec![ServoSample::default()],
+                    gyro: Some(GyroSample {
+                        code: f64::from(500 + at),
+                        zero: scale.map(|_| 512.0),
+                        rate_rad_s: scale.map(|scale| scale * f64::from(at - 12)),
+                    }),
+                })
+                .collect();
+            let mut recorder = RobotRecorder::create(&path, &[1], false).unwrap();
+            samples
+                .iter()
+                .for_each(|sample| recorder.write(sample).unwrap());
+            recorder.finish().unwrap();
+            let back = read(&path).unwrap();
+            assert_eq!(back.samples.len(), 40);
+            assert!(
+                samples.iter().zip(&back.samples).all(|(a, b)| same(a, b)),
+                "{name}"
+            );
+        }
+    }
+    let csv = std::fs::read_to_string(folder.path().join("truea.csv")).unwrap();
+    assert!(
+        csv.lines()
+            .next()
+            .unwrap()
+            .ends_with(",error1,gyro_code,gyro_zero,gyro_rad_s")
+    );
+    assert!(csv.lines().nth(1).unwrap().ends_with(",500,512,-0.24"));
+}
+
+#[test]
+fn a_cm5_s_samples_hold_its_gyro() {
+    use crate::link::virtual_cm5::{Cm5Port, set_up, spec};
+    let bus = set_up(&spec("ids=1-2,delay=0").unwrap()).unwrap();
+    let mut source = Stream::new(SimLink(Cm5Port::new(bus)), &[1, 2]).unwrap();
+    let sample = source.sample(None).unwrap().unwrap();
+    let expected = GyroSample {
+        code: 512.0,
+        zero: None,
+        rate_rad_s: None,
+    };
+    assert_eq!(sample.gyro, Some(expected));
 }

@@ -15,7 +15,7 @@ mod state_log;
 
 pub use handstand_cm5_sim::{AdapterPort, Bus, BusSpec, Cm5Port, RobotSpec, RobotState};
 pub use link::SimLink;
-pub use robot::{set_up, spec};
+pub use robot::{set_up, spec, spec_with_robot};
 #[cfg(unix)]
 pub use serve::serve;
 pub use state_log::StateLog;

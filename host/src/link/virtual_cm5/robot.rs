@@ -5,6 +5,7 @@ use crate::model::{Drive, Model, Motor};
 use crate::model::{hanging, upright};
 use crate::sim::Live;
 use handstand_cm5_sim::{Bus, BusSpec, Plant, Robot, RobotSpec, Start};
+use std::path::Path;
 
 /// Torque of a joint at full duty cycle, N m, where the model states none: the paper's limit.
 const FULL_NM: f64 = 2.0;
@@ -14,10 +15,18 @@ const FULL_NM: f64 = 2.0;
 /// # Errors
 /// [`Error::Usage`] with the key and what it takes.
 pub fn spec(text: &str) -> Result<BusSpec> {
+    spec_with_robot(text, None)
+}
+
+/// The same with this model as its robot; `text` may say where it hangs and starts.
+///
+/// # Errors
+/// As [`spec`].
+pub fn spec_with_robot(text: &str, model: Option<&Path>) -> Result<BusSpec> {
     let wrong = |error: handstand_cm5_sim::SpecError| {
         Error::usage(error.to_string(), "such as sim:ids=1-3,delay=0,dead=2")
     };
-    text.parse().map_err(wrong)
+    BusSpec::with_robot(text, model).map_err(wrong)
 }
 
 /// The bus that `spec` describes, with its robot.

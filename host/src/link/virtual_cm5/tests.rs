@@ -67,6 +67,31 @@ fn a_robot_that_stands_falls_without_torque() {
     assert!(states[5].drive[0].is_none() && states[5].drive[1].unwrap().torque_on);
 }
 
+/// With the factory's return delay each tick takes longer than its period.
+#[test]
+fn asking_often_makes_no_time_pass() {
+    use crate::link::SerialLink as _;
+    use handstand_shared::message::{Command, Mode};
+    use std::time::Duration;
+    let bus = set_up(&spec("ids=1-18").unwrap()).unwrap();
+    let mut session = crate::link::Session::open(SimLink(Cm5Port::new(bus))).unwrap();
+    session
+        .obey(&Command::Mode(Mode::Stream), "stream")
+        .unwrap();
+    let link = session.link();
+    let mut bytes = [0; 512];
+    // As a server of a port in real time does it, which pauses for what is left.
+    let began = link.now();
+    for _ in 0..200 {
+        let until = began + Duration::from_millis(100);
+        let left = until.saturating_sub(link.now());
+        link.pause(left.min(Duration::from_millis(1)));
+        link.receive(&mut bytes, Duration::ZERO).unwrap();
+    }
+    let passed = link.now() - began;
+    assert!(passed < Duration::from_millis(120), "{passed:?}");
+}
+
 #[test]
 fn a_robot_that_fits_no_servos_is_refused() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");

@@ -22,7 +22,7 @@ pub enum Trouble {
     BadFlash,
 }
 
-/// The port it is on, and what it did: `flash`, `app`, `go`.
+/// The port it is on, and what it did: `sys`, `flash`, `app`, `go`.
 pub struct Loader {
     pub port: String,
     pub did: Receiver<(String, Vec<u8>)>,
@@ -104,8 +104,8 @@ pub fn start_then(trouble: Trouble, mut then: impl FnMut(&Pty, &[u8]) + Send + '
                     tell.send(("go".to_string(), Vec::new())).unwrap();
                     then(&pty, &flash);
                 }
-                "app" => {
-                    tell.send(("app".to_string(), Vec::new())).unwrap();
+                word @ ("app" | "sys") => {
+                    tell.send((word.to_string(), Vec::new())).unwrap();
                     say("\r\n- ");
                 }
                 _ => say("\r\n- "),

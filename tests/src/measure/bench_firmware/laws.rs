@@ -35,8 +35,8 @@ pub(super) fn laws(args: &Args, built: Option<&Built>) -> Vec<Row> {
                 text(all),
                 text(run.mixed)
             ),
-            limit: "500 at every shift",
-            holds: Some(most(all).max(most(run.mixed)) <= 500),
+            limit: "1000 at every shift",
+            holds: Some(most(all).max(most(run.mixed)) <= 1000),
             values: json!({"at_0_8_16": chosen, "mixed": run.mixed, "by_shift": run.cycles}),
         },
     ];

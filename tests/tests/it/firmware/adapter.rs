@@ -1,11 +1,13 @@
 //! The plain adapter.
 
+use handstand_cm5_sim::STARTED_MS;
 use handstand_shared::dynamixel::{ErrorBits, Packet};
 use handstand_tests::bench::*;
 
 /// Existing tools see a plain adapter: their packets go through, and so do the answers.
 pub fn is_a_plain_adapter(bench: &mut impl SimulatedCm5) {
-    bench.run_ms(20.0);
+    // Before, nothing passes: torque is still being switched off.
+    bench.run_ms(STARTED_MS);
     bench.clear();
     bench.send_bytes(&[0xff, 0xff, 3, 2, 1, 0xf9]);
     bench.run_ms(10.0);

@@ -1,6 +1,6 @@
 //! What arming needs.
 
-use super::{greet, refused};
+use super::{arm_with, greet, refused};
 use handstand_shared::message::*;
 use handstand_tests::bench::*;
 
@@ -8,30 +8,18 @@ use handstand_tests::bench::*;
 fn arming_needs_a_greeting_a_token_a_state_and_a_supply() {
     let mut rig = VirtualCm5::new();
     rig.send_bytes(&[0]);
-    assert_eq!(
-        refused(&mut rig, Command::Arm { token: 1 }),
-        Some(Refusal::Version)
-    );
+    assert_eq!(refused(&mut rig, arm_with(1)), Some(Refusal::Version));
     let token = greet(&mut rig).token;
     rig.send_bytes(&[0]);
-    assert_eq!(
-        refused(&mut rig, Command::Arm { token: token ^ 1 }),
-        Some(Refusal::Token)
-    );
+    assert_eq!(refused(&mut rig, arm_with(token ^ 1)), Some(Refusal::Token));
     assert_eq!(refused(&mut rig, Command::Mode(Mode::Stream)), None);
-    assert_eq!(
-        refused(&mut rig, Command::Arm { token }),
-        Some(Refusal::Supply)
-    );
+    assert_eq!(refused(&mut rig, arm_with(token)), Some(Refusal::Supply));
     rig.bus().servo(4).unwrap().supply_v = 8.0;
     rig.run_ms(300.0);
-    assert_eq!(
-        refused(&mut rig, Command::Arm { token }),
-        Some(Refusal::Supply)
-    );
+    assert_eq!(refused(&mut rig, arm_with(token)), Some(Refusal::Supply));
     rig.bus().servo(4).unwrap().supply_v = 9.5;
     rig.run_ms(300.0);
-    assert_eq!(refused(&mut rig, Command::Arm { token }), None);
+    assert_eq!(refused(&mut rig, arm_with(token)), None);
     assert!(rig.bus().any_torque());
 }
 
@@ -42,7 +30,7 @@ fn after_the_watchdog_nothing_arms_without_a_greeting() {
     let hello = greet(&mut rig);
     assert_eq!(hello.condition, Condition::Fault(Cause::Watchdog));
     assert_eq!(
-        refused(&mut rig, Command::Arm { token: hello.token }),
+        refused(&mut rig, arm_with(hello.token)),
         Some(Refusal::State)
     );
     arm(&mut rig);

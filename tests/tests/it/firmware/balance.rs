@@ -1,6 +1,6 @@
 //! Balancing on board.
 
-use super::{greet, refused};
+use super::{arm_with, greet, refused};
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
@@ -123,8 +123,5 @@ fn balancing_without_gains_is_refused() {
     let token = greet(&mut rig).token;
     assert_eq!(refused(&mut rig, Command::Mode(Mode::Balance)), None);
     rig.run_ms(300.0);
-    assert_eq!(
-        refused(&mut rig, Command::Arm { token }),
-        Some(Refusal::NoPlan)
-    );
+    assert_eq!(refused(&mut rig, arm_with(token)), Some(Refusal::NoPlan));
 }

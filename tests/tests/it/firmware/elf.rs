@@ -18,18 +18,17 @@ use rand::Rng as _;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-/// The last build of `cargo xtask firmware`, or a word about its absence.
-fn built() -> Option<Built> {
-    let built = find_built();
-    if built.is_none() {
-        eprintln!("SKIPPED: there is no ELF; `cargo xtask firmware` builds it");
-    }
-    built
+/// The last build of `cargo xtask firmware`.
+///
+/// # Panics
+/// There is none, or it is older than its sources: nothing would be tested.
+fn built() -> Built {
+    find_built().unwrap_or_else(|why| panic!("{why}"))
 }
 
 #[test]
 fn the_elf_streams() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut rig = ElfCm5::new(&built.elf).unwrap();
     streams(&mut rig);
     assert_eq!(rig.seen.direction_faults, 0);
@@ -42,15 +41,30 @@ fn the_elf_streams() {
     assert!(!rig.seen.charged, "the charger must stay off");
 }
 
+/// The tick's time and the RAM that static data and stack take together.
+#[test]
+fn the_elf_keeps_its_budget() {
+    let built = built();
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    let telemetry = stream(&mut rig, 1.0).telemetry.expect("it was asked for");
+    let ram = 4096 - telemetry.stack_size + telemetry.stack_used;
+    eprintln!(
+        "longest tick {} us, RAM {ram} bytes",
+        telemetry.longest_tick_us
+    );
+    assert!(telemetry.longest_tick_us <= 6500, "{telemetry:?}");
+    assert!(ram <= 4096 * 8 / 10, "{telemetry:?}");
+}
+
 #[test]
 fn the_elf_commands_what_the_law_says() {
-    let Some(built) = built() else { return };
+    let built = built();
     commands_are_the_laws(&mut ElfCm5::new(&built.elf).unwrap());
 }
 
 #[test]
 fn the_elf_holds_three_links_up() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut rig = ElfCm5::new(&built.elf).unwrap();
     it_stands(&mut rig, 5.0);
     // What is done while servos are awaited costs no byte of their answers.
@@ -61,9 +75,7 @@ fn the_elf_holds_three_links_up() {
 /// Built here: it is quick after the plain one.
 #[test]
 fn the_elf_balances_by_the_plan_compiled_in() {
-    let (Some(_), Ok(toolchain)) = (built(), Toolchain::find()) else {
-        return;
-    };
+    let toolchain = Toolchain::find().unwrap_or_else(|why| panic!("{why}"));
     let (_, plan) = plan();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("plan.rs");
@@ -78,7 +90,7 @@ fn the_elf_balances_by_the_plan_compiled_in() {
 
 #[test]
 fn the_elf_lets_the_robot_down_when_a_servo_gives_up() {
-    let Some(built) = built() else { return };
+    let built = built();
     for way in WAYS {
         a_servo_gives_up_while_streaming(&mut ElfCm5::new(&built.elf).unwrap(), way);
         a_servo_gives_up_while_balancing(&mut ElfCm5::new(&built.elf).unwrap(), way);
@@ -87,7 +99,7 @@ fn the_elf_lets_the_robot_down_when_a_servo_gives_up() {
 
 #[test]
 fn the_elf_bears_two_servos_of_one_id() {
-    let Some(built) = built() else { return };
+    let built = built();
     twins_cost_their_own_slot_only(&mut ElfCm5::new(&built.elf).unwrap());
     twins_do_not_balance(&mut ElfCm5::new(&built.elf).unwrap(), 11);
     a_twin_ends_balancing(&mut ElfCm5::new(&built.elf).unwrap(), 11);
@@ -97,7 +109,7 @@ fn the_elf_bears_two_servos_of_one_id() {
 /// Every shift has its turn in 3200 states.
 #[test]
 fn the_law_is_the_same_at_every_shift() {
-    let Some(built) = built() else { return };
+    let built = built();
     let run = law(&built.law, 3200, 9);
     assert_eq!((run.states, run.different), (3200, 0), "{run:?}");
     assert!(run.over(0..SHIFTS).is_some(), "{run:?}");
@@ -105,7 +117,7 @@ fn the_law_is_the_same_at_every_shift() {
 
 #[test]
 fn the_observer_is_the_same_bit_for_bit() {
-    let Some(built) = built() else { return };
+    let built = built();
     let (_, plan) = plan();
     let Law::Observer(observer) = &plan.law else {
         panic!("the plan has an observer")
@@ -116,19 +128,19 @@ fn the_observer_is_the_same_bit_for_bit() {
 
 #[test]
 fn the_elf_is_a_plain_adapter() {
-    let Some(built) = built() else { return };
+    let built = built();
     is_a_plain_adapter(&mut ElfCm5::new(&built.elf).unwrap());
 }
 
 #[test]
 fn the_elf_lets_the_robot_down() {
-    let Some(built) = built() else { return };
+    let built = built();
     lets_down(&mut ElfCm5::new(&built.elf).unwrap(), 5);
 }
 
 #[test]
 fn the_elf_reads_the_gyro() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut rig = ElfCm5::new(&built.elf).unwrap();
     rig.run_ms(10.0);
     rig.send_bytes(&[0]);
@@ -158,7 +170,7 @@ fn the_elf_reads_the_gyro() {
 
 #[test]
 fn the_elf_hears_its_buttons() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut rig = ElfCm5::new(&built.elf).unwrap();
     rig.run_ms(10.0);
     rig.core.pin('D', 0, false);
@@ -182,7 +194,7 @@ fn the_elf_hears_its_buttons() {
 
 #[test]
 fn the_elf_restarts_when_it_hangs() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let mut rig = ElfCm5::new(&built.elf).unwrap();
     let mut worst = Worst::default();
@@ -190,9 +202,60 @@ fn the_elf_restarts_when_it_hangs() {
     assert!(worst.failed == 0 && worst.off_ms <= 150.0, "{worst:?}");
 }
 
+/// The watchdog's shortest period, us: docs/firmware.md.
+const SHORTEST_US: u32 = 24_000;
+
+#[test]
+fn the_elf_starts_once_after_a_hang_whatever_it_has_to_read() {
+    let built = built();
+    let all: Vec<u8> = (1..=18).collect();
+    for plans in 0..=2 {
+        let eeprom = eeprom_with(plans);
+        for ids in [&all[..], &[]] {
+            let boot = boot(&built.elf, &eeprom, ids, SHORTEST_US);
+            let case = format!("{plans} plans, {} servos: {boot:?}", ids.len());
+            assert!(boot.resets == 1 && boot.answers, "{case}");
+            assert!(boot.unfed_ms < 21.0, "{case}");
+        }
+    }
+}
+
+#[test]
+fn noise_on_the_bus_resets_nothing() {
+    let built = built();
+    for every_us in [10, 240] {
+        let (resets, unfed_ms) = noise(&built.elf, every_us, SHORTEST_US, 400.0);
+        assert!(
+            resets == 0 && unfed_ms < 21.0,
+            "noise every {every_us} us: {resets} resets, {unfed_ms} ms"
+        );
+    }
+}
+
+#[test]
+fn the_elf_restarts_through_the_boot_loader_while_the_host_speaks() {
+    let built = built();
+    let mut rng = ChaCha8Rng::seed_from_u64(18);
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    rig.set_boot_loader(50.0);
+    let mut worst = Worst::default();
+    (0..10).for_each(|_| worst.add(hang(&mut rig, &mut rng)));
+    assert!(worst.failed == 0 && worst.off_ms <= 150.0, "{worst:?}");
+    // What the frames must not hold keeps the program from starting.
+    rig.core.power_cycle();
+    rig.run_ms(1.0);
+    rig.send_bytes(b"#");
+    rig.run_ms(200.0);
+    assert!(rig.loader.is_some_and(|loader| loader.has_prompt));
+    rig.clear();
+    rig.send(&Command::Hello { version: VERSION });
+    rig.run_ms(100.0);
+    assert!(rig.reports().is_empty());
+}
+
 #[test]
 fn the_law_is_the_same_bit_for_bit() {
-    let Some(built) = built() else { return };
+    let built = built();
     let mut law = LawProgram::load(&built.law).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(9);
     for shift in [16, 8, 13] {

@@ -177,7 +177,8 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
         counted.garbled > 100 && counted.missed[4] > 100,
         "{counted:?}"
     );
-    assert_eq!(counted.missed[3..6].iter().filter(|n| **n > 0).count(), 1);
+    let missed = counted.missed[3..6].iter().filter(|n| **n > 0);
+    assert_eq!(missed.count(), 1, "{counted:?}");
 }
 
 pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {

@@ -42,6 +42,12 @@ fn greet(rig: &mut VirtualCm5) -> Hello {
     hello.expect("an answer")
 }
 
+/// Torque on, with all the servos have.
+fn arm_with(token: u16) -> Command {
+    let limits = ArmLimits::FULL;
+    Command::Arm { token, limits }
+}
+
 /// What the last report of a tick says.
 fn condition(bench: &mut impl SimulatedCm5) -> Option<Condition> {
     bench.clear();

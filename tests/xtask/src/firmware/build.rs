@@ -2,6 +2,8 @@
 
 use super::toolchain::Toolchain;
 use crate::root;
+use handstand_shared::crc::extend32;
+use handstand_shared::image::mark;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -32,7 +34,10 @@ impl Built {
 
 /// Where builds go: a folder of their own, for another compiler would spoil the host's.
 fn folder() -> PathBuf {
-    root().join("target/avr")
+    let target = std::env::var_os("CARGO_TARGET_DIR");
+    root()
+        .join(target.unwrap_or_else(|| "target".into()))
+        .join("avr")
 }
 
 /// Where the files are put, apart by whether a plan is in them: tests rely on the plain ones.
@@ -40,10 +45,54 @@ fn files(has_plan: bool) -> PathBuf {
     folder().join(if has_plan { "with-plan" } else { "plain" })
 }
 
-/// The last build without a plan, if there is one.
-pub fn find_built() -> Option<Built> {
-    let built = Built::at(&files(false));
-    built.elf.exists().then_some(built)
+/// Beside the files of a build: [`fingerprint`] of the sources it was made from.
+const SOURCES: &str = "sources.crc";
+
+/// The last build without a plan.
+///
+/// # Errors
+/// There is none, or the sources have changed since; with the remedy.
+pub fn find_built() -> Result<Built, String> {
+    let folder = files(false);
+    let built = Built::at(&folder);
+    if !built.elf.exists() {
+        let elf = built.elf.display();
+        return Err(format!(
+            "{elf} is missing: `cargo xtask firmware` builds it"
+        ));
+    }
+    let made_from = std::fs::read_to_string(folder.join(SOURCES)).unwrap_or_default();
+    match made_from == fingerprint() {
+        true => Ok(built),
+        false => Err(format!(
+            "{} is older than its sources: `cargo xtask firmware` builds it anew",
+            built.elf.display()
+        )),
+    }
+}
+
+/// CRC-32 over the names and contents of all sources of the program: times of files say nothing
+/// after a checkout.
+fn fingerprint() -> String {
+    let mut crc = u32::MAX;
+    for folder in ["firmware", "shared"] {
+        for name in ["Cargo.toml", "build.rs", "src"] {
+            crc = with_file(crc, &root().join(folder).join(name));
+        }
+    }
+    format!("{:08x}", !crc)
+}
+
+/// Goes on with a CRC-32 over a file, or all files of a folder in the order of their names.
+fn with_file(crc: u32, path: &Path) -> u32 {
+    let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
+        .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
+        .unwrap_or_default();
+    inside.sort();
+    let name = path.file_name().map(|name| name.to_string_lossy());
+    let crc = extend32(crc, name.unwrap_or_default().as_bytes());
+    let crc = extend32(crc, &std::fs::read(path).unwrap_or_default());
+    inside.iter().fold(crc, |crc, path| with_file(crc, path))
 }
 
 /// Builds it, with a plan compiled in if one is given. The first time the register definitions are
@@ -72,6 +121,7 @@ pub fn build(toolchain: &Toolchain, plan: Option<&Path>) -> Result<Built, String
         Some(Err(error)) => return Err(format!("the plan cannot be read: {error}")),
         None => cargo.env_remove("HANDSTAND_PLAN"),
     };
+    let sources = fingerprint();
     let status = cargo.arg(folder()).status();
     if !status.is_ok_and(|status| status.success()) {
         return Err(format!("{} could not build the firmware", toolchain.name));
@@ -80,8 +130,12 @@ pub fn build(toolchain: &Toolchain, plan: Option<&Path>) -> Result<Built, String
     let built = Built::at(&files(plan.is_some()));
     put(&made.elf, &built.elf)?;
     put(&made.law, &built.law)?;
-    objcopy(&built.elf, &built.hex, "ihex")?;
-    objcopy(&built.elf, &built.bin, "binary")?;
+    objcopy(&built.elf, &built.bin, &["-O", "binary"])?;
+    put_mark(&built.bin)?;
+    objcopy(&built.bin, &built.hex, &["-I", "binary", "-O", "ihex"])?;
+    // Last: without it the files do not count as built.
+    let stamp = files(plan.is_some()).join(SOURCES);
+    std::fs::write(&stamp, sources).map_err(|error| format!("{}: {error}", stamp.display()))?;
     Ok(built)
 }
 
@@ -95,11 +149,21 @@ fn put(from: &Path, to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn objcopy(elf: &Path, to: &Path, format: &str) -> Result<(), String> {
+/// Puts the mark behind a program, without which it is not flashed.
+fn put_mark(bin: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", bin.display());
+    let mut program = std::fs::read(bin).map_err(failed)?;
+    program.extend(mark(&program));
+    std::fs::write(bin, program).map_err(failed)
+}
+
+fn objcopy(from: &Path, to: &Path, formats: &[&str]) -> Result<(), String> {
     let mut objcopy = Command::new("avr-objcopy");
     // The EEPROM, if the ELF ever has any, is no part of the flash.
-    objcopy.args(["-O", format, "-R", ".eeprom", "-R", ".fuse", "-R", ".lock"]);
-    match objcopy.arg(elf).arg(to).status() {
+    objcopy
+        .args(formats)
+        .args(["-R", ".eeprom", "-R", ".fuse", "-R", ".lock"]);
+    match objcopy.arg(from).arg(to).status() {
         Ok(status) if status.success() => Ok(()),
         _ => Err("avr-objcopy (Debian: binutils-avr) failed".into()),
     }

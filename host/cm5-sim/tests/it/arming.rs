@@ -1,0 +1,195 @@
+//! What arming needs, and what it sets.
+
+use super::rig::*;
+use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
+use handstand_shared::control_table::{MOVING_SPEED, RETURN_DELAY, TORQUE_LIMIT};
+use handstand_shared::message::*;
+use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::raw::{MovingSpeed, TorqueLimit};
+
+#[test]
+fn a_token_arms_once() {
+    let mut cm5 = VirtualCm5::new();
+    let token = arm(&mut cm5);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Armed)));
+    for mode in [Mode::Stream, Mode::Balance] {
+        assert_eq!(ask(&mut cm5, &Command::Mode(mode)), Some(Ok(())));
+        say(&mut cm5, &UPRIGHT, 300);
+        assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Token)));
+        assert!(!cm5.bus().any_torque());
+    }
+    let next = greet(&mut cm5).token;
+    assert_ne!(next, token);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Token)));
+    assert_eq!(ask(&mut cm5, &arm_with(next)), Some(Ok(())));
+}
+
+#[test]
+fn after_a_disarm_the_same_frame_arms_nothing() {
+    let mut cm5 = VirtualCm5::new();
+    let token = arm(&mut cm5);
+    assert_eq!(ask(&mut cm5, &Command::Disarm), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Version)));
+}
+
+#[test]
+fn nothing_is_armed_while_a_plan_is_written() {
+    let mut cm5 = with_wheels();
+    let token = ready_to_balance(&mut cm5, &plan());
+    let before = greet(&mut cm5).plan;
+    let token = match greet(&mut cm5).token {
+        newer if newer != token => newer,
+        same => same,
+    };
+    say(&mut cm5, &UPRIGHT, 300);
+    let other = [7; PLAN_CHUNK];
+    let chunk = Command::PlanChunk {
+        offset: 0,
+        bytes: other,
+    };
+    cm5.send(&chunk);
+    say(&mut cm5, &UPRIGHT, 40);
+    assert_eq!(
+        ask_upright(&mut cm5, &arm_with(token)),
+        Some(Err(Refusal::Busy))
+    );
+    assert!(!cm5.bus().any_torque());
+    say(&mut cm5, &UPRIGHT, 600);
+    assert_eq!(ask_upright(&mut cm5, &arm_with(token)), Some(Ok(())));
+    // Armed, neither a piece nor the whole is taken.
+    for command in [
+        chunk,
+        Command::PlanStore {
+            length: 32,
+            check: handstand_shared::crc::crc32(&other),
+        },
+    ] {
+        assert_eq!(
+            ask_upright(&mut cm5, &command),
+            Some(Err(Refusal::Armed)),
+            "{command:?}"
+        );
+    }
+    assert_eq!(greet(&mut cm5).plan, before);
+}
+
+#[test]
+fn ticks_that_last_too_long_are_not_armed_with() {
+    let mut cm5 = VirtualCm5::new();
+    for servo in &mut cm5.bus().servos {
+        servo.set(RETURN_DELAY, RETURN_DELAY.default);
+    }
+    let token = greet(&mut cm5).token;
+    ask(&mut cm5, &Command::Mode(Mode::Stream));
+    say(&mut cm5, &Command::KeepAlive, 800);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Overrun)));
+    for servo in &mut cm5.bus().servos {
+        servo.set(RETURN_DELAY, 0);
+    }
+    // A new list is asked for its delays anew.
+    ask(&mut cm5, &Command::ServoList(ServoList::default()));
+    say(&mut cm5, &Command::KeepAlive, 800);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+}
+
+#[test]
+fn torque_and_speed_are_those_that_arming_names() {
+    let mut cm5 = with_wheels();
+    let token = greet(&mut cm5).token;
+    ask(&mut cm5, &Command::Mode(Mode::Stream));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    let limits = |torque, speed| Command::Arm {
+        token,
+        limits: ArmLimits {
+            torque: TorqueLimit(torque),
+            speed: MovingSpeed(speed),
+        },
+    };
+    for (torque, speed) in [(0, 1), (1024, 1), (1, 0), (1, 1024)] {
+        let refused = ask(&mut cm5, &limits(torque, speed));
+        assert_eq!(refused, Some(Err(Refusal::Limits)), "{torque} {speed}");
+    }
+    assert_eq!(ask(&mut cm5, &limits(600, 90)), Some(Ok(())));
+    for servo in &cm5.bus().servos {
+        assert_eq!(servo.get(TORQUE_LIMIT), 600, "servo {}", servo.id());
+        // For one that turns without end it would be its speed.
+        let speed = if DRIVEN.contains(&servo.id()) { 0 } else { 90 };
+        assert_eq!(servo.get(MOVING_SPEED), speed, "servo {}", servo.id());
+    }
+    say(
+        &mut cm5,
+        &Command::Goals(Positions::pack([512; SERVOS])),
+        100,
+    );
+    assert!(
+        cm5.bus()
+            .servos
+            .iter()
+            .all(|servo| servo.get(TORQUE_LIMIT) == 600)
+    );
+    // The limit falls from there, and never rises.
+    let mut last = 600;
+    while cm5.bus().any_torque() {
+        cm5.run_ms(1.0);
+        let limit = cm5.bus().servo(5).unwrap().get(TORQUE_LIMIT);
+        assert!(limit <= last, "{limit} after {last}");
+        last = limit;
+    }
+    assert_eq!(last, 0);
+}
+
+#[test]
+fn only_wheels_are_balanced_with() {
+    let mut cm5 = with_wheels();
+    let servo = cm5.bus().servo(12).unwrap();
+    servo.set(handstand_shared::control_table::CCW_LIMIT, 1023);
+    let token = ready_to_balance(&mut cm5, &plan());
+    let refused = ask_upright(&mut cm5, &arm_with(token));
+    assert_eq!(refused, Some(Err(Refusal::Wheel)));
+}
+
+#[test]
+fn a_piece_of_the_plan_is_read_at_any_offset() {
+    let mut cm5 = with_wheels();
+    for compiled in [false, true] {
+        if compiled {
+            cm5.board.compiled = bytes(&plan());
+        } else {
+            ready_to_balance(&mut cm5, &plan());
+        }
+        for offset in [0, 96, 999, 1000, 65_504, 65_520, u16::MAX] {
+            cm5.clear();
+            cm5.send(&Command::PlanRead { offset });
+            cm5.run_ms(60.0);
+            let mut reports = cm5.reports().into_iter();
+            let read = reports.find_map(|(_, report)| match report {
+                Report::PlanChunk { offset, bytes, .. } => Some((offset, bytes)),
+                _ => None,
+            });
+            let (of, found) = read.expect("a piece");
+            assert_eq!(of, offset);
+            let whole = bytes(&plan());
+            let expected = (usize::from(offset)..).map(|at| whole.get(at).copied().unwrap_or(0));
+            assert!(found.into_iter().eq(expected.take(PLAN_CHUNK)), "{offset}");
+        }
+        if !compiled {
+            cm5 = VirtualCm5::with_plan(bytes(&plan()), vec![0xff; 4096], ResetCause(1));
+            cm5.send_bytes(&[0]);
+            greet(&mut cm5);
+            ask(&mut cm5, &Command::Mode(Mode::Stream));
+        }
+    }
+}
+
+#[test]
+fn nothing_is_kept_at_the_first_bytes_of_eeprom() {
+    let mut cm5 = with_wheels();
+    for _ in 0..3 {
+        ready_to_balance(&mut cm5, &plan());
+    }
+    assert!(cm5.board.eeprom[..16].iter().all(|byte| *byte == 0xff));
+    assert!(cm5.board.eeprom[0x840..].iter().all(|byte| *byte == 0xff));
+}

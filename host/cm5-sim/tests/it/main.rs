@@ -1,0 +1,10 @@
+//! The firmware's safety, its logic in process.
+
+mod arming;
+mod attitude;
+mod bus;
+mod invariants;
+mod joints;
+mod life;
+mod rig;
+mod start;
