@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn a_target_missed_is_one_of_rate_ratio_or_coverage() {
         let right = |ratio, covered| outcome("delay", Answer::Right, ratio, covered);
-        let all = |ratio, covered| Tally::of(&vec![right(ratio, covered); 100]);
+        let all = |ratio, covered| Tally::of(&vec![right(ratio, covered); 1000]);
         assert!(Tally::of(&[right(1.0, true)]).is_met());
         assert!(!all(1.2, true).is_met());
         assert!(!all(1.0, false).is_met());
