@@ -95,15 +95,16 @@ fn copied() -> Result<PathBuf, String> {
         copy(&root().join(name), &to)?;
     }
     let manifest = read(&root().join("Cargo.toml"))?;
+    // Behind the members and the default ones.
     let (_, behind) = manifest
-        .split_once("]\n")
-        .ok_or("Cargo.toml has no members")?;
-    let (_, behind) = behind
-        .split_once("]\n")
-        .ok_or("Cargo.toml has no members")?;
+        .split_once("[workspace.package]")
+        .ok_or("Cargo.toml has no [workspace.package]")?;
     let members =
         "[workspace]\nresolver = \"3\"\nmembers = [\"firmware\", \"host/cm5-sim\", \"shared\"]\n";
-    write(&folder.join("Cargo.toml"), &format!("{members}{behind}"))?;
+    write(
+        &folder.join("Cargo.toml"),
+        &format!("{members}[workspace.package]{behind}"),
+    )?;
     let lock = folder.join("Cargo.lock");
     std::fs::copy(root().join("Cargo.lock"), &lock)
         .map_err(|error| format!("{}: {error}", lock.display()))?;
