@@ -6,7 +6,6 @@ mod fuzz;
 mod image;
 mod install;
 mod lane;
-mod mutants;
 mod python;
 mod test;
 
@@ -33,8 +32,6 @@ enum Chore {
     Fuzz(fuzz::Args),
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(image::Args),
-    /// Break the firmware on purpose and count what the tests notice
-    Mutants(mutants::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(Words),
     /// Kill recorders, and read what is left of their files
@@ -67,7 +64,6 @@ fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         Chore::Fuzz(args) => return code(fuzz::run(&args)),
-        Chore::Mutants(args) => return code(mutants::run(&args)),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchRecord(words) => ("bench-record", words),

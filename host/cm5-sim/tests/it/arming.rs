@@ -38,8 +38,9 @@ fn after_a_disarm_the_same_frame_arms_nothing() {
 #[test]
 fn nothing_is_armed_while_a_plan_is_written() {
     let mut cm5 = with_wheels();
-    ready_to_balance(&mut cm5, &plan());
+    let token = ready_to_balance(&mut cm5, &plan());
     let before = greet(&mut cm5).plan;
+    assert_ne!(greet(&mut cm5).token, token);
     let token = greet(&mut cm5).token;
     say(&mut cm5, &UPRIGHT, 300);
     let other = [7; PLAN_CHUNK];
