@@ -118,3 +118,52 @@ fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) ->
         (columns[column][row] - base[row]) / DIFFERENCE
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::MotionSource;
+    use std::path::Path;
+
+    /// A free pendulum at these angles, read at 100 Hz without noise.
+    fn horizon(zero: &str, angle_rad: impl Fn(f64) -> f64) -> Horizon {
+        let text = format!(
+            "[rig]\nname = \"p\"\nangle_zero = \"{zero}\"\n\
+             [[link]]\ncom_m = 0.1\nmass_kg = 0.2\ninertia_kg_m2 = 1e-4\n\
+             [[joint]]\ndrive = \"passive\"\n[log]\ntime = {{ column = \"t\", unit = \"s\" }}\n\
+             [[log.joint]]\nposition = {{ column = \"q\", unit = \"rad\" }}\n"
+        );
+        let model = Model::parse(&text, Path::new("p.toml")).unwrap();
+        let time_s: Vec<f64> = (0..500).map(|k| 0.01 * f64::from(k)).collect();
+        let motion = Motion {
+            name: String::new(),
+            source: MotionSource {
+                path: "p.csv".into(),
+                sha256: String::new(),
+                lines: (0, 0),
+            },
+            position_rad: vec![time_s.iter().map(|t| angle_rad(*t)).collect()],
+            velocity_rad_s: vec![None],
+            input: vec![None],
+            supply_v: None,
+            torque_on: None,
+            payload_kg: 0.0,
+            turned: false,
+            time_s,
+        };
+        stable_horizon(&model, &[1e-4], &motion)
+    }
+
+    #[test]
+    fn a_swing_runs_freely_and_a_balance_does_not() {
+        assert_eq!(
+            horizon("hanging", |t| 0.3 * (9.5 * t).cos()),
+            Horizon::Whole
+        );
+        // Upright an error grows by exp(9.6 t): thirty times in 0.43 s.
+        let Horizon::Seconds(seconds) = horizon("upright", |t| 0.01 * (3.0 * t).sin()) else {
+            panic!("an unstable motion runs freely");
+        };
+        assert!((0.25..0.5).contains(&seconds), "{seconds}");
+    }
+}

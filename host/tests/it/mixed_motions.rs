@@ -110,7 +110,11 @@ fn still(seconds: f64) -> String {
         let _ = write!(text, "\n{:.2}", k as f64 / RATE_HZ);
         for joint in 0..3 {
             let steps = f64::from(u8::from((k * (joint + 3)) % 7 == 0));
-            let hanging_rad = if joint == 0 { -std::f64::consts::FRAC_PI_2 } else { 0.0 };
+            let hanging_rad = if joint == 0 {
+                -std::f64::consts::FRAC_PI_2
+            } else {
+                0.0
+            };
             let _ = write!(text, ",{}", hanging_rad + steps * Position::LSB_RAD);
             if joint > 0 {
                 let _ = write!(text, ",0");
@@ -152,7 +156,13 @@ fn diagnosed(bench: &Bench, training: &[&str], held_out: &[&str]) -> Diagnosis {
         read(&requests.collect::<Vec<_>>(), &model.log).unwrap()
     };
     let options = DiagnoseOptions::default();
-    diagnose(&model, motions(training), motions(held_out), &options, &|_| {})
+    diagnose(
+        &model,
+        motions(training),
+        motions(held_out),
+        &options,
+        &|_| {},
+    )
 }
 
 fn assert_bar_friction(diagnosis: &Diagnosis) {
