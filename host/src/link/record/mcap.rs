@@ -239,17 +239,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
             HEALTH => {
                 let health: Health = serde_json::from_slice(&message.data)
                     .map_err(|error| refused(format!("{HEALTH}: {error}")))?;
-                if let Some(sample) = samples.last_mut() {
-                    let rate_rad_s = sample.gyro.and_then(|gyro| gyro.rate_rad_s);
-                    let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
-                    sample.gyro = GyroSample::of(values);
-                }
-                for (at, joint) in newest(&mut samples).iter_mut().enumerate() {
-                    joint.supply_v = health.supply_v.get(at).copied().flatten();
-                    joint.temperature_celsius =
-                        health.temperature_celsius.get(at).copied().flatten();
-                    joint.error = health.error.get(at).copied().flatten();
-                }
+                add_health(&health, &mut samples);
             }
             _ => {}
         }
@@ -257,6 +247,20 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
     // A finished file ends in the magic it began with.
     torn |= !bytes.ends_with(::mcap::MAGIC);
     Ok((ids, samples, torn))
+}
+
+/// Adds what the board and its servos say of themselves to the newest sample.
+fn add_health(health: &Health, samples: &mut [RobotSample]) {
+    if let Some(sample) = samples.last_mut() {
+        let rate_rad_s = sample.gyro.and_then(|gyro| gyro.rate_rad_s);
+        let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
+        sample.gyro = GyroSample::of(values);
+    }
+    for (at, joint) in newest(samples).iter_mut().enumerate() {
+        joint.supply_v = health.supply_v.get(at).copied().flatten();
+        joint.temperature_celsius = health.temperature_celsius.get(at).copied().flatten();
+        joint.error = health.error.get(at).copied().flatten();
+    }
 }
 
 /// Joints of the newest sample; none before the first.
