@@ -1,6 +1,7 @@
 //! Comparing one model with motions: nothing is fitted but where each run starts.
 
-use super::failure::failures;
+use super::failure::{FailingSamples, failing};
+use super::model_run::ModelRun;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
@@ -28,24 +29,53 @@ pub fn compare(
 ) -> Comparison {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, motions.to_vec(), horizon);
-    let settled = fit_start_states(model, &data);
-    let predicted = predicted(model, &data, &settled.nodes);
-    let joints = 0..model.link_count();
-    let residuals: Vec<Vec<Vec<f64>>> = joints.map(|j| residual(&data, &predicted, j)).collect();
-    let signals: Vec<SignalError> = residuals
-        .iter()
-        .enumerate()
-        .map(|(joint, residual)| signal(&data, joint, residual))
-        .collect();
-    Comparison {
-        model: name.to_string(),
-        horizon_s: horizon.seconds(),
-        windows: data.motion_windows(horizon),
-        horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
-        failures: failures(model, &data.motions, &residuals, &signals),
-        traces: traces(&data, &predicted),
-        closed_loop: None,
-        signals,
+    ModelRun::new(model.clone(), data, horizon).comparison(name)
+}
+
+impl ModelRun {
+    /// What the run says of the model; `name` stands for it in reports.
+    pub fn comparison(&self, name: &str) -> Comparison {
+        let ModelRun {
+            model,
+            data,
+            horizon,
+            ..
+        } = self;
+        let residuals = self.residuals();
+        let signals = self.signals(&residuals);
+        Comparison {
+            model: name.to_string(),
+            horizon_s: horizon.seconds(),
+            windows: data.motion_windows(*horizon),
+            horizons: horizons(model, data, *horizon, rms(residuals.iter().flatten())),
+            failures: failing(model, &data.motions, &residuals, &signals)
+                .into_iter()
+                .map(|failing| failing.failure)
+                .collect(),
+            traces: traces(data, &self.predicted_rad),
+            closed_loop: None,
+            signals,
+        }
+    }
+
+    /// Conditions under which the model fails, worst first, with the samples that meet them.
+    pub fn failing(&self) -> Vec<FailingSamples> {
+        let residuals = self.residuals();
+        let signals = self.signals(&residuals);
+        failing(&self.model, &self.data.motions, &residuals, &signals)
+    }
+
+    /// Root-mean-square error, rad, per joint, all motions together.
+    pub fn rms_rad(&self) -> Vec<f64> {
+        let residuals = self.residuals();
+        residuals.iter().map(|joint| rms(joint.iter())).collect()
+    }
+
+    fn signals(&self, residuals: &[Vec<Vec<f64>>]) -> Vec<SignalError> {
+        let signals = residuals.iter().enumerate();
+        signals
+            .map(|(joint, residual)| signal(&self.data, joint, residual))
+            .collect()
     }
 }
 

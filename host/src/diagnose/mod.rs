@@ -12,6 +12,7 @@ mod findings;
 mod horizon;
 mod hypothesis;
 mod initial_guess;
+mod logs;
 mod multistart;
 mod options;
 mod progress;
@@ -31,6 +32,7 @@ pub use findings::{
     Alternative, Diagnosis, FittedEffect, Fold, MotionError, ResidualStructure, RuledOut, Verdict,
     WrongValue,
 };
+pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use options::DiagnoseOptions;
 pub use progress::Progress;
 pub use search::diagnose;

@@ -6,6 +6,7 @@
 //! so that P + 3 n simulations make the whole Jacobian, and eliminating the start states leaves a
 //! system of P unknowns (`normal`).
 
+mod add;
 mod broyden;
 mod candidate;
 mod cluster;
@@ -31,6 +32,7 @@ mod step;
 mod student;
 mod windows;
 
+pub use add::{Addition, add_effects, candidates_named, not_reduced};
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
 pub use data::{FitData, Horizon, Window};
