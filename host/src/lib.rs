@@ -16,6 +16,7 @@ pub mod dynamics;
 pub mod effects;
 pub mod error;
 pub mod fitting;
+pub mod lab;
 pub mod link;
 pub mod log;
 pub mod model;

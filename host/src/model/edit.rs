@@ -1,5 +1,11 @@
 //! Writes effects and values into a model file's text; comments and layout stay.
 
+mod columns;
+#[cfg(test)]
+mod tests;
+
+pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
+
 use super::path::ParameterPath;
 use super::{EffectInstance, Model};
 use crate::error::{Error, Place, Result};
@@ -232,6 +238,3 @@ fn number(value: f64) -> Value {
         .parse()
         .unwrap_or_else(|_| rounded.into())
 }
-
-#[cfg(test)]
-mod tests;

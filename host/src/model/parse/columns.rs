@@ -3,7 +3,7 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Column, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
+use super::super::{Column, Dimension, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
 
@@ -60,13 +60,7 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
     let position = table.required_table("position")?;
     let velocity = optional(table, "velocity", Dimension::Speed)?;
-    let wanted = match joint.drive {
-        Drive::Passive => None,
-        Drive::Torque => Some(Dimension::Torque),
-        Drive::Duty(_) => Some(Dimension::Ratio),
-        Drive::Position { .. } => Some(Dimension::Angle),
-        Drive::Speed { .. } => Some(Dimension::Speed),
-    };
+    let wanted = Dimension::of_input(joint.drive.name());
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
         (Some(wanted), true) => optional(table, "input", wanted)?,
