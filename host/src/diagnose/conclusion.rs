@@ -68,7 +68,7 @@ fn error(evidence: &Evidence) -> ErrorReduction {
 fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
     let given = &evidence.evaluator.start;
     let contradicted = contradicted(given, base);
-    match evidence.explanation() {
+    match evidence.explanation {
         Explanation::Given(_) => Vec::new(),
         Explanation::Value(_) => compared(given, base),
         Explanation::Refit(_) if contradicted.is_empty() => compared(given, base),
@@ -150,8 +150,9 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
         let mut kept = rivals.iter().copied().chain([chosen]);
         kept.any(|k| k.value == h.value && k.adds(&h.set))
     };
-    let values = evidence.values.iter().chain(&evidence.values_refitted);
-    let rest = values.chain(&evidence.hypotheses).filter(|h| !kept(h));
+    let tried = evidence.tried;
+    let values = tried.values.iter().chain(&tried.values_refitted);
+    let rest = values.chain(&tried.hypotheses).filter(|h| !kept(h));
     rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
@@ -182,7 +183,7 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
         "it fits the training motions and makes the held-out ones worse"
     } else {
-        match evidence.explanation() {
+        match evidence.explanation {
             Explanation::Given(_) => "what it gains may be chance",
             Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
                 "one more effect brings no significant reduction"

@@ -13,7 +13,7 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
-use super::explanation::{Evidence, Explanation};
+use super::explanation::{Evidence, Explanation, Tried};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
@@ -45,20 +45,23 @@ pub fn diagnose(
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
-    let (values, values_refitted) = (evaluator.try_values(), evaluator.try_values_refitted());
+    let tried = Tried {
+        values: evaluator.try_values(),
+        values_refitted: evaluator.try_values_refitted(),
+        hypotheses,
+        best,
+    };
     let mut evidence = Evidence {
         evaluator: &evaluator,
+        tried: &tried,
+        explanation: tried.explanation(&evaluator),
         residual_structure: None,
         per_motion_reduction: None,
-        hypotheses,
-        values,
-        values_refitted,
-        best,
         folds: Vec::new(),
         seed: options.seed,
     };
     evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
-    if !matches!(evidence.explanation(), Explanation::Given(_)) {
+    if !matches!(evidence.explanation, Explanation::Given(_)) {
         evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
     }
     evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
