@@ -1,6 +1,6 @@
 //! A verdict with all that belongs to it: values, errors, rivals, and what was ruled out.
 
-use super::block_errors::{BlockErrors, reduction};
+use super::block_errors::{BlockErrors, gain, paired, reduction};
 use super::evaluator::Evaluator;
 use super::explanation::{Evidence, Explanation};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
@@ -8,7 +8,7 @@ use super::hypothesis::Hypothesis;
 use super::values::{compared, contradicted};
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
-use crate::output::number::percent;
+use crate::output::number::{percent, short};
 
 /// Correlation from which two values are hardly told apart.
 const COLLINEAR: f64 = 0.95;
@@ -133,13 +133,19 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
 fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
     let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
     let added = values.len() - hypothesis.added_values();
-    let own = match hypothesis.value {
-        Some(_) => &values[..],
-        None => &[],
-    };
+    let own: Vec<FittedValue> = values[..added]
+        .iter()
+        .filter(|value| {
+            hypothesis
+                .values
+                .iter()
+                .any(|own| own.to_string() == value.path)
+        })
+        .cloned()
+        .collect();
     Alternative {
         effects: effects(hypothesis, &values[added..]),
-        wrong_values: compared(&evaluator.start, own),
+        wrong_values: compared(&evaluator.start, &own),
         error_rad: hypothesis.deciding_rms_rad(),
     }
 }
@@ -148,7 +154,7 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
     let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
     let kept = |h: &Hypothesis| {
         let mut kept = rivals.iter().copied().chain([chosen]);
-        kept.any(|k| k.value == h.value && k.adds(&h.set))
+        kept.any(|k| k.values == h.values && k.adds(&h.set))
     };
     let tried = evidence.tried;
     let values = tried.values.iter().chain(&tried.values_refitted);
@@ -163,6 +169,10 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
     .collect()
 }
 
+fn fitted(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
+    hypothesis.evaluation.as_ref().map(|e| &e.training)
+}
+
 fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
     hypothesis.evaluation.as_ref()?.held_out.as_ref()
 }
@@ -170,9 +180,10 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
 fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     let evaluator = evidence.evaluator;
     // A value refitted alone is compared with the model as given.
-    let base = match hypothesis.value {
-        Some(_) if hypothesis.search.free.len() == 1 => &evaluator.given,
-        _ => &evaluator.base,
+    let alone = hypothesis.values.len() == 1 && hypothesis.search.free.len() == 1;
+    let base = match alone {
+        true => &evaluator.given,
+        false => &evaluator.base,
     };
     let why = if hypothesis.rests_on_bound() {
         "its best value is on a bound, where it vanishes or stops being physical"
@@ -189,12 +200,33 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
                 "one more effect brings no significant reduction"
             }
             explanation if evaluator.clearly_worse(hypothesis, explanation.hypothesis(), base) => {
-                return format!("{} leaves significantly less", explanation.name());
+                return better(&explanation.name(), explanation.hypothesis(), hypothesis);
             }
             _ => "the chosen explanation does as well and is simpler",
         }
     };
     why.to_string()
+}
+
+/// That `best` is significantly better than another, in figures that show it.
+fn better(name: &str, best: &Hypothesis, other: &Hypothesis) -> String {
+    let lower = |of: fn(&Hypothesis) -> Option<&BlockErrors>| {
+        let [best, other] = [best, other].map(|h| of(h).map(|errors| short(errors.rms_rad())));
+        let [best, other] = [best?, other?].map(|shown| shown.parse::<f64>().ok());
+        Some(best? < other?)
+    };
+    if lower(held_out).or_else(|| lower(fitted)) == Some(true) {
+        return format!("{name} leaves significantly less");
+    }
+    if lower(fitted) == Some(true) {
+        return format!("{name} leaves significantly less of the fitted motions' error");
+    }
+    let gained = best.pooled().zip(other.pooled());
+    let gained = gained.map_or(0.0, |(best, other)| gain(&paired(&other, &best)));
+    format!(
+        "{name} is more likely, by {} in log-likelihood",
+        short(gained)
+    )
 }
 
 fn motions(evidence: &Evidence) -> Vec<MotionError> {

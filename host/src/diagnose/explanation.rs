@@ -23,6 +23,8 @@ pub(super) struct Evidence<'a> {
     pub tried: &'a Tried,
     /// The simplest explanation that is not clearly worse than the best.
     pub explanation: Explanation<'a>,
+    /// Those whose predictions no noise lets these motions tell from it.
+    pub equivalents: &'a [Hypothesis],
     pub residual_structure: Option<ResidualStructure>,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: Option<f64>,
@@ -95,7 +97,27 @@ impl<'a> Evidence<'a> {
     }
 
     /// Explanations no less simple than the chosen one that the data do not tell from it.
+    /// The simplest come first.
     pub fn rivals(&self) -> Vec<&'a Hypothesis> {
+        let mut rivals = self.as_good();
+        for other in self.equivalents {
+            let is_same = |h: &&Hypothesis| h.values == other.values && h.adds(&other.set);
+            if !rivals.iter().any(is_same) {
+                rivals.push(other);
+            }
+        }
+        rivals.sort_by(|a, b| Hypothesis::by_simplicity(a, b));
+        rivals
+    }
+
+    /// Whether rivals leave the verdict open. The values that the file frees are what its owner
+    /// does not know: where they explain all, an effect that would too is only mentioned.
+    fn is_open(&self, rivals: &[&Hypothesis]) -> bool {
+        !rivals.is_empty() && !matches!(self.explanation, Explanation::Refit(_))
+    }
+
+    /// Explanations that are significantly no worse.
+    fn as_good(&self) -> Vec<&'a Hypothesis> {
         match self.explanation {
             Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
             Explanation::Value(value) => self.rivals_of_value(value),
@@ -130,7 +152,7 @@ impl<'a> Evidence<'a> {
         others: impl Iterator<Item = &'a Hypothesis>,
     ) -> Vec<&'a Hypothesis> {
         others
-            .filter(|h| h.value != value.value)
+            .filter(|h| h.values != value.values)
             .filter(|h| self.evaluator.improves(reference, h))
             .filter(|h| !self.evaluator.clearly_worse(h, value, reference))
             .collect()
@@ -163,7 +185,7 @@ impl<'a> Evidence<'a> {
     }
 
     pub fn verdict(&self, rivals: &[&Hypothesis]) -> Verdict {
-        self.signs(!rivals.is_empty()).verdict()
+        self.signs(self.is_open(rivals)).verdict()
     }
 
     /// What the explanation improves on: the model as given, or the refitted one.

@@ -51,10 +51,13 @@ pub fn diagnose(
         hypotheses,
         best,
     };
+    let explanation = tried.explanation(&evaluator);
+    let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
     let mut evidence = Evidence {
         evaluator: &evaluator,
         tried: &tried,
-        explanation: tried.explanation(&evaluator),
+        explanation,
+        equivalents: &equivalents,
         residual_structure: None,
         per_motion_reduction: None,
         folds: Vec::new(),

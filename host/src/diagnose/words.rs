@@ -4,6 +4,7 @@
 //! the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
+use super::inseparable::inseparable;
 
 use crate::output::number::{measured, percent, short, with_unit};
 
@@ -124,6 +125,7 @@ fn rivals(diagnosis: &Diagnosis) -> String {
 
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = vec![headline(diagnosis)];
+    lines.extend(inseparable(diagnosis));
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
         lines.push(
             "It comes closest and is not the whole of it: do not take it for the cause.".into(),

@@ -57,6 +57,16 @@ impl Candidate {
         model.has_effect(self.effect.info().id, self.joint)
     }
 
+    /// Whether an effect of a model is this one.
+    pub fn is(&self, instance: &EffectInstance) -> bool {
+        Candidate::from(instance) == *self
+    }
+
+    /// Whether both are one effect at one place.
+    pub fn overlaps(&self, other: Candidate) -> bool {
+        *self == other
+    }
+
     /// Whether its law jumps, so that the squared error over its values is full of steps and false
     /// valleys.
     pub fn jumps(&self) -> bool {
