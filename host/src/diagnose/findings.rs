@@ -33,7 +33,7 @@ pub struct FittedEffect {
     pub kind: String,
     /// Name for people.
     pub title: String,
-    /// Joint counted from 1; absent when it acts on the whole rig.
+    /// Joint counted from 1; absent when it acts on the whole rig, or on all driven joints.
     pub joint: Option<usize>,
     /// Its values.
     pub parameters: Vec<FittedValue>,
@@ -155,11 +155,11 @@ pub struct Diagnosis {
 }
 
 impl FittedEffect {
-    /// The effect as `handstand add` takes it: `coulomb@1`.
+    /// The effect as `handstand add` takes it: `coulomb@1`, `delay@all`.
     pub fn address(&self) -> String {
         match self.joint {
             Some(joint) => format!("{}@{joint}", self.kind),
-            None => self.kind.clone(),
+            None => format!("{}{}", self.kind, effects::at_all(&self.kind)),
         }
     }
 

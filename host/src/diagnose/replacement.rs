@@ -61,7 +61,9 @@ impl Evaluator<'_> {
                 let candidate = change.candidate;
                 Part::Effect(candidate) != *part
                     && candidate.parameters().len() <= part.count()
-                    && set.iter().all(|kept| !kept.overlaps(candidate))
+                    && set
+                        .iter()
+                        .all(|kept| !kept.overlaps(candidate, &self.start))
             })
         };
         let by_effects = self.changes.par_iter().filter(fits).filter_map(|changes| {

@@ -222,7 +222,9 @@ impl Evaluator<'_> {
         let is_new = |changes: &&Vec<PredictionChange>| {
             changes.first().is_some_and(|change| {
                 let set = from.set_with(change.candidate);
-                !from.set.contains(&change.candidate) && !tried.iter().any(|t| t.adds(&set))
+                let mut kept = from.set.iter();
+                kept.all(|kept| !kept.overlaps(change.candidate, &self.start))
+                    && !tried.iter().any(|t| t.adds(&set))
             })
         };
         let new = self.changes.par_iter().filter(is_new);

@@ -2,6 +2,7 @@
 
 use super::path::ParameterPath;
 use super::{EffectInstance, Model};
+use crate::effects::Scope;
 use crate::error::{Error, Place, Result};
 use std::path::Path;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
@@ -40,8 +41,14 @@ pub fn add_effect(
     table.decor_mut().set_prefix("\n");
     let info = effect.effect.info();
     table.insert("kind", toml_edit::value(info.id));
-    if let Some(joint) = effect.joint {
-        table.insert("joint", toml_edit::value(joint as i64 + 1));
+    match effect.joint {
+        Some(joint) => {
+            table.insert("joint", toml_edit::value(joint as i64 + 1));
+        }
+        None if info.scope != Scope::WholeRig => {
+            table.insert("joint", toml_edit::value("all"));
+        }
+        None => {}
     }
     for (parameter, value) in info.parameters.iter().zip(&effect.values) {
         table.insert(parameter.key, Item::Value(number(*value)));
@@ -111,6 +118,7 @@ fn owner(document: &mut DocumentMut, path: ParameterPath) -> Option<&mut dyn Tab
         ParameterPath::Link { index, .. } => tables(document.get_mut("link")?).nth(index),
         ParameterPath::Joint { index, .. } => tables(document.get_mut("joint")?).nth(index),
         ParameterPath::Effect { id, joint, .. } => tables(document.get_mut("effect")?).find(|t| {
+            // Neither a number stands there where it acts on all, nor where it acts on the rig.
             let at = t.get("joint").and_then(Item::as_integer);
             t.get("kind").and_then(Item::as_str) == Some(id) && at == joint.map(|j| j as i64 + 1)
         }),

@@ -5,6 +5,7 @@ use super::words::{
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::effects;
 use crate::fitting::{FittedValue, in_windows};
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
@@ -50,7 +51,11 @@ fn effects(effects: &[FittedEffect]) -> Option<String> {
     let columns: &[TableColumn<(&FittedEffect, &FittedValue)>] = &[
         ("Effect", &|(effect, _)| effect.title.clone()),
         ("Joint", &|(effect, _)| {
-            effect.joint.map_or("rig".into(), |joint| joint.to_string())
+            let all = match effects::at_all(&effect.kind) {
+                "@all" => "all",
+                _ => "rig",
+            };
+            effect.joint.map_or(all.into(), |joint| joint.to_string())
         }),
         ("Parameter", &|(_, fitted)| fitted.key.clone()),
         ("Value", &|(_, fitted)| ends(fitted)[0].clone()),

@@ -27,7 +27,7 @@ pub(super) fn set_name(set: &[String]) -> String {
             None => (id.as_str(), None),
         };
         match named(kind) {
-            Some(effect) => at_joint(effect.info().title, joint),
+            Some(effect) => at_joint(kind, effect.info().title, joint),
             None => id.clone(),
         }
     };
