@@ -156,6 +156,12 @@ pub trait Effect: Sync + fmt::Debug {
         0.0
     }
 
+    /// Friction: whether it is the same at every speed and load, so that it stays until the joint
+    /// turns back. Such a law is simulated faster.
+    fn friction_is_constant(&self) -> bool {
+        false
+    }
+
     /// Sensor, static: what the encoder reads at this joint angle, rad.
     fn encode(&self, _values: &[f64], angle_rad: f64) -> f64 {
         angle_rad
