@@ -1,6 +1,7 @@
 //! A verdict with all that belongs to it: values, errors, rivals, and what was ruled out.
 
 use super::block_errors::{BlockErrors, gain, paired, reduction};
+use super::error_budget::error_budget;
 use super::evaluator::Evaluator;
 use super::explanation::{Evidence, Explanation};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
@@ -33,6 +34,7 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
         effects: effects(chosen, added),
         wrong_values: wrong_values(evidence, base),
         error: error(evidence),
+        budget: error_budget(evidence),
         alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
         base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),

@@ -7,6 +7,7 @@ mod candidates;
 mod conclusion;
 mod consistency;
 mod equivalence;
+mod error_budget;
 mod evaluator;
 mod explanation;
 mod findings;
@@ -31,8 +32,8 @@ pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
-    Alternative, Diagnosis, FittedEffect, Fold, MotionError, ResidualStructure, RuledOut, Verdict,
-    WrongValue,
+    Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
+    ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

@@ -41,6 +41,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
             held_out: true,
             reduction: Some([0.9, 0.96]),
         },
+        budget: Vec::new(),
         alternatives: alternatives.collect(),
         base: Vec::new(),
         ruled_out: Vec::new(),
