@@ -74,11 +74,12 @@ impl Plant {
         let mut needs = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {
             for instance in model.effects.iter().filter(|e| e.effect == *effect) {
-                let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) else {
-                    continue;
-                };
-                joint.add(*effect, &instance.values);
-                needs.push(effect.info().needs);
+                for (index, joint) in joints.iter_mut().enumerate() {
+                    if instance.acts_on(index, &model.joints[index]) {
+                        joint.add(*effect, &instance.values);
+                        needs.push(effect.info().needs);
+                    }
+                }
             }
         }
         for joint in &mut joints {

@@ -27,3 +27,4 @@ mod riccati;
 mod rounds;
 mod study;
 mod sysid;
+mod twins;
