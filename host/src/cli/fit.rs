@@ -1,7 +1,7 @@
 //! `handstand fit MODEL LOG... -o NEW.toml`: a model's free values, fitted to logs.
 //!
 //! Free are the values the model's `[fit]` names, or those that `--free` names instead. The new
-//! file is the old one with new values; comments and layout stay.
+//! file is the old one with new values, and where they came from; comments and layout stay.
 //!
 //! ```console
 //! $ handstand fit arm.toml swing.csv --free coulomb@1.torque_nm -o fitted.toml
@@ -13,9 +13,9 @@
 //! `refused` and `blind`.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::fitting::{Refitted, Undetermined, free_parameters, refit};
+use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
-use handstand::{Model, Result, model::edit, output};
+use handstand::{Model, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -44,7 +44,7 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
         Ok(refitted) => refitted,
         Err(why) => return refuse(&why, talk),
     };
-    let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
+    let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
     write(&refitted, &text, &[], before, &args.fit, talk)
 }

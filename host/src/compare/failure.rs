@@ -31,7 +31,7 @@ pub struct FailingSamples {
 ///
 /// It says where the error shows. In a long run an error shows after its cause, where angles move
 /// fast or late in the motion; the shorter the horizon, the nearer the two are. `residuals` is
-/// `[joint][motion][sample]`, rad.
+/// `[joint][motion][sample]`, rad or rad/s.
 pub(super) fn failing(
     model: &Model,
     motions: &[Motion],
@@ -39,12 +39,17 @@ pub(super) fn failing(
     signals: &[SignalError],
 ) -> Vec<FailingSamples> {
     let mut all = Vec::new();
-    for (joint, signal) in signals.iter().enumerate() {
+    for signal in signals {
+        let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
             let conditions = met(&features(model, motions, joint));
-            let ranked = ranked(&error, signal.floor_rad, conditions);
-            all.extend(ranked.into_iter().map(|r| r.told(joint, signals.len() > 1)));
+            let ranked = ranked(&error, signal.floor, conditions);
+            all.extend(
+                ranked
+                    .into_iter()
+                    .map(|r| r.told(joint, model.link_count() > 1)),
+            );
         }
     }
     all.sort_by(|a, b| excess(&b.failure).total_cmp(&excess(&a.failure)));

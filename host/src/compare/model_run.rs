@@ -15,8 +15,9 @@ pub struct ModelRun {
     pub horizon: Horizon,
     /// Where each window starts.
     pub nodes: Vec<Node>,
-    /// Predicted angles, rad, `[motion][joint][sample]`.
-    pub predicted_rad: Vec<Vec<Vec<f64>>>,
+    /// Predicted angles, rad, or rates where no angle is measured, rad/s,
+    /// `[motion][joint][sample]`.
+    pub predicted: Vec<Vec<Vec<f64>>>,
 }
 
 impl ModelRun {
@@ -29,7 +30,7 @@ impl ModelRun {
     /// Predicts from these start states, one for each window of `data`.
     pub fn from_nodes(model: Model, data: FitData, horizon: Horizon, nodes: Vec<Node>) -> ModelRun {
         ModelRun {
-            predicted_rad: predicted(&model, &data, &nodes),
+            predicted: predicted(&model, &data, &nodes),
             model,
             data,
             horizon,
@@ -37,11 +38,11 @@ impl ModelRun {
         }
     }
 
-    /// Measured minus predicted, rad, `[joint][motion][sample]`; not a number where nothing was
+    /// Measured minus predicted, rad or rad/s, `[joint][motion][sample]`; not a number where nothing was
     /// measured.
     pub fn residuals(&self) -> Vec<Vec<Vec<f64>>> {
         let joints = 0..self.model.link_count();
-        let residual = |joint| residual(&self.data, &self.predicted_rad, joint);
+        let residual = |joint| residual(&self.data, &self.predicted, joint);
         joints.map(residual).collect()
     }
 }

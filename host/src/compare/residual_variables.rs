@@ -2,7 +2,7 @@
 
 use super::sample_features::{load_nm, speed_rad_s};
 use crate::log::Motion;
-use crate::model::{Drive, Model};
+use crate::model::{Drive, MeasuredSignal, Model};
 
 /// A quantity at every sample, the motions end to end.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,12 +28,15 @@ pub fn residual_variables(
         unit,
         values: motions.iter().flat_map(of).collect(),
     };
+    let signal = model.log.joints[joint].signal();
+    let speed = |m: &Motion| match signal {
+        MeasuredSignal::Rate => m.measured(joint, signal).to_vec(),
+        _ => speed_rad_s(&m.time_s, &m.position_rad[joint]),
+    };
     let duty = matches!(model.joints[joint].drive, Drive::Duty(_))
         && motions.iter().any(|motion| motion.input[joint].is_some());
     let mut variables = vec![
-        variable("speed", "rad/s", &|m| {
-            speed_rad_s(&m.time_s, &m.position_rad[joint])
-        }),
+        variable("speed", "rad/s", &|m| speed(m)),
         variable("angle", "rad", &|m| m.position_rad[joint].clone()),
         variable("load", if duty { "1" } else { "N m" }, &|m| {
             load_nm(model, m, joint)

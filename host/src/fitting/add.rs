@@ -63,11 +63,31 @@ pub fn add_effects(
         return Ok(Addition::NotReduced(refitted));
     }
     let mut text = edit::set_values(text, path, &refitted.values_of(&model))?;
+    let logs = files(&split.training);
+    let old = refitted.record(logs.clone());
+    let old = old.about(|path| path.get(&model).is_some());
+    text = edit::renew_provenance(&text, path, &old)?;
     for candidate in candidates {
-        let (effect, fitted) = refitted.added(*candidate, files(&split.training));
+        let (effect, fitted) = refitted.added(*candidate, logs.clone());
         text = edit::add_effect(&text, path, &effect, Some(&fitted))?;
     }
     Ok(Addition::Added { text, refitted })
+}
+
+/// The text of a model with the values of a fit in place of its own, and where they came from;
+/// `path` names the text in errors.
+///
+/// # Errors
+/// A value that the model cannot hold.
+pub fn with_refitted(
+    text: &str,
+    path: &Path,
+    model: &Model,
+    refitted: &Refitted,
+    split: &Split,
+) -> Result<String> {
+    let text = edit::set_values(text, path, &refitted.values_of(model))?;
+    edit::renew_provenance(&text, path, &refitted.record(files(&split.training)))
 }
 
 /// Why effects whose error is not reduced are not added.

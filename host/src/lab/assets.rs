@@ -9,6 +9,8 @@ const PAGE: &str = include_str!("../report/page.css");
 const VIEW_STYLE: &str = include_str!("../report/playback/view.css");
 const VIEW: &str = include_str!("../report/playback/view.js");
 const CHART: &str = include_str!("assets/chart.js");
+const CURVES: &str = include_str!("assets/curves.js");
+const PAINT: &str = include_str!("assets/paint.js");
 const LAB: &str = include_str!("assets/lab.js");
 const WHAT_IF: &str = include_str!("assets/what_if.js");
 const GAINS: &str = include_str!("assets/gains.js");
@@ -23,6 +25,8 @@ pub(super) async fn asset(Path(name): Path<String>) -> Answer {
         "view.css" => (style, [plot::STYLE, VIEW_STYLE].concat()),
         "view.js" => (script, VIEW.into()),
         "chart.js" => (script, CHART.into()),
+        "curves.js" => (script, CURVES.into()),
+        "paint.js" => (script, PAINT.into()),
         "lab.js" => (script, LAB.into()),
         "what_if.js" => (script, WHAT_IF.into()),
         "gains.js" => (script, GAINS.into()),

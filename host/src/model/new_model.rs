@@ -182,7 +182,8 @@ mod tests {
         );
         assert!((model.links[0].inertia_kg_m2 - 0.0015).abs() < 1e-12);
         assert!(
-            matches!(&model.joints[3].drive, Drive::Position { gain_per_rad, .. } if *gain_per_rad == 5.0)
+            matches!(&model.joints[3].drive, Drive::Position { gain_per_rad, .. }
+                if *gain_per_rad == 5.0)
         );
     }
 

@@ -151,6 +151,8 @@ proptest! {
             let mut out = [0; MAX_FRAME];
             let length = encode(sequence, &command, &mut out).unwrap();
             prop_assert!(!out[..length].contains(&b'#'), "{:?}", command);
+            // The one length of which a body may have to hold the byte.
+            prop_assert_ne!(length, wire_length(34), "{:?}", command);
         }
     }
 

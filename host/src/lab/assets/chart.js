@@ -1,62 +1,7 @@
 // Charts on canvases that share one time axis: zoom, pan, a cursor, shaded stretches.
 // Curves come as four-byte numbers and are decimated to pixel columns as they are drawn.
-
-export const problem = async (answer) => {
-  const text = await answer.text();
-  try {
-    const said = JSON.parse(text);
-    return new Error(said.remedy ? `${said.error}. ${said.remedy}.` : `${said.error}.`);
-  } catch {
-    return new Error(text.slice(0, 300) || `The server answered ${answer.status}.`);
-  }
-};
-
-// A body of `routes/arrays.rs`: a description, then arrays.
-export const arrays = async (address, options) => {
-  const answer = await fetch(address, options);
-  if (!answer.ok) throw await problem(answer);
-  const buffer = await answer.arrayBuffer();
-  const length = new DataView(buffer).getUint32(0, true);
-  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  const data = {};
-  let at = 4 + length;
-  for (const part of head.arrays) {
-    data[part.name] = new Float32Array(buffer, at, part.length);
-    at += 4 * part.length;
-  }
-  return { meta: head.meta, data };
-};
-
-export const element = (name, properties = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-};
-
-let colours = {};
-const dark = matchMedia("(prefers-color-scheme: dark)");
-const groups = new Set();
-const redrawAll = () => { colours = {}; for (const group of groups) group.draw(); };
-dark.addEventListener("change", redrawAll);
-addEventListener("resize", redrawAll);
-export const colour = (name) =>
-  (colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
-
-const roundStep = (step) => {
-  const power = 10 ** Math.floor(Math.log10(step));
-  return [1, 2, 5, 10].find((digit) => digit * power >= step * 0.999) * power;
-};
-export const ticks = (low, high, wanted) => {
-  const step = roundStep((high - low) / wanted), all = [];
-  if (!(step > 0)) return [[], 0];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) all.push(k * step);
-  return [all, Math.min(8, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)))];
-};
-const label = (value, decimals) => {
-  const size = Math.abs(value);
-  if (size >= 1e5 || (size > 0 && size < 1e-4)) return value.toExponential(1);
-  return value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1").replace("-", "−");
-};
+import { element } from "./curves.js";
+import { colour, label, onLook, prepare, stroke, ticks } from "./paint.js";
 
 // Index of the first sample at or after a time.
 const after = (time, t) => {
@@ -66,17 +11,6 @@ const after = (time, t) => {
     if (time[middle] < t) low = middle + 1; else high = middle;
   }
   return low;
-};
-
-export const prepare = (canvas) => {
-  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
-  const [w, h] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
-  if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
-  const pen = canvas.getContext("2d");
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, width, height);
-  pen.font = "11px system-ui, sans-serif";
-  return [pen, width, height];
 };
 
 const PAD = { left: 56, right: 10, top: 8, bottom: 20 };
@@ -104,13 +38,25 @@ export class ChartGroup {
     tool("All", "Whole motion (0)", () => this.all());
     this.legend = element("div", { className: "legend" });
     this.box = element("div", { className: "plots" });
-    root.replaceChildren(element("div", { className: "chart-head" }, this.legend, this.toolbar), this.box);
-    groups.add(this);
+    root.replaceChildren(element("div", { className: "chart-head" }, this.legend, this.toolbar),
+      this.box);
+    // What is out of sight is drawn when it comes into sight.
+    this.sight = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        const part = this.panels.find(({ canvas }) => canvas === target);
+        if (!part) continue;
+        part.inSight = isIntersecting;
+        if (isIntersecting && part.stale) this.draw();
+      }
+    }, { rootMargin: "200px" });
+    onLook(() => this.draw());
   }
 
-  // `panels`: { title, unit, scale, band, joint, curves: [{ name, tone, values, wide }] } over `time`.
+  // `panels` over `time`: { title, unit, scale, band, joint, curves };
+  // `curves`: [{ name, tone, values, wide }].
   show(time, panels, { marks = [] } = {}) {
-    const same = this.time && this.time.length === time.length && this.panels.length === panels.length;
+    const same = this.time && this.time.length === time.length &&
+      this.panels.length === panels.length;
     this.time = time;
     this.marks = marks;
     const first = time.length ? time[0] : 0, last = time.length ? time[time.length - 1] : 1;
@@ -118,7 +64,9 @@ export class ChartGroup {
     this.ends = [first, last];
     if (!same) {
       this.box.replaceChildren();
+      this.sight.disconnect();
       this.panels = panels.map((panel) => this.make(panel));
+      for (const { canvas } of this.panels) this.sight.observe(canvas);
     } else {
       panels.forEach((panel, i) => Object.assign(this.panels[i].panel, panel));
     }
@@ -127,19 +75,23 @@ export class ChartGroup {
   }
 
   make(panel) {
-    const canvas = element("canvas", { className: panel.small ? "plot small" : "plot", tabIndex: 0 });
+    const canvas = element("canvas", { className: panel.small ? "plot small" : "plot", tabIndex:
+      0 });
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", `${panel.title}, ${panel.unit}, over time; + − zoom, arrows move, 0 shows all`);
+    canvas.setAttribute("aria-label",
+      `${panel.title}, ${panel.unit}, over time; + − zoom, arrows move, 0 shows all`);
     const readout = element("span", { className: "readout" });
-    const caption = element("figcaption", {}, element("b", { textContent: panel.title }), ` ${panel.unit}`, readout);
+    const caption = element("figcaption", {}, element("b", {
+      textContent: panel.title }), ` ${panel.unit}`, readout);
     this.box.append(element("figure", {}, caption, canvas));
     this.listen(canvas);
-    return { panel, canvas, readout };
+    return { panel, canvas, readout, inSight: false, stale: true };
   }
 
   names() {
     const seen = new Map();
-    for (const { panel } of this.panels) for (const curve of panel.curves) if (curve.name) seen.set(curve.name, curve);
+    const curves = this.panels.flatMap(({ panel }) => panel.curves).filter(({ name }) => name);
+    for (const curve of curves) seen.set(curve.name, curve);
     this.legend.replaceChildren(...[...seen].map(([name, curve]) => {
       const box = element("input", { type: "checkbox", checked: !this.hidden.has(name) });
       box.addEventListener("change", () => {
@@ -151,7 +103,8 @@ export class ChartGroup {
     }));
     if (this.panels.some(({ panel }) => panel.band)) {
       const swatch = element("span", { className: "swatch" });
-      this.legend.append(element("span", { className: "key tone-green" }, swatch, "± noise floor"));
+      const key = element("span", { className: "key tone-green" }, swatch, "± noise floor");
+      this.legend.append(key);
     }
   }
 
@@ -178,7 +131,8 @@ export class ChartGroup {
       if (!drag) return;
       drag.to = at(event);
       if (drag.pan) {
-        const shift = (drag.from - drag.to) / (place.right - place.left) * (drag.view[1] - drag.view[0]);
+        const shift = (drag.from - drag.to) / (place.right - place.left) *
+          (drag.view[1] - drag.view[0]);
         this.setView(drag.view[0] + shift, drag.view[1] + shift);
       } else {
         this.selection = [place.t(drag.from), place.t(drag.to)].sort((a, b) => a - b);
@@ -214,7 +168,8 @@ export class ChartGroup {
   }
 
   zoom(factor, around = (this.view[0] + this.view[1]) / 2) {
-    this.setView(around + (this.view[0] - around) * factor, around + (this.view[1] - around) * factor);
+    this.setView(around + (this.view[0] - around) * factor, around + (this.view[1] - around) *
+      factor);
   }
   pan(share) {
     const shift = share * (this.view[1] - this.view[0]);
@@ -239,7 +194,10 @@ export class ChartGroup {
     if (!this.time || this.pending) return;
     this.pending = requestAnimationFrame(() => {
       this.pending = 0;
-      for (const part of this.panels) this.drawPanel(part);
+      for (const part of this.panels) {
+        part.stale = !part.inSight;
+        if (part.inSight) this.drawPanel(part);
+      }
       this.root.dataset.drawn = String(performance.now());
     });
   }
@@ -248,7 +206,8 @@ export class ChartGroup {
     const [pen, width, height] = prepare(canvas);
     const { time, view: [from, to] } = this, scale = panel.scale ?? 1;
     const top = PAD.top, bottom = height - PAD.bottom, { x, left, right } = this.place(canvas);
-    const begin = Math.max(0, after(time, from) - 1), end = Math.min(time.length, after(time, to) + 2);
+    const begin = Math.max(0, after(time, from) - 1), end = Math.min(time.length, after(time, to) +
+      2);
     const shown = panel.curves.filter((curve) => curve.values && !this.hidden.has(curve.name));
     let low = Infinity, high = -Infinity;
     for (const { values } of shown) {
@@ -258,31 +217,36 @@ export class ChartGroup {
         if (v > high && v < 1e12) high = v;
       }
     }
-    if (panel.band) { low = Math.min(low, -1.3 * panel.band); high = Math.max(high, 1.3 * panel.band); }
+    if (panel.band) { low = Math.min(low, -1.3 * panel.band);
+      high = Math.max(high, 1.3 * panel.band); }
     if (!(low <= high)) { low = 0; high = 1; }
     [low, high] = [low * scale, high * scale];
     const spare = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1e-3;
     low -= spare; high += spare;
     const y = (v) => bottom - (v * scale - low) / (high - low) * (bottom - top);
-    const clip = () => { pen.save(); pen.beginPath(); pen.rect(left, top, right - left, bottom - top); pen.clip(); };
+    const clip = () => { pen.save(); pen.beginPath();
+      pen.rect(left, top, right - left, bottom - top); pen.clip(); };
 
     clip();
     for (const stretch of this.shade) {
-      if (stretch.joint !== undefined && panel.joint !== undefined && stretch.joint !== panel.joint) continue;
+      if (stretch.joint !== undefined && panel.joint !== undefined &&
+        stretch.joint !== panel.joint) continue;
       pen.fillStyle = colour("orange"); pen.globalAlpha = 0.22;
-      pen.fillRect(x(stretch.from), top, Math.max(1, x(stretch.to) - x(stretch.from)), bottom - top);
+      pen.fillRect(x(stretch.from), top, Math.max(1, x(stretch.to) - x(stretch.from)),
+        bottom - top);
     }
     pen.globalAlpha = 1;
     if (this.selection) {
       pen.fillStyle = colour("blue"); pen.globalAlpha = 0.18;
-      pen.fillRect(x(this.selection[0]), top, x(this.selection[1]) - x(this.selection[0]), bottom - top);
+      pen.fillRect(x(this.selection[0]), top, x(this.selection[1]) - x(this.selection[0]),
+        bottom - top);
       pen.globalAlpha = 1;
     }
     pen.restore();
 
     pen.lineWidth = 1; pen.strokeStyle = colour("rule"); pen.fillStyle = colour("soft");
     pen.textAlign = "right";
-    const [rows, rowDecimals] = ticks(low, high, Math.max(2, height / 42));
+    const [rows, rowDecimals] = ticks(low, high, Math.max(3, height / 32));
     for (const v of rows) {
       const at = bottom - (v - low) / (high - low) * (bottom - top);
       pen.beginPath(); pen.moveTo(left, at); pen.lineTo(right, at); pen.stroke();
@@ -302,7 +266,8 @@ export class ChartGroup {
     }
     if (this.marks.length < (right - left) / 6) {
       pen.strokeStyle = colour("grey"); pen.setLineDash([2, 4]);
-      for (const mark of this.marks) { pen.beginPath(); pen.moveTo(x(mark), top); pen.lineTo(x(mark), bottom); pen.stroke(); }
+      for (const mark of this.marks) { pen.beginPath(); pen.moveTo(x(mark), top);
+        pen.lineTo(x(mark), bottom); pen.stroke(); }
       pen.setLineDash([]);
     }
     for (const curve of shown) {
@@ -315,7 +280,8 @@ export class ChartGroup {
     pen.globalAlpha = 1;
     if (this.cursor !== null && this.cursor >= from && this.cursor <= to) {
       pen.strokeStyle = colour("blue"); pen.lineWidth = 1;
-      pen.beginPath(); pen.moveTo(x(this.cursor), top); pen.lineTo(x(this.cursor), bottom); pen.stroke();
+      pen.beginPath(); pen.moveTo(x(this.cursor), top); pen.lineTo(x(this.cursor), bottom);
+        pen.stroke();
     }
     pen.restore();
     readout.textContent = this.reading(shown, scale);
@@ -324,80 +290,8 @@ export class ChartGroup {
   reading(shown, scale) {
     if (this.cursor === null || !this.time.length) return "";
     const k = Math.min(this.time.length - 1, after(this.time, this.cursor));
-    const numbers = shown.map((curve) => `${curve.name} ${Number((curve.values[k] * scale).toPrecision(4))}`);
+    const numbers = shown.map((curve) =>
+      `${curve.name} ${Number((curve.values[k] * scale).toPrecision(4))}`);
     return `at ${this.time[k].toFixed(3)} s: ${numbers.join(", ")}`;
   }
 }
-
-// A polyline; where samples outnumber pixels, the lowest and highest of each column.
-const stroke = (pen, time, values, begin, end, x, y) => {
-  pen.beginPath();
-  let column = NaN, low = 0, high = 0, last = 0, broken = true;
-  const flush = () => {
-    if (Number.isNaN(column)) return;
-    const at = column + 0.5;
-    if (broken) { pen.moveTo(at, y(low)); broken = false; } else pen.lineTo(at, y(low));
-    if (high !== low) pen.lineTo(at, y(high));
-    pen.lineTo(at, y(last));
-  };
-  const dense = end - begin > 2 * Math.abs(x(time[end - 1] ?? 0) - x(time[begin] ?? 0));
-  for (let k = begin; k < end; k++) {
-    const v = values[k];
-    if (!(Math.abs(v) < 1e12)) {
-      if (dense) flush();
-      column = NaN; broken = true;
-      continue;
-    }
-    if (!dense) {
-      if (broken) { pen.moveTo(x(time[k]), y(v)); broken = false; } else pen.lineTo(x(time[k]), y(v));
-      continue;
-    }
-    const here = Math.floor(x(time[k]));
-    if (here !== column) { flush(); column = here; low = high = v; }
-    if (v < low) low = v;
-    if (v > high) high = v;
-    last = v;
-  }
-  if (dense) flush();
-  pen.stroke();
-};
-
-// Dots of one quantity over another; those that `marked` holds stand out.
-export const scatter = (canvas, xs, ys, { band, scale = 1, xLabel, marked }) => {
-  const [pen, width, height] = prepare(canvas);
-  let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
-  for (let k = 0; k < xs.length; k++) {
-    if (!Number.isFinite(xs[k]) || !Number.isFinite(ys[k])) continue;
-    left = Math.min(left, xs[k]); right = Math.max(right, xs[k]);
-    low = Math.min(low, ys[k] * scale); high = Math.max(high, ys[k] * scale);
-  }
-  if (!(left <= right)) { pen.fillStyle = colour("soft"); pen.fillText("not known in these logs", 60, height / 2); return; }
-  const spareX = (right - left) * 0.04 || 1e-3, spareY = (high - low) * 0.06 || 1e-3;
-  left -= spareX; right += spareX; low -= spareY; high += spareY;
-  const x = (v) => 50 + (v - left) / (right - left) * (width - 58);
-  const y = (v) => height - 34 - (v * scale - low) / (high - low) * (height - 42);
-  pen.strokeStyle = colour("rule"); pen.fillStyle = colour("soft"); pen.lineWidth = 1;
-  const [rows, decimals] = ticks(low, high, 4);
-  pen.textAlign = "right";
-  for (const v of rows) {
-    pen.beginPath(); pen.moveTo(50, y(v / scale)); pen.lineTo(width - 8, y(v / scale)); pen.stroke();
-    pen.fillText(label(v, decimals), 44, y(v / scale) + 4);
-  }
-  pen.textAlign = "center";
-  const [columns, places] = ticks(left, right, Math.max(2, width / 80));
-  for (const v of columns) pen.fillText(label(v, places), x(v), height - 20);
-  pen.fillStyle = colour("ink"); pen.fillText(xLabel, (50 + width) / 2, height - 5);
-  if (band) {
-    pen.fillStyle = colour("green"); pen.globalAlpha = 0.25;
-    pen.fillRect(50, y(band), width - 58, Math.max(1, y(-band) - y(band)));
-  }
-  const stride = Math.max(1, Math.floor(xs.length / 6000));
-  for (const pass of [0, 1]) {
-    pen.fillStyle = colour(pass ? "orange" : "blue"); pen.globalAlpha = pass ? 0.75 : 0.35;
-    for (let k = 0; k < xs.length; k += stride) {
-      if (Boolean(marked?.[k]) !== Boolean(pass) || !Number.isFinite(xs[k] + ys[k])) continue;
-      pen.fillRect(x(xs[k]) - 1, y(ys[k]) - 1, 2, 2);
-    }
-  }
-  pen.globalAlpha = 1;
-};

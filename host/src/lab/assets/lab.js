@@ -1,5 +1,7 @@
 // What every page does: forms that say what went wrong, progress, files, curves.
-import { ChartGroup, arrays, element, problem, scatter } from "./chart.js";
+import { ChartGroup } from "./chart.js";
+import { arrays, element, problem } from "./curves.js";
+import { onLook, scatter } from "./paint.js";
 
 const base = `/s/${document.body.dataset.session}`;
 const $ = (selector, within = document) => within.querySelector(selector);
@@ -27,6 +29,16 @@ const kept = JSON.parse(sessionStorage.getItem("scroll") ?? "[]");
 sessionStorage.removeItem("scroll");
 if (kept[0] === location.pathname) scrollTo(0, kept[1]);
 
+// The error in force, where the page did not wait for it.
+const lacking = $("#error-wanted");
+if (lacking) {
+  fetch(`${base}/error`).then(async (answer) => {
+    if (!answer.ok) { lacking.textContent = "Error: the logs cannot be read by this model"; return;
+      }
+    lacking.outerHTML = await answer.text();
+  }).catch(() => { lacking.textContent = ""; });
+}
+
 // A form sends its fields as JSON; `data-number` ones as numbers.
 for (const form of $$("form[data-send]")) {
   form.addEventListener("submit", async (event) => {
@@ -35,7 +47,8 @@ for (const form of $$("form[data-send]")) {
     for (const field of form.elements) {
       if (!field.name || (field.type === "radio" && !field.checked)) continue;
       if (field.type === "checkbox") data[field.name] = field.checked;
-      else if (field.dataset.number !== undefined) data[field.name] = field.value === "" ? null : Number(field.value);
+      else if (field.dataset.number !== undefined) data[field.name] = field.value === "" ? null :
+        Number(field.value);
       else data[field.name] = field.value;
     }
     if (event.submitter?.name) data[event.submitter.name] = event.submitter.value;
@@ -47,7 +60,8 @@ for (const form of $$("form[data-send]")) {
     } catch (error) { say(error.message); }
   });
 }
-for (const field of $$("[data-submit]")) field.addEventListener("change", () => field.form.requestSubmit());
+for (const field of $$("[data-submit]")) field.addEventListener("change", () =>
+  field.form.requestSubmit());
 
 // Progress of long work.
 let events = null;
@@ -62,8 +76,10 @@ const watch = () => {
     if (state.state === "running") {
       ran = true;
       const bar = $("progress", box);
-      if (state.total > 0) { bar.max = state.total; bar.value = state.done; } else bar.removeAttribute("value");
-      $("#what", box).textContent = state.total > 0 ? `${state.what}: ${state.done} of ${state.total}` : state.what;
+      if (state.total > 0) { bar.max = state.total; bar.value = state.done;
+        } else bar.removeAttribute("value");
+      $("#what", box).textContent = state.total > 0 ?
+        `${state.what}: ${state.done} of ${state.total}` : state.what;
       for (const button of $$("[data-work]")) button.disabled = true;
     } else if (ran) {
       events.close(); events = null;
@@ -82,9 +98,14 @@ const MOST = Number($("#files")?.dataset.most ?? 0);
 const bring = async (files) => {
   let last = null;
   for (const file of files) {
-    if (file.size > MOST) { say(`${file.name} has ${Math.round(file.size / 2 ** 20)} MiB; a log may have up to ${MOST / 2 ** 20} MiB.`); return; }
+    if (file.size > MOST) {
+      const [has, most] = [file.size, MOST].map((bytes) => Math.round(bytes / 2 ** 20));
+      say(`${file.name} has ${has} MiB; a log may have up to ${most} MiB.`);
+      return;
+    }
     say(`Bringing ${file.name} …`, false);
-    const answer = await fetch(`${base}/upload?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+    const answer = await fetch(`${base}/upload?name=${encodeURIComponent(file.name)}`, {
+      method: "POST", body: file });
     if (!answer.ok) { say((await problem(answer)).message); return; }
     last = await answer.json();
   }
@@ -92,11 +113,13 @@ const bring = async (files) => {
 };
 const drop = $("#drop");
 if (drop) {
-  $("#files").addEventListener("change", (event) => bring(event.target.files).catch((error) => say(error.message)));
+  $("#files").addEventListener("change", (event) => bring(event.target.files).catch((error) =>
+    say(error.message)));
   for (const kind of ["dragenter", "dragover"]) {
     addEventListener(kind, (event) => { event.preventDefault(); drop.classList.add("over"); });
   }
-  addEventListener("dragleave", (event) => { if (!event.relatedTarget) drop.classList.remove("over"); });
+  addEventListener("dragleave", (event) => {
+    if (!event.relatedTarget) drop.classList.remove("over"); });
   addEventListener("drop", (event) => {
     event.preventDefault(); drop.classList.remove("over");
     bring(event.dataTransfer.files).catch((error) => say(error.message));
@@ -135,46 +158,63 @@ if (raw) {
 export const panelsOf = ({ meta, data }, names) => {
   const panels = [];
   for (let joint = 0; joint < meta.joints; joint++) {
-    const measured = data[`measured_${joint}`], predicted = data[`predicted_${joint}`], other = data[`other_${joint}`];
+    const measured = data[`measured_${joint}`], predicted = data[`predicted_${joint}`], other =
+      data[`other_${joint}`];
     const left = (values) => values && measured.map((angle, k) => angle - values[k]);
-    const angles = [{ name: "measured", tone: "ink", values: measured, wide: true }, { name: names[0], tone: names[2] ?? "orange", values: predicted }];
+    const angles = [{ name: "measured", tone: "ink", values: measured, wide: true }, {
+      name: names[0], tone: names[2] ?? "orange", values: predicted }];
     const residuals = [{ name: names[0], tone: names[2] ?? "orange", values: left(predicted) }];
     if (other) {
       angles.push({ name: names[1], tone: names[3] ?? "blue", values: other });
       residuals.push({ name: names[1], tone: names[3] ?? "blue", values: left(other) });
     }
-    const title = meta.joints > 1 ? `Joint ${joint + 1}` : "Angle";
-    panels.push({ title, unit: "rad", joint, curves: angles });
-    panels.push({ title: meta.joints > 1 ? `Residual of joint ${joint + 1}` : "Residual", unit: "mrad", small: true, scale: 1e3, band: meta.floor_rad[joint], joint, curves: residuals });
+    const quantity = meta.units[joint] === "rad/s" ? "Rate" : "Angle";
+    const title = meta.joints > 1 ? `${quantity} of joint ${joint + 1}` : quantity;
+    panels.push({ title, unit: meta.units[joint], joint, curves: angles });
+    panels.push({ title: meta.joints > 1 ? `Residual of joint ${joint + 1}` : "Residual", unit:
+      `m${meta.units[joint]}`, small: true, scale: 1e3, band: meta.floor[joint], joint, curves:
+      residuals });
     const input = data[`input_${joint}`];
-    if (input) panels.push({ title: `Input${meta.joints > 1 ? ` of joint ${joint + 1}` : ""}: ${meta.inputs[joint].name}`, unit: meta.inputs[joint].unit, small: true, curves: [{ name: "input", tone: "grey", values: input }] });
+    if (input) panels.push({ title:
+      `Input${meta.joints > 1 ? ` of joint ${joint + 1}` : ""}: ${meta.inputs[joint].name}`, unit:
+      meta.inputs[joint].unit, small: true, curves: [{
+      name: "input", tone: "grey", values: input }] });
   }
   return panels;
 };
-export const mrad = (rad) => `${Number((1e3 * rad).toPrecision(3))} mrad`;
+export const milli = (value, unit) => {
+  const thousandths = 1e3 * value;
+  const large = Math.abs(thousandths) >= 100;
+  const shown = large ? Math.round(thousandths) : Number(thousandths.toPrecision(3));
+  return `${shown} m${unit}`;
+};
 
 // Comparison: the motion, the steps drawn, the windows, the conditions shaded.
 const curves = $("#curves");
 if (curves && curves.dataset.kind !== "what-if") {
   const group = new ChartGroup(curves);
-  const motion = $("#motion"), other = $("#other"), slider = $("#window"), shown = $("#window-shown");
+  const motion = $("#motion"), other = $("#other"), slider = $("#window"), shown =
+    $("#window-shown");
   let shades = [], chosen = null, wanted = null, busy = false;
   const shade = () => {
     const part = chosen === null ? null : shades[chosen];
-    group.setShade((part?.stretches_s ?? []).map(([from, to]) => ({ from, to, joint: part.joint })));
+    group.setShade((part?.stretches_s ?? []).map(([from, to]) => ({
+      from, to, joint: part.joint })));
   };
   const load = async (horizon) => {
     const query = new URLSearchParams({ motion: motion.value });
     if (other?.value) query.set("other", other.value);
     if (horizon) query.set("horizon", horizon);
     const answer = await arrays(`${base}/curves?${query}`);
-    const names = [curves.dataset.name, other?.selectedOptions[0]?.textContent ?? "", "orange", "blue"];
+    const names = [curves.dataset.name, other?.selectedOptions[0]?.textContent ?? "", "orange",
+      "blue"];
     group.show(answer.data.time, panelsOf(answer, names), { marks: answer.meta.restarts_s });
     shades = answer.meta.shades;
     shade();
-    $("#shown-error").textContent = mrad(answer.meta.rms_rad);
+    $("#shown-error").textContent = milli(answer.meta.rms, answer.meta.unit);
     $("#shown-role").textContent = answer.meta.held_out ? "held out" : "fitted";
-    $("#shown-window").textContent = answer.meta.window_s ? `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
+    $("#shown-window").textContent = answer.meta.window_s ?
+      `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
     curves.dataset.loaded = "1";
   };
   // One request at a time: the last wish wins.
@@ -191,13 +231,20 @@ if (curves && curves.dataset.kind !== "what-if") {
   };
   // The slider is logarithmic; its right end means whole motions.
   const seconds = () => {
-    if (Number(slider.value) >= Number(slider.max)) return null;
+    if (Number(slider.value) > Number(slider.max) - 0.05) return null;
     return Number((10 ** Number(slider.value)).toPrecision(2));
   };
-  const tell = () => { const s = seconds(); shown.textContent = s === null ? "whole motions" : `${s} s`; };
+  const tell = () => { const s = seconds(); shown.textContent = s === null ? "whole motions" :
+    `${s} s`; };
   slider?.addEventListener("input", () => { tell(); ask(String(seconds() ?? "whole")); });
   slider?.addEventListener("change", async () => {
-    try { go(await send("horizon", { seconds: seconds() })); } catch (error) { say(error.message); }
+    const chosen = seconds();
+    try { go(await send("horizon", { window: chosen === null ? "whole" : { seconds: chosen } }));
+      } catch (error) { say(error.message); }
+  });
+  $("#window-automatic")?.addEventListener("click", async () => {
+    try { go(await send("horizon", { window: "automatic" })); } catch (error) { say(error.message);
+      }
   });
   motion.addEventListener("change", () => ask());
   other?.addEventListener("change", () => ask());
@@ -209,7 +256,8 @@ if (curves && curves.dataset.kind !== "what-if") {
     for (const canvas of $$("canvas", scatters)) {
       const { name, unit } = dots.meta.variables[Number(canvas.dataset.index)];
       const marked = chosen === null ? null : dots.data[`holds_${chosen}`];
-      scatter(canvas, dots.data[name], dots.data.residual, { band: dots.meta.floor_rad, scale: 1e3, xLabel: `${name}, ${unit}`, marked });
+      scatter(canvas, dots.data[name], dots.data.residual, {
+        band: dots.meta.floor, scale: 1e3, xLabel: `${name}, ${unit}`, marked });
     }
   };
   const loadDots = async () => {
@@ -217,27 +265,29 @@ if (curves && curves.dataset.kind !== "what-if") {
     scatters.replaceChildren(...dots.meta.variables.map(({ name, unit }, index) => {
       const canvas = element("canvas", { className: "scatter" });
       canvas.setAttribute("role", "img");
-      canvas.setAttribute("aria-label", `residual in mrad over ${name} in ${unit}`);
+      canvas.setAttribute("aria-label", `residual over ${name} in ${unit}`);
       canvas.dataset.index = index;
-      return element("figure", {}, element("figcaption", { textContent: `Residual, mrad, over ${name}` }), canvas);
+      return element("figure", {}, element("figcaption", {
+        textContent: `Residual, m${dots.meta.unit}, over ${name}` }), canvas);
     }));
     drawDots();
   };
   if (scatters) {
     loadDots().catch((error) => say(error.message));
-    $("#scatter-joint").addEventListener("change", () => loadDots().catch((error) => say(error.message)));
-    addEventListener("resize", drawDots);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => setTimeout(drawDots));
+    $("#scatter-joint").addEventListener("change", () => loadDots().catch((error) =>
+      say(error.message)));
+    onLook(drawDots);
   }
   for (const button of conditions) {
     button.addEventListener("click", () => {
       const index = Number(button.dataset.condition);
       chosen = chosen === index ? null : index;
-      for (const each of conditions) each.setAttribute("aria-pressed", String(Number(each.dataset.condition) === chosen));
+      for (const each of conditions) each.setAttribute("aria-pressed",
+        String(Number(each.dataset.condition) === chosen));
       shade();
       drawDots();
     });
   }
-  tell && slider && tell();
+  if (slider) tell();
   ask();
 }

@@ -1,6 +1,7 @@
 // Sliders for every value of the model and every effect of the library.
-import { ChartGroup, arrays, element } from "./chart.js";
-import { go, mrad, panelsOf, say, send } from "./lab.js";
+import { ChartGroup } from "./chart.js";
+import { arrays, element } from "./curves.js";
+import { go, milli, panelsOf, say, send } from "./lab.js";
 
 const base = `/s/${document.body.dataset.session}`;
 const root = document.getElementById("curves"), motion = document.getElementById("motion");
@@ -11,11 +12,14 @@ let plain = null, wanted = false, busy = false;
 
 const draw = (changed) => {
   const data = { ...plain.data, ...(changed?.data ?? {}) };
-  group.show(data.time, panelsOf({ meta: plain.meta, data }, ["as it is", "what if", "grey", "blue"]), { marks: plain.meta.restarts_s });
-  document.getElementById("error-was").textContent = mrad(plain.meta.rms_rad);
-  document.getElementById("error-if").textContent = mrad(changed?.meta.rms_rad ?? plain.meta.rms_rad);
+  group.show(data.time, panelsOf({ meta: plain.meta, data }, ["as it is", "what if", "grey",
+    "blue"]), { marks: plain.meta.restarts_s });
+  document.getElementById("error-was").textContent = milli(plain.meta.rms, plain.meta.unit);
+  document.getElementById("error-if").textContent = milli(changed?.meta.rms ?? plain.meta.rms,
+    plain.meta.unit);
 };
-const tried = () => ({ motion: Number(motion.value), effects: added.map((effect) => effect.name), values: [...values] });
+const tried = () => ({ motion: Number(motion.value), effects: added.map((effect) => effect.name),
+  values: [...values] });
 // One request at a time: while it runs only the last wish is kept.
 const ask = async () => {
   wanted = true;
@@ -26,7 +30,8 @@ const ask = async () => {
     const begun = performance.now();
     try {
       if (!values.size && !added.length) draw(null);
-      else draw(await arrays(`${base}/what-if`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(tried()) }));
+      else draw(await arrays(`${base}/what-if`, { method: "POST", headers: {
+        "content-type": "application/json" }, body: JSON.stringify(tried()) }));
       say("");
     } catch (error) { say(error.message); }
     root.dataset.answered = String(Math.round(performance.now() - begun));
@@ -41,11 +46,14 @@ const load = async () => {
 // The slider runs from `low` to `high`, by the logarithm where both are above 0 and far apart.
 const slider = ({ path, unit, low, high, value, meaning }) => {
   const logarithmic = low > 0 && high / low >= 8;
-  const to = (v) => (logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
+  const to = (v) => (logarithmic ? Math.log(v / low) / Math.log(high / low) :
+    (v - low) / (high - low));
   const from = (s) => (logarithmic ? low * (high / low) ** s : low + s * (high - low));
   const id = `value-${path.replaceAll(/[^a-z0-9]/gi, "-")}`;
-  const range = element("input", { type: "range", min: 0, max: 1000, step: 1, id, value: Math.round(1000 * to(value)) });
-  const number = element("input", { type: "number", step: "any", value: Number(value.toPrecision(5)) });
+  const range = element("input", { type: "range", min: 0, max: 1000, step: 1, id, value:
+    Math.round(1000 * to(value)) });
+  const number = element("input", { type: "number", step: "any", value:
+    Number(value.toPrecision(5)) });
   number.setAttribute("aria-label", `${path}, ${unit}`);
   range.dataset.path = path;
   const set = (v) => { values.set(path, v); ask(); };
@@ -61,7 +69,8 @@ const slider = ({ path, unit, low, high, value, meaning }) => {
     set(v);
   });
   const name = element("label", { htmlFor: id, title: meaning ?? "" }, path);
-  return element("div", { className: "slider" }, name, number, element("span", { className: "unit", textContent: unit }), range);
+  return element("div", { className: "slider" }, name, number, element("span", {
+    className: "unit", textContent: unit }), range);
 };
 const box = document.getElementById("sliders");
 for (const given of library.values) box.append(slider(given));
@@ -70,11 +79,14 @@ document.getElementById("add-effect").addEventListener("click", () => {
   const effect = library.effects.find((each) => each.name === picker.value);
   if (!effect || added.includes(effect)) return;
   added.push(effect);
-  const fields = effect.values.map((value) => { values.set(value.path, value.value); return slider(value); });
+  const fields = effect.values.map((value) => { values.set(value.path, value.value);
+    return slider(value); });
   const drop = element("button", { type: "button", textContent: "Take out" });
   drop.setAttribute("aria-label", `Take ${effect.name} out`);
-  const set = element("fieldset", {}, element("legend", { textContent: `${effect.title} (${effect.name})` }),
-    element("p", { className: "note" }, element("code", { textContent: effect.law })), ...fields, drop);
+  const set = element("fieldset", {}, element("legend", {
+    textContent: `${effect.title} (${effect.name})` }),
+    element("p", { className: "note" }, element("code", {
+      textContent: effect.law })), ...fields, drop);
   drop.addEventListener("click", () => {
     added.splice(added.indexOf(effect), 1);
     for (const value of effect.values) values.delete(value.path);

@@ -8,7 +8,7 @@ use maud::{Markup, html};
 /// The page.
 pub fn page(session: &Session, store: &SessionStore) -> Markup {
     let saved = session.saved();
-    let evaluation = session.evaluation(&saved, saved.current).ok().flatten();
+    let evaluation = session.known_evaluation(&saved);
     let rounds: Vec<(u32, Round)> = store
         .all()
         .into_iter()
@@ -18,14 +18,16 @@ pub fn page(session: &Session, store: &SessionStore) -> Markup {
         section {
             h1 { "Find the hidden effect" }
             p.lead { "A virtual servo arm has an effect that its model lacks, or once in twelve \
-                      nothing. Look at the curves, add what you think is missing, hand the model in." }
+                      nothing. Look at the curves, add what you think is missing, hand the model \
+                      in." }
             @match &saved.round {
                 Some(Round { seed, result: None }) => (open(session.number, *seed)),
                 Some(Round { seed, result: Some(result) }) => (scored(*seed, result)),
                 None => {}
             }
             form.row data-send="round" {
-                label { "Seed" input type="number" name="seed" min="0" max="4294967295" data-number placeholder="random"; }
+                label { "Seed" input type="number" name="seed" min="0" max="4294967295" data-number
+                    placeholder="random"; }
                 button.main { "Begin a round" }
             }
             p.note { "A round begins in a session of its own; this one stays as it is." }
@@ -46,7 +48,8 @@ fn open(number: u32, seed: u64) -> Markup {
     html! {
         div.box {
             h3 { "Round " (seed) " is open" }
-            p { a href={ "/s/" (number) "/compare" } { "See where the model fails" } ", try effects under "
+            p { a href={ "/s/" (number) "/compare" } { "See where the model fails" }
+                ", try effects under "
                 a href={ "/s/" (number) "/what-if" } { "What if" } ", or let it be diagnosed under "
                 a href={ "/s/" (number) "/learn" } { "Learn" } "." }
             form.row data-send="hand-in" { button.main #hand-in { "Hand in the model in force" } }
@@ -61,13 +64,16 @@ fn scored(seed: u64, result: &RoundResult) -> Markup {
             @if result.solved { p.solved { "Solved: the model names what was hidden." } }
             @else { p.unsolved { "Not solved: the model does not name what was hidden." } }
             table {
-                thead { tr { th {} th { "True" } th { "Yours" } } }
+                thead { tr { th { "What" } th { "True" } th { "Yours" } } }
                 tbody {
-                    tr { th { "effect" } td { (or_nothing(result.hidden.as_deref())) } td { (or_nothing(Some(&result.added.join(", ")))) } }
+                    tr { th { "effect" } td { (or_nothing(result.hidden.as_deref())) } td {
+                        (or_nothing(Some(&result.added.join(", ")))) } }
                     @for (key, truth, estimate) in &result.values {
-                        tr { th { (key) } td { (exact(*truth)) } td { (estimate.map_or(NONE.into(), exact)) } }
+                        tr { th { (key) } td { (exact(*truth)) } td {
+                            (estimate.map_or(NONE.into(), exact)) } }
                     }
-                    tr { th { "error on the last log" } td { (in_mrad(Some(result.true_error_rad))) } td { (in_mrad(Some(result.error_rad))) } }
+                    tr { th { "error on the last log" } td { (in_mrad(Some(result.true_error_rad)))
+                        } td { (in_mrad(Some(result.error_rad))) } }
                 }
             }
         }
@@ -83,8 +89,9 @@ fn history(rounds: &[(u32, Round)]) -> Markup {
     let solved = over().filter(|result| result.solved).count();
     html! {
         p { b { (solved) } " of " (over().count()) " solved." }
-        div.scroll { table {
-            thead { tr { th { "Session" } th { "Seed" } th { "Hidden" } th { "Handed in" } th { "Result" } th.number { "Error" } th.number { "of the truth" } } }
+        div.scroll tabindex="0" { table {
+            thead { tr { th { "Session" } th { "Seed" } th { "Hidden" } th { "Handed in" } th {
+                "Result" } th.number { "Error" } th.number { "of the truth" } } }
             tbody { @for (number, round) in rounds { tr {
                 td { a href={ "/s/" (number) "/challenge" } { (number) } }
                 td { (round.seed) }
@@ -93,7 +100,8 @@ fn history(rounds: &[(u32, Round)]) -> Markup {
                     Some(result) => {
                         td { (or_nothing(result.hidden.as_deref())) }
                         td { (or_nothing(Some(&result.added.join(", ")))) }
-                        td { @if result.solved { span.good { "solved" } } @else { span.bad { "not solved" } } }
+                        td { @if result.solved { span.good { "solved" } } @else { span.bad {
+                            "not solved" } } }
                         td.number { (in_mrad(Some(result.error_rad))) }
                         td.number { (in_mrad(Some(result.true_error_rad))) }
                     }

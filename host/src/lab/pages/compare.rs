@@ -1,9 +1,9 @@
 //! Measured against model, and where it fails.
 
-use super::{frame, in_mrad, lacking, refused, seen};
+use super::{frame, in_milli, lacking, refused, seen};
 use crate::compare::{Failure, SignalError};
 use crate::lab::reply::LabError;
-use crate::lab::session::{Evaluation, SavedSession, Session};
+use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
 use crate::output::number::{mrad, percent, short};
 use crate::plot::{Bar, Tone};
 use maud::{Markup, html};
@@ -34,16 +34,17 @@ fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
     html! {
         section {
             h1 { "Measured against model" }
-            p.lead { "Above, what was measured and what the model predicts for the same input. Below, \
-                      the residual: measured minus predicted. A good model's residual stays inside the \
-                      shaded noise floor. Drag across a chart to zoom, Shift and drag to move." }
+            p.lead { "Above, what was measured and what the model predicts for the same input. \
+                      Below, the residual: measured minus predicted. A good model's residual \
+                      stays inside the shaded noise floor. Drag across a chart to zoom, Shift and \
+                      drag to move." }
             (controls(saved, evaluation))
             div #curves data-name=(format!("model {}", saved.current)) {}
         }
         section {
             h2 { "Where it fails" }
-            p.lead { "Conditions that hold more of the error than their share of the samples. Press \
-                      one to shade its samples in every chart." }
+            p.lead { "Conditions that hold more of the error than their share of the samples. \
+                      Press one to shade its samples in every chart." }
             (failures(&comparison.failures))
         }
         section {
@@ -51,7 +52,8 @@ fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
             div.row {
                 label for="scatter-joint" { "Joint" }
                 select #scatter-joint {
-                    @for joint in 0..evaluation.run.model.link_count() { option value=(joint) { (joint + 1) } }
+                    @for joint in 0..evaluation.run.model.link_count() { option value=(joint) {
+                        (joint + 1) } }
                 }
             }
             div.scatters #scatters {}
@@ -82,7 +84,8 @@ pub fn motions(evaluation: &Evaluation) -> Markup {
         select #motion {
             @for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
                 option value=(index) {
-                    (motion.name) @if evaluation.is_held_out(index) { " (held out)" } @else { " (fitted)" }
+                    (motion.name) @if evaluation.is_held_out(index) { " (held out)" } @else {
+                        " (fitted)" }
                 }
             }
         }
@@ -93,9 +96,8 @@ fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
     let longest = evaluation.run.data.longest_s().max(0.2);
     // A step beyond the longest motion stands for whole motions.
     let (low, high) = (-1.3, longest.log10() + 0.1);
-    let at = saved
-        .horizon_s
-        .map_or(high, |seconds| seconds.log10().clamp(low, high));
+    let seconds = saved.horizon().seconds();
+    let at = seconds.map_or(high, |seconds| seconds.log10().clamp(low, high));
     html! {
         div.row {
             (motions(evaluation))
@@ -103,7 +105,8 @@ fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
                 label for="other" { "with" }
                 select #other {
                     option value="" { "no other model" }
-                    @for (index, step) in saved.steps.iter().enumerate().filter(|(i, _)| *i != saved.current) {
+                    @for (index, step) in saved.steps.iter().enumerate().filter(|(i, _)| *i !=
+                        saved.current) {
                         option value=(index) { "model " (index) ": " (step.title) }
                     }
                 }
@@ -113,9 +116,13 @@ fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
             label for="window" { "Longest window" }
             input #window type="range" min=(low) max=(high) step="0.01" value=(at);
             output #window-shown for="window" {}
+            @if saved.window != ChosenWindow::Automatic {
+                button.small #window-automatic type="button" { "As the diagnosis has it" }
+            }
         }
+        @for line in &evaluation.comparison().unobserved { p.note { (line) } }
         p.facts {
-            span { "Error " b #shown-error { (in_mrad(Some(evaluation.rms_rad()))) } }
+            span { "Error " b #shown-error { (in_milli(evaluation.rms(), evaluation)) } }
             span { "This motion is " b #shown-role {} }
             span { "The model runs uncorrected for " b #shown-window {} }
         }
@@ -128,26 +135,29 @@ fn failures(failures: &[Failure]) -> Markup {
         ul.plain.failure-list { @for (index, failure) in failures.iter().enumerate() {
             li { button type="button" data-condition=(index) aria-pressed="false" {
                 span { (failure.sentence) }
-                (Bar { mark: Some(failure.sample_share), ..Bar::new(failure.error_share, 1.0, Tone::Orange) }.draw())
+                (Bar { mark: Some(failure.sample_share), ..Bar::new(failure.error_share, 1.0,
+                    Tone::Orange) }.draw())
             } }
         } }
-        @if !failures.is_empty() { p.note { "Bars: share of the error; the thin line: share of the samples." } }
+        @if !failures.is_empty() { p.note {
+            "Bars: share of the error; the thin line: share of the samples." } }
     }
 }
 
 fn signals(signals: &[SignalError]) -> Markup {
     html! {
-        div.scroll { table {
+        div.scroll tabindex="0" { table {
             thead { tr {
-                th { "Joint" } th.number { "RMS, mrad" } th.number { "Largest, mrad" } th.number { "Fit" }
-                th.number { "Floor, mrad" } th.number { "Squared error above floor" } th { "Tests of the residual" }
+                th { "Joint" } th.number { "RMS" } th.number { "Largest" } th.number { "Fit" }
+                th.number { "Floor" } th.number { "Squared error above floor" } th {
+                    "Tests of the residual" }
             } }
             tbody { @for signal in signals { tr {
                 td { (signal.joint) }
-                td.number { (mrad(signal.rms_rad)) }
-                td.number { (mrad(signal.largest_rad)) }
+                td.number { (mrad(signal.rms)) " " (signal.quantity.milli()) }
+                td.number { (mrad(signal.largest)) " " (signal.quantity.milli()) }
                 td.number { (short(signal.fit_percent)) " %" }
-                td.number { (mrad(signal.floor_rad)) }
+                td.number { (mrad(signal.floor)) " " (signal.quantity.milli()) }
                 td.number { (percent(signal.share_above_floor)) }
                 td { @for test in &signal.tests {
                     span class=(if test.passed { "good" } else { "bad" }) title=(test.meaning) {
@@ -168,7 +178,7 @@ fn horizons(evaluation: &Evaluation) -> Markup {
                         Some(seconds) => { (short(seconds)) " s " }
                         None => { "whole motions " }
                     }
-                    b { (in_mrad(Some(horizon.rms_rad))) }
+                    b { (in_milli(horizon.rms, evaluation)) }
                 }
             }
         }

@@ -12,7 +12,7 @@ pub fn page(session: &Session) -> Result<Markup> {
     let saved = session.saved();
     let model = session.model(&saved)?;
     let facts = session.log_facts(&saved, model.as_ref());
-    let evaluation = session.evaluation(&saved, saved.current).ok().flatten();
+    let evaluation = session.known_evaluation(&saved);
     let body = html! {
         h1.visually-hidden { "Data" }
         section { (bring(session.number)) }
@@ -48,7 +48,8 @@ fn bring(number: u32) -> Markup {
         div.two {
             div.drop #drop {
                 h2 { "Bring a log" }
-                p { label for="files" { "Drop CSV files or JSON logs of a BAM bench here, or choose them:" } }
+                p { label for="files" {
+                    "Drop CSV files or JSON logs of a BAM bench here, or choose them:" } }
                 input #files type="file" multiple accept=".csv,.json" data-most=(MOST_BYTES);
             }
             div {
@@ -70,12 +71,13 @@ fn bring(number: u32) -> Markup {
 
 fn logs(facts: &[LogFacts]) -> Markup {
     html! {
-        div.scroll { table {
-            thead { tr { th { "File" } th.number { "Motions" } th.number { "Samples" } th.number { "Seconds" } th { "Role" } th {} } }
+        div.scroll tabindex="0" { table {
+            thead { tr { th { "File" } th.number { "Motions" } th.number { "Samples" } th.number {
+                "Seconds" } th { "Role" } th { "Remove" } } }
             tbody { @for fact in facts { (log(fact)) } }
         } }
-        p.note { "Fitted logs are learned from; logs held out judge. Where none is held out, the last \
-                  third of the motions judges a diagnosis." }
+        p.note { "Fitted logs are learned from; logs held out judge. Where none is held out, the \
+                  last third of the motions judges a diagnosis." }
     }
 }
 
@@ -86,11 +88,13 @@ fn log(fact: &LogFacts) -> Markup {
             td {
                 (log.file)
                 @if let Some((first, last)) = log.rows { ", rows " (first) " to " (last) }
-                @if let Err((found, remedy)) = &fact.content { p.bad { (found) } p.note { (remedy) } }
+                @if let Err((found, remedy)) = &fact.content { p.bad { (found) } p.note { (remedy) }
+                    }
             }
             @match &fact.content {
                 Ok((motions, samples, seconds)) => {
-                    td.number { (motions) } td.number { (samples) } td.number { (format!("{seconds:.1}")) }
+                    td.number { (motions) } td.number { (samples) } td.number {
+                        (format!("{seconds:.1}")) }
                 }
                 Err(_) => { td.number { "-" } td.number { "-" } td.number { "-" } }
             }

@@ -2,7 +2,7 @@
 
 use crate::lab::session::{SavedSession, Session};
 use crate::log::RawLog;
-use crate::model::{Column, Dimension, Model};
+use crate::model::{Column, ColumnMean, Dimension, Model};
 use maud::{Markup, html};
 
 /// The model's sections.
@@ -18,10 +18,13 @@ pub fn sections(session: &Session, saved: &SavedSession, model: Option<&Model>) 
             h2 { @if model.is_some() { "The model" } @else { "Bring a model" } }
             form data-send="model" {
                 p { label for="toml" { "Model file (TOML)" } }
-                textarea #toml name="toml" spellcheck="false" { (saved.step().map_or("", |step| &step.toml)) }
+                textarea #toml name="toml" spellcheck="false" {
+                    (saved.step().map_or("", |step| &step.toml)) }
                 div.row {
-                    button.main { @if model.is_some() { "Take this text as the next step" } @else { "Take this model" } }
-                    @if model.is_some() { a href={ "/s/" (session.number) "/download/model.toml" } { "Save model.toml" } }
+                    button.main { @if model.is_some() { "Take this text as the next step" } @else {
+                        "Take this model" } }
+                    @if model.is_some() { a href={ "/s/" (session.number) "/download/model.toml" } {
+                        "Save model.toml" } }
                 }
             }
         }
@@ -52,25 +55,52 @@ fn names(session: &Session, saved: &SavedSession) -> Vec<String> {
 fn columns(names: &[String], model: &Model) -> Markup {
     let log = &model.log;
     html! {
-        p.lead { "The header's names do not say in which unit, with which sign and from which zero a \
-                  column counts; the model file does. A BAM log needs no columns." }
+        p.lead { "The header's names do not say in which unit, with which sign and from which \
+                  zero a column counts; the model file does. A BAM log needs no columns." }
         form #columns {
-            div.scroll { table {
-                thead { tr { th { "Quantity" } th { "Column" } th { "Unit" } th { "Reversed" } th { "Zero: add, SI" } } }
+            div.scroll tabindex="0" { table {
+                thead { tr { th { "Quantity" } th { "Column" } th { "Unit" } th { "Reversed" } th {
+                    "Zero: add, SI" } } }
                 tbody {
-                    (column(names, "time", "Time", Some(&log.time), Dimension::Time, true))
+                    (column(names, "time", "Time", Some(Picked::One(&log.time)), Dimension::Time,
+                        true))
                     @for (index, joint) in log.joints.iter().enumerate() {
                         @let number = index + 1;
-                        (column(names, &format!("joint{number}.position"), &format!("Angle of joint {number}"), Some(&joint.position), Dimension::Angle, true))
-                        @if let Some(dimension) = Dimension::of_input(model.joints[index].drive.name()) {
-                            (column(names, &format!("joint{number}.input"), &format!("Input of joint {number}"), joint.input.as_ref(), dimension, true))
+                        (column(names, &format!("joint{number}.position"),
+                            &format!("Angle of joint {number}"),
+                            joint.position.as_ref().map(Picked::of), Dimension::Angle, false))
+                        @if let Some(dimension) =
+                            Dimension::of_input(model.joints[index].drive.name()) {
+                            (column(names, &format!("joint{number}.input"),
+                                &format!("Input of joint {number}"),
+                                joint.input.as_ref().map(Picked::of), dimension, true))
                         }
-                        (column(names, &format!("joint{number}.velocity"), &format!("Speed of joint {number}"), joint.velocity.as_ref(), Dimension::Speed, false))
+                        (column(names, &format!("joint{number}.velocity"),
+                            &format!("Speed of joint {number}"),
+                            joint.velocity.as_ref().map(Picked::of), Dimension::Speed, false))
                     }
-                    (column(names, "supply", "Supply voltage", log.supply.as_ref(), Dimension::Voltage, false))
+                    (column(names, "supply", "Supply voltage", log.supply.as_ref().map(Picked::One),
+                        Dimension::Voltage, false))
                 }
             } }
             div.row { button { "Use these columns" } }
+        }
+    }
+}
+
+/// What a model takes a quantity from.
+#[derive(Clone, Copy)]
+enum Picked<'a> {
+    One(&'a Column),
+    /// The mean of several, which the model's text names.
+    Mean(&'a ColumnMean),
+}
+
+impl<'a> Picked<'a> {
+    fn of(mean: &'a ColumnMean) -> Self {
+        match mean.columns() {
+            [one] => Picked::One(one),
+            _ => Picked::Mean(mean),
         }
     }
 }
@@ -79,10 +109,17 @@ fn column(
     names: &[String],
     quantity: &str,
     title: &str,
-    column: Option<&Column>,
+    picked: Option<Picked>,
     dimension: Dimension,
     required: bool,
 ) -> Markup {
+    let column = match picked {
+        Some(Picked::Mean(mean)) => {
+            return html! { tr { td { (title) } td colspan="4" { "the mean of " (mean.name()) } } };
+        }
+        Some(Picked::One(column)) => Some(column),
+        None => None,
+    };
     let name = column.map(|column| column.name.as_str());
     let unit = column.map(|column| column.unit.name);
     // Ticks need their count per turn, which stands in the model's text.
@@ -96,18 +133,23 @@ fn column(
             td { (title) }
             td { select data-field="column" aria-label={ "Column of " (title) } {
                 @if !required { option value="" { "none" } }
-                @if let Some(missing) = missing { option value=(missing) selected { (missing) " (not in the logs)" } }
-                @for known in names { option value=(known) selected[name == Some(known.as_str())] { (known) } }
+                @if let Some(missing) = missing { option value=(missing) selected {
+                    (missing) " (not in the logs)" } }
+                @for known in names { option value=(known) selected[name == Some(known.as_str())] {
+                    (known) } }
             } }
             td { select data-field="unit" aria-label={ "Unit of " (title) } {
                 @if let Some(unit) = unit.filter(|unit| !units.contains(unit)) {
                     option value=(unit) selected { (unit) }
                 }
-                @for known in &units { option value=(known) selected[unit == Some(*known)] { (known) } }
+                @for known in &units { option value=(known) selected[unit == Some(*known)] {
+                    (known) } }
             } }
             @if dimension == Dimension::Time { td {} td {} } @else {
-                td { input type="checkbox" data-field="reversed" checked[column.is_some_and(|c| c.reversed)] aria-label={ (title) " counts the other way round" }; }
-                td { input type="number" step="any" data-field="offset" value=(column.map_or(0.0, |c| c.offset)) aria-label={ "Added to " (title) }; }
+                td { input type="checkbox" data-field="reversed" checked[column.is_some_and(|c|
+                    c.reversed)] aria-label={ (title) " counts the other way round" }; }
+                td { input type="number" step="any" data-field="offset" value=(column.map_or(0.0,
+                    |c| c.offset)) aria-label={ "Added to " (title) }; }
             }
         }
     }
@@ -119,7 +161,8 @@ fn form(replaces: bool) -> Markup {
             div.two {
                 div {
                     div.row { label { "Name" input name="name" value="my arm" required; } }
-                    div.row { label { "Links" input type="number" name="count" min="1" max="32" value="1"; } }
+                    div.row { label { "Links" input type="number" name="count" min="1" max="32"
+                        value="1"; } }
                     div.row { label { "Angles are zero"
                         select name="angle_zero" {
                             option value="hanging" { "hanging straight down" }
@@ -134,10 +177,12 @@ fn form(replaces: bool) -> Markup {
                         }
                     } }
                 }
-                svg #chain role="img" aria-label="The chain as typed: links, joints (filled where driven), centres of mass" {}
+                svg #chain role="img"
+                    aria-label="The chain as typed: links, joints, centres of mass" {}
             }
             div #links {}
-            @if replaces { p.note { "The new model takes the place of the present one and its steps." } }
+            @if replaces { p.note {
+                "The new model takes the place of the present one and its steps." } }
             div.row { button.main { "Make this model" } }
         }
     }

@@ -13,12 +13,14 @@ pub fn sessions(store: &SessionStore) -> Markup {
             p.lead { "Each browser works in a session of its own. They are kept in "
                 code { (store.folder().display()) } "." }
             div #message role="alert" {}
-            div.scroll { table {
-                thead { tr { th { "Session" } th { "Model" } th { "Logs" } th { "Steps" } th { "Challenge" } } }
+            div.scroll tabindex="0" { table {
+                thead { tr { th { "Session" } th { "Model" } th { "Logs" } th { "Steps" } th {
+                    "Challenge" } } }
                 tbody { @for session in &sessions {
                     @let saved = session.saved();
                     tr {
-                        td { a href={ "/s/" (session.number) "/data" } { "Session " (session.number) } }
+                        td { a href={ "/s/" (session.number) "/data" } {
+                            "Session " (session.number) } }
                         td { (name(&saved)) }
                         td { (logs(&saved)) }
                         td { (saved.steps.len().saturating_sub(1)) }

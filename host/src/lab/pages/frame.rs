@@ -1,6 +1,6 @@
 //! What stands around every page: where one is, the model in force, its error.
 
-use super::in_mrad;
+use super::in_milli;
 use crate::lab::session::{Evaluation, SavedSession, Session};
 use maud::{DOCTYPE, Markup, html};
 
@@ -100,12 +100,19 @@ fn status(saved: &SavedSession, evaluation: Option<&Evaluation>) -> Markup {
     html! {
         div.status role="status" {
             span { "Model " b { (saved.current) } ": " (step.title) }
-            @if let Some(evaluation) = evaluation {
-                span { "Error " b #error-now data-rad=(evaluation.rms_rad()) {
-                    (in_mrad(Some(evaluation.rms_rad())))
-                } }
-                span { "Noise floor " b { (in_mrad(Some(evaluation.floor_rad()))) } }
-            }
+            @if let Some(evaluation) = evaluation { (error(evaluation)) }
+            // The page does not wait for it; its script asks.
+            @else if !saved.logs.is_empty() { span #error-wanted { "Error …" } }
         }
+    }
+}
+
+/// The error in force and the floor below it.
+pub fn error(evaluation: &Evaluation) -> Markup {
+    html! {
+        span { "Error " b #error-now data-error=(evaluation.rms()) {
+            (in_milli(evaluation.rms(), evaluation))
+        } }
+        span { "Noise floor " b { (in_milli(evaluation.floor(), evaluation)) } }
     }
 }

@@ -16,7 +16,7 @@ const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let evaluation = session.evaluation(&saved, saved.current).ok().flatten();
+    let evaluation = session.known_evaluation(&saved);
     let (script, body) = match saved.step() {
         Some(_) => ("gains.js", shown()),
         None => ("lab.js", lacking(session.number, &saved)),
@@ -35,12 +35,14 @@ fn shown() -> Markup {
     html! {
         section {
             h1 { "Gains that hold it upright" }
-            p.lead { "The linear-quadratic regulator of the model in force. The response is simulated \
-                      with every effect that the model has learned, from a lean of 20 mrad." }
+            p.lead { "The linear-quadratic regulator of the model in force. The response is \
+                      simulated with every effect that the model has learned, from a lean of 20 \
+                      mrad." }
             @for (name, title, low, high, at) in SLIDERS {
                 div.wide-slider {
                     label for=(name) { (title) }
-                    input id=(name) type="range" min=(low) max=(high) step=(if name == "delay_s" { "0.0005" } else { "0.01" })
+                    input id=(name) type="range" min=(low) max=(high) step=(if name == "delay_s" {
+                        "0.0005" } else { "0.01" })
                         value=(at) disabled[name == "delay_s"];
                     output id={ (name) "-shown" } for=(name) {}
                 }
@@ -50,13 +52,14 @@ fn shown() -> Markup {
                 button #find-region type="button" { "Find the region of attraction" }
             }
             div.two {
-                div { h2 { "Poles" } canvas #poles role="img" aria-label="Poles of the closed loop and the unit circle" {} }
+                div { h2 { "Poles" } canvas #poles role="img"
+                    aria-label="Poles of the closed loop and the unit circle" {} }
                 div { h2 { "Figures" } div #figures aria-live="polite" {} }
             }
             h2 { "Response" }
             div #response {}
             h2 { "K" }
-            div.scroll #gain {}
+            div.scroll #gain tabindex="0" {}
             h2 { "Take along" }
             div.row {
                 a data-file="gains.h" href="#" { "C header" }

@@ -38,8 +38,8 @@ fn shown(
         section {
             h1 { "How the error falls" }
             p.lead { "Each bar is the typical (RMS) error of one model, all joints and motions \
-                      together; the thin line is the noise floor. Adding an effect makes a step; any \
-                      step can be undone." }
+                      together; the thin line is the noise floor. Adding an effect makes a step; \
+                      any step can be undone." }
             (steps(session, saved)?)
         }
         section {
@@ -49,7 +49,8 @@ fn shown(
         }
         section {
             h2 { "The same on the command line" }
-            p.note { "To be typed in " code { (session.folder().display()) } ", where the models and logs are." }
+            p.note { "To be typed in " code { (session.folder().display()) }
+                ", where the models and logs are." }
             (command(&commands(saved)))
         }
     })
@@ -87,16 +88,19 @@ fn said(saved: &SavedSession, diagnosis: &SavedDiagnosis, evaluation: &Evaluatio
     let current = diagnosis.step == saved.current;
     html! {
         div class={ "verdict " (class) } #verdict data-verdict=(diagnosis.verdict) {
-            p { span.role { "Diagnosis of model " (diagnosis.step) ": " (diagnosis.verdict.replace('_', " ")) } }
+            p { span.role { "Diagnosis of model " (diagnosis.step) ": "
+                (diagnosis.verdict.replace('_', " ")) } }
             @for line in &diagnosis.summary { p { (line) } }
             p.facts {
                 span { "Error as given " b { (in_mrad(diagnosis.before_rad)) } }
                 span { "with what was found " b { (in_mrad(diagnosis.after_rad)) } }
                 span { "floor " b { (in_mrad(diagnosis.floor_rad)) } }
-                span { "on " @if diagnosis.held_out { "motions held out" } @else { "the motions that were fitted" } }
+                span { "on " @if diagnosis.held_out { "motions held out" } @else {
+                    "the motions that were fitted" } }
             }
         }
-        @if !current { p.note { "The model in force is another one by now; diagnose again to learn about it." } }
+        @if !current { p.note {
+            "The model in force is another one by now; diagnose again to learn about it." } }
         @if !diagnosis.next.is_empty() {
             h3 { "Next" }
             ul { @for line in &diagnosis.next { li { (line) } } }

@@ -34,9 +34,10 @@ pub fn card(
         article class=(class) {
             span.role { (role) }
             h3 { (title(card)) }
-            p.note { code { (card.effects.iter().chain(&card.values).cloned().collect::<Vec<_>>().join(" + ")) } }
+            p.note { code { (names(card)) } }
             @if let [only] = card.effects.as_slice() {
-                @if let Some((effect, joint)) = parts(only) { (pictures(effect, joint, evaluation)) }
+                @if let Some((effect, joint)) = parts(only) {
+                    (pictures(effect, joint, evaluation)) }
             }
             dl {
                 @for effect in card.effects.iter().filter_map(|name| parts(name)) {
@@ -47,21 +48,44 @@ pub fn card(
                 @if !card.why.is_empty() { dt { "Why not" } dd { (card.why) } }
                 @for (effect, _) in card.effects.iter().filter_map(|name| parts(name)) {
                     @let info = effect.info();
-                    @for confusion in info.confusions() {
-                        dt { "Taken for" }
-                        dd { (named(confusion.with).map_or(confusion.with, |e| e.info().title)) ": " (confusion.why) }
-                    }
                     dt { "Told by" } dd { (info.experiment) }
                 }
             }
+            (confusions(card))
             @if current { (add(card, saved)) }
         }
     }
 }
 
+/// What the effects are taken for; open where they were found.
+fn confusions(card: &SavedCard) -> Markup {
+    let effects = card.effects.iter().filter_map(|name| parts(name));
+    let all: Vec<_> = effects
+        .flat_map(|(effect, _)| effect.info().confusions())
+        .collect();
+    html! {
+        @if !all.is_empty() {
+            details open[card.role != CardRole::RuledOut] {
+                summary { "Easily taken for" }
+                dl { @for confusion in all {
+                    dt { (named(confusion.with).map_or(confusion.with, |e| e.info().title)) }
+                    dd { (confusion.why) }
+                } }
+            }
+        }
+    }
+}
+
+/// Its addresses.
+fn names(card: &SavedCard) -> String {
+    let names = card.effects.iter().chain(&card.values).cloned();
+    names.collect::<Vec<_>>().join(" + ")
+}
+
 /// An effect and its joint, counted from 0.
 fn parts(name: &str) -> Option<(&'static dyn Effect, Option<usize>)> {
     let (id, joint) = match name.split_once('@') {
+        Some((id, "all")) => (id, None),
         Some((id, joint)) => (id, joint.parse::<usize>().ok()?.checked_sub(1)),
         None => (name, None),
     };
@@ -109,7 +133,8 @@ fn add(card: &SavedCard, saved: &SavedSession) -> Markup {
     html! {
         form.row data-send=(send) {
             input type="hidden" name="names" value=(names);
-            button.main data-work aria-label=(format!("{verb}: {} to model {}", title(card), saved.current)) { (verb) }
+            button.main data-work aria-label=(format!("{verb}: {} to model {}", title(card),
+                saved.current)) { (verb) }
         }
     }
 }

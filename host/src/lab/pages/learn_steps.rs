@@ -1,18 +1,38 @@
 //! The steps taken: error bars, undo, notes, files to keep.
 
-use super::in_mrad;
+use super::in_milli;
 use crate::error::Result;
-use crate::lab::session::{SavedSession, SavedStep, Session};
-use crate::output::number::percent;
+use crate::lab::session::{Evaluation, SavedSession, SavedStep, Session};
+use crate::output::number::{NONE, percent};
 use crate::plot::{Bar, Tone, largest};
 use maud::{Markup, html};
+use std::sync::Arc;
 
 /// A step with its error.
 struct StepError<'a> {
     index: usize,
     step: &'a SavedStep,
-    rms_rad: Option<f64>,
-    floor_rad: Option<f64>,
+    evaluation: Option<Arc<Evaluation>>,
+}
+
+impl StepError<'_> {
+    fn rms(&self) -> Option<f64> {
+        self.evaluation.as_ref().map(|evaluation| evaluation.rms())
+    }
+
+    fn floor(&self) -> Option<f64> {
+        self.evaluation
+            .as_ref()
+            .map(|evaluation| evaluation.floor())
+    }
+
+    /// A value of it as people read it.
+    fn text(&self, value: Option<f64>) -> String {
+        let text = |(value, evaluation)| in_milli(value, evaluation);
+        value
+            .zip(self.evaluation.as_deref())
+            .map_or(NONE.into(), text)
+    }
 }
 
 /// The steps, the floor, and what can be kept.
@@ -26,20 +46,19 @@ pub fn steps(session: &Session, saved: &SavedSession) -> Result<Markup> {
         rows.push(StepError {
             index,
             step,
-            rms_rad: evaluation.as_ref().map(|evaluation| evaluation.rms_rad()),
-            floor_rad: evaluation.as_ref().map(|evaluation| evaluation.floor_rad()),
+            evaluation,
         });
     }
-    let floor = rows.first().and_then(|row| row.floor_rad);
-    let errors = rows.iter().filter_map(|row| row.rms_rad);
+    let floor = rows.first().and_then(StepError::floor);
+    let errors = rows.iter().filter_map(StepError::rms);
     let full = largest(errors.chain(floor));
-    let before = |index: usize| index.checked_sub(1).and_then(|before| rows[before].rms_rad);
+    let before = |index: usize| index.checked_sub(1).and_then(|before| rows[before].rms());
     Ok(html! {
         div.chain-steps #steps {
             @for row in &rows { (drawn(row, before(row.index), full, saved)) }
             span {} span { "noise floor" }
             (Bar::new(floor.unwrap_or(0.0), full, Tone::Green).draw())
-            span.number { (in_mrad(floor)) } span {}
+            span.number { @if let Some(first) = rows.first() { (first.text(floor)) } } span {}
         }
         div.row {
             (undo(saved))
@@ -58,20 +77,22 @@ fn drawn(row: &StepError, before: Option<f64>, full: f64, saved: &SavedSession) 
     let tone = if index == 0 { Tone::Orange } else { Tone::Blue };
     let bar = Bar {
         ghost: before,
-        mark: row.floor_rad,
-        ..Bar::new(row.rms_rad.unwrap_or(0.0), full, tone)
+        mark: row.floor(),
+        ..Bar::new(row.rms().unwrap_or(0.0), full, tone)
     };
     let change = before
-        .zip(row.rms_rad)
+        .zip(row.rms())
         .map(|(before, after)| after / before - 1.0);
     html! {
         span class=[now.then_some("now")] { (index) }
-        span class=[now.then_some("now").or(undone.then_some("undone"))] { (row.step.title) @if undone { " (undone)" } }
+        span class=[now.then_some("now").or(undone.then_some("undone"))] { (row.step.title)
+            @if undone { " (undone)" } }
         (bar.draw())
         span.number data-step-error=(index) {
-            (in_mrad(row.rms_rad))
+            (row.text(row.rms()))
             @if let Some(change) = change.filter(|change| change.is_finite()) {
-                span.note { " (" @if change < 0.0 { "−" } @else { "+" } (percent(change.abs())) ")" }
+                span.note { " (" @if change < 0.0 { "−" } @else { "+" }
+                    (percent(change.abs())) ")" }
             }
         }
         @if now { span.note { "in force" } } @else {
@@ -82,7 +103,8 @@ fn drawn(row: &StepError, before: Option<f64>, full: f64, saved: &SavedSession) 
         }
         form.note-form.small-form data-send="note" {
             input type="hidden" name="step" value=(index) data-number;
-            input name="note" value=(row.step.note) placeholder="note" aria-label={ "Note to model " (index) };
+            input name="note" value=(row.step.note) placeholder="note" aria-label={
+                "Note to model " (index) };
             button { "Keep note" }
         }
     }

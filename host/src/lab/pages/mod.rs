@@ -19,7 +19,12 @@ use crate::output::number::{NONE, mrad};
 use maud::{Markup, html};
 use std::sync::Arc;
 
-/// An error as people read it; a dash where it is not known.
+/// The error of an evaluation as people read it.
+fn in_milli(value: f64, evaluation: &Evaluation) -> String {
+    format!("{} {}", mrad(value), evaluation.quantity().milli())
+}
+
+/// An error of angles as people read it; a dash where it is not known.
 fn in_mrad(rad: Option<f64>) -> String {
     rad.map_or(NONE.to_string(), |rad| format!("{} mrad", mrad(rad)))
 }
@@ -34,7 +39,8 @@ fn lacking(number: u32, saved: &SavedSession) -> Markup {
     html! {
         section {
             h1 { "First bring " (lacks) }
-            p { "This page needs " (lacks) ". " a href={ "/s/" (number) "/data" } { "Bring them" } "." }
+            p { "This page needs " (lacks) ". " a href={ "/s/" (number) "/data" } { "Bring them" }
+                "." }
         }
     }
 }

@@ -31,9 +31,10 @@ fn shown(number: u32) -> Markup {
     html! {
         section {
             h1 { "The robot" }
-            p.lead { "The measurement, and dashed over it what the model predicts. Drag in the chart \
-                      to move in time; Space plays." }
-            iframe.stage src={ "/s/" (number) "/stage" } title="The robot, moving as the log says" {}
+            p.lead { "The measurement, and dashed over it what the model predicts. Drag in the \
+                      chart to move in time; Space plays." }
+            iframe.stage src={ "/s/" (number) "/stage" } title="The robot, moving as the log says"
+                {}
         }
     }
 }

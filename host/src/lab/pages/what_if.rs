@@ -1,7 +1,7 @@
 //! Sliders for every value of the model and every effect of the library.
 
 use super::compare::motions;
-use super::{frame, in_mrad, lacking, refused, seen};
+use super::{frame, in_milli, lacking, refused, seen};
 use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
@@ -46,8 +46,9 @@ fn shown(evaluation: &Evaluation) -> Markup {
     html! {
         section {
             h1 { "What if a value were another one?" }
-            p.lead { "Move a slider and watch the curves: this is how one learns what an effect looks \
-                      like. The windows and their noise floor stay those of the model as it is." }
+            p.lead { "Move a slider and watch the curves: this is how one learns what an effect \
+                      looks like. The windows and their noise floor stay those of the model as it \
+                      is." }
             div.bench {
                 div {
                     div.row {
@@ -70,9 +71,10 @@ fn shown(evaluation: &Evaluation) -> Markup {
                 }
                 div {
                     div.big-error aria-live="polite" {
-                        span { "Error " b #error-if { (in_mrad(Some(evaluation.rms_rad()))) } }
-                        span { "as it is " b #error-was { (in_mrad(Some(evaluation.rms_rad()))) } }
-                        span { "floor " (in_mrad(Some(evaluation.floor_rad()))) }
+                        span { "Error " b #error-if { (in_milli(evaluation.rms(), evaluation)) } }
+                        span { "as it is " b #error-was { (in_milli(evaluation.rms(), evaluation)) }
+                            }
+                        span { "floor " (in_milli(evaluation.floor(), evaluation)) }
                     }
                     div.row { (motions(evaluation)) }
                     div #curves data-kind="what-if" {}
@@ -138,10 +140,7 @@ fn own_paths(model: &Model) -> Vec<ParameterPath> {
         .flat_map(|index| LinkField::ALL.map(|field| ParameterPath::Link { index, field }));
     let joints = (0..model.link_count())
         .flat_map(|index| JointField::ALL.map(|field| ParameterPath::Joint { index, field }));
-    let effects = model
-        .effects
-        .iter()
-        .flat_map(|effect| ParameterPath::of_effect(effect));
+    let effects = model.effects.iter().flat_map(ParameterPath::of_effect);
     links.chain(joints).chain(effects).collect()
 }
 

@@ -3,10 +3,10 @@
 use super::arrays::Arrays;
 use super::{act, blocking, session};
 use crate::compare::{FailingSamples, residual_variables};
-use crate::lab::pages::compare as pages;
+use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::Evaluation;
+use crate::lab::session::{ChosenWindow, Evaluation};
 use crate::model::Drive;
 use axum::Json;
 use axum::extract::{Path, Query, State};
@@ -22,6 +22,18 @@ const WINDOWS_S: Range<f64> = 0.02..1e4;
 pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || Ok(page(pages::page(&session)?))).await
+}
+
+/// The error in force, as the top of each page has it.
+pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let saved = session.saved();
+        let evaluation = session.evaluation(&saved, saved.current)?;
+        let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
+        Ok(page(frame::error(&evaluation)))
+    })
+    .await
 }
 
 #[derive(Debug, Deserialize)]
@@ -45,8 +57,8 @@ pub(super) async fn curves(
     blocking(move || {
         let mut saved = session.saved();
         if let Some(horizon) = &asked.horizon {
-            let seconds = horizon.parse().ok();
-            saved.horizon_s = seconds.filter(|seconds| WINDOWS_S.contains(seconds));
+            let seconds = horizon.parse().ok().filter(|s| WINDOWS_S.contains(s));
+            saved.window = seconds.map_or(ChosenWindow::Whole, ChosenWindow::Seconds);
         }
         let step = asked.step.unwrap_or(saved.current);
         let made = |step| {
@@ -59,13 +71,13 @@ pub(super) async fn curves(
         let mut arrays = Arrays::default();
         let meta = draw(&mut arrays, &evaluation, asked.motion)?;
         if let Some(other) = &other {
-            let predicted = other.run.predicted_rad.get(asked.motion);
+            let predicted = other.run.predicted.get(asked.motion);
             for (joint, angles) in predicted.into_iter().flatten().enumerate() {
                 arrays.push(format!("other_{joint}"), angles.iter().copied());
             }
         }
         let mut meta = meta;
-        meta["other_rms_rad"] = json!(other.map(|other| other.rms_rad()));
+        meta["other_rms"] = json!(other.map(|other| other.rms()));
         Ok(arrays.reply(&meta))
     })
     .await
@@ -87,9 +99,9 @@ pub(super) fn draw(
     arrays.push("time", motion.time_s.iter().map(|time| time - first));
     let mut inputs = Vec::new();
     for joint in 0..run.model.link_count() {
-        let measured = motion.position_rad[joint].iter().copied();
+        let measured = run.data.measured(index, joint).iter().copied();
         arrays.push(format!("measured_{joint}"), measured);
-        let predicted = run.predicted_rad[index][joint].iter().copied();
+        let predicted = run.predicted[index][joint].iter().copied();
         arrays.push(format!("predicted_{joint}"), predicted);
         if let Some(input) = &motion.input[joint] {
             arrays.push(format!("input_{joint}"), input.iter().copied());
@@ -109,9 +121,11 @@ pub(super) fn draw(
         "held_out": evaluation.is_held_out(index),
         "joints": run.model.link_count(),
         "inputs": inputs,
-        "floor_rad": run.data.sigma_rad,
-        "rms_rad": evaluation.rms_rad(),
-        "joint_rms_rad": run.rms_rad(),
+        "units": run.data.signals.iter().map(|signal| signal.unit()).collect::<Vec<_>>(),
+        "floor": run.data.sigma,
+        "rms": evaluation.rms(),
+        "unit": evaluation.quantity().unit(),
+        "joint_rms": run.joint_rms(),
         "restarts_s": restarts,
         "window_s": window_s,
         "shades": shades(evaluation, index),
@@ -191,7 +205,8 @@ pub(super) async fn scatter(
         }
         Ok(arrays.reply(&json!({
             "variables": names.collect::<Vec<_>>(),
-            "floor_rad": run.data.sigma_rad[asked.joint],
+            "unit": run.data.signals[asked.joint].unit(),
+            "floor": run.data.sigma[asked.joint],
         })))
     })
     .await
@@ -199,8 +214,7 @@ pub(super) async fn scatter(
 
 #[derive(Debug, Deserialize)]
 pub(super) struct HorizonChosen {
-    /// Seconds; whole motions without.
-    seconds: Option<f64>,
+    window: ChosenWindow,
 }
 
 /// Keeps the length of the windows.
@@ -210,14 +224,17 @@ pub(super) async fn horizon(
     Json(chosen): Json<HorizonChosen>,
 ) -> Answer {
     act(lab, number, "compare", move |session, _| {
-        let seconds = chosen.seconds;
-        if seconds.is_some_and(|seconds| !WINDOWS_S.contains(&seconds)) {
+        let wrong = match chosen.window {
+            ChosenWindow::Seconds(seconds) => !WINDOWS_S.contains(&seconds),
+            ChosenWindow::Automatic | ChosenWindow::Whole => false,
+        };
+        if wrong {
             return Err(LabError::Conflict(
                 "windows last from 0.02 s to 10 000 s".into(),
             ));
         }
         session.change(|saved| {
-            saved.horizon_s = seconds;
+            saved.window = chosen.window;
             Ok(())
         })?;
         Ok(())

@@ -20,7 +20,6 @@ use std::sync::Arc;
 /// The page.
 pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
-    lab.store.take(number);
     blocking(move || Ok(page(pages::page(&session)?))).await
 }
 

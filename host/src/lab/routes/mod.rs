@@ -41,6 +41,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/columns", post(data::columns))
         .route("/s/{number}/raw", get(data::raw))
         .route("/s/{number}/compare", get(compare::show))
+        .route("/s/{number}/error", get(compare::error))
         .route("/s/{number}/curves", get(compare::curves))
         .route("/s/{number}/scatter", get(compare::scatter))
         .route("/s/{number}/horizon", post(compare::horizon))
@@ -65,9 +66,12 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .layer(DefaultBodyLimit::max(MOST_FORM_BYTES))
 }
 
-/// A session by its number.
+/// A session by its number; from now on it is somebody's.
 fn session(lab: &LabState, number: u32) -> Result<Arc<Session>, LabError> {
-    lab.store.get(number).ok_or(LabError::NotFound("session"))
+    let session = lab.store.get(number);
+    session
+        .inspect(|_| lab.store.take(number))
+        .ok_or(LabError::NotFound("session"))
 }
 
 /// Runs what computes or reads files beside the threads that answer.

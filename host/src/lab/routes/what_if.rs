@@ -8,7 +8,7 @@ use crate::fitting::Candidate;
 use crate::lab::pages::what_if as pages;
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{SavedStep, pooled};
+use crate::lab::session::{SavedStep, pooled_rms};
 use crate::model::{Model, ParameterPath, edit};
 use axum::Json;
 use axum::extract::{Path, State};
@@ -52,8 +52,8 @@ impl Tried {
         }
         for (path, value) in self.paths()? {
             let (low, high) = path.bounds(&tried);
-            if !(value.is_finite() && (low..=high).contains(&value)) || !path.set(&mut tried, value)
-            {
+            let allowed = value.is_finite() && (low..=high).contains(&value);
+            if !(allowed && path.set(&mut tried, value)) {
                 return Err(Error::usage(
                     format!("{path} cannot be {value} here"),
                     format!("choose a value from {low} to {high} of the model"),
@@ -84,7 +84,7 @@ pub(super) async fn run(
         let base = base.ok_or(LabError::NotFound("comparison"))?;
         let (model, _) = tried.applied_to(&base.run.model)?;
         let run = ModelRun::new(model, base.run.data.clone(), base.run.horizon);
-        let predicted = run.predicted_rad.get(tried.motion);
+        let predicted = run.predicted.get(tried.motion);
         let mut arrays = Arrays::default();
         for (joint, angles) in predicted
             .ok_or(LabError::NotFound("motion"))?
@@ -93,7 +93,7 @@ pub(super) async fn run(
         {
             arrays.push(format!("other_{joint}"), angles.iter().copied());
         }
-        Ok(arrays.reply(&json!({ "rms_rad": pooled(&run.rms_rad()) })))
+        Ok(arrays.reply(&json!({ "rms": pooled_rms(&run) })))
     })
     .await
 }

@@ -154,10 +154,16 @@ fn explanation(effects: &[FittedEffect], wrong: &[WrongValue]) -> SavedCard {
 }
 
 fn tried(tried: &RuledOut) -> SavedCard {
+    // Values of the model stand there by their address: `link1.com_m`.
+    let (values, effects) = tried
+        .set
+        .iter()
+        .cloned()
+        .partition(|name| name.contains('.'));
     SavedCard {
         role: CardRole::RuledOut,
-        effects: tried.set.clone(),
-        values: Vec::new(),
+        effects,
+        values,
         fitted: Vec::new(),
         training_rad: finite(tried.training_error_rad),
         held_out_rad: tried.held_out_error_rad.and_then(finite),

@@ -3,6 +3,7 @@
 use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::diagnose::{quoted, quoted_logs};
+use crate::fitting::Horizon;
 use crate::log::LogRequest;
 use std::path::Path;
 
@@ -26,21 +27,18 @@ impl SavedSession {
         }
     }
 
-    fn judging_words(&self, horizon_s: Option<f64>) -> String {
+    fn judging_words(&self, horizon: Option<Horizon>) -> String {
         let mut words = String::new();
         let held_out = self.log_words(true);
         if !held_out.is_empty() && !self.log_words(false).is_empty() {
             words += &format!(" --holdout {held_out}");
         }
-        if let Some(seconds) = horizon_s {
-            words += &format!(" --horizon {seconds}");
-        }
-        words
+        words + &horizon_words(horizon)
     }
 
     /// `handstand compare` of the steps that lead to the present one.
     pub fn compare_command(&self) -> String {
-        let horizon = self.horizon_s.map(|s| format!(" --horizon {s}"));
+        let horizon = horizon_words(Some(self.horizon()));
         let all = [self.training_words(), self.log_words(true)];
         let all = match self.log_words(false).is_empty() {
             true => all[0].clone(),
@@ -49,10 +47,7 @@ impl SavedSession {
         let others: String = (1..=self.current)
             .map(|step| format!(" --model {}", model_file(step).display()))
             .collect();
-        format!(
-            "handstand compare model-0.toml {all}{others}{}",
-            horizon.unwrap_or_default()
-        )
+        format!("handstand compare model-0.toml {all}{others}{horizon}")
     }
 
     /// `handstand diagnose` of the present step.
@@ -61,25 +56,25 @@ impl SavedSession {
             "handstand diagnose {} {}{}",
             model_file(self.current).display(),
             self.training_words(),
-            self.judging_words(self.horizon_s)
+            self.judging_words(self.window.by_hand())
         )
     }
 
     /// `handstand add` to the present step.
-    pub fn add_command(&self, effects: &[String], horizon_s: Option<f64>) -> String {
+    pub fn add_command(&self, effects: &[String]) -> String {
         let effects: Vec<String> = effects.iter().map(|effect| quoted(effect)).collect();
         format!(
             "handstand add {} {} --fit {}{} -o {}",
             model_file(self.current).display(),
             effects.join(" "),
             self.training_words(),
-            self.judging_words(horizon_s),
+            self.judging_words(Some(self.horizon())),
             model_file(self.current + 1).display()
         )
     }
 
     /// `handstand fit` of values of the present step.
-    pub fn fit_command(&self, values: &[String], horizon_s: Option<f64>) -> String {
+    pub fn fit_command(&self, values: &[String]) -> String {
         let free: String = values
             .iter()
             .map(|path| format!(" --free {}", quoted(path)))
@@ -88,7 +83,7 @@ impl SavedSession {
             "handstand fit {} {}{free}{} -o {}",
             model_file(self.current).display(),
             self.training_words(),
-            self.judging_words(horizon_s),
+            self.judging_words(Some(self.horizon())),
             model_file(self.current + 1).display()
         )
     }
@@ -96,5 +91,14 @@ impl SavedSession {
     /// `handstand gains` of the present step.
     pub fn gains_command(&self) -> String {
         format!("handstand gains {}", model_file(self.current).display())
+    }
+}
+
+/// The option that asks for a horizon.
+fn horizon_words(horizon: Option<Horizon>) -> String {
+    match horizon {
+        Some(Horizon::Seconds(seconds)) => format!(" --horizon {seconds}"),
+        Some(Horizon::Whole) => " --horizon whole".into(),
+        None => String::new(),
     }
 }

@@ -6,9 +6,9 @@ use super::saved::{SavedLog, SavedSession};
 use crate::compare::{Comparison, FailingSamples, ModelRun};
 use crate::error::Result;
 use crate::fitting::{FitData, Horizon};
-use crate::model::Model;
+use crate::model::{MeasuredSignal, Model};
 use std::path::Path;
-use std::sync::{Arc, OnceLock, PoisonError};
+use std::sync::{Arc, MutexGuard, OnceLock, PoisonError};
 
 /// How many are kept.
 const KEPT: usize = 6;
@@ -37,14 +37,19 @@ impl Evaluation {
         self.failing.get_or_init(|| self.run.failing())
     }
 
-    /// Root-mean-square error, rad, all joints and motions together.
-    pub fn rms_rad(&self) -> f64 {
-        pooled(&self.run.rms_rad())
+    /// Root-mean-square error, all joints and motions together, rad or rad/s.
+    pub fn rms(&self) -> f64 {
+        pooled_rms(&self.run)
     }
 
-    /// What noise and resolution alone leave, rad.
-    pub fn floor_rad(&self) -> f64 {
-        self.run.data.floor_rad()
+    /// What noise and resolution alone leave, rad or rad/s.
+    pub fn floor(&self) -> f64 {
+        self.run.data.floor()
+    }
+
+    /// What the errors are of.
+    pub fn quantity(&self) -> MeasuredSignal {
+        self.run.data.quantity()
     }
 
     /// Whether a motion is held out.
@@ -53,10 +58,13 @@ impl Evaluation {
     }
 }
 
-/// Root-mean-square over the joints, which share their samples.
-pub fn pooled(rms_rad: &[f64]) -> f64 {
-    let squares: f64 = rms_rad.iter().map(|rms| rms * rms).sum();
-    (squares / rms_rad.len().max(1) as f64).sqrt()
+/// Root-mean-square error over the joints whose errors count together, as the bars of a report
+/// have it.
+pub fn pooled_rms(run: &ModelRun) -> f64 {
+    let joints = run.joint_rms().into_iter().enumerate();
+    let counted = joints.filter(|(joint, _)| run.data.counts(*joint));
+    let squares: Vec<f64> = counted.map(|(_, rms)| rms * rms).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
 /// What an evaluation depends on.
@@ -64,7 +72,7 @@ pub fn pooled(rms_rad: &[f64]) -> f64 {
 struct Wanted {
     toml: String,
     logs: Vec<SavedLog>,
-    horizon_s: Option<f64>,
+    horizon: Horizon,
 }
 
 /// The last evaluations.
@@ -77,31 +85,36 @@ impl Session {
     /// # Errors
     /// Logs that cannot be read.
     pub fn evaluation(&self, saved: &SavedSession, step: usize) -> Result<Option<Arc<Evaluation>>> {
-        let Some(toml) = saved.steps.get(step).map(|step| step.toml.clone()) else {
+        let Some(wanted) = wanted(saved, step) else {
             return Ok(None);
         };
-        if saved.logs.is_empty() {
-            return Ok(None);
-        }
-        let wanted = Wanted {
-            toml,
-            logs: saved.logs.clone(),
-            horizon_s: saved.horizon_s,
-        };
-        let known = || {
-            self.evaluations
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
-        if let Some((_, found)) = known().0.iter().find(|(key, _)| *key == wanted) {
-            return Ok(Some(found.clone()));
+        if let Some(found) = self.kept(&wanted) {
+            return Ok(Some(found));
         }
         let file = model_file(step);
         let made = Arc::new(self.evaluate(saved, &wanted.toml, &file)?);
-        let mut known = known();
+        let mut known = self.known();
         known.0.insert(0, (wanted, made.clone()));
         known.0.truncate(KEPT);
         Ok(Some(made))
+    }
+
+    /// The evaluation of the step in force, if it was made already: pages that only mention it
+    /// do not wait for it.
+    pub fn known_evaluation(&self, saved: &SavedSession) -> Option<Arc<Evaluation>> {
+        self.kept(&wanted(saved, saved.current)?)
+    }
+
+    fn kept(&self, wanted: &Wanted) -> Option<Arc<Evaluation>> {
+        let known = self.known();
+        let found = known.0.iter().find(|(key, _)| key == wanted);
+        found.map(|(_, evaluation)| evaluation.clone())
+    }
+
+    fn known(&self) -> MutexGuard<'_, Evaluations> {
+        self.evaluations
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<Evaluation> {
@@ -109,7 +122,7 @@ impl Session {
         let split = self.split(saved, &model)?;
         let fitted = split.training.len();
         let motions = [split.training, split.held_out].concat();
-        let horizon = Horizon::from_seconds(saved.horizon_s);
+        let horizon = saved.horizon();
         let data = FitData::new(&model, motions, horizon);
         Ok(Evaluation {
             run: ModelRun::new(model, data, horizon),
@@ -119,4 +132,13 @@ impl Session {
             name: file.display().to_string(),
         })
     }
+}
+
+fn wanted(saved: &SavedSession, step: usize) -> Option<Wanted> {
+    let step = saved.steps.get(step).filter(|_| !saved.logs.is_empty())?;
+    Some(Wanted {
+        toml: step.toml.clone(),
+        logs: saved.logs.clone(),
+        horizon: saved.horizon(),
+    })
 }

@@ -1,6 +1,6 @@
 //! Examples to begin with: a bench arm with a known effect missing from its model.
 
-use super::Session;
+use super::{ChosenWindow, Session};
 use crate::challenge::{Hidden, generate};
 use crate::error::Result;
 
@@ -57,7 +57,7 @@ impl Session {
     pub(super) fn bring_bench(&self, model: &str, logs: &[(String, String)]) -> Result<()> {
         self.change(|saved| {
             saved.logs.clear();
-            saved.horizon_s = None;
+            saved.window = ChosenWindow::Automatic;
             Ok(())
         })?;
         self.begin_model("as given", model)?;

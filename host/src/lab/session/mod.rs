@@ -15,12 +15,12 @@ mod work;
 
 pub(super) use card::{CardRole, SavedCard, SavedDiagnosis};
 pub(super) use data::{LogFacts, MOST_BYTES};
-pub(super) use evaluation::{Evaluation, pooled};
+pub(super) use evaluation::{Evaluation, pooled_rms};
 pub(super) use example::EXAMPLES;
 pub use given::Given;
 pub(super) use job::{JobReport, JobSlot};
 pub(super) use round::{Round, RoundResult};
-pub(super) use saved::{SavedSession, SavedStep};
+pub(super) use saved::{ChosenWindow, SavedSession, SavedStep};
 pub(super) use store::SessionStore;
 
 use crate::error::Result;

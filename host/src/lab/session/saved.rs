@@ -3,6 +3,7 @@
 use super::card::SavedDiagnosis;
 use super::round::Round;
 use crate::error::{Error, Place, Result};
+use crate::fitting::Horizon;
 use crate::output::write_new;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -21,12 +22,36 @@ pub struct SavedSession {
     pub steps: Vec<SavedStep>,
     /// The one in force.
     pub current: usize,
-    /// Longest windows, s; whole motions without.
-    pub horizon_s: Option<f64>,
+    /// How long models run without correction.
+    pub window: ChosenWindow,
     /// The last diagnosis.
     pub diagnosis: Option<SavedDiagnosis>,
     /// The challenge, in a session that was begun as one.
     pub round: Option<Round>,
+}
+
+/// How long models run without correction at most.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChosenWindow {
+    /// As long as the last diagnosis judged over; whole motions before there is one.
+    #[default]
+    Automatic,
+    /// Whole motions.
+    Whole,
+    /// This long, s.
+    Seconds(f64),
+}
+
+impl ChosenWindow {
+    /// The horizon that was chosen by hand.
+    pub fn by_hand(self) -> Option<Horizon> {
+        match self {
+            ChosenWindow::Automatic => None,
+            ChosenWindow::Whole => Some(Horizon::Whole),
+            ChosenWindow::Seconds(seconds) => Some(Horizon::Seconds(seconds)),
+        }
+    }
 }
 
 /// A log of the session.
@@ -60,7 +85,7 @@ impl Default for SavedSession {
             logs: Vec::new(),
             steps: Vec::new(),
             current: 0,
-            horizon_s: None,
+            window: ChosenWindow::Automatic,
             diagnosis: None,
             round: None,
         }
@@ -100,6 +125,14 @@ impl SavedSession {
         let text = serde_json::to_string_pretty(self)
             .map_err(|error| Error::file(folder.join(FILE), "write", error.into()))?;
         write_new(&folder.join(FILE), &text, true)
+    }
+
+    /// The horizon over which models are compared and fitted.
+    pub fn horizon(&self) -> Horizon {
+        let judged = self.diagnosis.as_ref().and_then(|said| said.horizon_s);
+        self.window
+            .by_hand()
+            .unwrap_or(Horizon::from_seconds(judged))
     }
 
     /// The step in force.

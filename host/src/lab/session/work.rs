@@ -8,10 +8,10 @@ use super::saved::{SavedSession, SavedStep};
 use crate::diagnose::{DiagnoseOptions, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
-    Addition, Horizon, Undetermined, add_effects, candidates_named, free_parameters, not_reduced,
-    refit,
+    Addition, Undetermined, add_effects, candidates_named, free_parameters, not_reduced, refit,
+    with_refitted,
 };
-use crate::model::{Model, edit};
+use crate::model::Model;
 
 impl Session {
     /// Diagnoses the model in force.
@@ -22,7 +22,7 @@ impl Session {
         let begun = self.saved();
         let model = self.model_at(&begun)?;
         let options = DiagnoseOptions {
-            horizon: begun.horizon_s.map(Horizon::Seconds),
+            horizon: begun.window.by_hand(),
             ..DiagnoseOptions::default()
         };
         let (file, logs) = (model_file(begun.current), self.log_set(&begun));
@@ -54,14 +54,14 @@ impl Session {
         let candidates = candidates_named(names, &model)?;
         let (text, file) = (self.toml(&begun)?, model_file(begun.current));
         let split = self.log_set(&begun).read(&model.log)?;
-        let horizon_s = judged_over_s(&begun);
+        let horizon = begun.horizon();
         let what = format!("starts of {}", names.join(", "));
         let added = add_effects(
             text,
             &file,
             &candidates,
             &split,
-            horizon_s.map(Horizon::Seconds),
+            Some(horizon),
             &|done, all| report.tell(&what, done, all),
         )?;
         let toml = match added {
@@ -79,7 +79,7 @@ impl Session {
             SavedStep {
                 title: format!("{} added", names.join(", ")),
                 toml,
-                command: Some(begun.add_command(names, horizon_s)),
+                command: Some(begun.add_command(names)),
                 note: String::new(),
             },
         )
@@ -95,20 +95,19 @@ impl Session {
         let model = self.model_at(&begun)?;
         let free = free_parameters(&model, values)?;
         let split = self.log_set(&begun).read(&model.log)?;
-        let horizon_s = judged_over_s(&begun);
         report.tell("fit of the model's values", 0, 0);
-        let refitted = refit(&model, &free, &split, horizon_s.map(Horizon::Seconds))
+        let refitted = refit(&model, &free, &split, Some(begun.horizon()))
             .map_err(|why| undetermined(&why))?;
         report.tell("fit of the model's values", 1, 1);
         let file = model_file(begun.current);
-        let toml = edit::set_values(self.toml(&begun)?, &file, &refitted.values_of(&model))?;
+        let toml = with_refitted(self.toml(&begun)?, &file, &model, &refitted, &split)?;
         let names: Vec<String> = free.iter().map(ToString::to_string).collect();
         self.keep_step(
             &begun,
             SavedStep {
                 title: format!("{} fitted", names.join(", ")),
                 toml,
-                command: Some(begun.fit_command(values, horizon_s)),
+                command: Some(begun.fit_command(values)),
                 note: String::new(),
             },
         )
@@ -128,13 +127,6 @@ impl Session {
         let step = saved.step().map(|step| step.toml.as_str());
         step.ok_or_else(|| Error::usage("there is no model", "bring one first"))
     }
-}
-
-/// The windows to fit over: those chosen by hand, else those of the diagnosis.
-fn judged_over_s(saved: &SavedSession) -> Option<f64> {
-    saved
-        .horizon_s
-        .or_else(|| saved.diagnosis.as_ref()?.horizon_s)
 }
 
 fn undetermined(why: &Undetermined) -> Error {

@@ -172,7 +172,7 @@ input = { column = "u", unit = "N m" }
         ])
         .unwrap();
         let model = Model::parse(&text, Path::new("arm.toml")).unwrap();
-        let position = &model.log.joints[0].position;
+        let position = &model.log.joints[0].position.as_ref().unwrap().columns()[0];
         assert_eq!(position.name, "angle \"deg\"");
         assert!(position.reversed && position.offset == 0.5);
         assert_eq!(position.resolution, Some(0.001));

@@ -32,7 +32,12 @@ fn without_token_host_or_origin_nobody_is_let_in() {
         let mut headers = vec![cookie, json];
         headers.extend(origin.map(|origin| ("Origin", origin)));
         server
-            .ask("POST", "/s/1/horizon", &headers, br#"{"seconds":0.5}"#)
+            .ask(
+                "POST",
+                "/s/1/horizon",
+                &headers,
+                br#"{"window":{"seconds":0.5}}"#,
+            )
             .status
     };
     assert_eq!(post(None), 403);
@@ -226,13 +231,13 @@ fn markup_and_what_is_no_number_do_no_harm() {
     assert_eq!(server.get("/s/1/data").status, 200);
     assert_eq!(
         server
-            .post("/s/1/horizon", &json!({ "seconds": 1e-9 }))
+            .post("/s/1/horizon", &json!({ "window": { "seconds": 1e-9 } }))
             .status,
         409
     );
     assert_eq!(
         server
-            .post("/s/1/horizon", &json!({ "seconds": "x" }))
+            .post("/s/1/horizon", &json!({ "window": "x" }))
             .status,
         422
     );
