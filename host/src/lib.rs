@@ -15,6 +15,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod excite;
 pub mod fitting;
 pub mod link;
 pub mod log;

@@ -17,6 +17,7 @@ mod deploy;
 mod diagnose;
 mod doctor;
 mod effects;
+mod excite;
 mod fit;
 mod flash;
 mod gains;
@@ -126,9 +127,11 @@ pub enum Command {
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
     Bus(bus::BusCommand),
+    /// Write the motions that a measurement needs, within given limits
+    Excite(excite::ExciteArgs),
     /// Record servo states to a log
     Record(record::RecordArgs),
-    /// Replay a recording on servos
+    /// Replay a motion on servos
     Replay(replay::ReplayArgs),
     /// Measure the latency between PC and servos, stage by stage
     Latency(latency::LatencyArgs),
@@ -171,6 +174,7 @@ impl Command {
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
             Command::Bus(command) => bus::run(command, talk),
+            Command::Excite(args) => excite::run(args, talk),
             Command::Record(args) => record::run(args, talk),
             Command::Replay(args) => replay::run(args, talk),
             Command::Latency(args) => latency::run(args, talk),

@@ -152,6 +152,7 @@ impl<L: SerialLink> SampleSource for Stream<L> {
                     zero: self.gyro.map(|(zero, _)| f64::from(zero)),
                     rate_rad_s: self.gyro.map(rate),
                 }),
+                torque_on: torque(report.condition),
             }));
         }
     }
@@ -191,6 +192,15 @@ impl<L: SerialLink> SampleSource for Stream<L> {
                 .map_or(String::new(), |account| words(&account));
             format!("the CM-5 is {}{why}", condition_words(self.condition))
         })
+    }
+}
+
+/// Whether torque is on in this condition; none where it is not known.
+fn torque(condition: Condition) -> Option<bool> {
+    match condition {
+        Condition::StreamArmed | Condition::BalanceArmed | Condition::Soft => Some(true),
+        Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
+        Condition::Bridge => None,
     }
 }
 
