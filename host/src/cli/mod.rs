@@ -10,20 +10,24 @@ mod balance;
 mod bus;
 mod challenge;
 mod compare;
+mod completions;
 mod controllers;
 mod delays;
 mod demo;
 mod deploy;
 mod diagnose;
+mod doctor;
 mod effects;
 mod fit;
 mod flash;
 mod gains;
+mod help;
 mod identify;
 mod input;
 mod interrupt;
 mod latency;
 mod log;
+mod man;
 mod map;
 mod page;
 mod paper;
@@ -41,15 +45,15 @@ mod view;
 mod virtual_robot;
 mod weight_arg;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use handstand::Result;
 use talk::Talk;
 
 /// Exit code of a bug.
 pub const BUG: u8 = 101;
 
-/// Compare a model of a servo arm or chain of links with measured logs, and find the missing
-/// physical effect.
+/// Measure a servo arm or chain of links, find the physical effect that its model lacks, and
+/// balance it.
 #[derive(Debug, Parser)]
 #[command(name = "handstand", version, max_term_width = 100, after_help = FIRST)]
 pub struct Cli {
@@ -67,6 +71,12 @@ pub struct Cli {
 const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
 
 impl Cli {
+    /// What was typed; help and complaints about it end the program.
+    pub fn typed() -> Cli {
+        let matches = help::grouped(Cli::command()).get_matches();
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+
     /// Where this run's output goes.
     pub fn talk(&self) -> Talk {
         Talk::new(self.json, self.quiet)
@@ -131,6 +141,12 @@ pub enum Command {
     Flash(flash::FlashArgs),
     /// Simulate servos behind a virtual serial port
     Virtual(virtual_robot::VirtualArgs),
+    /// Check what this machine has: ports, permissions, optional tools
+    Doctor(doctor::DoctorArgs),
+    /// Print what a shell needs to complete commands and options
+    Completions(completions::CompletionsArgs),
+    /// Write manual pages, one for each command
+    Man(man::ManArgs),
 }
 
 impl Command {
@@ -165,6 +181,9 @@ impl Command {
             Command::Deploy(args) => deploy::run(args, talk),
             Command::Flash(args) => flash::run(args, talk),
             Command::Virtual(args) => virtual_robot::run(args, talk),
+            Command::Doctor(args) => doctor::run(args, talk),
+            Command::Completions(args) => completions::run(args, talk),
+            Command::Man(args) => man::run(args, talk),
         }
     }
 }

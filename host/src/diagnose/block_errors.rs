@@ -83,6 +83,15 @@ impl BlockErrors {
         }
     }
 
+    /// The same blocks with the squares that another fit of the same motions leaves taken off.
+    pub fn less(&self, other: &BlockErrors) -> BlockErrors {
+        let mut less = self.clone();
+        for (block, left) in less.blocks.iter_mut().zip(&other.blocks) {
+            block.sum -= left.sum;
+        }
+        less
+    }
+
     /// Sum of squared weighted residuals.
     pub fn sum(&self) -> f64 {
         self.blocks.iter().map(|block| block.sum).sum()
@@ -264,6 +273,14 @@ mod tests {
         let after = errors(&[&[500.0; 8], &[30.0; 8]]);
         let [low, high] = bootstrap(&before, &after, 1, gain);
         assert!((high - low).abs() < 1e-9, "{low} {high}");
+    }
+
+    #[test]
+    fn what_another_fit_leaves_is_taken_off_block_by_block() {
+        let (before, after) = (errors(&[&[10.0, 20.0]]), errors(&[&[4.0, 5.0]]));
+        let removed = before.less(&after);
+        assert_eq!(removed.sum(), 21.0);
+        assert_eq!(removed.blocks[0].sum, 6.0);
     }
 
     #[test]

@@ -116,6 +116,28 @@ impl FitData {
         joined
     }
 
+    /// The same windows with other readings in place of the measured ones, rad: per motion and
+    /// window, joint after joint. What was not measured stays so.
+    pub fn measuring(mut self, readings: &[Vec<Vec<f64>>]) -> FitData {
+        for (motion, readings) in readings.iter().enumerate() {
+            let windows: Vec<Range<usize>> = self
+                .windows_of(motion)
+                .map(|(_, window)| window.samples.clone())
+                .collect();
+            for (samples, readings) in windows.into_iter().zip(readings) {
+                let joints = readings.chunks(samples.len());
+                for (position, readings) in self.motions[motion].position_rad.iter_mut().zip(joints)
+                {
+                    let measured = position[samples.clone()].iter_mut().zip(readings);
+                    for (position, reading) in measured.filter(|(p, _)| !p.is_nan()) {
+                        *position = *reading;
+                    }
+                }
+            }
+        }
+        self
+    }
+
     /// Some of the motions, cut as they are here.
     pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
         let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();

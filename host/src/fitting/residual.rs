@@ -27,6 +27,13 @@ impl Residuals {
         self.windows.iter().map(Vec::len).sum()
     }
 
+    /// Their difference, window by window.
+    pub fn less(&self, other: &Residuals) -> Vec<Vec<f64>> {
+        let windows = self.windows.iter().zip(&other.windows);
+        let difference = windows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect());
+        difference.collect()
+    }
+
     /// Mean square; 1 is the noise.
     pub fn mean_square(&self) -> f64 {
         self.cost() / self.count().max(1) as f64

@@ -33,7 +33,7 @@ pub use port::{LineWriter, SerialLink, read_some};
 pub use pty::Pty;
 pub use replay::Replay;
 pub use reply::Reading;
-pub use serial::{Serial, ports};
+pub use serial::{PERMISSION_REMEDY, Serial, may_open, ports};
 pub use servo_error::{ServoError, ServoResult};
 pub use servos::Servos;
 pub use session::Session;

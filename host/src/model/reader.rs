@@ -136,6 +136,11 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// Whether this text stands under `key`.
+    pub fn is_text(&self, key: &str, text: &str) -> bool {
+        self.items.get(key).and_then(Item::as_str) == Some(text)
+    }
+
     /// The text under `key`, if there is one; never empty.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>> {
         match self.get(key, "text in quotes", Item::as_str)? {

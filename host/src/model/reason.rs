@@ -49,6 +49,12 @@ pub enum ModelReason {
         /// The effect.
         id: &'static str,
     },
+    /// An effect at all driven joints that acts on none of them.
+    #[error("`{id}` acts on no driven joint of this model")]
+    NoDrivenJoint {
+        /// The effect.
+        id: &'static str,
+    },
     /// An effect at a joint that it cannot act on.
     #[error("`{id}` acts on {wanted} joints only, and joint {} is `{drive}`", joint + 1)]
     UnsuitedJoint {
@@ -145,6 +151,7 @@ impl Reason for ModelReason {
             MissingColumns { .. } => "add one `[[log.joint]]` for each `[[joint]]`, in order",
             EffectTwice { .. } => "keep one of the two, or give it another joint",
             WholeRig { .. } => "leave the joint out",
+            NoDrivenJoint { .. } => "name a joint, counted from 1",
             UnsuitedJoint { wanted, .. } => {
                 return format!("name a {wanted} joint, or another effect").into();
             }
@@ -182,7 +189,7 @@ pub enum PathReason {
         /// The names known there.
         known: Vec<&'static str>,
     },
-    /// What follows the `@` is no count from 1.
+    /// What follows the `@` is neither a count from 1 nor `all`.
     #[error("`{text}`: `{joint}` is no joint")]
     NoJoint {
         /// The text.
@@ -216,7 +223,7 @@ impl Reason for PathReason {
                 "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`".into()
             }
             PathReason::UnknownName { name, known, .. } => suggest(name, known),
-            PathReason::NoJoint { .. } => "joints count from 1".into(),
+            PathReason::NoJoint { .. } => "joints count from 1; `all` are the driven ones".into(),
             PathReason::WholeRig { text, id } => format!("write `{id}.{}`", key(text)),
             PathReason::MissingJoint { text, id } => {
                 format!("write `{id}@1.{}` for the first joint", key(text))

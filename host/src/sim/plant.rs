@@ -27,6 +27,8 @@ impl ActiveEffect {
 pub(super) struct JointPlan {
     pub drive: Drive,
     pub full_torque_nm: f64,
+    /// Whether the drive's torque follows from its input alone.
+    pub follows_input: bool,
     pub delay_s: f64,
     pub command: Vec<ActiveEffect>,
     pub torque: Vec<ActiveEffect>,
@@ -48,6 +50,8 @@ pub struct Plant {
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
     pub(super) step_s: f64,
+    /// Whether every torque stays until an input changes or a joint stops or starts.
+    pub(super) torques_stay: bool,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
     /// Per joint, per sample: the measured speed of another moment; empty without a placebo.
@@ -70,25 +74,30 @@ impl Plant {
         let mut needs = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {
             for instance in model.effects.iter().filter(|e| e.effect == *effect) {
-                let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) else {
-                    continue;
-                };
-                joint.add(*effect, &instance.values);
-                needs.push(effect.info().needs);
+                for (index, joint) in joints.iter_mut().enumerate() {
+                    if instance.acts_on(index, &model.joints[index]) {
+                        joint.add(*effect, &instance.values);
+                        needs.push(effect.info().needs);
+                    }
+                }
             }
+        }
+        for joint in &mut joints {
+            joint.follows_input = joint.torque_is_held();
         }
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
             senses,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
-            joints,
             zero_rad: model.angle_zero.from_hanging_rad(),
             absolute: model.angles == Angles::Absolute,
             step_s: model.step_s,
+            torques_stay: joints.iter().all(JointPlan::torque_stays),
             needs_gear_load: needs.contains(&Needs::GearLoad),
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
             shuffled_rad_s: shuffled(model, motion),
+            joints,
         }
     }
 
@@ -188,6 +197,7 @@ impl JointPlan {
         JointPlan {
             drive: drive.clone(),
             full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
+            follows_input: false,
             delay_s: 0.0,
             command: Vec::new(),
             torque: Vec::new(),
@@ -201,6 +211,12 @@ impl JointPlan {
     /// Whether friction or a torque that follows angle and speed acts on the joint.
     pub(super) fn has_joint_effects(&self) -> bool {
         !self.torque.is_empty() || !self.friction.is_empty()
+    }
+
+    /// Whether nothing but its input and the direction in which it slides changes its torque.
+    fn torque_stays(&self) -> bool {
+        let constant = |e: &ActiveEffect| e.effect.friction_is_constant();
+        self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
     }
 
     /// Change of the encoder's reading per change of the joint's angle.

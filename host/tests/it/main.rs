@@ -28,3 +28,4 @@ mod riccati;
 mod rounds;
 mod study;
 mod sysid;
+mod twins;

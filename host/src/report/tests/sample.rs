@@ -5,8 +5,8 @@ use crate::compare::{
     SignalError, Trace,
 };
 use crate::diagnose::{
-    Alternative, Diagnosis, FittedEffect, MotionError, ResidualStructure, RuledOut, Verdict,
-    WrongValue,
+    Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, MotionError,
+    ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::report::{LogFile, ModelFile, Report, ReportProvenance};
@@ -207,6 +207,11 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
             held_out: true,
             reduction: Some([0.81, 0.88]),
         },
+        budget: vec![BudgetedPart {
+            part: "coulomb@1".to_owned(),
+            alone: share(0.9, 5e-3),
+            beyond_others: share(0.85, 36e-3),
+        }],
         alternatives: vec![Alternative {
             effects: vec![effect("dead_zone", "Dead zone", vec![dead_zone])],
             wrong_values: Vec::new(),
@@ -281,4 +286,13 @@ fn ruled_out() -> Vec<RuledOut> {
             "gains no more than chance would",
         ),
     ]
+}
+
+fn share(share: f64, error_rad: f64) -> BudgetShare {
+    BudgetShare {
+        error_rad,
+        share,
+        low: share - 0.05,
+        high: share + 0.05,
+    }
 }
