@@ -6,6 +6,7 @@
 //! bug.
 
 mod add;
+mod balance;
 mod bus;
 mod challenge;
 mod compare;
@@ -133,6 +134,8 @@ pub enum Command {
     Record(record::RecordArgs),
     /// Replay a motion on servos
     Replay(replay::ReplayArgs),
+    /// Balance the robot through the CM-5, and supervise it
+    Balance(Box<balance::BalanceArgs>),
     /// Measure the latency between PC and servos, stage by stage
     Latency(latency::LatencyArgs),
     /// Deploy a model's gains to the CM-5, and read them back
@@ -177,6 +180,7 @@ impl Command {
             Command::Excite(args) => excite::run(args, talk),
             Command::Record(args) => record::run(args, talk),
             Command::Replay(args) => replay::run(args, talk),
+            Command::Balance(args) => balance::run(args, talk),
             Command::Latency(args) => latency::run(args, talk),
             Command::Deploy(args) => deploy::run(args, talk),
             Command::Flash(args) => flash::run(args, talk),
