@@ -14,7 +14,7 @@ use super::hypothesis::Hypothesis;
 use super::replacement::{Other, Part};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
-use crate::fitting::{FitData, FitOptions, Node, fit, fit_start_states, predicted_rad};
+use crate::fitting::{FitData, FitOptions, Node, fit, fit_start_states, predicted};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -110,7 +110,7 @@ impl Evaluator<'_> {
             nodes.extend(fit_start_states(&found.model, held_out).nodes);
         }
         let windows = (0..data.motions.len()).into_par_iter();
-        let readings = windows.map(|motion| predicted_rad(&found.model, &data, &nodes, motion));
+        let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
         Some(Predicted {
             data: data.measuring(&readings),

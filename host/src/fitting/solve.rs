@@ -1,6 +1,6 @@
 //! The calls that start a fit, or go on with one.
 
-use super::data::{FitData, Window};
+use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::node::{Guess, Node};
@@ -58,6 +58,5 @@ pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
 }
 
 fn guesses(data: &FitData) -> Vec<Guess> {
-    let guess = |w: &Window| Guess::of(&data.motions[w.motion], &data.sigma_rad, w);
-    data.windows.iter().map(guess).collect()
+    data.windows.iter().map(|w| data.guess(w)).collect()
 }

@@ -196,6 +196,12 @@ impl<'a> Table<'a> {
         texts.collect::<Result<_>>().map(Some)
     }
 
+    /// Whether the item under `key` is a list.
+    pub fn is_list(&self, key: &str) -> bool {
+        let item = self.items.get(key);
+        item.is_some_and(|item| item.is_array() || item.is_array_of_tables())
+    }
+
     /// The table under `key`, if there is one.
     pub fn table(&self, key: &str) -> Result<Option<Table<'a>>> {
         let table = self.get(key, "a table", |item| Some((item, item.as_table_like()?)))?;

@@ -33,8 +33,8 @@ impl Severity {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFinding {
     /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`,
-    /// `payload`, `turned`, `wrap`, `stuck`, `extreme`, `step`, `unit`, `relation`, `supply` or
-    /// `excitation`.
+    /// `payload`, `turned`, `wrap`, `stuck`, `extreme`, `step`, `missing`, `unobserved`, `unit`,
+    /// `relation`, `supply` or `excitation`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,
