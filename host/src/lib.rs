@@ -10,6 +10,7 @@
 pub mod challenge;
 pub mod compare;
 pub mod controllers;
+pub mod conventions;
 pub mod deploy;
 pub mod diagnose;
 pub mod dynamics;

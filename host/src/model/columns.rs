@@ -15,6 +15,9 @@ pub struct Column {
     pub reversed: bool,
     /// Smallest step of the value in SI, if the sensor's resolution is known.
     pub resolution: Option<f64>,
+    /// Added to the time of this column's samples, s: above 0 where they were taken later than the
+    /// time column says.
+    pub shift_s: f64,
 }
 
 impl Column {
@@ -22,6 +25,12 @@ impl Column {
     pub fn to_si(&self, written: f64) -> f64 {
         let sign = if self.reversed { -1.0 } else { 1.0 };
         sign * self.unit.to_si(written) + self.offset
+    }
+
+    /// The number written for an SI value; undoes [`Column::to_si`].
+    pub fn written(&self, si: f64) -> f64 {
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        sign * (si - self.offset) / self.unit.si
     }
 }
 
@@ -34,6 +43,14 @@ pub struct JointColumns {
     pub velocity: Option<Column>,
     /// The drive's input: torque, duty, goal angle or goal speed; none for a passive joint.
     pub input: Option<Column>,
+}
+
+impl JointColumns {
+    /// By how much position, velocity and input are moved in time, s.
+    pub fn shifts_s(&self) -> [f64; 3] {
+        let of = |column: &Option<Column>| column.as_ref().map_or(0.0, |column| column.shift_s);
+        [self.position.shift_s, of(&self.velocity), of(&self.input)]
+    }
 }
 
 /// Every column the model reads.

@@ -11,6 +11,7 @@ pub fn column(name: &str, unit: &str) -> Column {
         offset: 0.0,
         reversed: false,
         resolution: None,
+        shift_s: 0.0,
     }
 }
 
