@@ -16,6 +16,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod export;
 pub mod fitting;
 pub mod link;
 pub mod log;

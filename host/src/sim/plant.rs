@@ -77,6 +77,11 @@ impl Plant {
                 needs.push(effect.info().needs);
             }
         }
+        for instance in model.effects.iter().filter(|e| e.effect.is_users()) {
+            if let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) {
+                joint.add(instance.effect, &instance.values);
+            }
+        }
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
             senses,

@@ -53,6 +53,8 @@ impl<'a> JointAt<'a> {
             let here = |e: &&EffectInstance| e.effect == *effect && e.joint == Some(joint);
             effects.extend(model.effects.iter().filter(here));
         }
+        let users = |e: &&EffectInstance| e.effect.is_users() && e.joint == Some(joint);
+        effects.extend(model.effects.iter().filter(users));
         effects
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         let zero = match joint {

@@ -73,6 +73,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         links: vec![link; log.joints.len()],
         joints: vec![Joint { drive }; log.joints.len()],
         effects: Vec::new(),
+        laws: Vec::new(),
         free: Vec::new(),
         log,
     }
