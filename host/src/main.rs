@@ -3,11 +3,10 @@
 
 mod cli;
 
-use clap::Parser as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = cli::Cli::parse();
+    let cli = cli::Cli::typed();
     let talk = cli.talk();
     match std::panic::catch_unwind(|| cli.command.run(&talk)) {
         Ok(Ok(outcome)) => ExitCode::from(outcome.exit_code()),

@@ -2,8 +2,8 @@
 //!
 //! The effects' values are fitted along with the model's free ones, from each of the effects' start
 //! values; the best is kept. The new file is the old one with the refitted values and, at its end,
-//! the effects with their intervals, the logs it was fitted to, and the error without and with it. The
-//! error without it is that of the model refitted without it, so that the reduction is the effect's
+//! the effects with their intervals, the logs it was fitted to, and the error without and with it;
+//! those of the values it had are renewed. The error without it is that of the model refitted without it, so that the reduction is the effect's
 //! alone; `handstand compare` sets models side by side as they are, where the reduction is also the
 //! refit's.
 //!
@@ -71,8 +71,13 @@ pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
         return refuse(&refitted, &names, talk);
     }
     let mut text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
+    let logs = input::files(&split.training);
+    let old = refitted
+        .record(logs.clone())
+        .about(|path| path.get(&model).is_some());
+    text = edit::renew_provenance(&text, &args.model, &old)?;
     for candidate in candidates {
-        let (effect, fitted) = refitted.added(candidate, input::files(&split.training));
+        let (effect, fitted) = refitted.added(candidate, logs.clone());
         text = edit::add_effect(&text, &args.model, &effect, Some(&fitted))?;
     }
     let before = "for the model refitted without";

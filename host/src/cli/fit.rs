@@ -1,7 +1,7 @@
 //! `handstand fit MODEL LOG... -o NEW.toml`: a model's free values, fitted to logs.
 //!
 //! Free are the values the model's `[fit]` names, or those that `--free` names instead. The new
-//! file is the old one with new values; comments and layout stay.
+//! file is the old one with new values, and where they came from; comments and layout stay.
 //!
 //! ```console
 //! $ handstand fit arm.toml swing.csv --free coulomb@1.torque_nm -o fitted.toml
@@ -45,6 +45,8 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
         Err(why) => return refuse(&why, talk),
     };
     let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
+    let record = refitted.record(input::files(&split.training));
+    let text = edit::renew_provenance(&text, &args.model, &record)?;
     let before = "for the model as it was";
     write(&refitted, &text, &[], before, &args.fit, talk)
 }

@@ -6,23 +6,29 @@
 //! bug.
 
 mod add;
+mod balance;
 mod bus;
 mod challenge;
 mod compare;
+mod completions;
 mod controllers;
 mod delays;
 mod demo;
 mod deploy;
 mod diagnose;
+mod doctor;
 mod effects;
+mod excite;
 mod fit;
 mod flash;
 mod gains;
+mod help;
 mod identify;
 mod input;
 mod interrupt;
 mod latency;
 mod log;
+mod man;
 mod map;
 mod model;
 mod page;
@@ -41,15 +47,15 @@ mod view;
 mod virtual_robot;
 mod weight_arg;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use handstand::Result;
 use talk::Talk;
 
 /// Exit code of a bug.
 pub const BUG: u8 = 101;
 
-/// Compare a model of a servo arm or chain of links with measured logs, and find the missing
-/// physical effect.
+/// Measure a servo arm or chain of links, find the physical effect that its model lacks, and
+/// balance it.
 #[derive(Debug, Parser)]
 #[command(name = "handstand", version, max_term_width = 100, after_help = FIRST)]
 pub struct Cli {
@@ -67,6 +73,12 @@ pub struct Cli {
 const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
 
 impl Cli {
+    /// What was typed; help and complaints about it end the program.
+    pub fn typed() -> Cli {
+        let matches = help::grouped(Cli::command()).get_matches();
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+
     /// Where this run's output goes.
     pub fn talk(&self) -> Talk {
         Talk::new(self.json, self.quiet)
@@ -120,10 +132,14 @@ pub enum Command {
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
     Bus(bus::BusCommand),
+    /// Write the motions that a measurement needs, within given limits
+    Excite(excite::ExciteArgs),
     /// Record servo states to a log
     Record(record::RecordArgs),
-    /// Replay a recording on servos
+    /// Replay a motion on servos
     Replay(replay::ReplayArgs),
+    /// Balance the robot through the CM-5, and supervise it
+    Balance(Box<balance::BalanceArgs>),
     /// Measure the latency between PC and servos, stage by stage
     Latency(latency::LatencyArgs),
     /// Deploy a model's gains to the CM-5, and read them back
@@ -132,6 +148,12 @@ pub enum Command {
     Flash(flash::FlashArgs),
     /// Simulate servos behind a virtual serial port
     Virtual(virtual_robot::VirtualArgs),
+    /// Check what this machine has: ports, permissions, optional tools
+    Doctor(doctor::DoctorArgs),
+    /// Print what a shell needs to complete commands and options
+    Completions(completions::CompletionsArgs),
+    /// Write manual pages, one for each command
+    Man(man::ManArgs),
 }
 
 impl Command {
@@ -160,12 +182,17 @@ impl Command {
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
             Command::Bus(command) => bus::run(command, talk),
+            Command::Excite(args) => excite::run(args, talk),
             Command::Record(args) => record::run(args, talk),
             Command::Replay(args) => replay::run(args, talk),
+            Command::Balance(args) => balance::run(args, talk),
             Command::Latency(args) => latency::run(args, talk),
             Command::Deploy(args) => deploy::run(args, talk),
             Command::Flash(args) => flash::run(args, talk),
             Command::Virtual(args) => virtual_robot::run(args, talk),
+            Command::Doctor(args) => doctor::run(args, talk),
+            Command::Completions(args) => completions::run(args, talk),
+            Command::Man(args) => man::run(args, talk),
         }
     }
 }

@@ -63,9 +63,8 @@ impl DesignModel {
             column /= full_nm(joint).unwrap_or(1.0);
         }
         let values = |id: &str, joint: usize| {
-            let of = model.effects.iter();
-            let mut of = of.filter(move |e| e.effect.info().id == id && e.joint == Some(joint));
-            of.next().map(|e| e.values[0])
+            let mut of = model.effects_at(joint);
+            of.find(|e| e.effect.info().id == id).map(|e| e.values[0])
         };
         let largest = |of: &dyn Fn(usize) -> Option<f64>| {
             let known = driven.iter().filter_map(|&joint| of(joint));

@@ -1,6 +1,7 @@
 //! Other kinds of drive that the input column may belong to.
 
 use super::remedy::{Quantity, Remedy};
+use super::reread::written;
 use super::trial::{Bench, Effort, Trial};
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
 use rayon::prelude::*;
@@ -136,14 +137,21 @@ impl Line {
 impl Written {
     fn of(bench: &Bench, joint: usize) -> Written {
         let (mut angles, mut speeds, mut most) = (Vec::new(), Vec::new(), 0.0_f64);
-        let column = Quantity::Input(joint).column(&bench.model);
+        let column = bench.model.log.joints[joint].input.as_ref();
         for motion in &bench.motions {
             let (Some(input), Some(column)) = (&motion.input[joint], column) else {
                 continue;
             };
             let (angle, time_s) = (&motion.position_rad[joint], &motion.time_s);
             for k in 1..motion.len() {
-                let written = column.written(input[k - 1]);
+                // A drive that is off follows nothing.
+                if motion.torque_on.as_ref().is_some_and(|on| !on[k]) {
+                    continue;
+                }
+                let written = written(input[k - 1], column);
+                if !angle[k].is_finite() || !angle[k - 1].is_finite() {
+                    continue;
+                }
                 most = most.max(written.abs());
                 angles.push((written, angle[k]));
                 speeds.push((

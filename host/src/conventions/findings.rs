@@ -63,8 +63,12 @@ fn kind(remedy: &Remedy) -> &'static str {
 }
 
 fn name(quantity: Quantity, model: &Model) -> String {
-    let column = quantity.column(model);
-    column.map_or_else(|| "a column".to_string(), |column| column.name.clone())
+    let names: Vec<&str> = quantity
+        .columns(model)
+        .iter()
+        .map(|c| c.name.as_str())
+        .collect();
+    names.join(" and ")
 }
 
 fn what(remedy: &Remedy, model: &Model) -> String {

@@ -6,10 +6,10 @@
 
 use super::trial::Effort;
 use crate::fitting::{
-    FitData, FitOptions, Horizon, Node, Window, fit, free_parameters, noise_rad, predicted_rad,
+    FitData, FitOptions, Horizon, Node, Window, fit, free_parameters, guessed_nodes, predicted,
 };
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{MeasuredSignal, Model};
 
 /// Longest window, s, and least samples of one where samples are rare.
 const WINDOW_S: f64 = 1.0;
@@ -74,9 +74,6 @@ impl Reading {
     /// Another model that reads the same samples in its own way, cut into the same windows.
     pub fn read_as(&self, model: &Model, motions: Vec<Motion>) -> Reading {
         let mut data = self.data.clone();
-        data.sigma_rad = (0..data.joints())
-            .map(|joint| noise_rad(&motions, joint, model.log.joints[joint].position.resolution))
-            .collect();
         data.motions = motions;
         Reading {
             model: model.clone(),
@@ -88,9 +85,7 @@ impl Reading {
     pub fn rated(&self, effort: Effort) -> Rating {
         let free = match effort {
             Effort::Guess => {
-                let (motions, sigma_rad) = (&self.data.motions, &self.data.sigma_rad);
-                let node = |w: &Window| Node::guess(&motions[w.motion], sigma_rad, w);
-                let nodes: Vec<Node> = self.data.windows.iter().map(node).collect();
+                let nodes = guessed_nodes(&self.data);
                 return Rating::of(&self.model, &self.data, &nodes);
             }
             Effort::Starts => Vec::new(),
@@ -117,23 +112,28 @@ impl Rating {
         let joints = data.joints();
         let mut squares = vec![vec![0.0; joints]; data.windows.len()];
         let mut plain = vec![0.0; joints];
+        let guesses = guessed_nodes(data);
         let (mut sum, mut count) = (0.0, 0usize);
         for motion in 0..data.motions.len() {
-            let predicted = predicted_rad(model, data, nodes, motion);
+            let predicted = predicted(model, data, nodes, motion);
             let windows = data.windows_of(motion);
             for ((index, window), predicted) in windows.zip(predicted) {
                 let log = &data.motions[motion];
                 let start_s = log.time_s[window.samples.start];
                 let samples = window.samples.len();
                 for joint in 0..joints {
-                    let guess = Node::guess(log, &data.sigma_rad, window).unknowns;
+                    let guess = &guesses[index].unknowns;
+                    let rate = data.signals[joint] == MeasuredSignal::Rate;
                     for (k, sample) in window.samples.clone().enumerate() {
-                        let measured = log.position_rad[joint][sample];
+                        let measured = data.measured(motion, joint)[sample];
                         if !measured.is_finite() {
                             continue;
                         }
                         let seconds = log.time_s[sample] - start_s;
-                        let straight = guess[joint] + guess[joints + joint] * seconds;
+                        let straight = match rate {
+                            true => guess[joints + joint],
+                            false => guess[joint] + guess[joints + joint] * seconds,
+                        };
                         let error = measured - predicted[joint * samples + k];
                         let error = if error.is_finite() {
                             error.clamp(-1e3, 1e3)
@@ -150,7 +150,7 @@ impl Rating {
         }
         let all = data.samples().max(1) as f64;
         let plain: Vec<f64> = plain.iter().map(|sum| (sum / all).sqrt()).collect();
-        let says = |joint: &usize| plain[*joint] > LEAST_MOVEMENT * data.sigma_rad[*joint];
+        let says = |joint: &usize| plain[*joint] > LEAST_MOVEMENT * data.sigma[*joint];
         let share = |squares: &Vec<f64>| {
             let joints = (0..joints).filter(says);
             joints

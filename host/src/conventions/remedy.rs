@@ -2,7 +2,9 @@
 
 use super::reread::reread;
 use crate::log::Motion;
-use crate::model::{AngleZero, Angles, Column, Dimension, Drive, Model, ParameterPath, Unit};
+use crate::model::{
+    AngleZero, Angles, Column, ColumnMean, Dimension, Drive, Model, ParameterPath, Unit,
+};
 use std::f64::consts::PI;
 
 /// A column of the logs, or of one joint of them (index from 0).
@@ -19,24 +21,32 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Its column, if the logs have it.
-    pub fn column(self, model: &Model) -> Option<&Column> {
+    /// Its columns, if the logs have it: one, or those of several servos.
+    pub fn columns(self, model: &Model) -> &[Column] {
         let joint = |joint: usize| model.log.joints.get(joint);
-        match self {
-            Quantity::Time => Some(&model.log.time),
-            Quantity::Position(j) => joint(j).map(|columns| &columns.position),
-            Quantity::Velocity(j) => joint(j)?.velocity.as_ref(),
-            Quantity::Input(j) => joint(j)?.input.as_ref(),
-        }
+        let mean = match self {
+            Quantity::Time => return std::slice::from_ref(&model.log.time),
+            Quantity::Position(j) => joint(j).and_then(|columns| columns.position.as_ref()),
+            Quantity::Velocity(j) => joint(j).and_then(|columns| columns.velocity.as_ref()),
+            Quantity::Input(j) => joint(j).and_then(|columns| columns.input.as_ref()),
+        };
+        mean.map_or(&[], ColumnMean::columns)
     }
 
-    fn column_mut(self, model: &mut Model) -> Option<&mut Column> {
-        match self {
-            Quantity::Time => Some(&mut model.log.time),
-            Quantity::Position(j) => model.log.joints.get_mut(j).map(|c| &mut c.position),
-            Quantity::Velocity(j) => model.log.joints.get_mut(j)?.velocity.as_mut(),
-            Quantity::Input(j) => model.log.joints.get_mut(j)?.input.as_mut(),
-        }
+    /// Its first column, which states the unit, if the logs have it.
+    pub fn column(self, model: &Model) -> Option<&Column> {
+        self.columns(model).first()
+    }
+
+    fn columns_mut(self, model: &mut Model) -> &mut [Column] {
+        let joints = &mut model.log.joints;
+        let mean = match self {
+            Quantity::Time => return std::slice::from_mut(&mut model.log.time),
+            Quantity::Position(j) => joints.get_mut(j).and_then(|c| c.position.as_mut()),
+            Quantity::Velocity(j) => joints.get_mut(j).and_then(|c| c.velocity.as_mut()),
+            Quantity::Input(j) => joints.get_mut(j).and_then(|c| c.input.as_mut()),
+        };
+        mean.map_or(&mut [], ColumnMean::columns_mut)
     }
 }
 
@@ -66,20 +76,20 @@ impl Remedy {
         match self {
             Remedy::Reverse(columns) => {
                 for quantity in columns {
-                    if let Some(column) = quantity.column_mut(&mut new) {
+                    for column in quantity.columns_mut(&mut new) {
                         column.reversed = !column.reversed;
                     }
                 }
             }
             Remedy::AngleZero(zero) => new.angle_zero = *zero,
             Remedy::Offset(quantity, offset) => {
-                if let Some(column) = quantity.column_mut(&mut new) {
+                for column in quantity.columns_mut(&mut new) {
                     column.offset = *offset;
                 }
             }
             Remedy::Unit(columns) => {
                 for (quantity, unit) in columns {
-                    if let Some(column) = quantity.column_mut(&mut new) {
+                    for column in quantity.columns_mut(&mut new) {
                         // A step of one tick goes with its unit.
                         let is_tick = column.resolution == Some(column.unit.si);
                         let declared = column.resolution.filter(|_| !is_tick);
@@ -95,12 +105,12 @@ impl Remedy {
                 // Another kind of drive has other values.
                 let has = |path: &ParameterPath| path.get(&new).is_some_and(f64::is_finite);
                 new.free = model.free.iter().copied().filter(has).collect();
-                if let Some(column) = Quantity::Input(*joint).column_mut(&mut new) {
+                for column in Quantity::Input(*joint).columns_mut(&mut new) {
                     column.unit = *unit;
                 }
             }
             Remedy::Shift(quantity, shift_s) => {
-                if let Some(column) = quantity.column_mut(&mut new) {
+                for column in quantity.columns_mut(&mut new) {
                     column.shift_s = *shift_s;
                 }
             }
@@ -148,30 +158,40 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
         }));
     }
     for joint in 0..model.link_count() {
-        let position = Quantity::Position(joint);
-        let slope = speed_slope(motions, joint);
-        let velocity = slope
-            .filter(|slope| *slope > 0.0)
-            .map(|_| Quantity::Velocity(joint));
-        all.push(Remedy::Reverse(
-            [position].into_iter().chain(velocity).collect(),
-        ));
-        let travel_rad = travel_rad(motions, joint);
-        let units = other_units(model, position).into_iter().filter(|unit| {
-            let now = model.log.joints[joint].position.unit.si;
-            PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / now))
-        });
-        all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
-        if joint > 0 {
-            let turned = model.log.joints[joint].position.offset + PI;
-            all.push(Remedy::Offset(position, turned));
-        }
+        all.extend(of_motion(model, motions, joint));
         if model.joints[joint].drive.is_driven() {
             let input = Quantity::Input(joint);
             all.push(Remedy::Reverse(vec![input]));
             let units = other_units(model, input).into_iter();
             all.extend(units.map(|unit| Remedy::Unit(vec![(input, unit)])));
         }
+    }
+    all
+}
+
+/// Other signs, units and half turns of what is measured of a joint: its angle, or its rate where
+/// that alone is.
+fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
+    let (position, velocity) = (Quantity::Position(joint), Quantity::Velocity(joint));
+    let Some(column) = position.column(model) else {
+        let Some(_) = velocity.column(model) else {
+            return Vec::new();
+        };
+        let units = other_units(model, velocity).into_iter();
+        let units = units.map(|unit| Remedy::Unit(vec![(velocity, unit)]));
+        return units.chain([Remedy::Reverse(vec![velocity])]).collect();
+    };
+    let slope = speed_slope(motions, joint);
+    let along = slope.filter(|slope| *slope > 0.0).map(|_| velocity);
+    let mut all = vec![Remedy::Reverse(
+        [position].into_iter().chain(along).collect(),
+    )];
+    let travel_rad = travel_rad(motions, joint);
+    let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
+    let units = other_units(model, position).into_iter().filter(plausible);
+    all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
+    if joint > 0 {
+        all.push(Remedy::Offset(position, column.offset + PI));
     }
     all
 }

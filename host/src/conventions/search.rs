@@ -123,7 +123,7 @@ impl Least {
 /// effects of the rig (a tilt, a delay) look like.
 fn least(bench: &Bench, remedy: &Remedy) -> Least {
     let strict = Least {
-        ratio: 0.5,
+        ratio: 0.6,
         better: 0.75,
     };
     let never = Least {
@@ -150,7 +150,7 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
             false => never,
         },
         _ => Least {
-            ratio: 0.75,
+            ratio: 0.8,
             better: 0.7,
         },
     }

@@ -37,7 +37,9 @@ fn a_log_that_agrees_is_left_alone() {
 #[test]
 fn a_reversed_position_is_refused_with_the_line_that_mends_it() {
     let (_folder, model, log) = arm("coulomb");
-    let findings = found(&model, &log, |m| m.log.joints[0].position.reversed = true);
+    let findings = found(&model, &log, |m| {
+        m.log.joints[0].position.as_mut().unwrap().columns_mut()[0].reversed = true
+    });
     let first = &findings[0];
     assert_eq!(
         (first.kind, first.severity),

@@ -14,9 +14,9 @@ mod transfer;
 pub use board::{Board, ServoPair};
 pub use observer::{reading_steps, state_steps};
 pub use replay::replay;
-pub use rust_file::plan_file;
+pub use rust_file::{plan_file, plan_of_file};
 pub use state::state_design;
-pub use transfer::{upload, verify};
+pub use transfer::{read_back, upload, verify};
 
 use crate::controllers::{BoardTiming, DesignModel, OnBoard};
 use crate::error::Result;

@@ -5,8 +5,9 @@ use crate::fitting::Candidate;
 use crate::log::Motion;
 use crate::model::{Drive, Model};
 
-/// Every effect of the library and of the model file at every place where it can act on this model and be seen in these motions, except
-/// those the model holds and those named in `without`.
+/// Every effect of the library and of the model's file at every place where it can act on this
+/// model and be seen in these motions, except those the model holds and those named in `without`; what comes with a servo also at all driven
+/// joints with the same values, where these are of one type.
 pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for &effect in EFFECTS
@@ -22,12 +23,37 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
                 .map(Some)
                 .collect(),
         };
-        let at_joints = joints.into_iter().map(|joint| Candidate { effect, joint });
-        found.extend(at_joints.filter(|candidate| {
-            !candidate.in_model(model) && visible(info.needs, model, motions, candidate.joint)
-        }));
+        let at = |joint| Candidate { effect, joint };
+        let can_act =
+            |joint| !at(joint).in_model(model) && visible(info.needs, model, motions, joint);
+        let twins = twins(model);
+        let share = |joint: &usize| joints.contains(&Some(*joint)) && can_act(Some(*joint));
+        let shared = effect.is_of_servo() && !twins.is_empty() && twins.iter().all(share);
+        found.extend(
+            joints
+                .iter()
+                .copied()
+                .filter(|joint| can_act(*joint))
+                .map(at),
+        );
+        found.extend(shared.then(|| at(None)));
     }
     found
+}
+
+/// All driven joints, if there are several and all of one servo type: of drives alike but for the
+/// gain, which is set in the servo.
+fn twins(model: &Model) -> Vec<usize> {
+    let driven = model.driven_joints();
+    let drive = |joint: &usize| &model.joints[*joint].drive;
+    let alike = |joint: &usize| {
+        let (first, own) = (drive(&driven[0]), drive(joint));
+        first.name() == own.name() && first.motor() == own.motor()
+    };
+    match driven.len() > 1 && driven.iter().all(alike) {
+        true => driven,
+        false => Vec::new(),
+    }
 }
 
 /// Whether an effect of this scope may act at a joint: on a driven joint only if its drive does

@@ -1,6 +1,7 @@
 //! A verdict with all that belongs to it: values, errors, rivals, and what was ruled out.
 
-use super::block_errors::{BlockErrors, reduction};
+use super::block_errors::{BlockErrors, gain, paired, reduction};
+use super::error_budget::error_budget;
 use super::evaluator::Evaluator;
 use super::explanation::{Evidence, Explanation};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
@@ -8,7 +9,7 @@ use super::hypothesis::Hypothesis;
 use super::values::{compared, contradicted};
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
-use crate::output::number::percent;
+use crate::output::number::{percent, short};
 
 /// Correlation from which two values are hardly told apart.
 const COLLINEAR: f64 = 0.95;
@@ -33,6 +34,7 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
         effects: effects(chosen, added),
         wrong_values: wrong_values(evidence, base),
         error: error(evidence),
+        budget: error_budget(evidence),
         alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
         base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),
@@ -57,7 +59,7 @@ fn error(evidence: &Evidence) -> ErrorReduction {
         before_rad: given.deciding_rms_rad(),
         refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),
-        floor_rad: evidence.evaluator.training.floor_rad(),
+        floor_rad: evidence.evaluator.training.floor(),
         held_out: evidence.evaluator.held_out.is_some(),
         reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
     }
@@ -68,7 +70,7 @@ fn error(evidence: &Evidence) -> ErrorReduction {
 fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
     let given = &evidence.evaluator.start;
     let contradicted = contradicted(given, base);
-    match evidence.explanation() {
+    match evidence.explanation {
         Explanation::Given(_) => Vec::new(),
         Explanation::Value(_) => compared(given, base),
         Explanation::Refit(_) if contradicted.is_empty() => compared(given, base),
@@ -133,13 +135,19 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
 fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
     let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
     let added = values.len() - hypothesis.added_values();
-    let own = match hypothesis.value {
-        Some(_) => &values[..],
-        None => &[],
-    };
+    let own: Vec<FittedValue> = values[..added]
+        .iter()
+        .filter(|value| {
+            hypothesis
+                .values
+                .iter()
+                .any(|own| own.to_string() == value.path)
+        })
+        .cloned()
+        .collect();
     Alternative {
         effects: effects(hypothesis, &values[added..]),
-        wrong_values: compared(&evaluator.start, own),
+        wrong_values: compared(&evaluator.start, &own),
         error_rad: hypothesis.deciding_rms_rad(),
     }
 }
@@ -148,10 +156,11 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
     let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
     let kept = |h: &Hypothesis| {
         let mut kept = rivals.iter().copied().chain([chosen]);
-        kept.any(|k| k.value == h.value && k.adds(&h.set))
+        kept.any(|k| k.values == h.values && k.adds(&h.set))
     };
-    let values = evidence.values.iter().chain(&evidence.values_refitted);
-    let rest = values.chain(&evidence.hypotheses).filter(|h| !kept(h));
+    let tried = evidence.tried;
+    let values = tried.values.iter().chain(&tried.values_refitted);
+    let rest = values.chain(&tried.hypotheses).filter(|h| !kept(h));
     rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
@@ -162,6 +171,10 @@ fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
     .collect()
 }
 
+fn fitted(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
+    hypothesis.evaluation.as_ref().map(|e| &e.training)
+}
+
 fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
     hypothesis.evaluation.as_ref()?.held_out.as_ref()
 }
@@ -169,9 +182,10 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
 fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     let evaluator = evidence.evaluator;
     // A value refitted alone is compared with the model as given.
-    let base = match hypothesis.value {
-        Some(_) if hypothesis.search.free.len() == 1 => &evaluator.given,
-        _ => &evaluator.base,
+    let alone = hypothesis.values.len() == 1 && hypothesis.search.free.len() == 1;
+    let base = match alone {
+        true => &evaluator.given,
+        false => &evaluator.base,
     };
     let why = if hypothesis.rests_on_bound() {
         "its best value is on a bound, where it vanishes or stops being physical"
@@ -182,18 +196,39 @@ fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
     } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
         "it fits the training motions and makes the held-out ones worse"
     } else {
-        match evidence.explanation() {
+        match evidence.explanation {
             Explanation::Given(_) => "what it gains may be chance",
             Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
                 "one more effect brings no significant reduction"
             }
             explanation if evaluator.clearly_worse(hypothesis, explanation.hypothesis(), base) => {
-                return format!("{} leaves significantly less", explanation.name());
+                return better(&explanation.name(), explanation.hypothesis(), hypothesis);
             }
             _ => "the chosen explanation does as well and is simpler",
         }
     };
     why.to_string()
+}
+
+/// That `best` is significantly better than another, in figures that show it.
+fn better(name: &str, best: &Hypothesis, other: &Hypothesis) -> String {
+    let lower = |of: fn(&Hypothesis) -> Option<&BlockErrors>| {
+        let [best, other] = [best, other].map(|h| of(h).map(|errors| short(errors.rms_rad())));
+        let [best, other] = [best?, other?].map(|shown| shown.parse::<f64>().ok());
+        Some(best? < other?)
+    };
+    if lower(held_out).or_else(|| lower(fitted)) == Some(true) {
+        return format!("{name} leaves significantly less");
+    }
+    if lower(fitted) == Some(true) {
+        return format!("{name} leaves significantly less of the fitted motions' error");
+    }
+    let gained = best.pooled().zip(other.pooled());
+    let gained = gained.map_or(0.0, |(best, other)| gain(&paired(&other, &best)));
+    format!(
+        "{name} is more likely, by {} in log-likelihood",
+        short(gained)
+    )
 }
 
 fn motions(evidence: &Evidence) -> Vec<MotionError> {

@@ -5,17 +5,26 @@ use super::findings::{Fold, ResidualStructure, Verdict};
 use super::hypothesis::Hypothesis;
 use super::verdict::{Kind, Signs};
 
-/// Everything the verdict rests on.
-pub(super) struct Evidence<'a> {
-    pub evaluator: &'a Evaluator<'a>,
-    /// Every set that was tried.
+/// Every explanation that was tried.
+pub(super) struct Tried {
+    /// Sets of effects.
     pub hypotheses: Vec<Hypothesis>,
-    /// Every single value of the given model that was refitted.
+    /// Every single value of the given model, refitted.
     pub values: Vec<Hypothesis>,
     /// The same along with the free values, for values that are not free.
     pub values_refitted: Vec<Hypothesis>,
     /// The smallest set that improves.
     pub best: Option<Hypothesis>,
+}
+
+/// Everything the verdict rests on.
+pub(super) struct Evidence<'a> {
+    pub evaluator: &'a Evaluator<'a>,
+    pub tried: &'a Tried,
+    /// The simplest explanation that is not clearly worse than the best.
+    pub explanation: Explanation<'a>,
+    /// Those whose predictions no noise lets these motions tell from it.
+    pub equivalents: &'a [Hypothesis],
     pub residual_structure: Option<ResidualStructure>,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: Option<f64>,
@@ -58,11 +67,10 @@ impl<'a> Explanation<'a> {
     }
 }
 
-impl Evidence<'_> {
+impl Tried {
     /// The simplest explanation that is not clearly worse than the best.
-    pub fn explanation(&self) -> Explanation<'_> {
-        let (evaluator, given) = (self.evaluator, &self.evaluator.given);
-        let base = &evaluator.base;
+    pub fn explanation<'a>(&'a self, evaluator: &'a Evaluator<'a>) -> Explanation<'a> {
+        let (given, base) = (&evaluator.given, &evaluator.base);
         let champion = match &self.best {
             Some(best) => Explanation::Effects(best),
             None if evaluator.improves(given, base) => Explanation::Refit(base),
@@ -81,14 +89,36 @@ impl Evidence<'_> {
             _ => champion,
         }
     }
+}
 
-    pub fn chosen(&self) -> &Hypothesis {
-        self.explanation().hypothesis()
+impl<'a> Evidence<'a> {
+    pub fn chosen(&self) -> &'a Hypothesis {
+        self.explanation.hypothesis()
     }
 
     /// Explanations no less simple than the chosen one that the data do not tell from it.
-    pub fn rivals(&self) -> Vec<&Hypothesis> {
-        match self.explanation() {
+    /// The simplest come first.
+    pub fn rivals(&self) -> Vec<&'a Hypothesis> {
+        let mut rivals = self.as_good();
+        for other in self.equivalents {
+            let is_same = |h: &&Hypothesis| h.values == other.values && h.adds(&other.set);
+            if !rivals.iter().any(is_same) {
+                rivals.push(other);
+            }
+        }
+        rivals.sort_by(|a, b| Hypothesis::by_simplicity(a, b));
+        rivals
+    }
+
+    /// Whether rivals leave the verdict open. The values that the file frees are what its owner
+    /// does not know: where they explain all, an effect that would too is only mentioned.
+    fn is_open(&self, rivals: &[&Hypothesis]) -> bool {
+        !rivals.is_empty() && !matches!(self.explanation, Explanation::Refit(_))
+    }
+
+    /// Explanations that are significantly no worse.
+    fn as_good(&self) -> Vec<&'a Hypothesis> {
+        match self.explanation {
             Explanation::Given(_) | Explanation::Refit(_) => Vec::new(),
             Explanation::Value(value) => self.rivals_of_value(value),
             Explanation::ValueAndRefit(value) => {
@@ -96,7 +126,7 @@ impl Evidence<'_> {
                 self.rivals_among(
                     value,
                     base,
-                    self.values_refitted.iter().chain(self.singles()),
+                    self.tried.values_refitted.iter().chain(self.singles()),
                 )
             }
             Explanation::Effects(best) => self.rivals_of_set(best),
@@ -104,34 +134,34 @@ impl Evidence<'_> {
     }
 
     /// Other values, and single effects unless the value is one that would be refitted anyway.
-    fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&Hypothesis> {
+    fn rivals_of_value(&self, value: &Hypothesis) -> Vec<&'a Hypothesis> {
         let (evaluator, given) = (self.evaluator, &self.evaluator.given);
         let refit_explains = !evaluator.clearly_worse(&evaluator.base, value, given);
         let effects = self.singles().filter(|_| !refit_explains);
-        self.rivals_among(value, given, self.values.iter().chain(effects))
+        self.rivals_among(value, given, self.tried.values.iter().chain(effects))
     }
 
-    fn singles(&self) -> impl Iterator<Item = &Hypothesis> {
-        self.hypotheses.iter().filter(|h| h.set.len() == 1)
+    fn singles(&self) -> impl Iterator<Item = &'a Hypothesis> + use<'a> {
+        self.tried.hypotheses.iter().filter(|h| h.set.len() == 1)
     }
 
-    fn rivals_among<'a>(
+    fn rivals_among(
         &self,
         value: &Hypothesis,
         reference: &Hypothesis,
         others: impl Iterator<Item = &'a Hypothesis>,
     ) -> Vec<&'a Hypothesis> {
         others
-            .filter(|h| h.value != value.value)
+            .filter(|h| h.values != value.values)
             .filter(|h| self.evaluator.improves(reference, h))
             .filter(|h| !self.evaluator.clearly_worse(h, value, reference))
             .collect()
     }
 
     /// Sets with no more values.
-    fn rivals_of_set(&self, best: &Hypothesis) -> Vec<&Hypothesis> {
+    fn rivals_of_set(&self, best: &Hypothesis) -> Vec<&'a Hypothesis> {
         let (evaluator, base) = (self.evaluator, &self.evaluator.base);
-        let others = self.hypotheses.iter().filter(|h| !h.adds(&best.set));
+        let others = self.tried.hypotheses.iter().filter(|h| !h.adds(&best.set));
         others
             .filter(|h| h.added_values() <= best.added_values())
             .filter(|h| evaluator.improves(base, h))
@@ -155,12 +185,12 @@ impl Evidence<'_> {
     }
 
     pub fn verdict(&self, rivals: &[&Hypothesis]) -> Verdict {
-        self.signs(!rivals.is_empty()).verdict()
+        self.signs(self.is_open(rivals)).verdict()
     }
 
     /// What the explanation improves on: the model as given, or the refitted one.
-    pub fn reference(&self) -> &Hypothesis {
-        match self.explanation() {
+    pub fn reference(&self) -> &'a Hypothesis {
+        match self.explanation {
             Explanation::Given(given) => given,
             Explanation::Value(_) | Explanation::Refit(_) => &self.evaluator.given,
             Explanation::ValueAndRefit(_) | Explanation::Effects(_) => &self.evaluator.base,
@@ -168,7 +198,7 @@ impl Evidence<'_> {
     }
 
     fn signs(&self, rivals: bool) -> Signs {
-        let (evaluator, explanation) = (self.evaluator, self.explanation());
+        let (evaluator, explanation) = (self.evaluator, self.explanation);
         let chosen = explanation.hypothesis();
         let structure = self.residual_structure.as_ref();
         let tolerance = evaluator.tolerance_rad.unwrap_or(0.0);

@@ -33,7 +33,7 @@ pub struct FittedEffect {
     pub kind: String,
     /// Name for people.
     pub title: String,
-    /// Joint counted from 1; absent when it acts on the whole rig.
+    /// Joint counted from 1; absent when it acts on the whole rig, or on all driven joints.
     pub joint: Option<usize>,
     /// Its values.
     pub parameters: Vec<FittedValue>,
@@ -100,6 +100,32 @@ pub struct MotionError {
     pub after_rad: f64,
 }
 
+/// Share of the squared error of the model as given that something removes, in units of the noise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BudgetShare {
+    /// Root-mean-square error of the model that is compared, rad: with the part alone, or without
+    /// it.
+    pub error_rad: f64,
+    /// The share; below zero where the error grows.
+    pub share: f64,
+    /// Lower end of its 95 % interval, by block bootstrap.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// A part of the explanation in the error budget.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BudgetedPart {
+    /// The effect as `id@joint`, the value's address, or `free values`: those that the file frees,
+    /// refitted.
+    pub part: String,
+    /// What it removes alone; of an effect, with the free values refitted.
+    pub alone: BudgetShare,
+    /// What goes only with it, all other parts refitted without it.
+    pub beyond_others: BudgetShare,
+}
+
 /// What the explanation gains where these motions are held out and the others fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fold {
@@ -127,6 +153,8 @@ pub struct Diagnosis {
     /// Error of the model as given, of the same refitted, with what was found, and of a perfect
     /// model.
     pub error: ErrorReduction,
+    /// How much of the error each part of the explanation removes.
+    pub budget: Vec<BudgetedPart>,
     /// Sets that do as well, when ambiguous.
     pub alternatives: Vec<Alternative>,
     /// Base values refitted along.
@@ -155,11 +183,11 @@ pub struct Diagnosis {
 }
 
 impl FittedEffect {
-    /// The effect as `handstand add` takes it: `coulomb@1`.
+    /// The effect as `handstand add` takes it: `coulomb@1`, `delay@all`.
     pub fn address(&self) -> String {
         match self.joint {
             Some(joint) => format!("{}@{joint}", self.kind),
-            None => self.kind.clone(),
+            None => format!("{}{}", self.kind, effects::at_all(&self.kind)),
         }
     }
 
@@ -209,6 +237,7 @@ impl Diagnosis {
                 held_out: false,
                 reduction: None,
             },
+            budget: Vec::new(),
             alternatives: Vec::new(),
             base: Vec::new(),
             ruled_out: Vec::new(),

@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 pub(super) struct Hypothesis {
     /// The effects added to the base, in the order they were added.
     pub set: Vec<Candidate>,
-    /// The value of the given model that is wrong, where that is the hypothesis: refitted alone, or
-    /// along with those that are free.
-    pub value: Option<ParameterPath>,
+    /// The values of the given model that are wrong, where that is the hypothesis: refitted alone,
+    /// or along with those that are free.
+    pub values: Vec<ParameterPath>,
     /// The fit on short windows.
     pub search: Fit,
     /// Its mean squared weighted residual.
@@ -52,7 +52,7 @@ impl Hypothesis {
     pub fn new(set: Vec<Candidate>, search: Fit) -> Hypothesis {
         Hypothesis {
             set,
-            value: None,
+            values: Vec::new(),
             search_mean: search.residuals.mean_square(),
             search,
             evaluation: None,
@@ -64,6 +64,14 @@ impl Hypothesis {
         a.search_mean.total_cmp(&b.search_mean)
     }
 
+    /// Orders hypotheses by the values they need, then those of the file before effects, then by
+    /// their error.
+    pub fn by_simplicity(a: &Hypothesis, b: &Hypothesis) -> Ordering {
+        let needs = |h: &Hypothesis| (h.values.len() + h.added_values(), h.set.len());
+        let needs = needs(a).cmp(&needs(b));
+        needs.then(a.deciding_mean().total_cmp(&b.deciding_mean()))
+    }
+
     /// Number of values the added effects bring.
     pub fn added_values(&self) -> usize {
         self.set.iter().map(|c| c.parameters().len()).sum()
@@ -71,8 +79,8 @@ impl Hypothesis {
 
     /// Names of the set, or of the value.
     pub fn names(&self) -> Vec<String> {
-        let value = self.value.iter().map(ToString::to_string);
-        value
+        let values = self.values.iter().map(ToString::to_string);
+        values
             .chain(self.set.iter().map(ToString::to_string))
             .collect()
     }
@@ -129,7 +137,7 @@ impl Hypothesis {
         let mut set = self.set.clone();
         let out = set.remove(leaving);
         let mut model = self.search.model.clone();
-        model.effects.retain(|e| Candidate::from(e) != out);
+        model.effects.retain(|instance| !out.is(instance));
         let mut free = base.search.free.clone();
         free.extend(set.iter().flat_map(|c| c.paths().collect::<Vec<_>>()));
         let (nodes, options) = (&self.search.nodes, FitOptions::iterations(iterations));
@@ -198,11 +206,8 @@ impl Hypothesis {
     /// stands in for another.
     pub fn rests_on_bound(&self) -> bool {
         let on_bound = self.fit().on_bound();
-        let added = match self.value {
-            Some(_) => on_bound.len() - 1,
-            None => on_bound.len() - self.added_values(),
-        };
-        on_bound[added..].contains(&true)
+        let own = self.values.len() + self.added_values();
+        on_bound[on_bound.len() - own..].contains(&true)
     }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::fitting::{Candidate, Fit, FitData, Node, Projector, residuals};
 use crate::model::Model;
+use nalgebra::{DMatrix, DVector};
 
 /// Initial values for a candidate, and how much of the squared residual they could remove.
 #[derive(Debug, Clone)]
@@ -86,11 +87,48 @@ pub(super) struct ProjectedResidual<'a> {
 
 impl<'a> ProjectedResidual<'a> {
     pub fn new(fit: &'a Fit) -> Self {
+        ProjectedResidual::of(fit, &fit.residuals.windows)
+    }
+
+    /// The same of another residual, window by window.
+    pub fn of(fit: &'a Fit, residual: &[Vec<f64>]) -> Self {
         let projector = Projector::new(fit);
         ProjectedResidual {
-            residual: projector.off(&fit.residuals.windows),
+            residual: projector.off(residual),
             projector,
         }
+    }
+
+    /// Sum of its squares.
+    pub fn size(&self) -> f64 {
+        let squares = self.residual.iter().flatten().map(|r| r * r);
+        squares.sum::<f64>().max(1e-300)
+    }
+
+    /// How much of each change of the prediction makes most of the residual, and the share of its
+    /// squares that they make together; `None` where they change nothing that the fit cannot.
+    pub fn span(&self, changes: &[Vec<Vec<f64>>]) -> Option<(Vec<f64>, f64)> {
+        let flat = |windows: Vec<Vec<f64>>| DVector::from_vec(windows.concat());
+        let columns = changes
+            .iter()
+            .map(|change| flat(self.projector.off(change)));
+        let columns: Vec<DVector<f64>> = columns.collect();
+        let target = flat(self.residual.clone());
+        let count = columns.len();
+        let lengths: Vec<f64> = columns.iter().map(|c| c.norm().max(1e-300)).collect();
+        // Columns of unit length; the ridge keeps those apart that are nearly one.
+        let normal = DMatrix::from_fn(count, count, |r, c| {
+            let cosine = columns[r].dot(&columns[c]) / (lengths[r] * lengths[c]);
+            if r == c { cosine + 1e-9 } else { cosine }
+        });
+        let right = DVector::from_fn(count, |r, _| columns[r].dot(&target) / lengths[r]);
+        let scaled = normal.cholesky()?.solve(&right);
+        let made = scaled.dot(&right) / self.size();
+        let weights = scaled
+            .iter()
+            .zip(&lengths)
+            .map(|(weight, length)| weight / length);
+        Some((weights.collect(), made))
     }
 
     /// The best starts of a candidate, best first, one for each shape.

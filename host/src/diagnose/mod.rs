@@ -6,15 +6,19 @@ mod budget;
 mod candidates;
 mod conclusion;
 mod consistency;
+mod equivalence;
+mod error_budget;
 mod evaluator;
 mod explanation;
 mod findings;
 mod horizon;
 mod hypothesis;
 mod initial_guess;
+mod inseparable;
 mod multistart;
 mod options;
 mod progress;
+mod replacement;
 mod residual_structure;
 mod restarts;
 mod search;
@@ -28,8 +32,8 @@ pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
-    Alternative, Diagnosis, FittedEffect, Fold, MotionError, ResidualStructure, RuledOut, Verdict,
-    WrongValue,
+    Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
+    ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

@@ -13,7 +13,7 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
-use super::explanation::{Evidence, Explanation};
+use super::explanation::{Evidence, Explanation, Tried};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
@@ -45,20 +45,26 @@ pub fn diagnose(
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
-    let (values, values_refitted) = (evaluator.try_values(), evaluator.try_values_refitted());
+    let tried = Tried {
+        values: evaluator.try_values(),
+        values_refitted: evaluator.try_values_refitted(),
+        hypotheses,
+        best,
+    };
+    let explanation = tried.explanation(&evaluator);
+    let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
     let mut evidence = Evidence {
         evaluator: &evaluator,
+        tried: &tried,
+        explanation,
+        equivalents: &equivalents,
         residual_structure: None,
         per_motion_reduction: None,
-        hypotheses,
-        values,
-        values_refitted,
-        best,
         folds: Vec::new(),
         seed: options.seed,
     };
     evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
-    if !matches!(evidence.explanation(), Explanation::Given(_)) {
+    if !matches!(evidence.explanation, Explanation::Given(_)) {
         evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
     }
     evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
@@ -216,7 +222,9 @@ impl Evaluator<'_> {
         let is_new = |changes: &&Vec<PredictionChange>| {
             changes.first().is_some_and(|change| {
                 let set = from.set_with(change.candidate);
-                !from.set.contains(&change.candidate) && !tried.iter().any(|t| t.adds(&set))
+                let mut kept = from.set.iter();
+                kept.all(|kept| !kept.overlaps(change.candidate, &self.start))
+                    && !tried.iter().any(|t| t.adds(&set))
             })
         };
         let new = self.changes.par_iter().filter(is_new);

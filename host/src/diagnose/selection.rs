@@ -128,6 +128,11 @@ impl Evaluator<'_> {
     }
 }
 
+/// Samples that count as independent, as a share of all.
+pub(super) fn effective_share(errors: &BlockErrors, fit: &Fit) -> f64 {
+    effective_samples(errors, fit) / errors.count().max(1) as f64
+}
+
 /// Samples that count as independent: fewer, the more neighbouring residuals agree.
 fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
     let (mut product, mut square) = (0.0, 1e-300);

@@ -5,7 +5,7 @@ use super::budget::{FINALISTS, FINISH, LOOK};
 use super::evaluator::Evaluator;
 use super::findings::WrongValue;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{FitData, FitOptions, FittedValue, fit};
+use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit, intervals};
 use crate::model::{JointField, LinkField, Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ impl Evaluator<'_> {
             let options = FitOptions::iterations(LOOK).rough();
             let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
             Hypothesis {
-                value: Some(path),
+                values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
             }
         };
@@ -56,7 +56,7 @@ pub(super) fn as_given(model: &Model, search: &FitData) -> Hypothesis {
 
 /// Addresses of the model's values that may be wrong. The length of the last link moves nothing, a
 /// passive or ideal drive has no figures, and what is infinite is switched off.
-fn values_of(model: &Model) -> Vec<ParameterPath> {
+pub(super) fn values_of(model: &Model) -> Vec<ParameterPath> {
     let last = model.link_count() - 1;
     let links = (0..=last).flat_map(|index| {
         let fields = LinkField::ALL.into_iter();
@@ -71,6 +71,45 @@ fn values_of(model: &Model) -> Vec<ParameterPath> {
     let all = links.chain(joints).chain(effects);
     all.filter(|path| path.get(model).is_some_and(f64::is_finite))
         .collect()
+}
+
+/// Values of one kind that may be wrong together: masses and inertias of all links, stall torques of
+/// all motors; none where there are not several.
+pub(super) fn kinds_of_values(model: &Model) -> Vec<Vec<ParameterPath>> {
+    let is_inertial = |path: &ParameterPath| {
+        let ParameterPath::Link { field, .. } = path else {
+            return false;
+        };
+        matches!(field, LinkField::Mass | LinkField::Inertia)
+    };
+    let is_torque = |path: &ParameterPath| {
+        let field = match path {
+            ParameterPath::Joint { field, .. } => Some(*field),
+            _ => None,
+        };
+        field == Some(JointField::StallTorque)
+    };
+    let all = values_of(model);
+    let of = |is: &dyn Fn(&ParameterPath) -> bool| {
+        let kind = all.iter().copied().filter(|path| is(path));
+        kind.collect::<Vec<ParameterPath>>()
+    };
+    let mut kinds = vec![of(&is_inertial), of(&is_torque)];
+    kinds.retain(|kind| kind.len() > 1);
+    kinds
+}
+
+/// Addresses of those of a fit's values that contradict the given model.
+pub(super) fn contradicted_paths(given: &Model, fit: &Fit, data: &FitData) -> Vec<ParameterPath> {
+    let Some((intervals, _)) = intervals(fit, data) else {
+        return Vec::new();
+    };
+    let free = fit.free.iter().zip(intervals);
+    let wrong = free.filter(|(path, interval)| {
+        let given = path.get(given);
+        given.is_some_and(|given| !(interval.low..=interval.high).contains(&given))
+    });
+    wrong.map(|(path, _)| *path).collect()
 }
 
 /// Fitted values beside those in the file.

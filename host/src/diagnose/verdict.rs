@@ -46,6 +46,9 @@ const UNEXPLAINED_SHARE: f64 = 0.35;
 /// An explanation that leaves more than this share of the squared error above the noise is not the
 /// whole of it.
 const MOST_LEFT: f64 = 0.125;
+/// So does one that leaves more than so many times the noise: what is true leaves hardly more than
+/// the noise, and what only resembles it leaves most.
+const MOST_FLOORS: f64 = 5.0;
 /// Where more than this share of what is left goes as every motion gets values of its own, they are
 /// no constants.
 const MOST_VARYING: f64 = 0.5;
@@ -94,9 +97,11 @@ impl Signs {
         self.free_form_low > least && self.free_form_share > UNEXPLAINED_SHARE
     }
 
-    /// Whether the explanation leaves a good part of the squared error above the noise.
+    /// Whether the explanation leaves a good part of the squared error above the noise, or an error
+    /// far above it.
     fn leaves_much(&self) -> bool {
-        self.left > FAR_OFF && self.left - 1.0 > MOST_LEFT * (self.before - 1.0)
+        let share = (self.left - 1.0) / (self.before - 1.0);
+        self.left > FAR_OFF && (share > MOST_LEFT || self.left.sqrt() > MOST_FLOORS)
     }
 }
 
@@ -252,6 +257,17 @@ mod tests {
             .verdict(),
             Verdict::Unexplained
         );
+    }
+
+    #[test]
+    fn what_leaves_five_times_the_noise_is_not_the_whole_however_much_it_removes() {
+        let left = |rms: f64| Signs {
+            before: 1e6,
+            left: rms * rms,
+            ..ABOVE
+        };
+        assert_eq!(left(4.9).verdict(), Verdict::Named);
+        assert_eq!(left(5.1).verdict(), Verdict::Unexplained);
     }
 
     #[test]

@@ -4,7 +4,9 @@
 //! the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
+use super::inseparable::inseparable;
 
+use crate::effects;
 use crate::output::number::{measured, percent, short, with_unit};
 
 /// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
@@ -124,6 +126,7 @@ fn rivals(diagnosis: &Diagnosis) -> String {
 
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = vec![headline(diagnosis)];
+    lines.extend(inseparable(diagnosis));
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
         lines.push(
             "It comes closest and is not the whole of it: do not take it for the cause.".into(),
@@ -312,13 +315,15 @@ fn pairs(diagnosis: &Diagnosis) -> Vec<String> {
 
 /// "Coulomb friction at joint 1".
 pub(crate) fn effect_name(effect: &FittedEffect) -> String {
-    at_joint(&effect.title, effect.joint)
+    at_joint(&effect.kind, &effect.title, effect.joint)
 }
 
-pub(crate) fn at_joint(title: &str, joint: Option<usize>) -> String {
-    match joint {
-        Some(joint) => format!("{title} at joint {joint}"),
-        None => title.to_string(),
+/// "Coulomb friction at joint 1", "delay of the drive at all driven joints", "tilt of the base".
+pub(crate) fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String {
+    match (joint, effects::at_all(kind)) {
+        (Some(joint), _) => format!("{title} at joint {joint}"),
+        (None, "") => title.to_string(),
+        (None, _) => format!("{title} at all driven joints"),
     }
 }
 

@@ -16,6 +16,8 @@ pub trait Lane:
     fn inverse(self) -> Self;
     /// Sine and cosine of an angle, rad.
     fn sin_cos(self) -> (Self, Self);
+    /// Of several angles, rad: all sines and all cosines.
+    fn sin_cos_of<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]);
 }
 
 impl Lane for f64 {
@@ -33,6 +35,11 @@ impl Lane for f64 {
     fn sin_cos(self) -> (Self, Self) {
         let ([sin], [cos]) = sin_cos([self]);
         (sin, cos)
+    }
+
+    #[inline(always)]
+    fn sin_cos_of<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+        sin_cos(angles)
     }
 }
 
@@ -55,6 +62,12 @@ impl<const L: usize> Lane for Lanes<L> {
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = sin_cos(self.0);
         (Lanes(sin), Lanes(cos))
+    }
+
+    #[inline(always)]
+    fn sin_cos_of<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let both = angles.map(Lane::sin_cos);
+        (both.map(|both| both.0), both.map(|both| both.1))
     }
 }
 

@@ -40,6 +40,10 @@ impl Effect for Armature {
         &INFO
     }
 
+    fn is_of_servo(&self) -> bool {
+        true
+    }
+
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         rig.chain.links[joint].armature_kg_m2 += values[0];
     }

@@ -44,4 +44,8 @@ impl Effect for Coulomb {
     fn friction(&self, values: &[f64], _at: &Slide) -> f64 {
         values[0]
     }
+
+    fn friction_is_constant(&self) -> bool {
+        true
+    }
 }

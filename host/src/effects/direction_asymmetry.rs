@@ -43,4 +43,8 @@ impl Effect for DirectionAsymmetry {
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {
         values[0] * at.direction
     }
+
+    fn friction_is_constant(&self) -> bool {
+        true
+    }
 }

@@ -97,6 +97,15 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
         .or_else(|| expression::named(id))
 }
 
+/// What follows the id of an effect that acts on no single joint, in addresses: nothing for one of
+/// the whole rig, `@all` for one of joints, which then acts on all driven ones.
+pub fn at_all(id: &str) -> &'static str {
+    match named(id).map(|effect| effect.info().scope) {
+        Some(Scope::WholeRig) | None => "",
+        Some(_) => "@all",
+    }
+}
+
 /// A departure from the rigid chain with ideal drives and sensors.
 ///
 /// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in
@@ -114,6 +123,15 @@ pub trait Effect: Sync + fmt::Debug {
     /// difference sees the jumps pass.
     fn difference(&self) -> f64 {
         SMOOTH_DIFFERENCE
+    }
+
+    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
+    /// it with the same values; else with the link, the bearing or the calibration of one joint.
+    fn is_of_servo(&self) -> bool {
+        matches!(
+            self.info().site,
+            Site::Timing | Site::Command | Site::Drive | Site::Friction | Site::Sensor
+        )
     }
 
     /// Body: changes the rig's constants before a motion is simulated.
@@ -143,6 +161,12 @@ pub trait Effect: Sync + fmt::Debug {
     /// is the breakaway torque: a joint at rest is held until pushed harder than that.
     fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
         0.0
+    }
+
+    /// Friction: whether it is the same at every speed and load, so that it stays until the joint
+    /// turns back. Such a law is simulated faster.
+    fn friction_is_constant(&self) -> bool {
+        false
     }
 
     /// Sensor, static: what the encoder reads at this joint angle, rad.

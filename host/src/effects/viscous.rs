@@ -42,6 +42,10 @@ impl Effect for Viscous {
         &INFO
     }
 
+    fn is_of_servo(&self) -> bool {
+        true
+    }
+
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         -values[0] * at.speed_rad_s
     }

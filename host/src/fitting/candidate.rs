@@ -1,17 +1,20 @@
-//! An effect of the library at a place of the model: by its name, its addresses, its start values.
+//! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
+//! its name, its addresses, its start values.
 
 use crate::effects::expression::defined;
-use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope};
+use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope, at_all};
 use crate::error::Error;
 use crate::model::{EffectInstance, Model, ParameterPath};
 use std::fmt;
 
-/// An effect of the library at a joint, or on the whole rig.
+/// An effect of the library at a joint, at all driven joints with the same values, or on the whole
+/// rig.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Joint index from 0; `None` for the whole rig.
+    /// Joint index from 0; `None` for the whole rig, or for all driven joints if the effect is one
+    /// of joints.
     pub joint: Option<usize>,
 }
 
@@ -19,7 +22,10 @@ impl fmt::Display for Candidate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.joint {
             Some(joint) => write!(f, "{}@{}", self.effect.info().id, joint + 1),
-            None => write!(f, "{}", self.effect.info().id),
+            None => {
+                let id = self.effect.info().id;
+                write!(f, "{id}{}", at_all(id))
+            }
         }
     }
 }
@@ -34,8 +40,8 @@ impl From<&EffectInstance> for Candidate {
 }
 
 impl Candidate {
-    /// The effect at the joint that `name` says (`coulomb`, `coulomb@2`), if the model has room for
-    /// it. Where there is only one joint it need not be named.
+    /// The effect at the joint that `name` says (`coulomb`, `coulomb@2`, `delay@all`), if the model
+    /// has room for it. Where there is only one joint it need not be named.
     ///
     /// # Errors
     /// As [`CandidateError`] says.
@@ -56,6 +62,21 @@ impl Candidate {
     /// Whether the model holds it already.
     pub fn in_model(&self, model: &Model) -> bool {
         model.has_effect(self.effect.info().id, self.joint)
+    }
+
+    /// Whether an effect of a model is this one.
+    pub fn is(&self, instance: &EffectInstance) -> bool {
+        Candidate::from(instance) == *self
+    }
+
+    /// Whether both are one effect and act on one place: at all driven joints the same acts on each
+    /// of them.
+    pub fn overlaps(&self, other: Candidate, model: &Model) -> bool {
+        let alone = Model {
+            effects: vec![self.instance(&[])],
+            ..model.clone()
+        };
+        alone.has_effect(other.effect.info().id, other.joint)
     }
 
     /// Whether its law jumps, so that the squared error over its values is full of steps and false
@@ -132,6 +153,12 @@ pub enum CandidateError {
         /// Joints of the model.
         count: usize,
     },
+    /// The effect acts on none of the driven joints, or none is driven.
+    #[error("`{id}` acts on no driven joint of this model")]
+    NoDrivenJoint {
+        /// The effect.
+        id: &'static str,
+    },
     /// The model has no such joint.
     #[error("there is no joint `{joint}`")]
     UnknownJoint {
@@ -169,7 +196,10 @@ impl From<CandidateError> for Error {
                 format!("did you mean `{near}`? `handstand effects` lists all")
             }
             E::WholeRig { id } => format!("write `{id}`"),
-            E::JointNotNamed { id, count } => format!("say which: `{id}@1` to `{id}@{count}`"),
+            E::JointNotNamed { id, count } => {
+                format!("say which: `{id}@1` to `{id}@{count}`, or `{id}@all` that are driven")
+            }
+            E::NoDrivenJoint { .. } => "name a joint, counted from 1".to_string(),
             E::UnknownJoint { count, .. } => {
                 format!("joints of this model count from 1 to {count}")
             }
@@ -210,6 +240,12 @@ fn joint(
         (Scope::WholeRig, Some(_)) => return Err(CandidateError::WholeRig { id }),
         (_, None) if count == 1 => 0,
         (_, None) => return Err(CandidateError::JointNotNamed { id, count }),
+        (scope, Some("all")) => {
+            return match scope != Scope::PassiveJoint && !model.driven_joints().is_empty() {
+                true => Ok(None),
+                false => Err(CandidateError::NoDrivenJoint { id }),
+            };
+        }
         (_, Some(at)) => match at.parse::<usize>() {
             Ok(joint) if (1..=count).contains(&joint) => joint - 1,
             _ => {

@@ -6,6 +6,7 @@
 //! so that P + 3 n simulations make the whole Jacobian, and eliminating the start states leaves a
 //! system of P unknowns (`normal`).
 
+mod assumed;
 mod broyden;
 mod candidate;
 mod cluster;
@@ -39,12 +40,12 @@ pub use fit::{Fit, FitOptions};
 pub use fitted_value::{FittedValue, fitted_values};
 pub use free::{FreeError, free_parameters};
 pub use node::Node;
-pub use noise::{estimated_resolution_rad, noise_rad};
+pub use noise::{estimated_resolution, noise};
 pub use profile::profile_intervals;
 pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};
-pub use residual::{Residuals, predicted_rad, residuals};
-pub use solve::{fit, fit_start_states};
+pub use residual::{Residuals, predicted, residuals};
+pub use solve::{fit, fit_start_states, guessed_nodes};
 pub use staged::fit_staged;
 pub(crate) use student::quantile_975;
 pub use windows::{MotionWindow, in_windows};

@@ -77,22 +77,27 @@ impl Refitted {
         candidate: Candidate,
         logs: Vec<(String, String)>,
     ) -> (EffectInstance, FitRecord) {
-        let (mut values, mut intervals) = (Vec::new(), Vec::new());
-        for path in candidate.paths() {
-            let at = self.free.iter().position(|free| *free == path);
-            if let Some(value) = at.map(|at| &self.values[at]) {
-                values.push(value.value);
-                intervals.push((value.key.clone(), value.low, value.high));
-            }
-        }
-        let fitted = FitRecord {
-            intervals,
+        let own: Vec<ParameterPath> = candidate.paths().collect();
+        let values = own.iter().filter_map(|path| {
+            let at = self.free.iter().position(|free| free == path)?;
+            Some(self.values[at].value)
+        });
+        let fitted = self.record(logs).about(|path| own.contains(&path));
+        (candidate.instance(&values.collect::<Vec<f64>>()), fitted)
+    }
+
+    /// How all fitted values came about; `logs` as for [`added`](Self::added).
+    pub fn record(&self, logs: Vec<(String, String)>) -> FitRecord {
+        let values = self.free.iter().zip(&self.values);
+        FitRecord {
+            intervals: values
+                .map(|(path, value)| (*path, value.low, value.high))
+                .collect(),
             logs,
             error_before: self.error.before_rad,
             error_after: self.error.after_rad,
             error_unit: "rad".to_string(),
-        };
-        (candidate.instance(&values), fitted)
+        }
     }
 }
 
@@ -173,14 +178,14 @@ fn finish(
     if !split.held_out.is_empty() {
         windows.extend(judged.motion_windows(horizon));
     }
-    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms_rad(&judged);
+    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms(&judged);
     Ok(Refitted {
         values,
         error: ErrorReduction {
             before_rad: rms_rad(before),
             refitted_rad: None,
             after_rad: rms_rad(&found.model),
-            floor_rad: judged.floor_rad(),
+            floor_rad: judged.floor(),
             held_out: !split.held_out.is_empty(),
             reduction: None,
         },

@@ -110,6 +110,23 @@ impl SerialLink for Serial {
     }
 }
 
+/// What to do about a port that may not be opened.
+pub const PERMISSION_REMEDY: &str = "join the group that owns serial ports, then log in again: \
+     sudo usermod -aG dialout $USER";
+
+/// Whether this user may read and write a port; it is not opened, which would tell the device.
+pub fn may_open(name: &str) -> bool {
+    #[cfg(unix)]
+    {
+        use rustix::fs::{Access, access};
+        access(name, Access::READ_OK | Access::WRITE_OK).is_ok()
+    }
+    #[cfg(not(unix))]
+    {
+        ports().iter().any(|port| port == name)
+    }
+}
+
 /// Names of the serial ports that are there.
 pub fn ports() -> Vec<String> {
     let found = serialport::available_ports().unwrap_or_default();
@@ -128,18 +145,23 @@ fn refused(name: &str, baud: u32, error: &serialport::Error) -> Error {
     let (what, remedy) = match error.kind() {
         Kind::Io(ErrorKind::PermissionDenied) => (
             "no permission to open it".to_string(),
-            "join the group that owns serial ports, then log in again: sudo usermod -aG dialout $USER".to_string(),
+            PERMISSION_REMEDY.to_string(),
         ),
         _ if text.contains("busy") || text.contains("lock") => (
             "another program uses it".to_string(),
             format!("close that program; `fuser {name}` names it"),
         ),
-        Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => ("there is no such port".to_string(), there_are()),
+        Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => {
+            ("there is no such port".to_string(), there_are())
+        }
         Kind::InvalidInput => (
             format!("it cannot run at {baud} baud"),
             "57600 is the CM-5's speed, 1000000 the servos' own".to_string(),
         ),
-        _ => (format!("cannot be opened: {}", error.description), there_are()),
+        _ => (
+            format!("cannot be opened: {}", error.description),
+            there_are(),
+        ),
     };
     Error::device(format!("{name}: {what}"), remedy)
 }

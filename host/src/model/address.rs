@@ -60,6 +60,7 @@ fn joint_of(
         (None, true) => Ok(None),
         (None, false) => Err(PathReason::MissingJoint { text, id }),
         (Some(_), true) => Err(PathReason::WholeRig { text, id }),
+        (Some("all"), false) => Ok(None),
         (Some(joint), false) => match counted(joint) {
             Some(index) => Ok(Some(index)),
             None => Err(PathReason::NoJoint {

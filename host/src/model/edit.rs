@@ -4,26 +4,16 @@ mod reading;
 
 pub use reading::{changed_lines, set_reading};
 
+mod provenance;
+
+pub use provenance::{FitRecord, renew_provenance};
+
 use super::path::ParameterPath;
 use super::{EffectInstance, Model};
+use crate::effects::Scope;
 use crate::error::{Error, Place, Result};
 use std::path::Path;
-use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
-
-/// How an effect's values came about, written as `[effect.fitted]`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FitRecord {
-    /// Key of the parameter, and the interval's low and high end in its unit.
-    pub intervals: Vec<(String, f64, f64)>,
-    /// Name and SHA-256 of every log it was fitted to.
-    pub logs: Vec<(String, String)>,
-    /// Error without the effect, in `error_unit`.
-    pub error_before: f64,
-    /// Error with the effect, in `error_unit`.
-    pub error_after: f64,
-    /// Unit of both errors: `rad`.
-    pub error_unit: String,
-}
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
 /// The text with one more `[[effect]]` at the end of those it has; `path` only names it in errors.
 ///
@@ -44,14 +34,23 @@ pub fn add_effect(
     table.decor_mut().set_prefix("\n");
     let info = effect.effect.info();
     table.insert("kind", toml_edit::value(info.id));
-    if let Some(joint) = effect.joint {
-        table.insert("joint", toml_edit::value(joint as i64 + 1));
+    match effect.joint {
+        Some(joint) => {
+            table.insert("joint", toml_edit::value(joint as i64 + 1));
+        }
+        None if info.scope != Scope::WholeRig => {
+            table.insert("joint", toml_edit::value("all"));
+        }
+        None => {}
     }
     for (parameter, value) in info.parameters.iter().zip(&effect.values) {
         table.insert(parameter.key, Item::Value(number(*value)));
     }
     if let Some(fitted) = fitted {
-        table.insert("fitted", Item::Table(provenance(fitted)));
+        table.insert(
+            "fitted",
+            Item::Table(fitted.table(|path| path.key().to_string())),
+        );
     }
     let effects = document
         .entry("effect")
@@ -115,6 +114,7 @@ fn owner(document: &mut DocumentMut, path: ParameterPath) -> Option<&mut dyn Tab
         ParameterPath::Link { index, .. } => tables(document.get_mut("link")?).nth(index),
         ParameterPath::Joint { index, .. } => tables(document.get_mut("joint")?).nth(index),
         ParameterPath::Effect { id, joint, .. } => tables(document.get_mut("effect")?).find(|t| {
+            // Neither a number stands there where it acts on all, nor where it acts on the rig.
             let at = t.get("joint").and_then(Item::as_integer);
             t.get("kind").and_then(Item::as_str) == Some(id) && at == joint.map(|j| j as i64 + 1)
         }),
@@ -203,30 +203,6 @@ fn append(list: &mut Array, text: &str) {
     }
     value.decor_mut().set_prefix(format!("{between}{begin}"));
     list.push_formatted(value);
-}
-
-fn provenance(fitted: &FitRecord) -> Table {
-    let mut table = Table::new();
-    let mut intervals = InlineTable::new();
-    for (key, low, high) in &fitted.intervals {
-        intervals.insert(
-            key,
-            Value::Array([number(*low), number(*high)].into_iter().collect()),
-        );
-    }
-    let mut logs = Array::new();
-    for (name, sha256) in &fitted.logs {
-        let mut log = InlineTable::new();
-        log.insert("name", name.as_str().into());
-        log.insert("sha256", sha256.as_str().into());
-        logs.push(log);
-    }
-    table.insert("intervals", toml_edit::value(intervals));
-    table.insert("logs", toml_edit::value(logs));
-    table.insert("error_before", Item::Value(number(fitted.error_before)));
-    table.insert("error_after", Item::Value(number(fitted.error_after)));
-    table.insert("error_unit", toml_edit::value(fitted.error_unit.as_str()));
-    table
 }
 
 /// The number with six significant digits, with an exponent where zeros would be counted.

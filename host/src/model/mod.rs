@@ -19,7 +19,7 @@ pub mod suggest;
 mod toml_reason;
 mod unit;
 
-pub use columns::{Column, JointColumns, LogColumns};
+pub use columns::{Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
 pub use field::{JointField, LinkField};
 pub use limits::Limits;
 pub use path::ParameterPath;
@@ -28,7 +28,7 @@ pub use reason::{ModelReason, PathReason};
 pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
-use crate::effects::{self, Effect};
+use crate::effects::{self, Effect, Scope};
 use crate::error::Result;
 use std::path::Path;
 
@@ -185,12 +185,13 @@ pub struct Motor {
     pub nominal_supply_v: Option<f64>,
 }
 
-/// One effect of the library with its values, at a joint or on the whole rig.
+/// One effect of the library with its values: at a joint, at all driven joints, or on the whole rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectInstance {
     /// Which effect.
     pub effect: &'static dyn Effect,
-    /// Joint index from 0; `None` acts on the whole rig.
+    /// Joint index from 0; `None` acts on the whole rig, and on every driven joint if the effect is
+    /// one of joints.
     pub joint: Option<usize>,
     /// Values in the order of the effect's parameters.
     pub values: Vec<f64>,
@@ -200,6 +201,25 @@ impl EffectInstance {
     /// Whether it is the effect of this id at this joint.
     fn is(&self, id: &str, joint: Option<usize>) -> bool {
         self.joint == joint && self.effect.info().id == id
+    }
+
+    /// Whether it acts on a joint, given by index from 0.
+    pub fn acts_on(&self, index: usize, joint: &Joint) -> bool {
+        match self.joint {
+            Some(own) => own == index,
+            None => self.effect.info().scope != Scope::WholeRig && joint.drive.is_driven(),
+        }
+    }
+
+    /// Whether it and the effect of this id there would act on one place.
+    fn meets(&self, id: &str, joint: Option<usize>, joints: &[Joint]) -> bool {
+        let meet = match (self.joint, joint) {
+            (Some(joint), None) | (None, Some(joint)) => joints
+                .get(joint)
+                .is_some_and(|joint| joint.drive.is_driven()),
+            (own, other) => own == other,
+        };
+        meet && self.effect.info().id == id
     }
 }
 
@@ -250,8 +270,18 @@ impl Model {
             }));
     }
 
-    /// Whether the model already holds this effect at this joint.
+    /// Effects that act on a joint, given by index from 0, in the order of the file; of the whole
+    /// rig none.
+    pub fn effects_at(&self, joint: usize) -> impl Iterator<Item = &EffectInstance> {
+        let effects = self.effects.iter();
+        effects.filter(move |effect| effect.acts_on(joint, &self.joints[joint]))
+    }
+
+    /// Whether the model already holds this effect at this joint; without one, on the whole rig or
+    /// at any driven joint.
     pub fn has_effect(&self, id: &str, joint: Option<usize>) -> bool {
-        self.effects.iter().any(|effect| effect.is(id, joint))
+        self.effects
+            .iter()
+            .any(|effect| effect.meets(id, joint, &self.joints))
     }
 }

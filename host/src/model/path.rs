@@ -24,11 +24,12 @@ pub enum ParameterPath {
         /// Which number.
         field: JointField,
     },
-    /// A value of an effect: `coulomb@1.torque_nm`, or `base_tilt.angle_rad` for the whole rig.
+    /// A value of an effect: `coulomb@1.torque_nm`, `delay@all.delay_s` of all driven joints, or
+    /// `base_tilt.angle_rad` of the whole rig.
     Effect {
         /// The effect's id.
         id: &'static str,
-        /// Joint from the base; `None` for the whole rig.
+        /// Joint from the base; `None` for the whole rig, or for all driven joints.
         joint: Option<usize>,
         /// Position among its parameters.
         parameter: usize,
@@ -135,7 +136,7 @@ impl fmt::Display for ParameterPath {
             ParameterPath::Joint { index, .. } => write!(f, "joint{}", index + 1)?,
             ParameterPath::Effect { id, joint, .. } => match joint {
                 Some(joint) => write!(f, "{id}@{}", joint + 1)?,
-                None => write!(f, "{id}")?,
+                None => write!(f, "{id}{}", effects::at_all(id))?,
             },
         }
         write!(f, ".{}", self.key())
@@ -165,6 +166,8 @@ mod tests {
             "joint2.no_load_speed_rad_s",
             "coulomb@1.torque_nm",
             "delay@2.delay_s",
+            "delay@all.delay_s",
+            "base_tilt.angle_rad",
         ] {
             let path: ParameterPath = text.parse().unwrap();
             assert_eq!(path.to_string(), text);

@@ -136,6 +136,11 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// Whether this text stands under `key`.
+    pub fn is_text(&self, key: &str, text: &str) -> bool {
+        self.items.get(key).and_then(Item::as_str) == Some(text)
+    }
+
     /// The text under `key`, if there is one; never empty.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>> {
         match self.get(key, "text in quotes", Item::as_str)? {
@@ -189,6 +194,12 @@ impl<'a> Table<'a> {
                 })
         });
         texts.collect::<Result<_>>().map(Some)
+    }
+
+    /// Whether the item under `key` is a list.
+    pub fn is_list(&self, key: &str) -> bool {
+        let item = self.items.get(key);
+        item.is_some_and(|item| item.is_array() || item.is_array_of_tables())
     }
 
     /// The table under `key`, if there is one.

@@ -49,6 +49,12 @@ pub enum ModelReason {
         /// The effect.
         id: &'static str,
     },
+    /// An effect at all driven joints that acts on none of them.
+    #[error("`{id}` acts on no driven joint of this model")]
+    NoDrivenJoint {
+        /// The effect.
+        id: &'static str,
+    },
     /// An effect at a joint that it cannot act on.
     #[error("`{id}` acts on {wanted} joints only, and joint {} is `{drive}`", joint + 1)]
     UnsuitedJoint {
@@ -80,6 +86,15 @@ pub enum ModelReason {
         quantity: &'static str,
         /// What that measures.
         wanted: Dimension,
+    },
+    /// A log of which no joint is measured.
+    #[error("[log] names neither a position nor a velocity of any joint")]
+    NothingMeasured,
+    /// A list of columns without any.
+    #[error("`{quantity}` names no column")]
+    NoColumns {
+        /// The quantity.
+        quantity: &'static str,
     },
     /// An input column for a passive joint.
     #[error("a passive joint has no input")]
@@ -145,12 +160,15 @@ impl Reason for ModelReason {
             MissingColumns { .. } => "add one `[[log.joint]]` for each `[[joint]]`, in order",
             EffectTwice { .. } => "keep one of the two, or give it another joint",
             WholeRig { .. } => "leave the joint out",
+            NoDrivenJoint { .. } => "name a joint, counted from 1",
             UnsuitedJoint { wanted, .. } => {
                 return format!("name a {wanted} joint, or another effect").into();
             }
             UnknownUnit { wanted, .. } | OtherDimension { wanted, .. } => {
                 return format!("write one of: {}", units(wanted)).into();
             }
+            NothingMeasured => "name the column of an angle, or of a rate: `velocity`",
+            NoColumns { .. } => "name one, such as { column = \"q_rad\", unit = \"rad\" }",
             PassiveInput => "remove `input`, or say what drives the joint",
             MissingInput { wanted, .. } => {
                 let unit = wanted.unit_names().next().unwrap_or("1");
@@ -182,7 +200,7 @@ pub enum PathReason {
         /// The names known there.
         known: Vec<&'static str>,
     },
-    /// What follows the `@` is no count from 1.
+    /// What follows the `@` is neither a count from 1 nor `all`.
     #[error("`{text}`: `{joint}` is no joint")]
     NoJoint {
         /// The text.
@@ -216,7 +234,7 @@ impl Reason for PathReason {
                 "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`".into()
             }
             PathReason::UnknownName { name, known, .. } => suggest(name, known),
-            PathReason::NoJoint { .. } => "joints count from 1".into(),
+            PathReason::NoJoint { .. } => "joints count from 1; `all` are the driven ones".into(),
             PathReason::WholeRig { text, id } => format!("write `{id}.{}`", key(text)),
             PathReason::MissingJoint { text, id } => {
                 format!("write `{id}@1.{}` for the first joint", key(text))

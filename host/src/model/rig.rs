@@ -2,7 +2,7 @@
 
 use super::Model;
 use crate::dynamics::{Chain, ChainLink};
-use crate::effects::{Rig, Site};
+use crate::effects::{Rig, Scope, Site};
 
 impl Model {
     /// The rigid chain of the links alone, without any effect.
@@ -30,8 +30,12 @@ impl Model {
         };
         for instance in &self.effects {
             if instance.effect.info().site == Site::Body {
-                let joint = instance.joint.unwrap_or(0);
-                instance.effect.body(&instance.values, joint, &mut rig);
+                let whole = instance.effect.info().scope == Scope::WholeRig;
+                for (joint, own) in self.joints.iter().enumerate() {
+                    if instance.acts_on(joint, own) || (whole && joint == 0) {
+                        instance.effect.body(&instance.values, joint, &mut rig);
+                    }
+                }
             }
         }
         rig

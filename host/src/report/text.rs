@@ -1,10 +1,11 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_interval,
+    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_ends, with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::effects;
 use crate::fitting::{FittedValue, in_windows};
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
@@ -23,6 +24,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
         effects(&diagnosis.effects),
         wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
+        budget(&diagnosis.budget),
         alternatives(&diagnosis.alternatives),
         ruled_out(diagnosis),
         residual_structure(diagnosis),
@@ -50,7 +52,11 @@ fn effects(effects: &[FittedEffect]) -> Option<String> {
     let columns: &[TableColumn<(&FittedEffect, &FittedValue)>] = &[
         ("Effect", &|(effect, _)| effect.title.clone()),
         ("Joint", &|(effect, _)| {
-            effect.joint.map_or("rig".into(), |joint| joint.to_string())
+            let all = match effects::at_all(&effect.kind) {
+                "@all" => "all",
+                _ => "rig",
+            };
+            effect.joint.map_or(all.into(), |joint| joint.to_string())
         }),
         ("Parameter", &|(_, fitted)| fitted.key.clone()),
         ("Value", &|(_, fitted)| ends(fitted)[0].clone()),
@@ -111,6 +117,29 @@ fn folds(folds: &[Fold]) -> Option<String> {
     let each = each.map(|fold| format!("{} -> {}", mrad(fold.before_rad), mrad(fold.after_rad)));
     let each: Vec<String> = each.collect();
     (!each.is_empty()).then(|| format!("With other motions held out: {} mrad.", each.join(", ")))
+}
+
+/// What each part of an explanation of several removes.
+fn budget(parts: &[BudgetedPart]) -> Option<String> {
+    let columns: &[TableColumn<&BudgetedPart>] = &[
+        ("Error budget", &|part| part.part.clone()),
+        ("Alone", &|part| with_ends(&part.alone)),
+        ("leaves, mrad", &|part| mrad(part.alone.error_rad)),
+        ("Beyond the others", &|part| with_ends(&part.beyond_others)),
+        ("without it, mrad", &|part| {
+            mrad(part.beyond_others.error_rad)
+        }),
+    ];
+    if parts.len() < 2 {
+        return None;
+    }
+    Some(format!(
+        "Share of the squared error of the model as given that each part removes\n{}",
+        lines(
+            table_of(&parts.iter().collect::<Vec<_>>(), columns),
+            &[1, 2, 3, 4]
+        )?
+    ))
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Option<String> {

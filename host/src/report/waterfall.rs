@@ -1,10 +1,10 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
 use super::page::{Section, table};
-use super::words::in_mrad;
+use super::words::{in_mrad, set_name, with_ends};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
-use crate::diagnose::MotionError;
+use crate::diagnose::{BudgetedPart, MotionError};
 use crate::output::number::{mrad, percent};
 use crate::plot::{Bar, largest};
 use maud::{Markup, html};
@@ -16,11 +16,13 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         .filter(|comparison| !comparison.signals.is_empty())
         .collect();
     let motions = report.diagnosis.as_ref().map_or(&[][..], |d| &d.motions);
+    let budget = report.diagnosis.as_ref().map_or(&[][..], |d| &d.budget);
     if chain.is_empty() && motions.is_empty() {
         return None;
     }
     let body = html! {
         @if !chain.is_empty() { (steps(&chain)) }
+        @if !budget.is_empty() { (by_part(budget)) }
         @if !motions.is_empty() { (by_motion(motions)) }
     };
     Some(Section {
@@ -34,9 +36,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn steps(chain: &[&Comparison]) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
+    let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
-    let floor = pooled(&chain[0].signals, |signal| signal.floor_rad);
+    let floor = pooled(chain[0], |signal| signal.floor);
     let full = largest(errors.iter().copied().chain([floor]));
     let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
     let bar = |index: usize| Bar {
@@ -68,6 +70,31 @@ fn change(from: f64, to: f64) -> String {
     let share = to / from - 1.0;
     let sign = if share < 0.0 { "−" } else { "+" };
     format!("{sign}{}", percent(share.abs()))
+}
+
+/// The error budget: shares that need not add up.
+fn by_part(budget: &[BudgetedPart]) -> Markup {
+    let headings = html! {
+        th { "Part" } th.number { "Alone" } th.number { "Leaves, mrad" }
+        th.number { "Beyond the others" } th.number { "Without it, mrad" }
+    };
+    let rows = html! {
+        @for part in budget {
+            tr {
+                td { (set_name(std::slice::from_ref(&part.part))) }
+                td.number { (with_ends(&part.alone)) }
+                td.number { (mrad(part.alone.error_rad)) }
+                td.number { (with_ends(&part.beyond_others)) }
+                td.number { (mrad(part.beyond_others.error_rad)) }
+            }
+        }
+    };
+    html! {
+        h3 { "What each part removes" }
+        p { "Shares of the squared error of the model as given, with 95 % intervals. Parts that \
+             stand in for each other remove much alone and little beyond the others." }
+        (table(&headings, &rows))
+    }
 }
 
 fn by_motion(motions: &[MotionError]) -> Markup {

@@ -1,7 +1,7 @@
 //! Words that the page and the text share.
 
 use crate::diagnose::words::{at_joint, headline, listed};
-use crate::diagnose::{Diagnosis, RuledOut, Verdict};
+use crate::diagnose::{BudgetShare, Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::output::number::{measured, mrad, percent};
@@ -19,6 +19,12 @@ pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
+/// A share with the ends of its interval: "96 % (94 % to 97 %)".
+pub(super) fn with_ends(share: &BudgetShare) -> String {
+    let [share, low, high] = [share.share, share.low, share.high].map(percent);
+    format!("{share} ({low} to {high})")
+}
+
 /// A set of `id@joint` by its effects' titles.
 pub(super) fn set_name(set: &[String]) -> String {
     let name = |id: &String| {
@@ -27,7 +33,7 @@ pub(super) fn set_name(set: &[String]) -> String {
             None => (id.as_str(), None),
         };
         match named(kind) {
-            Some(effect) => at_joint(effect.info().title, joint),
+            Some(effect) => at_joint(kind, effect.info().title, joint),
             None => id.clone(),
         }
     };

@@ -20,6 +20,7 @@ pub(super) struct At<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Forces<R: Rows> {
     work: Workspace,
+    closed: R::Closed,
     held: R::Of<bool>,
     torque: R::Of<f64>,
     drive_torque: R::Of<f64>,
@@ -29,17 +30,29 @@ pub(super) struct Forces<R: Rows> {
 }
 
 impl<R: Rows> Forces<R> {
-    /// For `n` joints.
-    pub fn new(n: usize) -> Self {
+    /// For the joints of `plant`.
+    pub fn new(plant: &Plant) -> Self {
+        let n = plant.len();
         let zeros = || R::filled(0.0, n);
         Forces {
             work: Workspace::new(n),
+            closed: R::closed(plant),
             held: R::filled(false, n),
             torque: zeros(),
             drive_torque: zeros(),
             loads: zeros(),
             bearing: zeros(),
             zeros: zeros(),
+        }
+    }
+
+    /// Takes the torques that follow from the inputs alone, which must then stay.
+    #[inline]
+    pub fn command(&mut self, plant: &Plant, inputs: &[DriveInput]) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            if plan.follows_input {
+                self.drive_torque[joint] = plan.drive_torque_nm(inputs[joint], 0.0, 0.0);
+            }
         }
     }
 
@@ -52,13 +65,43 @@ impl<R: Rows> Forces<R> {
         at: At<'_>,
         out: &mut [f64],
     ) {
+        self.find_torques(plant, inputs, at, out);
+        self.solve(plant, at, out);
+    }
+
+    /// One step of `h` s from these angles and speeds, in place, where the torques stay as they
+    /// are through it and the equations have a closed form; else nothing, and false.
+    #[inline]
+    pub fn step(
+        &mut self,
+        plant: &Plant,
+        inputs: &[DriveInput],
+        contact: &[Contact],
+        (angle, speed): (&mut R::Of<f64>, &mut R::Of<f64>),
+        h: f64,
+    ) -> bool {
+        if !plant.torques_stay {
+            return false;
+        }
+        let at = At {
+            angle: angle.as_ref(),
+            speed: speed.as_ref(),
+            contact,
+        };
+        self.find_torques(plant, inputs, at, &mut []);
+        R::step(&self.closed, angle, speed, &self.torque, &self.held, h)
+    }
+
+    /// Torques at the joints, and which of them are held. `out` is scratch.
+    #[inline]
+    fn find_torques(&mut self, plant: &Plant, inputs: &[DriveInput], at: At<'_>, out: &mut [f64]) {
         let n = self.torque.as_ref().len();
         for (joint, &input) in inputs[..n].iter().enumerate() {
             let plan = &plant.joints[joint];
             let speed = at.speed[joint];
             self.held[joint] = at.contact[joint] == Contact::Held;
             let drive = match plan.drive {
-                Drive::Passive => 0.0,
+                _ if plan.follows_input => self.drive_torque[joint],
                 Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, at.angle);
                     plan.drive_torque_nm(input, reading, speed)
@@ -91,7 +134,6 @@ impl<R: Rows> Forces<R> {
                 self.torque[joint] -= direction * self.friction_nm(plant, joint, speed, direction);
             }
         }
-        self.solve(plant, at, out);
     }
 
     /// Friction of a joint at the loads found last, N m; at speed 0 the breakaway torque.
@@ -116,7 +158,13 @@ impl<R: Rows> Forces<R> {
             .max(0.0)
     }
 
+    #[inline]
     fn solve(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+        let (angle, speed) = (at.angle, at.speed);
+        if let Some(found) = R::forward(&self.closed, angle, speed, &self.torque, &self.held) {
+            out.copy_from_slice(found.as_ref());
+            return;
+        }
         plant.rig.chain.forward(
             &mut self.work,
             plant.base_m_s2,

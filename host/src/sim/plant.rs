@@ -1,8 +1,9 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
+use super::run::Start;
 use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
 use crate::log::Motion;
-use crate::model::{Angles, Drive, Model};
+use crate::model::{Angles, Drive, MeasuredSignal, Model};
 
 /// Most values an effect has.
 const MOST_VALUES: usize = 4;
@@ -27,6 +28,8 @@ impl ActiveEffect {
 pub(super) struct JointPlan {
     pub drive: Drive,
     pub full_torque_nm: f64,
+    /// Whether the drive's torque follows from its input alone.
+    pub follows_input: bool,
     pub delay_s: f64,
     pub command: Vec<ActiveEffect>,
     pub torque: Vec<ActiveEffect>,
@@ -45,9 +48,13 @@ pub struct Plant {
     pub(super) base_m_s2: [f64; 2],
     pub(super) zero_rad: f64,
     pub(super) absolute: bool,
+    /// Per joint: whether the log holds its rate alone, which is then what is predicted.
+    pub(super) rates: Vec<bool>,
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
     pub(super) step_s: f64,
+    /// Whether every torque stays until an input changes or a joint stops or starts.
+    pub(super) torques_stay: bool,
     pub(super) needs_gear_load: bool,
     pub(super) needs_bearing_load: bool,
     /// Per joint, per sample: the measured speed of another moment; empty without a placebo.
@@ -70,30 +77,43 @@ impl Plant {
         let mut needs = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {
             for instance in model.effects.iter().filter(|e| e.effect == *effect) {
-                let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) else {
-                    continue;
-                };
-                joint.add(*effect, &instance.values);
-                needs.push(effect.info().needs);
+                for (index, joint) in joints.iter_mut().enumerate() {
+                    if instance.acts_on(index, &model.joints[index]) {
+                        joint.add(*effect, &instance.values);
+                        needs.push(effect.info().needs);
+                    }
+                }
             }
         }
         for instance in model.effects.iter().filter(|e| e.effect.is_users()) {
-            if let Some(joint) = instance.joint.and_then(|j| joints.get_mut(j)) {
-                joint.add(instance.effect, &instance.values);
+            for (index, joint) in joints.iter_mut().enumerate() {
+                if instance.acts_on(index, &model.joints[index]) {
+                    joint.add(instance.effect, &instance.values);
+                }
             }
         }
+        for joint in &mut joints {
+            joint.follows_input = joint.torque_is_held();
+        }
+        let columns = model.log.joints.iter();
+        let mut rates: Vec<bool> = columns
+            .map(|columns| columns.signal() == MeasuredSignal::Rate)
+            .collect();
+        rates.resize(joints.len(), false);
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
+            rates,
             senses,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
-            joints,
             zero_rad: model.angle_zero.from_hanging_rad(),
             absolute: model.angles == Angles::Absolute,
             step_s: model.step_s,
+            torques_stay: joints.iter().all(JointPlan::torque_stays),
             needs_gear_load: needs.contains(&Needs::GearLoad),
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
             shuffled_rad_s: shuffled(model, motion),
+            joints,
         }
     }
 
@@ -131,6 +151,13 @@ impl Plant {
             .encode
             .iter()
             .fold(true_angle, |angle, e| e.effect.encode(e.values(), angle))
+    }
+
+    /// What a joint's encoder reads at a state and how fast that changes, rad and rad/s, before any
+    /// effect with memory.
+    pub fn reading(&self, joint: usize, state: &Start) -> (f64, f64) {
+        let angle_rad = self.encoded_rad(joint, &state.angle_rad);
+        (angle_rad, self.encoded_rad_s(joint, &state.speed_rad_s))
     }
 
     /// How fast those readings change, rad/s, at these relative speeds.
@@ -193,6 +220,7 @@ impl JointPlan {
         JointPlan {
             drive: drive.clone(),
             full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
+            follows_input: false,
             delay_s: 0.0,
             command: Vec::new(),
             torque: Vec::new(),
@@ -206,6 +234,12 @@ impl JointPlan {
     /// Whether friction or a torque that follows angle and speed acts on the joint.
     pub(super) fn has_joint_effects(&self) -> bool {
         !self.torque.is_empty() || !self.friction.is_empty()
+    }
+
+    /// Whether nothing but its input and the direction in which it slides changes its torque.
+    fn torque_stays(&self) -> bool {
+        let constant = |e: &ActiveEffect| e.effect.friction_is_constant();
+        self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
     }
 
     /// Change of the encoder's reading per change of the joint's angle.
@@ -247,13 +281,21 @@ fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
     if !model.effects.iter().any(|e| e.effect.info().id == PLACEBO) {
         return Vec::new();
     }
-    motion
-        .position_rad
-        .iter()
-        .map(|position| {
+    let joints = motion.position_rad.iter().enumerate();
+    joints
+        .map(|(joint, position)| {
             let last = position.len() - 1;
             let reach = 3.min(last);
+            let logged = motion.velocity_rad_s[joint].as_ref();
+            let logged = logged.filter(|_| position.iter().all(|angle| angle.is_nan()));
             let speed = |k: usize| {
+                if let Some(logged) = logged {
+                    return if logged[k].is_finite() {
+                        logged[k]
+                    } else {
+                        0.0
+                    };
+                }
                 let (a, b) = (k.saturating_sub(reach), (k + reach).min(last));
                 let speed = (position[b] - position[a]) / (motion.time_s[b] - motion.time_s[a]);
                 if speed.is_finite() { speed } else { 0.0 }

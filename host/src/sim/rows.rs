@@ -3,6 +3,8 @@
 //! The equations are written once; where the number of joints is known when they are compiled,
 //! their loops are unrolled.
 
+use super::plant::Plant;
+use crate::dynamics::Dense;
 use std::fmt::Debug;
 use std::ops::IndexMut;
 
@@ -11,8 +13,34 @@ pub(super) trait Rows {
     /// A row.
     type Of<T: Copy + Debug>: Clone + Debug + AsRef<[T]> + AsMut<[T]> + IndexMut<usize, Output = T>;
 
+    /// Equations in closed form, where they are faster than recursion along the chain.
+    type Closed: Clone + Debug;
+
     /// A row of this value for each of `joints`.
     fn filled<T: Copy + Debug>(value: T, joints: usize) -> Self::Of<T>;
+
+    /// The equations of a plant of that many joints.
+    fn closed(plant: &Plant) -> Self::Closed;
+
+    /// What [`Chain::forward`](crate::dynamics::Chain::forward) gives; none where it is to do it.
+    fn forward(
+        closed: &Self::Closed,
+        angle_rad: &[f64],
+        speed_rad_s: &[f64],
+        torque_nm: &Self::Of<f64>,
+        held: &Self::Of<bool>,
+    ) -> Option<Self::Of<f64>>;
+
+    /// A step of `h` s under constant torques, by the equations in closed form; false where there
+    /// are none.
+    fn step(
+        closed: &Self::Closed,
+        angle_rad: &mut Self::Of<f64>,
+        speed_rad_s: &mut Self::Of<f64>,
+        torque_nm: &Self::Of<f64>,
+        held: &Self::Of<bool>,
+        h: f64,
+    ) -> bool;
 }
 
 /// `N` joints.
@@ -21,9 +49,46 @@ pub(super) struct Few<const N: usize>;
 
 impl<const N: usize> Rows for Few<N> {
     type Of<T: Copy + Debug> = [T; N];
+    type Closed = Option<Dense<N>>;
 
     fn filled<T: Copy + Debug>(value: T, _: usize) -> [T; N] {
         [value; N]
+    }
+
+    fn closed(plant: &Plant) -> Option<Dense<N>> {
+        // One link has a formula of its own.
+        match N {
+            1 => None,
+            _ => Dense::new(&plant.rig.chain, plant.rig.gravity_turn_rad),
+        }
+    }
+
+    #[inline]
+    fn forward(
+        closed: &Option<Dense<N>>,
+        angle_rad: &[f64],
+        speed_rad_s: &[f64],
+        torque_nm: &[f64; N],
+        held: &[bool; N],
+    ) -> Option<[f64; N]> {
+        let (angle, speed) = (angle_rad.try_into().ok()?, speed_rad_s.try_into().ok()?);
+        Some(closed.as_ref()?.forward(angle, speed, torque_nm, held))
+    }
+
+    #[inline]
+    fn step(
+        closed: &Option<Dense<N>>,
+        angle_rad: &mut [f64; N],
+        speed_rad_s: &mut [f64; N],
+        torque_nm: &[f64; N],
+        held: &[bool; N],
+        h: f64,
+    ) -> bool {
+        let Some(dense) = closed else {
+            return false;
+        };
+        dense.step(angle_rad, speed_rad_s, torque_nm, held, h);
+        true
     }
 }
 
@@ -33,8 +98,26 @@ pub(super) struct Many;
 
 impl Rows for Many {
     type Of<T: Copy + Debug> = Vec<T>;
+    type Closed = ();
 
     fn filled<T: Copy + Debug>(value: T, joints: usize) -> Vec<T> {
         vec![value; joints]
+    }
+
+    fn closed(_: &Plant) {}
+
+    fn forward((): &(), _: &[f64], _: &[f64], _: &Vec<f64>, _: &Vec<bool>) -> Option<Vec<f64>> {
+        None
+    }
+
+    fn step(
+        (): &(),
+        _: &mut Vec<f64>,
+        _: &mut Vec<f64>,
+        _: &Vec<f64>,
+        _: &Vec<bool>,
+        _: f64,
+    ) -> bool {
+        false
     }
 }

@@ -52,7 +52,7 @@ impl<R: Rows> Stepper<R> {
             angle: zeros(),
             speed: zeros(),
             contact: R::filled(Contact::Free, n),
-            forces: Forces::new(n),
+            forces: Forces::new(plant),
             runge_kutta: RungeKutta::new(zeros()),
             start_angle: zeros(),
             start_speed: zeros(),
@@ -79,6 +79,7 @@ impl<R: Rows> Stepper<R> {
     /// Advances by `step_s` under constant inputs.
     pub fn advance(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
+        self.forces.command(plant, inputs);
         // Chatter between contacts can't go on for ever: after this many events the step is taken
         // as it comes.
         for _ in 0..8 {
@@ -156,6 +157,10 @@ impl<R: Rows> Stepper<R> {
 
     fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
+        let state = (&mut self.angle, &mut self.speed);
+        if forces.step(plant, inputs, contact, state, h) {
+            return;
+        }
         self.runge_kutta.step(
             &mut self.angle,
             &mut self.speed,
@@ -176,5 +181,65 @@ impl<R: Rows> Stepper<R> {
                 }
             },
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::named;
+    use crate::model::{EffectInstance, Model};
+    use crate::sim::rows::{Few, Many};
+    use std::path::Path;
+
+    /// Joints that stop, stick and let go, by the equations in closed form and by recursion.
+    fn farthest(effects: &[(&str, usize, &[f64])]) -> (f64, usize) {
+        let text = include_str!("../../models/handstand.toml");
+        let mut model = Model::parse(text, Path::new("handstand.toml")).unwrap();
+        let instance = |&(id, joint, values): &(&str, usize, &[f64])| EffectInstance {
+            effect: named(id).unwrap(),
+            joint: Some(joint),
+            values: values.to_vec(),
+        };
+        model.effects = effects.iter().map(instance).collect();
+        let plant = Plant::without_log(&model);
+        let (angle, speed) = ([0.3, 0.2, -0.4], [0.0, 0.5, -0.2]);
+        let mut closed = Stepper::<Few<3>>::new(&plant, &angle, &speed);
+        let mut recursive = Stepper::<Many>::new(&plant, &angle, &speed);
+        let (mut off, mut held) = (0.0_f64, 0);
+        for step in 0..600 {
+            let pull = if step / 100 % 2 == 0 { 0.06 } else { -0.03 };
+            let input = |share: f64| DriveInput {
+                input: share * pull,
+                ..DriveInput::ZERO
+            };
+            let inputs = [DriveInput::ZERO, input(1.0), input(-0.5)];
+            closed.advance(&plant, &inputs, 1e-3);
+            recursive.advance(&plant, &inputs, 1e-3);
+            let count =
+                |contact: &[Contact]| contact.iter().filter(|c| **c == Contact::Held).count();
+            assert_eq!(
+                count(&closed.contact),
+                count(&recursive.contact),
+                "step {step}"
+            );
+            held += count(&closed.contact);
+            for joint in 0..3 {
+                off = off.max((closed.angle[joint] - recursive.angle[joint]).abs());
+            }
+        }
+        (off, held)
+    }
+
+    #[test]
+    fn closed_form_and_recursion_are_one_motion() {
+        let coulomb: [(&str, usize, &[f64]); 2] =
+            [("coulomb", 1, &[0.05]), ("coulomb", 2, &[0.02])];
+        let viscous: [(&str, usize, &[f64]); 1] = [("viscous", 2, &[0.01])];
+        for effects in [coulomb.to_vec(), [&coulomb[..], &viscous].concat()] {
+            let (off, held) = farthest(&effects);
+            assert!(off < 1e-9, "{off}");
+            assert!(held > 50, "{held}");
+        }
     }
 }

@@ -69,7 +69,9 @@ pub struct LeftOut {
 /// Effects of `model` that the design of `designed_for`, the model or a part of it, leaves out.
 pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<LeftOut> {
     let omitted = |e: &EffectInstance| {
-        let is = |o: &crate::synth::OmittedEffect| o.effect == e.effect && Some(o.joint) == e.joint;
+        let is = |o: &crate::synth::OmittedEffect| {
+            o.effect == e.effect && e.acts_on(o.joint, &model.joints[o.joint])
+        };
         design.omitted.iter().any(is)
     };
     let instances = model.effects.iter();

@@ -50,8 +50,7 @@ impl<'a> JointAt<'a> {
         // Those of one site act in the library's order, however the file lists them.
         let mut effects = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {
-            let here = |e: &&EffectInstance| e.effect == *effect && e.joint == Some(joint);
-            effects.extend(model.effects.iter().filter(here));
+            effects.extend(model.effects_at(joint).filter(|e| e.effect == *effect));
         }
         let users = |e: &&EffectInstance| e.effect.is_users() && e.joint == Some(joint);
         effects.extend(model.effects.iter().filter(users));

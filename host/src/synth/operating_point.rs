@@ -70,9 +70,10 @@ pub(super) fn equations(model: &Model) -> EquationsOfMotion {
 /// Drives that differ in delay.
 pub fn input_delay_s(model: &Model) -> Result<f64, DesignError> {
     let delay = |joint: usize| -> f64 {
-        let at = model.effects.iter().filter(|e| e.joint == Some(joint));
         // An empty sum would be -0.
-        at.fold(0.0, |sum, e| sum + e.effect.delay_s(&e.values))
+        model
+            .effects_at(joint)
+            .fold(0.0, |sum, e| sum + e.effect.delay_s(&e.values))
     };
     let delays: Vec<f64> = model.driven_joints().into_iter().map(delay).collect();
     let first = delays.first().copied().unwrap_or(0.0);

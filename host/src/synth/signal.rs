@@ -29,9 +29,8 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
 /// speed.
 pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     let limit = model
-        .effects
-        .iter()
-        .find(|e| e.joint == Some(joint) && e.effect.info().id == "torque_saturation")
+        .effects_at(joint)
+        .find(|e| e.effect.info().id == "torque_saturation")
         .and_then(|e| e.values.first().copied());
     match &model.joints[joint].drive {
         Drive::Passive | Drive::Duty(_) => 1.0,

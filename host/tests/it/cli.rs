@@ -33,6 +33,54 @@ fn help_lists_every_command() {
 }
 
 #[test]
+fn there_is_a_page_for_every_command_and_nothing_is_written_over() {
+    let bench = Bench::new();
+    let wrote = bench.run("man pages --json");
+    assert_eq!(wrote.code, Some(0), "{wrote:?}");
+    let pages = wrote.json()["pages"].as_array().unwrap().len();
+    assert_eq!(
+        std::fs::read_dir(bench.path("pages")).unwrap().count(),
+        pages
+    );
+    let page = std::fs::read_to_string(bench.path("pages/handstand-log-check.1")).unwrap();
+    assert!(
+        page.contains("handstand\\-log\\-check") || page.contains("log check"),
+        "{page}"
+    );
+    assert_eq!(bench.run("man pages").code, Some(2));
+    assert_eq!(bench.run("man pages --force").code, Some(0));
+}
+
+#[test]
+fn shells_are_told_every_command() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = bench.run(&format!("completions {shell}"));
+        assert_eq!(script.code, Some(0), "{script:?}");
+        for word in ["diagnose", "holdout", "virtual"] {
+            assert!(script.stdout.contains(word), "{shell} {word}");
+        }
+    }
+    assert_eq!(bench.run("completions tcsh").code, Some(2));
+}
+
+#[test]
+fn the_doctor_lists_ports_and_tools() {
+    let ran = Bench::new().run_with("doctor --json", &[("PATH", "/nowhere".into())]);
+    let found = ran.json();
+    let ports = found["ports"].as_array().unwrap();
+    let all_open = ports.iter().all(|port| port["may_open"] == true);
+    assert_eq!(ran.code, Some(i32::from(!all_open)), "{ran:?}");
+    let tools = found["tools"].as_array().unwrap();
+    let missing = |name: &str| {
+        tools
+            .iter()
+            .any(|t| t["name"] == name && t["path"].is_null())
+    };
+    assert!(missing("avr-gcc") && missing("Slurm"), "{ran:?}");
+}
+
+#[test]
 fn the_demo_leaves_nothing_where_it_is_run() {
     let bench = Bench::new();
     std::fs::create_dir(bench.path("temporary")).unwrap();

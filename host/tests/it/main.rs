@@ -3,6 +3,7 @@
 
 mod common;
 
+mod balance;
 mod bus;
 mod cli;
 mod closed_loop;
@@ -27,3 +28,4 @@ mod riccati;
 mod rounds;
 mod study;
 mod sysid;
+mod twins;

@@ -186,8 +186,8 @@ impl Spoiling {
         };
         let offset = |joint: usize| match remedy {
             Remedy::Offset(Quantity::Position(j), offset) if *j == joint => {
-                let given = spoiled.model.log.joints[joint].position.offset;
-                Some(offset - given)
+                let column = Quantity::Position(joint).column(&spoiled.model)?;
+                Some(offset - column.offset)
             }
             _ => None,
         };
@@ -247,9 +247,9 @@ fn input_factor(model: &Model, joint: usize) -> f64 {
 }
 
 fn declare(model: &mut Model, joint: usize, unit: &str, ticks: Option<f64>) {
-    let column = &mut model.log.joints[joint].position;
-    if let Some(unit) = Unit::named(unit, ticks) {
-        column.unit = unit;
+    let position = model.log.joints[joint].position.as_mut();
+    if let (Some(position), Some(unit)) = (position, Unit::named(unit, ticks)) {
+        position.columns_mut()[0].unit = unit;
     }
 }
 
@@ -353,6 +353,7 @@ fn another_drive(model: &mut Model, motions: &mut [Motion], joint: usize, name: 
     if let (Some(column), Some(unit)) =
         (&mut model.log.joints[joint].input, Unit::named(unit, None))
     {
+        let column = &mut column.columns_mut()[0];
         // The written numbers stay what they are.
         let written = 1.0 / column.unit.si;
         column.unit = unit;

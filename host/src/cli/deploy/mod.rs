@@ -26,7 +26,7 @@
 //! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null),
 //! `fingerprint`, `bytes`, `uploaded`, `states_replayed`.
 
-mod board;
+pub mod board;
 mod build;
 
 use super::flash::{Loader, write};
@@ -140,7 +140,7 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Plan> {
             );
             return Err(Error::usage(what, "leave it out, or say --law state"));
         }
-        let machine = deploy::observer_design(&model, &board, &args.board.timing())?;
+        let machine = deploy::observer_design(&model, &board, &args.board.timing()?)?;
         return deploy::plan(&model, BoardLaw::Observer(&machine), &board);
     }
     let (reduced, request, made) = gains::requested(&args.gains, talk)?;

@@ -41,6 +41,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
             held_out: true,
             reduction: Some([0.9, 0.96]),
         },
+        budget: Vec::new(),
         alternatives: alternatives.collect(),
         base: Vec::new(),
         ruled_out: Vec::new(),
@@ -83,6 +84,11 @@ fn rivals_are_named_without_values_and_with_the_experiment_that_separates_them()
     assert_eq!(
         said.summary[0],
         "Equally good explanations: Coulomb friction at joint 1, or dead zone of the drive at joint 1."
+    );
+    assert_eq!(
+        said.summary[1],
+        "These logs cannot tell them apart; what parts them: with the torque off only friction \
+         remains."
     );
     assert!(said.summary.iter().all(|line| !line.contains("torque_nm")));
     assert_eq!(said.next.len(), 2, "{:?}", said.next);
@@ -194,4 +200,21 @@ fn names_are_joined_as_in_a_sentence() {
     assert_eq!(names(&["a", "b", "c"]), "a, b and c");
     assert_eq!(effect("coulomb", Some(2)).address(), "coulomb@2");
     assert_eq!(effect("base_tilt", None).address(), "base_tilt");
+}
+
+#[test]
+fn what_does_as_well_as_a_free_value_is_said() {
+    let mut diagnosis = said(Verdict::WrongValue, vec![], vec![]);
+    diagnosis.wrong_values = vec![wrong("link1.inertia_kg_m2", 0.001, 0.002)];
+    diagnosis.alternatives = vec![Alternative {
+        effects: vec![effect("armature", Some(1))],
+        wrong_values: Vec::new(),
+        error_rad: 2e-3,
+    }];
+    complete(&mut diagnosis);
+    assert_eq!(
+        diagnosis.summary[1],
+        "These logs cannot tell this from armature inertia at joint 1; what parts them: swing link 1 off its \
+         drive and time it."
+    );
 }

@@ -88,3 +88,39 @@ fn bodies_change_as_their_laws_say() {
     effect("base_tilt").body(&[0.1], 0, &mut turned);
     near(turned.gravity_turn_rad, -0.1);
 }
+
+#[test]
+fn friction_called_constant_is_that_and_no_other() {
+    for effect in EFFECTS.iter().filter(|e| e.info().site == Site::Friction) {
+        let values: Vec<f64> = effect
+            .info()
+            .parameters
+            .iter()
+            .map(|p| p.typical.1)
+            .collect();
+        let at = |speed_rad_s, gear_load_nm, bearing_load_n| {
+            let slide = Slide {
+                speed_rad_s,
+                direction: 1.0,
+                gear_load_nm,
+                bearing_load_n,
+            };
+            effect.friction(&values, &slide)
+        };
+        let rest = at(0.0, 0.0, 0.0);
+        let changes = [
+            (0.05, 0.0, 0.0),
+            (3.0, 0.0, 0.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 0.0, 1.0),
+        ]
+        .into_iter()
+        .any(|(speed, gear, bearing)| at(speed, gear, bearing) != rest);
+        assert_eq!(
+            effect.friction_is_constant(),
+            !changes,
+            "{}",
+            effect.info().id
+        );
+    }
+}

@@ -15,6 +15,11 @@ pub fn column(name: &str, unit: &str) -> Column {
     }
 }
 
+/// The first column of a quantity.
+pub fn first(columns: &mut Option<ColumnMean>) -> &mut Column {
+    &mut columns.as_mut().unwrap().columns_mut()[0]
+}
+
 /// `t_s, q, u` of one joint.
 pub fn columns() -> LogColumns {
     LogColumns {
@@ -26,9 +31,9 @@ pub fn columns() -> LogColumns {
         payload_at_m: 0.0,
         turned: None,
         joints: vec![JointColumns {
-            position: column("q", "rad"),
+            position: Some(column("q", "rad").into()),
             velocity: None,
-            input: Some(column("u", "rad")),
+            input: Some(column("u", "rad").into()),
         }],
         split_at_gap_s: None,
     }

@@ -82,26 +82,49 @@ fn values(drive: &Drive) -> [(&'static str, Option<f64>); 5] {
 
 fn set_columns(document: &mut DocumentMut, old: &Model, new: &Model) -> Option<()> {
     let log = document.get_mut("log")?;
-    set_column(log.get_mut("time")?, Some((&old.log.time, &new.log.time)))?;
+    let times = std::slice::from_ref(&old.log.time);
+    set_columns_of(
+        log.get_mut("time")?,
+        times,
+        std::slice::from_ref(&new.log.time),
+    )?;
     for (index, (old, new)) in old.log.joints.iter().zip(&new.log.joints).enumerate() {
         let joint = tables(log.get_mut("joint")?).nth(index)?;
         let pairs = [
-            ("position", Some((&old.position, &new.position))),
-            ("velocity", old.velocity.as_ref().zip(new.velocity.as_ref())),
-            ("input", old.input.as_ref().zip(new.input.as_ref())),
+            ("position", &old.position, &new.position),
+            ("velocity", &old.velocity, &new.velocity),
+            ("input", &old.input, &new.input),
         ];
-        for (key, pair) in pairs.into_iter().filter(|(_, pair)| pair.is_some()) {
-            set_column(joint.get_mut(key)?, pair)?;
+        for (key, old, new) in pairs {
+            if let (Some(old), Some(new)) = (old, new) {
+                set_columns_of(joint.get_mut(key)?, old.columns(), new.columns())?;
+            }
         }
     }
     Some(())
 }
 
-fn set_column(item: &mut Item, pair: Option<(&Column, &Column)>) -> Option<()> {
-    let Some((old, new)) = pair.filter(|(old, new)| old != new) else {
+/// The columns of one quantity: a table, or a list of tables.
+fn set_columns_of(item: &mut Item, old: &[Column], new: &[Column]) -> Option<()> {
+    if old == new {
         return Some(());
-    };
-    let table = item.as_table_like_mut()?;
+    }
+    if let Item::Value(Value::InlineTable(table)) = item {
+        set_column(table, old.first()?, new.first()?);
+        table.fmt();
+        return Some(());
+    }
+    if let Item::Table(table) = item {
+        set_column(table, old.first()?, new.first()?);
+        return Some(());
+    }
+    for (table, (old, new)) in tables(item).zip(old.iter().zip(new)) {
+        set_column(table, old, new);
+    }
+    Some(())
+}
+
+fn set_column(table: &mut dyn TableLike, old: &Column, new: &Column) {
     if old.unit != new.unit {
         put(table, "unit", new.unit.name.into());
         let ticks = (new.unit.name == "ticks").then(|| std::f64::consts::TAU / new.unit.si);
@@ -125,10 +148,6 @@ fn set_column(item: &mut Item, pair: Option<(&Column, &Column)>) -> Option<()> {
         let shift = (new.shift_s != 0.0).then(|| number(new.shift_s));
         put_or_remove(table, "shift_s", shift);
     }
-    if let Some(inline) = item.as_inline_table_mut() {
-        inline.fmt();
-    }
-    Some(())
 }
 
 fn put_or_remove(table: &mut dyn TableLike, key: &str, value: Option<Value>) {
@@ -176,13 +195,16 @@ mod tests {
 
     #[test]
     fn a_change_of_reading_is_one_of_lines() {
-        let lines = written(|m| m.log.joints[0].position.reversed = true);
+        let lines = written(|m| {
+            m.log.joints[0].position.as_mut().unwrap().columns_mut()[0].reversed = true
+        });
         let position = "position = { column = \"q\", unit = \"rad\", resolution_rad = 0.001, \
                         reversed = true } # counts";
         assert_eq!(lines, [(Some(13), position.to_string())]);
         let lines = written(|m| m.angle_zero = AngleZero::Upright);
         assert_eq!(lines, [(Some(3), "angle_zero = \"upright\"".to_string())]);
-        let lines = written(|m| m.log.joints[0].input.as_mut().unwrap().shift_s = -0.03);
+        let lines =
+            written(|m| m.log.joints[0].input.as_mut().unwrap().columns_mut()[0].shift_s = -0.03);
         let input = "input = { column = \"u\", unit = \"N m\", shift_s = -0.03 }";
         assert_eq!(lines, [(Some(14), input.to_string())]);
         assert_eq!(written(|_| ()), []);
@@ -200,7 +222,7 @@ mod tests {
                 },
             };
             let unit = crate::model::Unit::named("rad", None).unwrap();
-            m.log.joints[0].input.as_mut().unwrap().unit = unit;
+            m.log.joints[0].input.as_mut().unwrap().columns_mut()[0].unit = unit;
         });
         let lines: Vec<String> = lines.into_iter().map(|(_, line)| line).collect();
         assert_eq!(

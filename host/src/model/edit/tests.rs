@@ -17,7 +17,7 @@ fn effect(id: &str, joint: usize, value: f64) -> EffectInstance {
 
 fn fitted() -> FitRecord {
     FitRecord {
-        intervals: vec![("torque_nm".into(), 0.018, 0.022)],
+        intervals: vec![("coulomb@2.torque_nm".parse().unwrap(), 0.018, 0.022)],
         logs: vec![("drop \"1\".csv".into(), "ab12".into())],
         error_before: 0.012_345_678,
         error_after: 0.0021,
@@ -137,4 +137,48 @@ fn values_with_no_place_or_impossible_are_refused() {
         let error = set_values(MODEL, path(), &values).unwrap_err();
         assert!(error.to_string().contains(what), "{error}");
     }
+}
+
+#[test]
+fn the_origin_of_old_values_is_renewed_in_its_place() {
+    let added = effect("coulomb", 1, 0.02);
+    let text = add_effect(MODEL, path(), &added, Some(&fitted())).unwrap();
+    let mut record = fitted();
+    record.intervals = vec![
+        ("coulomb@2.torque_nm".parse().unwrap(), 0.03, 0.04),
+        ("link1.com_m".parse().unwrap(), 0.1, 0.2),
+    ];
+    record.logs[0].0 = "later.csv".into();
+    let renewed = renew_provenance(&text, path(), &record).unwrap();
+    assert!(
+        renewed.contains("intervals = { torque_nm = [0.03, 0.04] }\n"),
+        "{renewed}"
+    );
+    assert!(!renewed.contains("0.018"), "{renewed}");
+    assert!(!renewed.contains("drop "), "{renewed}");
+    let of_links = renewed.find("[fit.fitted]\nintervals = { \"link1.com_m\" = [0.1, 0.2] }\n");
+    assert!(of_links.is_some(), "{renewed}");
+    let twice = renew_provenance(&renewed, path(), &record).unwrap();
+    assert_eq!(twice, renewed);
+}
+
+#[test]
+fn an_effect_of_all_driven_joints_is_written_as_such() {
+    let mut added = effect("delay", 0, 0.02);
+    added.joint = None;
+    let model = MODEL.replace("kind = \"delay\"", "kind = \"torque_scale\"");
+    let model = model.replace("delay_s = ", "factor = ");
+    let text = add_effect(&model, path(), &added, None).unwrap();
+    assert!(
+        text.contains("kind = \"delay\"\njoint = \"all\"\ndelay_s = 0.02\n"),
+        "{text}"
+    );
+    let all: ParameterPath = "delay@all.delay_s".parse().unwrap();
+    let moved = set_values(&text, path(), &[(all, 0.03)]).unwrap();
+    assert!(
+        moved.contains("joint = \"all\"\ndelay_s = 0.03\n"),
+        "{moved}"
+    );
+    let twice = effect("delay", 1, 0.02);
+    assert!(add_effect(&moved, path(), &twice, None).is_err());
 }

@@ -3,7 +3,7 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Column, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
+use super::super::{Column, ColumnMean, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
 
@@ -58,13 +58,18 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
         }));
     }
     let pairs = tables.iter().zip(joints);
-    pairs.map(|(table, joint)| of_joint(table, joint)).collect()
+    let columns = pairs.map(|(table, joint)| of_joint(table, joint));
+    let columns: Vec<JointColumns> = columns.collect::<Result<_>>()?;
+    match columns.iter().any(|joint| joint.measured().is_some()) {
+        true => Ok(columns),
+        false => Err(log.bad_table(ModelReason::NothingMeasured)),
+    }
 }
 
 fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
-    let position = table.required_table("position")?;
-    let velocity = optional(table, "velocity", Dimension::Speed)?;
+    let position = mean(table, "position", Dimension::Angle)?;
+    let velocity = mean(table, "velocity", Dimension::Speed)?;
     let wanted = match joint.drive {
         Drive::Passive => None,
         Drive::Torque => Some(Dimension::Torque),
@@ -74,9 +79,8 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     };
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
-        (Some(wanted), true) => optional(table, "input", wanted)?,
+        (Some(wanted), true) => mean(table, "input", wanted)?,
         (None, true) => {
-            table.table("input")?;
             return Err(table.bad_key("input", ModelReason::PassiveInput));
         }
         (Some(wanted), false) => {
@@ -88,10 +92,23 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
         }
     };
     Ok(JointColumns {
-        position: column(&position, "position", Dimension::Angle)?,
+        position,
         velocity,
         input,
     })
+}
+
+/// The columns under `key`, if there are any: a table, or a list of tables whose mean counts.
+fn mean(table: &Table, key: &'static str, dimension: Dimension) -> Result<Option<ColumnMean>> {
+    let tables = match table.is_list(key) {
+        true => table.tables(key)?,
+        false => table.table(key)?.into_iter().collect(),
+    };
+    if table.has(key) && tables.is_empty() {
+        return Err(table.bad(key, ModelReason::NoColumns { quantity: key }));
+    }
+    let columns = tables.iter().map(|found| column(found, key, dimension));
+    Ok(ColumnMean::of(columns.collect::<Result<_>>()?))
 }
 
 /// The column under `key`, if there is one.

@@ -16,7 +16,8 @@ pub(super) fn read(
     for table in root.tables("effect")? {
         let effect = effect(&table, joints, laws)?;
         let id = effect.effect.info().id;
-        if effects.iter().any(|other| other.is(id, effect.joint)) {
+        let meets = |other: &EffectInstance| other.meets(id, effect.joint, joints);
+        if effects.iter().any(meets) {
             return Err(table.bad("kind", ModelReason::EffectTwice { id }));
         }
         effects.push(effect);
@@ -51,13 +52,21 @@ fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Resu
     })
 }
 
-/// The joint it acts on, if it acts on one.
+/// The joint it acts on; none if it acts on the whole rig, or on `"all"` driven joints.
 fn at(table: &Table, effect: &dyn Effect, joints: &[Joint]) -> Result<Option<usize>> {
     if effect.info().scope == Scope::WholeRig {
         let id = effect.info().id;
         return match table.has("joint") {
             true => Err(table.bad_key("joint", ModelReason::WholeRig { id })),
             false => Ok(None),
+        };
+    }
+    if table.is_text("joint", "all") {
+        let id = effect.info().id;
+        let driven = joints.iter().any(|joint| joint.drive.is_driven());
+        return match driven && effect.info().scope != Scope::PassiveJoint {
+            true => Ok(None),
+            false => Err(table.bad("joint", ModelReason::NoDrivenJoint { id })),
         };
     }
     let joint = table.required("joint", table.index("joint", joints.len())?)?;

@@ -161,7 +161,9 @@ fn motor(table: &Table) -> Result<Motor> {
 fn free(root: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
     let fit = root.table("fit")?;
     if let Some(fit) = &fit {
-        fit.only(&["free"])?;
+        fit.only(&["free", "fitted"])?;
+        // Where values came from: for people and reports, so any content will do.
+        fit.table("fitted")?;
     }
     let Some(named) = fit.map(|fit| fit.texts("free")).transpose()?.flatten() else {
         let effects = model.effects.iter();

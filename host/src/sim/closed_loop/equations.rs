@@ -19,7 +19,7 @@ impl Equations {
     /// The dense ones where torques are constant between commands, at most four links.
     pub(super) fn of(plant: &Plant) -> Equations {
         let held = |joint: &crate::sim::plant::JointPlan| {
-            !joint.has_joint_effects() && joint.torque_is_held()
+            !joint.has_joint_effects() && joint.follows_input
         };
         if plant.senses || !plant.joints.iter().all(held) {
             return Equations::General;

@@ -1,0 +1,73 @@
+//! `handstand --help`: the commands by the people who need them.
+
+use clap::Command;
+use std::fmt::Write as _;
+
+/// What people do, and the commands for it in the order in which they are used.
+const GROUPS: [(&str, &[&str]); 5] = [
+    (
+        "Measure",
+        &[
+            "excite", "log", "compare", "diagnose", "add", "fit", "effects", "view", "identify",
+            "map",
+        ],
+    ),
+    (
+        "Control",
+        &["gains", "study", "controllers", "delays", "robust", "paper"],
+    ),
+    (
+        "Robot",
+        &[
+            "bus", "record", "replay", "balance", "latency", "flash", "deploy", "virtual",
+        ],
+    ),
+    ("Learn", &["demo", "challenge"]),
+    ("Help", &["doctor", "completions", "man"]),
+];
+
+/// The command line with its commands grouped in the help.
+pub fn grouped(command: Command) -> Command {
+    let (header, literal) = {
+        let styles = command.get_styles();
+        (*styles.get_header(), *styles.get_literal())
+    };
+    let names = GROUPS.iter().flat_map(|(_, names)| names.iter());
+    let width = names.map(|name| name.len()).max().unwrap_or_default();
+    let mut text = String::new();
+    for (title, names) in GROUPS {
+        let _ = writeln!(text, "{header}{title}:{header:#}");
+        for name in names {
+            let about = command
+                .find_subcommand(name)
+                .and_then(Command::get_about)
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            let _ = writeln!(text, "  {literal}{name:<width$}{literal:#}  {about}");
+        }
+        text.push('\n');
+    }
+    let options = format!("{header}Options:{header:#}");
+    command.help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{text}{options}\n{{options}}{{after-help}}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn every_command_has_its_place() {
+        let command = super::super::Cli::command();
+        let mut there: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+        let mut listed: Vec<&str> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| names.to_vec())
+            .collect();
+        there.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(there, listed);
+    }
+}

@@ -1,0 +1,178 @@
+//! Explanations whose predictions these motions cannot tell from those of the chosen one.
+//!
+//! No list says which they are. What one part of the explanation changes in the prediction is
+//! compared with what every other candidate, every value of the file and every kind of value could
+//! change, all less what free values and start states can imitate; the share they can make of it is
+//! the squared cosine of the principal angle between them. The nearest are confirmed by simulation:
+//! the explanation predicts the motions, the other is fitted to that prediction, and what it leaves
+//! is weighed against the noise.
+
+use super::budget::EVALUATE;
+use super::evaluator::Evaluator;
+use super::explanation::Explanation;
+use super::hypothesis::Hypothesis;
+use super::initial_guess::ProjectedResidual;
+use super::replacement::{Other, Part};
+use super::selection::effective_share;
+use super::values::contradicted_paths;
+use crate::fitting::{FitData, FitOptions, Node, fit, fit_start_states, predicted};
+use crate::model::{Model, ParameterPath};
+use rayon::prelude::*;
+
+/// Other explanations simulated for each part: those that can make most of what it changes.
+const SIMULATED: usize = 4;
+/// Two predictions differ where their difference is larger than so many standard errors.
+const DISTINCT: f64 = 2.0;
+/// Of a refit, so many wrong values at most are compared with other explanations.
+const REFITTED: usize = 3;
+
+/// All motions as an explanation predicts them, without noise.
+struct Predicted {
+    data: FitData,
+    nodes: Vec<Node>,
+    /// Samples that count as independent, as a share of all.
+    effective_share: f64,
+}
+
+impl Evaluator<'_> {
+    /// Explanations with no more values than the chosen one whose predictions these motions cannot
+    /// tell from its own, the simplest first; none where the model as given explains them.
+    pub fn equivalents(&self, explanation: Explanation, tried: &[Hypothesis]) -> Vec<Hypothesis> {
+        let chosen = explanation.hypothesis();
+        let parts = self.parts(explanation);
+        let Some(predicted) = self.predicted(chosen).filter(|_| !parts.is_empty()) else {
+            return Vec::new();
+        };
+        let of_part = |part: &Part| {
+            let (model, free) = self.without(chosen, part);
+            // The derivatives where the part is missing and all else is as it was.
+            let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
+            let rest = fit(&model, &free, &self.search, nodes, options);
+            let made = rest.residuals.less(&chosen.search.residuals);
+            let target = ProjectedResidual::of(&rest, &made);
+            let mut others = self.others(chosen, part, &rest, &target);
+            others.truncate(SIMULATED);
+            let same = others.into_par_iter().filter(|other| predicted.fits(other));
+            same.map(|other| self.evaluated_other(other, tried))
+                .collect::<Vec<_>>()
+        };
+        let found = parts.par_iter().flat_map_iter(of_part);
+        let mut found: Vec<Hypothesis> = found.collect();
+        found.retain(|other| !other.rests_on_bound());
+        found.sort_by(Hypothesis::by_simplicity);
+        found
+    }
+
+    /// What may be replaced: each effect, or each wrong value.
+    fn parts(&self, explanation: Explanation) -> Vec<Part> {
+        match explanation {
+            Explanation::Given(_) => Vec::new(),
+            Explanation::Effects(chosen) => chosen
+                .set
+                .iter()
+                .map(|&effect| Part::Effect(effect))
+                .collect(),
+            Explanation::Value(chosen) | Explanation::ValueAndRefit(chosen) => {
+                vec![Part::Values(chosen.values.clone())]
+            }
+            Explanation::Refit(base) => {
+                let wrong = contradicted_paths(&self.start, base.fit(), &self.training);
+                let wrong = wrong.into_iter().take(REFITTED);
+                wrong.map(|path| Part::Values(vec![path])).collect()
+            }
+        }
+    }
+
+    /// The model of the short windows and what is free of it, less a part of the explanation.
+    fn without(&self, chosen: &Hypothesis, part: &Part) -> (Model, Vec<ParameterPath>) {
+        let (mut model, mut free) = (chosen.search.model.clone(), chosen.search.free.clone());
+        match part {
+            Part::Effect(effect) => {
+                model.effects.retain(|instance| !effect.is(instance));
+                free.retain(|path| effect.paths().all(|own| own != *path));
+            }
+            Part::Values(paths) => {
+                for path in paths {
+                    let given = path.get(&self.start);
+                    let known = given.is_some_and(|given| path.set(&mut model, given));
+                    debug_assert!(known, "a wrong value is one of the model's");
+                }
+                free.retain(|path| !paths.contains(path));
+            }
+        }
+        (model, free)
+    }
+
+    /// All motions as the explanation predicts them; `None` before it was evaluated.
+    fn predicted(&self, chosen: &Hypothesis) -> Option<Predicted> {
+        let evaluation = chosen.evaluation.as_ref()?;
+        let found = &evaluation.fit;
+        let (mut data, mut nodes) = (self.training.clone(), found.nodes.clone());
+        if let Some(held_out) = &self.held_out {
+            data = data.joined(held_out);
+            nodes.extend(fit_start_states(&found.model, held_out).nodes);
+        }
+        let windows = (0..data.motions.len()).into_par_iter();
+        let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
+        let readings: Vec<Vec<Vec<f64>>> = readings.collect();
+        Some(Predicted {
+            data: data.measuring(&readings),
+            nodes,
+            effective_share: effective_share(&evaluation.training, found),
+        })
+    }
+
+    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried or anew.
+    fn evaluated_other(&self, other: Other, tried: &[Hypothesis]) -> Hypothesis {
+        let known = tried
+            .iter()
+            .find(|h| h.values == other.values && h.adds(&other.set));
+        let mut hypothesis = match known {
+            Some(known) => known.clone(),
+            None => {
+                let options = FitOptions::iterations(EVALUATE);
+                let search = fit(&other.model, &other.free, &self.search, None, options);
+                Hypothesis {
+                    values: other.values,
+                    ..Hypothesis::new(other.set, search)
+                }
+            }
+        };
+        self.evaluate(&mut hypothesis);
+        hypothesis
+    }
+}
+
+impl Predicted {
+    /// Whether another explanation, fitted to these predictions, leaves less than the noise can
+    /// show.
+    fn fits(&self, other: &Other) -> bool {
+        let options = FitOptions::iterations(EVALUATE).rough();
+        let nodes = Some(&self.nodes[..]);
+        let found = fit(&other.model, &other.free, &self.data, nodes, options);
+        is_below_noise(found.residuals.cost(), self.effective_share)
+    }
+}
+
+/// Whether a difference of two predictions, its squares weighted by the noise and summed over all
+/// samples, is too small to be seen.
+///
+/// White noise shows a difference whose sum of squares is s at sqrt(s) standard errors; errors that
+/// neighbours share show it as if there were fewer samples.
+fn is_below_noise(sum_of_squares: f64, effective_share: f64) -> bool {
+    (sum_of_squares * effective_share).sqrt() < DISTINCT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_counts_from_two_standard_errors() {
+        // A hundredth of the noise, in 30,000 samples of which all or a third are independent.
+        let sum = 3e4 * 1e-4;
+        assert!(is_below_noise(sum, 1.0));
+        assert!(!is_below_noise(2.0 * sum, 1.0));
+        assert!(is_below_noise(2.0 * sum, 0.3));
+    }
+}

@@ -1,0 +1,143 @@
+//! What could stand in for a part of an explanation, and how much of it by the derivatives.
+
+use super::evaluator::Evaluator;
+use super::hypothesis::Hypothesis;
+use super::initial_guess::{PredictionChange, ProjectedResidual};
+use super::values::{kinds_of_values, values_of};
+use crate::fitting::{Candidate, Fit, residuals};
+use crate::model::{Model, ParameterPath};
+use rayon::prelude::*;
+
+/// An effect or values can stand in for a part if they make at least this share of what it changes,
+/// squared. From one start of an effect of several values less may be seen than it can do.
+const LEAST_SHARE: f64 = 0.8;
+/// A value's change for its derivative, as a share of it.
+const MOVED: f64 = 1e-3;
+
+/// A part of an explanation that may be replaced.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Part {
+    Effect(Candidate),
+    /// Values of the model file.
+    Values(Vec<ParameterPath>),
+}
+
+/// An explanation with one part replaced, at the values that the derivatives promise.
+pub(super) struct Other {
+    /// The effects added to the base.
+    pub set: Vec<Candidate>,
+    /// The values of the model file that take part.
+    pub values: Vec<ParameterPath>,
+    pub model: Model,
+    pub free: Vec<ParameterPath>,
+    /// Share of what the part changes, squared, that it can make.
+    share: f64,
+}
+
+impl Part {
+    /// Values it brings.
+    fn count(&self) -> usize {
+        match self {
+            Part::Effect(effect) => effect.parameters().len(),
+            Part::Values(paths) => paths.len(),
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// What may stand in for a part, the best first; `rest` is the explanation without it, `target`
+    /// what it changes. Nothing that brings more values, unless all of them are of one kind.
+    pub fn others(
+        &self,
+        chosen: &Hypothesis,
+        part: &Part,
+        rest: &Fit,
+        target: &ProjectedResidual,
+    ) -> Vec<Other> {
+        let mut set = chosen.set.clone();
+        set.retain(|effect| Part::Effect(*effect) != *part);
+        let fits = |change: &&Vec<PredictionChange>| {
+            change.first().is_some_and(|change| {
+                let candidate = change.candidate;
+                Part::Effect(candidate) != *part
+                    && candidate.parameters().len() <= part.count()
+                    && set
+                        .iter()
+                        .all(|kept| !kept.overlaps(candidate, &self.start))
+            })
+        };
+        let by_effects = self.changes.par_iter().filter(fits).filter_map(|changes| {
+            let guess = target.guesses(changes).into_iter().next()?;
+            let mut model = rest.model.clone();
+            model.effects.push(guess.candidate.instance(&guess.values));
+            Some(Other {
+                set: [&set[..], &[guess.candidate]].concat(),
+                values: Vec::new(),
+                model,
+                free: rest
+                    .free
+                    .iter()
+                    .copied()
+                    .chain(guess.candidate.paths())
+                    .collect(),
+                share: guess.gain / target.size(),
+            })
+        });
+        let single = values_of(&self.start).into_iter().map(|path| vec![path]);
+        let mut values: Vec<Vec<ParameterPath>> = single.collect();
+        values.extend(kinds_of_values(&self.start));
+        values.retain(|paths| {
+            let is_free = |path: &ParameterPath| rest.free.contains(path);
+            !paths.iter().any(is_free) && Part::Values(paths.clone()) != *part
+        });
+        let by_values = values.into_par_iter().filter_map(|paths| {
+            let (model, share) = self.moved_values(&paths, rest, target)?;
+            let added = set
+                .iter()
+                .map(|effect| effect.parameters().len())
+                .sum::<usize>();
+            // Those of the effects come last.
+            let (base, own) = rest.free.split_at(rest.free.len() - added);
+            Some(Other {
+                free: [base, &paths[..], own].concat(),
+                set: set.clone(),
+                values: paths,
+                model,
+                share,
+            })
+        });
+        let mut others: Vec<Other> = by_effects.chain(by_values).collect();
+        others.retain(|other| other.share >= LEAST_SHARE);
+        others.sort_by(|a, b| b.share.total_cmp(&a.share));
+        others
+    }
+
+    /// The rest with these values moved so that they make most of the target, and the share they
+    /// make.
+    fn moved_values(
+        &self,
+        paths: &[ParameterPath],
+        rest: &Fit,
+        target: &ProjectedResidual,
+    ) -> Option<(Model, f64)> {
+        let steps: Option<Vec<f64>> = paths
+            .iter()
+            .map(|path| Some(MOVED * path.get(&rest.model)?.abs().max(MOVED)))
+            .collect();
+        let steps = steps?;
+        let columns = paths.iter().zip(&steps).map(|(path, step)| {
+            let mut model = rest.model.clone();
+            let known = path.set(&mut model, path.get(&rest.model)? + step);
+            let moved = residuals(&model, &self.search, &rest.nodes);
+            known.then(|| rest.residuals.less(&moved))
+        });
+        let (weights, share) = target.span(&columns.collect::<Option<Vec<_>>>()?)?;
+        let mut model = rest.model.clone();
+        for ((path, step), weight) in paths.iter().zip(&steps).zip(weights) {
+            let (low, high) = path.bounds(&model);
+            let to = path.get(&model)? + weight * step;
+            path.set(&mut model, to.clamp(low, high)).then_some(())?;
+        }
+        Some((model, share))
+    }
+}

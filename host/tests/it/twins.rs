@@ -1,0 +1,189 @@
+//! Two joints of one servo type: what they share, and what one log cannot tell of them.
+
+use handstand::Model;
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::log::{LogRequest, Motion, MotionSource, read};
+use handstand::sim::{Plant, SensorState, Start, predict};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Two links, each driven by a torque.
+const ARM: &str = r#"
+[rig]
+name = "two links"
+angle_zero = "hanging"
+
+[[link]]
+length_m = 0.2
+com_m = 0.1
+mass_kg = 0.4
+inertia_kg_m2 = 0.0015
+
+[[link]]
+length_m = 0.2
+com_m = 0.1
+mass_kg = 0.3
+inertia_kg_m2 = 0.001
+
+[[joint]]
+drive = "torque"
+
+[[joint]]
+drive = "torque"
+
+[log]
+time = { column = "t", unit = "s" }
+
+[[log.joint]]
+position = { column = "q1", unit = "rad", resolution_rad = 0.002 }
+input = { column = "u1", unit = "N m" }
+
+[[log.joint]]
+position = { column = "q2", unit = "rad", resolution_rad = 0.002 }
+input = { column = "u2", unit = "N m" }
+"#;
+
+const SAMPLES: usize = 300;
+
+fn model(text: &str) -> Model {
+    Model::parse(text, Path::new("arm.toml")).unwrap()
+}
+
+/// 3 s at 100 Hz under torques that differ from joint to joint and from log to log.
+fn log(truth: &Model, seed: f64) -> String {
+    let time_s: Vec<f64> = (0..SAMPLES).map(|k| k as f64 / 100.0).collect();
+    let torque = |joint: f64, t: f64| {
+        (0.2 - 0.15 * joint)
+            * ((t * (4.1 + 2.3 * joint + 0.3 * seed) + seed).sin() + (t * (9.7 - joint)).sin())
+    };
+    let inputs = [0.0, 1.0].map(|joint| time_s.iter().map(|t| torque(joint, *t)).collect());
+    let motion = Motion {
+        name: String::new(),
+        source: MotionSource {
+            path: "arm".into(),
+            sha256: String::new(),
+            lines: (0, 0),
+        },
+        position_rad: vec![vec![0.0; SAMPLES]; 2],
+        velocity_rad_s: vec![None; 2],
+        input: inputs.map(Some).to_vec(),
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+        time_s,
+    };
+    let plant = Plant::new(truth, &motion);
+    let start = Start {
+        angle_rad: vec![0.2 * seed, -0.1],
+        speed_rad_s: vec![0.0; 2],
+        reading_rad_s: None,
+    };
+    let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], SensorState::default());
+    predict(
+        &plant,
+        &motion,
+        0..SAMPLES,
+        &start,
+        &mut sensors,
+        &mut readings,
+    );
+    let mut text = "t,q1,q2,u1,u2".to_string();
+    for k in 0..SAMPLES {
+        let [q1, q2] = [readings[k], readings[SAMPLES + k]].map(|q| (q / 0.002).round() * 0.002);
+        let [u1, u2] = [0.0, 1.0].map(|joint| torque(joint, motion.time_s[k]));
+        let _ = write!(text, "\n{:.2},{q1},{q2},{u1},{u2}", motion.time_s[k]);
+    }
+    text
+}
+
+/// The arm diagnosed from logs of the arm with something hidden.
+fn diagnosed(hidden: &str, options: &DiagnoseOptions) -> Diagnosis {
+    let (model, truth) = (model(ARM), model(&format!("{ARM}\n{hidden}")));
+    let dir = tempfile::tempdir().unwrap();
+    let motions = |seeds: &[f64]| -> Vec<Motion> {
+        let files = seeds.iter().map(|seed| {
+            let file = dir.path().join(format!("{seed}.csv"));
+            std::fs::write(&file, log(&truth, *seed)).unwrap();
+            LogRequest::whole(file)
+        });
+        read(&files.collect::<Vec<_>>(), &model.log).unwrap()
+    };
+    let (training, held_out) = (motions(&[1.0, 2.0]), motions(&[3.0]));
+    diagnose(&model, training, held_out, options, &|_| {})
+}
+
+fn addresses(effects: &[FittedEffect]) -> Vec<String> {
+    effects.iter().map(FittedEffect::address).collect()
+}
+
+#[test]
+fn a_delay_of_all_servos_is_one_effect_with_one_value() {
+    let hidden = "[[effect]]\nkind = \"delay\"\njoint = \"all\"\ndelay_s = 0.02\n";
+    let found = diagnosed(hidden, &DiagnoseOptions::default());
+    assert_eq!(found.verdict, Verdict::Named, "{:?}", found.summary);
+    assert_eq!(addresses(&found.effects), ["delay@all"]);
+    let delay = &found.effects[0].parameters[0];
+    assert!((delay.value - 0.02).abs() < 5e-4, "{}", delay.value);
+    assert_eq!(delay.path, "delay@all.delay_s");
+    assert!(
+        found.summary[0].contains("at all driven joints"),
+        "{:?}",
+        found.summary
+    );
+    let added = found.applied_to(&model(ARM));
+    assert_eq!(added.effects_at(0).count(), 1);
+    assert_eq!(added.effects_at(1).count(), 1);
+}
+
+#[test]
+fn a_delay_of_one_servo_is_not_one_of_all() {
+    let hidden = "[[effect]]\nkind = \"delay\"\njoint = 2\ndelay_s = 0.02\n";
+    let found = diagnosed(hidden, &DiagnoseOptions::default());
+    assert_eq!(
+        addresses(&found.effects),
+        ["delay@2"],
+        "{:?}",
+        found.summary
+    );
+}
+
+#[test]
+fn weaker_drives_and_heavier_links_are_not_told_apart() {
+    let hidden = "[[effect]]\nkind = \"torque_scale\"\njoint = \"all\"\nfactor = 0.8\n";
+    let options = DiagnoseOptions {
+        most_effects: 1,
+        ..DiagnoseOptions::default()
+    };
+    let found = diagnosed(hidden, &options);
+    assert_eq!(found.verdict, Verdict::Ambiguous, "{:?}", found.summary);
+    assert_eq!(addresses(&found.effects), ["torque_scale@all"]);
+    let heavier = found
+        .alternatives
+        .iter()
+        .find(|other| other.effects.is_empty());
+    let heavier = heavier.expect("other masses and inertias of all links do as well");
+    let paths: Vec<&str> = heavier
+        .wrong_values
+        .iter()
+        .map(|w| w.fitted.path.as_str())
+        .collect();
+    assert_eq!(
+        paths,
+        [
+            "link1.mass_kg",
+            "link1.inertia_kg_m2",
+            "link2.mass_kg",
+            "link2.inertia_kg_m2"
+        ]
+    );
+    for wrong in &heavier.wrong_values {
+        let ratio = wrong.fitted.value / wrong.given;
+        assert!((ratio - 1.25).abs() < 0.05, "{} {ratio}", wrong.fitted.path);
+    }
+    assert!(
+        found.summary[1].contains("weigh link 1"),
+        "{:?}",
+        found.summary
+    );
+}
