@@ -14,12 +14,10 @@ pub struct NotCarried {
     pub why: &'static str,
 }
 
-/// Effects that change the chain itself: mass, centre of mass, armature, tilt.
-pub(super) const OF_CHAIN: [&str; 4] = ["armature", "base_tilt", "com_angle", "mass"];
-
 /// The value of a joint's effect, if the model has it there.
 pub(super) fn value(model: &Model, id: &str, joint: usize, index: usize) -> Option<f64> {
-    let here = |e: &&EffectInstance| e.joint == Some(joint) && e.effect.info().id == id;
+    let here =
+        |e: &&EffectInstance| e.effect.info().id == id && e.acts_on(joint, &model.joints[joint]);
     let instance = model.effects.iter().find(here)?;
     instance.values.get(index).copied()
 }

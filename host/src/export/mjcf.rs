@@ -4,7 +4,7 @@
 //! the right, about -y. Joint coordinates are relative angles, the first from hanging.
 
 use super::Exported;
-use super::carried::{NotCarried, OF_CHAIN, not_carried, value};
+use super::carried::{NotCarried, not_carried, value};
 use super::xml::{comment, escaped, number, numbers};
 use crate::dynamics::ChainLink;
 use crate::effects::Rig;
@@ -19,8 +19,16 @@ const LEAST_INERTIA: f64 = 1e-9;
 /// Radius of a drawn link, m.
 const RADIUS_M: f64 = 0.008;
 
-/// Effects that MuJoCo has beside those of the chain.
-const HELD: [&str; 3] = ["cable_spring", "coulomb", "viscous"];
+/// Effects that MuJoCo has: of the chain, and of its joints.
+const HELD: [&str; 7] = [
+    "armature",
+    "base_tilt",
+    "cable_spring",
+    "com_angle",
+    "coulomb",
+    "mass",
+    "viscous",
+];
 
 /// The model as MJCF.
 ///
@@ -178,8 +186,7 @@ fn actuators(text: &mut String, model: &Model) {
 }
 
 fn left_out(model: &Model) -> Vec<NotCarried> {
-    let held = [&OF_CHAIN[..], &HELD].concat();
-    let mut missing = not_carried(model, &held, "MuJoCo has no such effect");
+    let mut missing = not_carried(model, &HELD, "MuJoCo has no such effect");
     for (joint, drive) in model.joints.iter().map(|joint| &joint.drive).enumerate() {
         if matches!(drive, Drive::Position { .. } | Drive::Speed { .. }) {
             missing.push(NotCarried {

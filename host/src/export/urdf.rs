@@ -1,17 +1,17 @@
 //! URDF: the chain with its joints' damping and friction.
 
 use super::Exported;
-use super::carried::{NotCarried, OF_CHAIN, not_carried, value};
+use super::carried::{NotCarried, not_carried, value};
 use super::xml::{comment, escaped, number, numbers};
 use crate::effects::Rig;
-use crate::model::{Drive, Model};
+use crate::model::Model;
 use std::fmt::Write as _;
 
 /// A moment of inertia of zero is refused by most readers, kg m^2.
 const LEAST_INERTIA: f64 = 1e-9;
 
-/// Effects that URDF's `dynamics` holds beside those of the chain.
-const HELD: [&str; 2] = ["coulomb", "viscous"];
+/// Effects that URDF holds: in the links, and in the joints' `dynamics`.
+const HELD: [&str; 4] = ["com_angle", "coulomb", "mass", "viscous"];
 
 /// The model as URDF.
 ///
@@ -77,26 +77,22 @@ fn joints(text: &mut String, model: &Model, rig: &Rig) {
 }
 
 fn left_out(model: &Model, rig: &Rig) -> Vec<NotCarried> {
-    let held = [&["com_angle", "mass"], &HELD[..]].concat();
-    debug_assert!(OF_CHAIN.contains(&"mass"));
-    let mut missing = not_carried(model, &held, "URDF has no place for it");
-    missing.push(NotCarried {
-        part: "gravity_m_s2".to_string(),
-        joint: None,
-        why: "gravity is the simulator's",
-    });
-    if rig.chain.gravity_m_s2 == 0.0 {
-        missing.pop();
+    let mut missing = not_carried(model, &HELD, "URDF has no place for it");
+    if rig.chain.gravity_m_s2 != 0.0 {
+        missing.push(NotCarried {
+            part: "gravity_m_s2".to_string(),
+            joint: None,
+            why: "gravity is the simulator's",
+        });
     }
-    let drives = model.joints.iter().map(|joint| &joint.drive).enumerate();
-    missing.extend(
-        drives
-            .filter(|(_, drive)| **drive != Drive::Passive)
-            .map(|(joint, drive)| NotCarried {
+    for (joint, drive) in model.joints.iter().map(|joint| &joint.drive).enumerate() {
+        if drive.is_driven() {
+            missing.push(NotCarried {
                 part: drive.name().to_string(),
                 joint: Some(joint + 1),
                 why: "URDF has no drives",
-            }),
-    );
+            });
+        }
+    }
     missing
 }

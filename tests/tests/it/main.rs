@@ -12,3 +12,4 @@ mod intervals;
 #[cfg(unix)]
 mod kills;
 mod mjcf;
+mod spoiled;
