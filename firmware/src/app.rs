@@ -10,9 +10,8 @@ use crate::panel::Buttons;
 use crate::plan_store::Writer;
 use crate::servos::Servos;
 use crate::{boot_counter, bus};
-use handstand_shared::message::{Attitude, Cause, Condition, ServoList, Statistics};
+use handstand_shared::message::{ArmLimits, Attitude, Cause, Condition, ServoList, Statistics};
 use handstand_shared::packed::{Positions, Speeds};
-use handstand_shared::raw::TorqueLimit;
 
 mod buttons;
 mod command;
@@ -67,8 +66,10 @@ pub struct App {
     off: Age,
     /// Since the torque limit began to fall.
     fading: Age,
-    /// The torque limit that arming brought.
-    torque_limit: TorqueLimit,
+    /// What arming brought.
+    limits: ArmLimits,
+    /// Whether torque comes on with the law's first command, and has not yet.
+    begins: bool,
     /// Ticks since one was too long.
     calm: u8,
     /// Rounds in a row with a low supply, and the round last looked at.
@@ -113,7 +114,8 @@ impl App {
             emptied: board.clock(),
             off: Age::from(board.clock()),
             fading: Age::NEVER,
-            torque_limit: TorqueLimit::NONE,
+            limits: ArmLimits::NONE,
+            begins: false,
             calm: 0,
             low: (0, 0),
             overruns: 0,
@@ -222,7 +224,12 @@ impl App {
         }
         match self.state {
             State::Bridge => {}
-            State::Stream(Torque::Off) | State::Balance(Torque::Off) => self.watch(board, started),
+            State::Stream(Torque::Off) => self.watch(board, started),
+            State::Balance(Torque::Off) => {
+                let gyro = board.gyro();
+                self.balance.rest(gyro);
+                self.watch(board, started);
+            }
             State::Fault(_) => self.insist(board, started),
             State::Stream(Torque::On) => self.stream(board, started),
             State::Balance(Torque::On) => self.balance(board, started),
@@ -274,6 +281,14 @@ impl App {
         if !is_loaded {
             self.balance
                 .load((0..).map_while(|at| board.compiled_plan(at)));
+        }
+        self.order_servos();
+    }
+
+    /// Those that balance are read last: what is read then is the newest.
+    fn order_servos(&mut self) {
+        if let Some(ids) = self.balance.measuring() {
+            self.servos.read_last(ids);
         }
     }
 }

@@ -21,6 +21,16 @@ const POSE_CODES: u16 = 34;
 /// constant of its whole size from the AVR's RAM.
 const NEVER_HEARD: u8 = 0;
 
+/// Binary places of the gyro's mean code.
+const ZERO_PLACES: u8 = 16;
+
+/// The mean forgets with a time constant of 2^5 ticks, 0.32 s.
+const REST_SHIFT: u8 = 5;
+
+/// Binary places of the gyro's code that the rate is computed with: times any scale it stays within
+/// 32 bits.
+const CODE_PLACES: u8 = 4;
+
 /// What balancing remembers from tick to tick.
 #[derive(Debug, Clone)]
 pub struct Balance {
@@ -36,6 +46,10 @@ pub struct Balance {
     /// The first link's angle, in 1/10 of its step: a rate step lasts 1/10 angle step per tick.
     angle: i32,
     rate: i16,
+    /// The gyro's code at rest, times 2^16: the mean of those before arming.
+    zero: i32,
+    /// Which readings are new.
+    is_heard: [bool; READINGS],
     missed: u8,
     /// Both joints' readings of the tick before, and how many ticks ago each was heard.
     before: [(i16, u8); 2],
@@ -65,6 +79,8 @@ impl Balance {
         compensation: [0; 3],
         angle: 0,
         rate: 0,
+        zero: 0,
+        is_heard: [false; READINGS],
         missed: 0,
         before: [(0, NEVER_HEARD); 2],
     };
@@ -76,7 +92,15 @@ impl Balance {
         let is_sound = self.plan.fill(&mut bytes);
         drop(bytes);
         self.fingerprint = is_sound.then_some(!crc);
+        self.zero = i32::from(self.plan.gyro.zero) << ZERO_PLACES;
         is_sound
+    }
+
+    /// Torque is off: the gyro's code goes into the mean of those at rest.
+    pub fn rest(&mut self, gyro: u16) {
+        // Both below 2^26.
+        let off = (i32::from(gyro as i16) << ZERO_PLACES).wrapping_sub(self.zero);
+        self.zero = self.zero.wrapping_add(off >> REST_SHIFT);
     }
 
     /// CRC-32 of the plan; none if there is none that can be used.
@@ -105,8 +129,9 @@ impl Balance {
             self.angle = i32::from(host.angle) * 10;
             return;
         }
-        let code = (gyro as i16).wrapping_sub(self.plan.gyro.zero as i16);
-        let rate = i32::from(code).wrapping_mul(i32::from(self.plan.gyro.scale)) >> 4;
+        let code = i32::from(gyro as i16) << CODE_PLACES;
+        let code = code.wrapping_sub(self.zero >> (ZERO_PLACES - CODE_PLACES));
+        let rate = code.wrapping_mul(i32::from(self.plan.gyro.scale)) >> (4 + CODE_PLACES);
         self.rate = rate.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
         // 1e-3 rad/s for 10 ms are 1e-5 rad: 1/10 of the angle's step.
         let angle = self.angle.saturating_add(i32::from(self.rate));
@@ -152,6 +177,7 @@ impl Balance {
             *before = (*q, 1);
         }
         let [q2, q3] = joints;
+        self.is_heard = [true, first.present, second.present, true];
         Ok([angle, q2, q3, self.rate])
     }
 
@@ -160,12 +186,22 @@ impl Balance {
         self.plan.gyro.from_host
     }
 
-    /// The gyro as the plan has it; zero and scale are 0 without a plan.
+    /// The gyro as the plan has it, its zero as measured since; zero and scale are 0 without a
+    /// plan.
     pub fn gyro(&self) -> Gyro {
         match self.fingerprint {
-            Some(_) => self.plan.gyro,
+            Some(_) => Gyro {
+                zero: ((self.zero + (1 << (ZERO_PLACES - 1))) >> ZERO_PLACES) as u16,
+                ..self.plan.gyro
+            },
             None => Plan::ZERO.gyro,
         }
+    }
+
+    /// The servos that measure the driven joints; none without a plan.
+    pub fn measuring(&self) -> Option<[u8; 2]> {
+        let [shoulder, hip] = &self.plan.joints;
+        self.fingerprint.map(|_| [shoulder.id, hip.id])
     }
 
     /// Whether all servos it commands turn without end: others would take its commands for speeds
@@ -184,9 +220,27 @@ impl Balance {
 
     /// Begins to estimate from these readings.
     pub fn begin(&mut self, readings: &[i16; READINGS]) {
-        if let Law::Observer(observer) = &self.plan.law {
-            observer.start(&mut self.estimate, &fine(readings), self.compensation);
+        let mut balance = self.compensation;
+        let [first, ..] = &mut balance;
+        if !self.plan.gyro.from_host {
+            // Its place is the gyro's offset, and the angle is that from its equilibrium.
+            *first = 0;
         }
+        let readings = self.seen(readings);
+        if let Law::Observer(observer) = &self.plan.law {
+            observer.start(&mut self.estimate, &readings, balance);
+        }
+    }
+
+    /// Readings as an observer wants them: of a gyro the angle from equilibrium.
+    fn seen(&self, readings: &[i16; READINGS]) -> [i16; READINGS] {
+        let mut seen = fine(readings);
+        if let ([angle, ..], [e1, ..]) = (&mut seen, self.compensation)
+            && !self.plan.gyro.from_host
+        {
+            *angle = angle.saturating_sub(e1);
+        }
+        seen
     }
 
     /// The servos' commands at these readings, each with its id.
@@ -221,7 +275,10 @@ impl Balance {
                 ];
                 control(table, &states)
             }
-            Law::Observer(observer) => observer.raw_command(&mut self.estimate, &fine(readings)),
+            Law::Observer(observer) => {
+                let seen = self.seen(readings);
+                observer.raw_command_of(&mut self.estimate, &seen, self.is_heard)
+            }
         }
     }
 

@@ -6,10 +6,11 @@
 //! as the first and is written again.
 
 use crate::board::Board;
+use crate::plan_store;
 
-/// Behind the slots of the plan, far below the boot loader's bytes from 0xFF6 on.
+/// Between the slots of the plan.
 const CELLS: core::ops::Range<u16> = 0x800..0x840;
-const _: () = assert!(crate::plan_store::END <= CELLS.start && CELLS.end <= 0xff6);
+const _: () = assert!(plan_store::END_OF_FIRST <= CELLS.start && CELLS.end <= plan_store::LAST);
 
 /// Counts this start; its number, modulo 16384.
 pub fn count<B: Board>(board: &mut B) -> u16 {

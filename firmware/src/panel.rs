@@ -93,6 +93,7 @@ fn blinks(cause: Cause, ticks: u32) -> bool {
         Cause::JointRange => 8,
         Cause::JointSpeed => 9,
         Cause::TorqueLost => 10,
+        Cause::LetDown => 11,
     };
     let phase = (ticks & 0x1ff) as u16;
     phase & 0x10 == 0 && phase >> 5 < flashes
@@ -116,6 +117,7 @@ mod tests {
             (Cause::LinkLost, 1),
             (Cause::Watchdog, 6),
             (Cause::TorqueLost, 10),
+            (Cause::LetDown, 11),
         ] {
             let lit = |tick: u32| blinks(cause, tick);
             let rises = (0..512).filter(|tick| lit(tick + 1) && !lit(*tick)).count();

@@ -10,15 +10,20 @@ use handstand_shared::message::PLAN_CHUNK;
 use handstand_shared::plan::Plan;
 
 const _: () =
-    assert!(Plan::MOST <= MAX_TABLE as usize && STARTS[0] + HEADER + MAX_TABLE <= STARTS[1]);
+    assert!(Plan::MOST <= MAX_TABLE as usize && END_OF_FIRST <= STARTS[1] && END <= 0xff6);
 
 /// Longest gain table, bytes.
-pub const MAX_TABLE: u16 = 1000;
+pub const MAX_TABLE: u16 = 1200;
 /// Not from 0 on: a supply that breaks down while a byte is written may spoil the one at address 0.
-const STARTS: [u16; 2] = [0x010, 0x400];
+/// Between the slots lie the boot counter's cells.
+const STARTS: [u16; 2] = [0x010, 0x840];
 const HEADER: u16 = 8;
+/// Behind the last byte of the first slot.
+pub const END_OF_FIRST: u16 = STARTS[0] + HEADER + MAX_TABLE;
 /// Behind the last byte of the last slot.
-pub const END: u16 = STARTS[1] + HEADER + MAX_TABLE;
+const END: u16 = STARTS[1] + HEADER + MAX_TABLE;
+/// First byte of the last slot.
+pub const LAST: u16 = STARTS[1];
 
 /// A sound table in EEPROM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

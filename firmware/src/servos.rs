@@ -34,6 +34,8 @@ pub struct Servo {
 #[derive(Debug, Clone)]
 pub struct Servos {
     servos: [Servo; SERVOS],
+    /// Places in the order in which they are read.
+    order: [u8; SERVOS],
     count: u8,
     /// Their positions, as they are reported.
     pub positions: Positions,
@@ -68,8 +70,11 @@ impl Servos {
         };
         let mut servos = [unknown; SERVOS];
         (servos.iter_mut().zip(list.ids())).for_each(|(servo, id)| servo.id = *id);
+        let mut order = [0; SERVOS];
+        (order.iter_mut().zip(0..)).for_each(|(slot, place)| *slot = place);
         Servos {
             servos,
+            order,
             count: list.ids().len() as u8,
             positions: Positions::pack([Position::CENTRE.0; SERVOS]),
             asked: 0,
@@ -80,6 +85,40 @@ impl Servos {
             lowest: Supply(u8::MAX),
             rounds: 0,
             tripped: None,
+        }
+    }
+
+    /// Reads these two last, the second of them after the first; the others in the list's order.
+    #[inline(never)]
+    pub fn read_last(&mut self, ids: [u8; 2]) {
+        let count = self.count;
+        let mut order = [0; SERVOS];
+        let mut slots = order.iter_mut();
+        let [first, second] = ids;
+        for turn in 0..3 {
+            for (place, servo) in (0..count).zip(&self.servos) {
+                let own = if servo.id == first {
+                    1
+                } else if servo.id == second {
+                    2
+                } else {
+                    0
+                };
+                if own == turn
+                    && let Some(slot) = slots.next()
+                {
+                    *slot = place;
+                }
+            }
+        }
+        self.order = order;
+    }
+
+    /// Place of the servo that is read at this turn; beyond the last one, a place that is none.
+    fn nth(&self, turn: u8) -> u8 {
+        match turn < self.count {
+            true => self.order.get(usize::from(turn)).copied().unwrap_or(turn),
+            false => turn,
         }
     }
 

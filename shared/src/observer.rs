@@ -6,14 +6,17 @@
 //! ```text
 //! innovation  = readings - predict [estimate, past inputs]           four readings
 //! raw command = sat(feedback [estimate, past inputs, innovation])    two inputs
-//! next        = update [estimate, past inputs, innovation, applied]  nine states
+//! next        = update [estimate, past inputs, innovation, applied]  eleven states
 //! ```
 //!
 //! `applied` is the input that went out after dead zone, slew and limits. All three are
 //! [`GainTable`]s: 16-bit words, 32-bit sums that no states overflow, one rounding and one
 //! saturation per row. Multiplied out to two tables on the readings themselves it would be shorter,
 //! but rounded gains that should cancel would not, and the slowest mode would grow. Delayed inputs
-//! are kept exactly. The estimate is [angles, speeds, equilibrium angles] of the three joints.
+//! are kept exactly. The estimate is [angles, speeds, equilibrium angles] of the three joints and
+//! the torques of the two drives, which follow their inputs late. Where nothing measures the first
+//! link's angle, only its departure from its equilibrium can be estimated: its angle is that, and
+//! the gyro's offset takes the place of its equilibrium angle.
 
 use crate::gains::{GainTable, take};
 use crate::law::{control, departure, input};
@@ -22,8 +25,8 @@ use crate::law::{control, departure, input};
 pub const INPUTS: usize = 2;
 /// Joints, the first of them passive.
 pub const JOINTS: usize = 3;
-/// Estimated states: angles, speeds, equilibrium angles.
-pub const ESTIMATED: usize = 3 * JOINTS;
+/// Estimated states: angles, speeds, equilibrium angles, torques.
+pub const ESTIMATED: usize = 3 * JOINTS + INPUTS;
 /// Sample periods an input may be on its way.
 pub const DELAYS: usize = 3;
 /// Past inputs, the newest first.
@@ -146,8 +149,18 @@ impl Observer {
     }
 
     /// Raw command at these readings. Finishes a pending update first.
-    #[inline(never)]
     pub fn raw_command(&self, memory: &mut Memory, readings: &[i16; READINGS]) -> [i16; INPUTS] {
+        self.raw_command_of(memory, readings, [true; READINGS])
+    }
+
+    /// The same where some readings are missing: those are as they were predicted.
+    #[inline(never)]
+    pub fn raw_command_of(
+        &self,
+        memory: &mut Memory,
+        readings: &[i16; READINGS],
+        is_heard: [bool; READINGS],
+    ) -> [i16; INPUTS] {
         self.finish(memory);
         let predicted = match memory.all.first_chunk() {
             Some(state) => control(&self.predict, state),
@@ -155,8 +168,11 @@ impl Observer {
         };
         let place = memory.all.iter_mut().skip(STATE);
         let read = readings.iter().zip(self.reading_places).zip(predicted);
-        for (to, ((reading, places), predicted)) in place.zip(read) {
-            *to = finer(*reading, places).saturating_sub(predicted);
+        for (to, (((reading, places), predicted), is_heard)) in place.zip(read.zip(is_heard)) {
+            *to = match is_heard {
+                true => finer(*reading, places).saturating_sub(predicted),
+                false => 0,
+            };
         }
         match memory.all.first_chunk() {
             Some(seen) => control(&self.feedback, seen),
@@ -263,7 +279,10 @@ mod tests {
         let observer = observer();
         let mut memory = Memory::ZERO;
         observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
-        assert_eq!(memory.all()[..ESTIMATED], [20, 40, 60, 0, 0, 0, 1, 8, 24]);
+        assert_eq!(
+            memory.all()[..ESTIMATED],
+            [20, 40, 60, 0, 0, 0, 1, 8, 24, 0, 0]
+        );
         assert_eq!(
             observer.raw_command(&mut memory, &[10, 20, 30, 40]),
             [-40, -60]
@@ -281,6 +300,14 @@ mod tests {
         assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-71, -92]);
         memory.all[1] = 1000;
         assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-100, -92]);
+        // A reading that is missing is the one predicted.
+        let heard = [true, false, true, false];
+        observer.raw_command_of(&mut memory, &[30, 99, 50, 77], heard);
+        let all = observer.raw_command(&mut memory, &[30, 99, 50, 77]);
+        let [first, _, third, _] = *memory.all()[STATE..SEEN].first_chunk::<4>().unwrap();
+        let some = observer.raw_command_of(&mut memory, &[30, 99, 50, 77], heard);
+        assert_eq!(memory.all()[STATE..SEEN], [first, 0, third, 0]);
+        assert_eq!(all, some);
         // Innovations saturate.
         observer.raw_command(&mut memory, &[i16::MIN, i16::MAX, 0, 0]);
         assert_eq!(memory.all()[STATE..STATE + 2], [i16::MIN, i16::MAX - 1000]);

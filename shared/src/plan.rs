@@ -22,7 +22,7 @@ pub use joint::{AppliedInput, Joint};
 pub use parts::{Gyro, Moment};
 
 /// Version of the bytes.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 
 /// The plan for three links and two driven joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

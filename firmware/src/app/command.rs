@@ -3,12 +3,14 @@
 use super::{App, Goal, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
+use crate::bus;
 use crate::design::{CALM_TICKS, LOW_SUPPLY};
 use crate::plan_store::MAX_TABLE;
 use crate::servos::Servos;
+use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{
-    Answer, ArmLimits, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report, ServoList,
-    Subject, Telemetry, VERSION,
+    Answer, ArmLimits, Cause, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report,
+    ServoList, Subject, Telemetry, VERSION,
 };
 
 /// What a command comes to.
@@ -41,6 +43,7 @@ impl App {
             Command::Hello { version } => self.greet(board, version),
             Command::KeepAlive => Outcome::Quiet,
             Command::Disarm => Outcome::Answer(self.stop(board)),
+            Command::LetDown => Outcome::Answer(self.let_down(board)),
             Command::Ask(Subject::Telemetry) => self.telemetry(board),
             Command::Ask(Subject::Statistics) => {
                 self.link.send(board, &Report::Statistics(self.statistics));
@@ -140,6 +143,18 @@ impl App {
         Ok(())
     }
 
+    /// As if the line had been lost, but at once. Said again while torque falls it changes nothing.
+    #[inline(never)]
+    fn let_down<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
+        match self.state {
+            State::Stream(Torque::On) => self.soften(board, Cause::LetDown, State::Stream),
+            State::Balance(Torque::On) => self.soften(board, Cause::LetDown, State::Balance),
+            State::Stream(Torque::Fading { .. }) | State::Balance(Torque::Fading { .. }) => {}
+            _ => return Err(Refusal::State),
+        }
+        Ok(())
+    }
+
     fn change<B: Board>(&mut self, board: &mut B, mode: Mode) -> Result<(), Refusal> {
         if self.token.is_none() {
             return Err(Refusal::Version);
@@ -158,6 +173,7 @@ impl App {
             Err(Refusal::ServoList)
         } else {
             self.servos = Servos::new(list);
+            self.order_servos();
             Ok(())
         }
     }
@@ -217,8 +233,14 @@ impl App {
         self.life = Age::from(board.clock());
         self.longest_silence_ms = 0;
         self.off = Age::NEVER;
-        self.torque_limit = limits.torque;
-        self.servos.arm(board, limits);
+        self.limits = limits;
+        self.begins = is_balance;
+        self.servos.tripped = None;
+        match is_balance {
+            // A servo that missed torque off has these limits from now on, too.
+            true => bus::write_all(board, TORQUE_LIMIT, limits.torque.0),
+            false => self.servos.arm(board, limits),
+        }
         self.state = match is_balance {
             true => State::Balance(Torque::On),
             false => State::Stream(Torque::On),

@@ -77,9 +77,18 @@ impl App {
             Err(Stop::JointSpeed) => return self.give_up(board, Cause::JointSpeed),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
+        if self.begins {
+            // It was held until now: the estimate begins here, and not where it was armed.
+            self.balance.begin(&readings);
+        }
         let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
         self.longest_law_us = self.longest_law_us.max(law_us);
+        if self.begins {
+            // With the first command, not before: without one the robot would fall.
+            self.begins = false;
+            self.servos.arm(board, self.limits);
+        }
         self.servos.turn(board, commands);
         self.balance.begin_update();
     }

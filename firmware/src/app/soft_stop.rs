@@ -76,7 +76,7 @@ impl App {
         // The limit that the period ends with, so that it falls from the first one on.
         let left_us = FADE_US.saturating_sub(faded_us + u32::from(TICK_US));
         let sixteenths = (left_us / SIXTEENTH_US) as u16;
-        let limit = self.torque_limit.0 / 16 * sixteenths;
+        let limit = self.limits.torque.0 / 16 * sixteenths;
         bus::write_all(board, TORQUE_LIMIT, limit);
         self.state = within(Torque::Fading { cause });
     }
@@ -91,6 +91,7 @@ impl App {
     pub(super) fn disarm<B: Board>(&mut self, board: &mut B) {
         self.servos.disarm(board);
         self.off = Age::from(board.clock());
+        self.begins = false;
         self.token = None;
         self.goal = Goal::Hold;
     }

@@ -51,22 +51,23 @@ impl Servos {
         self.begin_round();
         let mut again: Vec<u8, SERVOS, u8> = Vec::new();
         let mut answer = Answer::default();
-        let first = self.request(0);
+        let first = self.request(self.nth(0));
         bus::ask(board, &first);
         let mut is_asked = true;
-        for place in 0..self.count {
+        for turn in 0..self.count {
+            let place = self.nth(turn);
             if !is_asked {
                 self.leave_out(place, statistics);
                 continue;
             }
             // Made while this answer is awaited, sent as soon as it is there: it is looked at while
             // that goes out.
-            let next = self.request(place + 1);
+            let next = self.request(self.nth(turn + 1));
             meanwhile();
             self.hear(board, place, &mut answer);
             // Noise could hold each answer until its time-out: the round ends in time.
             is_asked = since_us(board, started) < ROUND_US;
-            if is_asked && place + 1 < self.count {
+            if is_asked && turn + 1 < self.count {
                 bus::ask(board, &next);
             }
             let was_present = self.is_present(place);

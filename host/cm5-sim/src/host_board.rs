@@ -211,7 +211,7 @@ impl Board for HostBoard {
 
     fn gyro(&mut self) -> u16 {
         let robot = self.bus.robot();
-        robot.map_or(self.gyro, |robot| gyro_code(robot.rate_rad_s()))
+        robot.map_or(self.gyro, |robot| robot.gyro_code())
     }
 
     fn compiled_plan(&self, at: u16) -> Option<u8> {
@@ -258,9 +258,3 @@ impl Board for HostBoard {
 }
 
 const GYRO_AT_REST: u16 = 512;
-
-/// A gyro of one code per degree and second.
-fn gyro_code(rate_rad_s: f64) -> u16 {
-    let code = f64::from(GYRO_AT_REST) + rate_rad_s.to_degrees();
-    code.round().clamp(0.0, 1023.0) as u16
-}

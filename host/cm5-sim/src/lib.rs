@@ -38,7 +38,7 @@ pub use regulator::Regulator;
 pub use robot::{DrivenJoint, Robot, RobotState};
 pub use servo::Servo;
 pub use shaft::Shaft;
-pub use spec::{BusSpec, RobotSpec, SpecError};
+pub use spec::{BusSpec, GyroSpec, RobotSpec, SpecError};
 
 #[cfg(test)]
 mod tests;

@@ -38,4 +38,6 @@ pub enum Start {
     Hanging,
     /// All links straight up.
     Upright,
+    /// The same, and held until torque is on.
+    Held,
 }

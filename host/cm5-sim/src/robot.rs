@@ -6,6 +6,7 @@
 use super::plant::Plant;
 use super::regulator::Regulator;
 use super::servo::Servo;
+use super::spec::GyroSpec;
 use handstand_shared::control_table::GOAL_POSITION;
 use handstand_shared::raw::Position;
 use std::collections::VecDeque;
@@ -48,7 +49,12 @@ struct JointServos {
     delay_s: f64,
     /// Regulators over the delay: the motors follow late.
     history: VecDeque<(f64, Vec<Regulator>)>,
+    /// Time constant with which the motor follows the regulators, s; 0: at once.
+    lag_s: f64,
+    /// What the regulators demand.
     duty: f64,
+    /// What the motor has.
+    motor_duty: f64,
 }
 
 /// A plant on servos.
@@ -56,7 +62,11 @@ struct JointServos {
 pub struct Robot {
     plant: Box<dyn Plant>,
     driven: Vec<JointServos>,
+    gyro: GyroSpec,
+    /// Whether somebody holds it until torque is on.
+    is_held: bool,
     time_s: f64,
+    period_s: f64,
     sent_s: f64,
     listener: Option<Sender<RobotState>>,
 }
@@ -70,12 +80,17 @@ impl Robot {
             ids,
             delay_s: plant.delay_s(joint),
             history: VecDeque::new(),
+            lag_s: 0.0,
             duty: 0.0,
+            motor_duty: 0.0,
         });
         Robot {
             driven: driven.collect(),
             plant,
+            gyro: GyroSpec::default(),
+            is_held: false,
             time_s: 0.0,
+            period_s: STATE_PERIOD_S,
             sent_s: f64::NEG_INFINITY,
             listener: None,
         }
@@ -83,7 +98,36 @@ impl Robot {
 
     /// Send the state to `listener` a hundred times a second.
     pub fn watch(&mut self, listener: Sender<RobotState>) {
+        self.watch_every(STATE_PERIOD_S, listener);
+    }
+
+    /// Send the state to `listener` every `period_s`, at most a thousand times a second.
+    pub fn watch_every(&mut self, period_s: f64, listener: Sender<RobotState>) {
+        self.period_s = period_s;
         self.listener = Some(listener);
+    }
+
+    /// Put another gyro on the first link.
+    pub fn set_gyro(&mut self, gyro: GyroSpec) {
+        self.gyro = gyro;
+    }
+
+    /// ADC code of the gyro on the first link, 0..=1023.
+    pub fn gyro_code(&self) -> u16 {
+        let code = self.gyro.zero + self.rate_rad_s() / self.gyro.step_rad_s;
+        code.round().clamp(0.0, 1023.0) as u16
+    }
+
+    /// Let every motor's duty follow its regulators with this time constant, s.
+    pub fn set_lag(&mut self, lag_s: f64) {
+        for driven in &mut self.driven {
+            driven.lag_s = lag_s;
+        }
+    }
+
+    /// Keep the links where they are until a servo's torque is on, as somebody does who holds it.
+    pub fn hold(&mut self) {
+        self.is_held = true;
     }
 
     /// Ids of its servos.
@@ -100,13 +144,23 @@ impl Robot {
     pub fn step(&mut self, servos: &mut [Servo], dt_s: f64) {
         self.time_s += dt_s;
         for driven in &mut self.driven {
-            driven.drive(self.plant.as_mut(), servos, self.time_s);
+            driven.drive(self.plant.as_mut(), servos, self.time_s, dt_s);
         }
-        self.plant.advance(dt_s);
+        let own = |servo: &Servo| {
+            self.driven
+                .iter()
+                .any(|joint| joint.ids.contains(&servo.id()))
+        };
+        self.is_held &= !servos
+            .iter()
+            .any(|servo| own(servo) && servo.torque_is_on());
+        if !self.is_held {
+            self.plant.advance(dt_s);
+        }
         for driven in &self.driven {
             driven.turn_shafts(self.plant.as_ref(), servos);
         }
-        if self.time_s - self.sent_s >= STATE_PERIOD_S - 1e-9
+        if self.time_s - self.sent_s >= self.period_s - 1e-9
             && let Some(listener) = &self.listener
         {
             self.sent_s = self.time_s;
@@ -147,8 +201,8 @@ impl JointServos {
         }
     }
 
-    /// Drive the joint with the mean duty cycle of its servos, one delay late.
-    fn drive(&mut self, plant: &mut dyn Plant, servos: &[Servo], now_s: f64) {
+    /// Drive the joint with the mean duty cycle of its servos, one delay and the lag late.
+    fn drive(&mut self, plant: &mut dyn Plant, servos: &[Servo], now_s: f64, dt_s: f64) {
         let own = servos.iter().filter(|servo| self.ids.contains(&servo.id()));
         let own: Vec<&Servo> = own.collect();
         let regulators = own.iter().map(|servo| servo.regulator()).collect();
@@ -165,7 +219,15 @@ impl JointServos {
         });
         self.duty = duties.sum::<f64>() / regulators.len().max(1) as f64;
         let supply_v = own.first().map_or(0.0, |servo| servo.supply_v);
-        plant.set_duty(self.joint, energised.then_some(self.duty), supply_v);
+        let share = match self.lag_s > 0.0 {
+            true => 1.0 - (-dt_s / self.lag_s).exp(),
+            false => 1.0,
+        };
+        self.motor_duty += share * (self.duty - self.motor_duty);
+        if !energised {
+            self.motor_duty = 0.0;
+        }
+        plant.set_duty(self.joint, energised.then_some(self.motor_duty), supply_v);
     }
 
     fn turn_shafts(&self, plant: &dyn Plant, servos: &mut [Servo]) {

@@ -42,6 +42,31 @@ pub struct RobotSpec {
     pub joints: Option<Vec<Vec<u8>>>,
     /// Initial pose.
     pub start: Start,
+    /// Departure of each joint from it, from the base outwards, rad; the rest is 0.
+    pub lean_rad: Vec<f64>,
+    /// Time constant with which its motors follow their servos' regulators, s; 0: at once.
+    pub lag_s: f64,
+    /// The gyro on its first link.
+    pub gyro: GyroSpec,
+}
+
+/// A gyro at the CM-5's ADC.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GyroSpec {
+    /// ADC code at rest; not always a whole one.
+    pub zero: f64,
+    /// Rate per code, rad/s.
+    pub step_rad_s: f64,
+}
+
+impl Default for GyroSpec {
+    /// A code per degree and second, 512 at rest.
+    fn default() -> Self {
+        GyroSpec {
+            zero: 512.0,
+            step_rad_s: 1f64.to_radians(),
+        }
+    }
 }
 
 /// Text that describes no simulated bus.
@@ -64,12 +89,12 @@ pub enum SpecError {
         expected: String,
     },
     /// Keys of a robot without its model.
-    #[error("joints and start are a robot's: name its model, robot=MODEL.toml")]
+    #[error("joints, start, lean, lag and gyro are a robot's: name its model, robot=MODEL.toml")]
     NoModel,
 }
 
 const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
-                    dead, hot, overload, jam, supply, robot, joints, start, seed";
+                    dead, hot, overload, jam, supply, robot, joints, start, lean, lag, gyro, seed";
 
 impl Default for BusSpec {
     fn default() -> Self {
@@ -164,8 +189,31 @@ impl BusSpec {
                 self.robot.get_or_insert_default().start = match value {
                     "hanging" => Start::Hanging,
                     "upright" => Start::Upright,
-                    _ => return Err(wrong("hanging or upright")),
+                    "held" => Start::Held,
+                    _ => return Err(wrong("hanging, upright or held")),
                 }
+            }
+            "lag" => self.robot.get_or_insert_default().lag_s = number(1.0)?,
+            "gyro" => {
+                let parts = value.split_once('/');
+                let parts = parts.and_then(|(zero, step)| {
+                    Some((zero.parse::<f64>().ok()?, step.parse::<f64>().ok()?))
+                });
+                let parts = parts.filter(|(zero, step)| {
+                    (0.0..=1023.0).contains(zero) && (0.01..=100.0).contains(step)
+                });
+                let (zero, step) =
+                    parts.ok_or_else(|| wrong("code at rest and deg/s per code, 512/1"))?;
+                let step_rad_s = step.to_radians();
+                self.robot.get_or_insert_default().gyro = GyroSpec { zero, step_rad_s };
+            }
+            "lean" => {
+                let degrees = value.split('/').map(|part| part.parse::<f64>().ok());
+                let degrees = degrees.map(|part| part.filter(|part| part.abs() <= 180.0));
+                let degrees: Option<Vec<f64>> = degrees.collect();
+                let degrees = degrees.ok_or_else(|| wrong("degrees of each joint, 1/-1/0.5"))?;
+                self.robot.get_or_insert_default().lean_rad =
+                    degrees.into_iter().map(f64::to_radians).collect();
             }
             _ => return Err(SpecError::UnknownKey(key.into())),
         }
@@ -225,6 +273,7 @@ mod tests {
             model: "a.toml".into(),
             joints: Some(vec![vec![3], vec![4]]),
             start: Start::Upright,
+            ..RobotSpec::default()
         };
         assert_eq!(beside.unwrap().robot, Some(expected));
         assert_eq!("".parse(), Ok(BusSpec::default()));
@@ -235,7 +284,9 @@ mod tests {
             ("drop=2", "0 to 1"),
             ("delay=255", "254"),
             ("joints=1+2", "robot=MODEL.toml"),
-            ("robot=a.toml,start=lying", "hanging or upright"),
+            ("robot=a.toml,start=lying", "hanging, upright or held"),
+            ("robot=a.toml,lean=1/x", "degrees of each joint"),
+            ("robot=a.toml,gyro=512", "deg/s per code"),
         ] {
             let error = wrong.parse::<BusSpec>().unwrap_err().to_string();
             assert!(error.contains(said), "{wrong}: {error}");

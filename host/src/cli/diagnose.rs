@@ -20,6 +20,7 @@
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
+use handstand::conventions::ModelFile;
 use handstand::diagnose::{
     DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
 };
@@ -48,6 +49,10 @@ pub struct DiagnoseArgs {
     /// Error that is good enough, mrad: a model as given that leaves no more is `adequate`
     #[arg(long, value_name = "MRAD", value_parser = input::positive)]
     tolerance: Option<f64>,
+    /// Diagnose even where another sign, zero, unit or drive in the model file clearly lowers the
+    /// error
+    #[arg(long)]
+    trust_log: bool,
     #[command(flatten)]
     judging: input::HoldoutArgs,
     #[command(flatten)]
@@ -102,12 +107,18 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         horizon: args.judging.run.horizon,
+        trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
     };
     let bar = talk.bar(0);
     let logs = args.log_set();
-    diagnose_logs(model, &args.model, &logs, &options, &|progress| {
+    let text = input::text(&args.model)?;
+    let file = ModelFile {
+        path: &args.model,
+        text: &text,
+    };
+    diagnose_logs(model, file, &logs, &options, &|progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.what);

@@ -8,7 +8,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Measure",
         &[
-            "log", "compare", "diagnose", "add", "fit", "effects", "view", "identify", "map",
+            "excite", "log", "compare", "diagnose", "add", "fit", "effects", "model", "view",
+            "identify", "map",
         ],
     ),
     (
@@ -18,7 +19,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Robot",
         &[
-            "bus", "record", "replay", "latency", "flash", "deploy", "virtual",
+            "bus", "record", "replay", "balance", "latency", "flash", "deploy", "virtual",
         ],
     ),
     ("Learn", &["lab", "demo", "challenge"]),

@@ -1,6 +1,7 @@
 //! The port of a command: a serial one, or a simulated one.
 
 use super::simulated;
+use handstand::balance::AttitudeSource;
 use handstand::link::{Serial, SerialLink, Servos, Tap, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
@@ -31,7 +32,20 @@ impl Port {
     /// # Errors
     /// No such port, not ours to use, in use; or several and none named.
     pub fn open(&self) -> Result<AnyLink> {
-        let link = self.untapped()?;
+        let (link, _) = self.untapped()?;
+        self.tapped(link)
+    }
+
+    /// Opens it; with the attitude of the simulated robot behind it, if there is one.
+    ///
+    /// # Errors
+    /// As [`Port::open`].
+    pub fn open_with_attitude(&self) -> Result<(AnyLink, Option<AttitudeSource>)> {
+        let (link, attitude) = self.untapped()?;
+        Ok((self.tapped(link)?, attitude))
+    }
+
+    fn tapped(&self, link: AnyLink) -> Result<AnyLink> {
         Ok(match &self.tap {
             Some(file) => Box::new(Tap::to_file(link, file)?),
             None => link,
@@ -46,21 +60,24 @@ impl Port {
         Ok(Servos::new(self.open()?))
     }
 
-    fn untapped(&self) -> Result<AnyLink> {
+    fn untapped(&self) -> Result<(AnyLink, Option<AttitudeSource>)> {
         let name = match &self.port {
             Some(name) => name.clone(),
             None => only_port()?,
         };
         let (kind, spec) = name.split_once(':').unwrap_or((&name, ""));
-        let mut link = match kind {
-            "sim" => simulated::open(spec, false)?,
-            "sim-cm5" => simulated::open(spec, true)?,
-            _ => return Ok(Box::new(Serial::open(&name, self.baud.unwrap_or(57_600))?)),
+        let (mut link, attitude) = match kind {
+            "sim" => (simulated::open(spec, false)?, None),
+            "sim-cm5" => simulated::open_with_attitude(spec, true)?,
+            _ => {
+                let serial = Serial::open(&name, self.baud.unwrap_or(57_600))?;
+                return Ok((Box::new(serial), None));
+            }
         };
         if let Some(baud) = self.baud {
             link.set_baud(baud)?;
         }
-        Ok(link)
+        Ok((link, attitude))
     }
 }
 

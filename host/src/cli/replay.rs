@@ -10,7 +10,11 @@
 //! $ handstand replay swing.mcap --record again.mcap --port /dev/ttyUSB0
 //! ```
 //!
-//! `--json` prints `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad`
+//! A CM-5 with Handstand's firmware reads the servos and sends the goals itself (`--stream`, without
+//! being told): a line that breaks lets the robot down, and any of its buttons stops it. `--adapter`
+//! passes the packets through it instead, and neither does.
+//!
+//! `--json` prints `way` (`stream` or `adapter`), `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad`
 //! (to the positions recorded), `stopped` (why, or null).
 
 use super::flash::agreed;
@@ -31,6 +35,10 @@ pub struct ReplayArgs {
     motion: PathBuf,
     #[command(flatten)]
     robot: RobotArgs,
+    /// Use a CM-5 as an adapter, which it is not unless told: nothing lets the robot down then when
+    /// the line breaks
+    #[arg(long, conflicts_with = "stream")]
+    adapter: bool,
     /// Record what happens
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -59,7 +67,11 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     ));
     agreed(args.yes, "Is there room around it?")?;
     let interrupt = Interrupt::listen();
-    let mut source = robot.open()?;
+    let (mut source, streams) = robot.open_to_move(args.adapter)?;
+    talk.say(match streams {
+        true => "The CM-5 streams: any of its buttons stops the robot, and so does a dead line.",
+        false => "Through an adapter: nothing stops the robot when the line breaks.",
+    });
     let create = |file: &PathBuf| RobotRecorder::create(file, &recording.ids, args.force);
     let mut recorder = args.record.as_ref().map(create).transpose()?;
     interrupt.at_once(source.emergency_off());
@@ -75,16 +87,17 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    report(&followed, talk)
+    report(&followed, streams, talk)
 }
 
-fn report(followed: &FollowedMotion, talk: &Talk) -> Result<ExitStatus> {
+fn report(followed: &FollowedMotion, streams: bool, talk: &Talk) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
         MotionStop::Interrupted => "Ctrl-C",
         MotionStop::Danger(why) => why,
     });
     let data = json!({
+        "way": if streams { "stream" } else { "adapter" },
         "samples": followed.tally.samples,
         "seconds": followed.tally.seconds(),
         "tracking_rms_rad": tracking,

@@ -1,7 +1,8 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
-use super::port::{Ids, Port, id_list};
+use super::port::{AnyLink, Ids, Port, id_list};
 use handstand::link::record::{Adapter, SampleSource, Stream};
+use handstand::link::{SerialLink as _, Servos, Session, SessionError};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -27,10 +28,25 @@ impl RobotArgs {
     /// # Errors
     /// No port, no firmware, or a rate that is none.
     pub fn open(&self) -> Result<Box<dyn SampleSource>> {
-        if self.stream {
-            return Ok(Box::new(Stream::new(self.port.open()?, &self.ids.0)?));
+        self.opened(self.port.open()?, self.stream)
+    }
+
+    /// Opens it to move the robot: a CM-5 with Handstand's firmware streams unless `adapter`, for
+    /// as an adapter nothing lets the robot down when the line breaks. Also whether it streams.
+    ///
+    /// # Errors
+    /// As [`RobotArgs::open`].
+    pub fn open_to_move(&self, adapter: bool) -> Result<(Box<dyn SampleSource>, bool)> {
+        let mut link = self.port.open()?;
+        let streams = self.stream || (!adapter && is_cm5(&mut link)?);
+        Ok((self.opened(link, streams)?, streams))
+    }
+
+    fn opened(&self, link: AnyLink, streams: bool) -> Result<Box<dyn SampleSource>> {
+        if streams {
+            return Ok(Box::new(Stream::new(link, &self.ids.0)?));
         }
-        let mut servos = self.port.servos()?;
+        let mut servos = Servos::new(link);
         let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
         if !present {
             return Err(handstand::link::record::no_response());
@@ -55,5 +71,19 @@ impl RobotArgs {
                     "give 0.01 to 1000 rounds per second",
                 )
             })
+    }
+}
+
+/// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it, whose
+/// servos would hear what is said.
+fn is_cm5(link: &mut AnyLink) -> Result<bool> {
+    const SERVO_BUS_BAUD: u32 = 900_000;
+    if link.baud() >= SERVO_BUS_BAUD {
+        return Ok(false);
+    }
+    match Session::open(&mut *link) {
+        Ok(_) => Ok(true),
+        Err(SessionError::NoFirmware { .. }) => Ok(false),
+        Err(error) => Err(error.into()),
     }
 }

@@ -2,8 +2,11 @@
 
 use super::port::AnyLink;
 use handstand::Result;
+use handstand::balance::AttitudeSource;
 #[cfg(feature = "virtual-cm5")]
-use handstand::link::virtual_cm5::{AdapterPort, Bus, Cm5Port, SimLink, set_up, spec};
+use handstand::link::virtual_cm5::{
+    AdapterPort, Bus, Cm5Port, SimLink, attitude_sensor, set_up, spec,
+};
 
 /// Opens the simulated port that `text` describes, a CM-5's or an adapter's.
 ///
@@ -12,6 +15,18 @@ use handstand::link::virtual_cm5::{AdapterPort, Bus, Cm5Port, SimLink, set_up, s
 #[cfg(feature = "virtual-cm5")]
 pub fn open(text: &str, is_cm5: bool) -> Result<AnyLink> {
     Ok(link(set_up(&spec(text)?)?, is_cm5))
+}
+
+/// The same with the first link's attitude of the robot on it, if there is one.
+///
+/// # Errors
+/// As [`open`].
+#[cfg(feature = "virtual-cm5")]
+pub fn open_with_attitude(text: &str, is_cm5: bool) -> Result<(AnyLink, Option<AttitudeSource>)> {
+    let spec = spec(text)?;
+    let mut bus = set_up(&spec)?;
+    let sensor = attitude_sensor(&mut bus, &spec)?;
+    Ok((link(bus, is_cm5), sensor.map(AttitudeSource::Simulated)))
 }
 
 /// The port of a CM-5 in front of this bus, or of an adapter on it.
@@ -29,6 +44,15 @@ pub fn link(bus: Bus, is_cm5: bool) -> AnyLink {
 /// Always.
 #[cfg(not(feature = "virtual-cm5"))]
 pub fn open(_text: &str, _is_cm5: bool) -> Result<AnyLink> {
+    Err(absent())
+}
+
+/// Refuses: this program was built without the feature.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "virtual-cm5"))]
+pub fn open_with_attitude(_text: &str, _is_cm5: bool) -> Result<(AnyLink, Option<AttitudeSource>)> {
     Err(absent())
 }
 

@@ -112,6 +112,14 @@ impl Talk {
             .with_finish(ProgressFinish::AndClear)
     }
 
+    /// A place for lines that are written over again and again; shows only on a terminal, and no
+    /// longer than it lives.
+    pub fn live(&self) -> ProgressBar {
+        let style = ProgressStyle::with_template("{msg}");
+        self.bar(0)
+            .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    }
+
     /// An error with its remedy. Lines are not broken, so that `file:line:column` can be clicked
     /// and searched.
     pub fn error(&self, error: Error) {

@@ -3,8 +3,9 @@
 //!
 //! The CM-5 reads one servo after the other and computes at the end, so a reading is older than the
 //! moment of the law by what the others took. The filter is told: its output equation is that of
-//! the state `age` ago, x(t - age), which the state and the inputs since determine exactly. With s
-//! = [x, offsets, past inputs],
+//! the state `age` ago, x(t - age), which the state and the inputs since determine exactly. A
+//! servo's torque follows its input with a lag, so that both torques are states. With s = [x,
+//! offsets, torques, past inputs],
 //!
 //! ```text
 //! innovation  = y - C s
@@ -14,11 +15,11 @@
 
 use super::best::BEST;
 use super::observed::{Options, process_noise, regulator};
-use super::plant::{continuous, plant, with_offsets};
+use super::plant::{continuous, with_offsets};
 use super::{ControllerReason, DesignModel};
 use crate::error::Result;
 use crate::sim::closed_loop::GYRO_STEP_RAD_S;
-use crate::synth::{Discrete, kalman, zoh};
+use crate::synth::{Continuous, Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
@@ -30,52 +31,87 @@ use nalgebra::{DMatrix, stack};
 pub struct BoardTiming {
     /// From the law's moment until its inputs act, s.
     pub effect_s: f64,
+    /// Time constant with which a servo's torque follows its input, s; 0: at once.
+    pub lag_s: f64,
     /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
     pub age_s: [f64; READINGS],
-    /// Standard deviation of each reading, in SI; infinite for one that there is not.
+    /// Standard deviation of each reading, in SI; infinite for one that there is not. Without the
+    /// first link's angle its rate is a gyro's, whose offset is estimated.
     pub deviation: [f64; READINGS],
 }
-
-/// Deviation that stands for a reading that there is not, rad: without any, nothing would tell the
-/// first link's angle from its angle of balance, of which only the difference matters.
-const NONE: f64 = 0.1;
 
 /// Deviation assumed of an exact angle, rad: that of its step and more, for the model is not exact.
 const EXACT_RAD: f64 = 1e-4;
 
-/// Of readings rounded to a step: step / sqrt(12).
-const POSITION_RAD: f64 = Position::LSB_RAD * 0.288_675_134_594_812_9;
-const GYRO_RAD_S: f64 = GYRO_STEP_RAD_S * 0.288_675_134_594_812_9;
+/// Standard deviation of what is rounded to a step of 1: 1 / sqrt(12).
+const ROUNDED: f64 = 0.288_675_134_594_812_9;
+
+/// Wander of a gyro's offset in a sample times the gyro's step, (rad/s)^2: the coarser the step,
+/// the longer its mean must be taken. Found on steps of 1 and 10 deg/s.
+const OFFSET_WALK: f64 = 1.75e-5;
+
+/// Place of the gyro's offset where no angle of the first link is measured.
+const GYRO_OFFSET: usize = 2 * JOINTS;
+
+/// Place of the first torque.
+const TORQUES: usize = 3 * JOINTS;
 
 impl BoardTiming {
     /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the
-    /// last answer; measured by `cargo xtask bench-firmware --only "age of readings"`. What is read
-    /// first is oldest. The host says the first link's attitude every period, as it hears a report.
-    /// Its rate counts no more than a gyro's of 10 deg/s: trusted more, what the linear model makes
-    /// of one so old fells the robot from 2 deg.
+    /// last answer, which is the hip's after the shoulder's; measured by `cargo xtask bench-firmware
+    /// --only "age of readings"`. The host says the first link's attitude every period, as it hears
+    /// a report. Its rate counts no more than a gyro's of 10 deg/s: trusted more, what the linear
+    /// model makes of one so old fells the robot from 2 deg. The torque follows at once.
     pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
         effect_s: 0.8e-3,
-        age_s: [8.7e-3, 4.1e-3, 1.8e-3, 8.7e-3],
-        deviation: [EXACT_RAD, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
+        lag_s: 0.0,
+        age_s: [8.7e-3, 0.5e-3, 0.3e-3, 8.7e-3],
+        deviation: [
+            EXACT_RAD,
+            Position::LSB_RAD * ROUNDED,
+            Position::LSB_RAD * ROUNDED,
+            GYRO_STEP_RAD_S * ROUNDED,
+        ],
     };
 
-    /// The same with a gyro on the CM-5, read at the law's moment; nothing tells the first link's
-    /// angle.
-    pub const GYRO: BoardTiming = BoardTiming {
-        age_s: [0.0, 4.1e-3, 1.8e-3, 0.1e-3],
-        deviation: [f64::INFINITY, POSITION_RAD, POSITION_RAD, GYRO_RAD_S],
-        ..BoardTiming::HOST_ATTITUDE
-    };
+    /// Time constant of the paper's servo, s: that of the pole pair of its equation 2.
+    pub const SERVO_LAG_S: f64 = 0.034;
+
+    /// The same with a gyro of this step on the CM-5, rad/s per code, read at the law's moment;
+    /// nothing tells the first link's angle.
+    pub const fn gyro(step_rad_s: f64) -> BoardTiming {
+        let [_, shoulder_s, hip_s, _] = BoardTiming::HOST_ATTITUDE.age_s;
+        let [_, shoulder_rad, hip_rad, _] = BoardTiming::HOST_ATTITUDE.deviation;
+        BoardTiming {
+            age_s: [0.0, shoulder_s, hip_s, 0.1e-3],
+            deviation: [f64::INFINITY, shoulder_rad, hip_rad, step_rad_s * ROUNDED],
+            ..BoardTiming::HOST_ATTITUDE
+        }
+    }
+
+    /// The paper's gyro.
+    pub const GYRO: BoardTiming = BoardTiming::gyro(GYRO_STEP_RAD_S);
+
+    /// The same with servos of this lag, s.
+    #[must_use]
+    pub const fn with_lag(self, lag_s: f64) -> BoardTiming {
+        BoardTiming { lag_s, ..self }
+    }
+
+    /// Whether nothing measures the first link's angle.
+    fn is_gyro(&self) -> bool {
+        self.deviation[0].is_infinite()
+    }
 }
 
 /// The machine in SI, as [`handstand_shared::observer`] has it in fixed point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OnBoard {
-    /// 4 x 15.
+    /// 4 x 17.
     pub predict: DMatrix<f64>,
-    /// 2 x 19.
+    /// 2 x 21.
     pub feedback: DMatrix<f64>,
-    /// 9 x 21.
+    /// 11 x 23.
     pub update: DMatrix<f64>,
 }
 
@@ -96,22 +132,15 @@ impl OnBoard {
             ..known.clone()
         };
         let options = &BEST.options;
-        let predict = outputs(known, timing)?;
-        let believed = Discrete {
-            c: predict.clone(),
-            ..widened(known)?
-        };
-        let variance = timing.deviation.map(|sd| sd.min(NONE).powi(2));
-        let filter = kalman(
-            &believed,
-            &process_noise(known, options, ESTIMATED + PAST)?,
-            &DMatrix::from_diagonal(&variance.to_vec().into()),
-        )?;
-        let gains = gains(known, options)?;
-        let (a, b, l) = (&believed.a, &believed.b, &filter.gain);
+        let wide = lagging(known, timing);
+        let predict = outputs(known, timing, &wide)?;
+        let believed = widened(known, &wide)?;
+        let l = filter(known, options, timing, &believed, &wide, &predict)?;
+        let gains = gains(known, options, timing, &wide)?;
+        let (a, b) = (&believed.a, &believed.b);
         Ok(OnBoard {
-            feedback: -stack![gains, &gains * l],
-            update: stack![a, a * l, b].rows(0, ESTIMATED).into_owned(),
+            feedback: -stack![gains, &gains * &l],
+            update: stack![a, a * &l, b].rows(0, ESTIMATED).into_owned(),
             predict,
         })
     }
@@ -143,15 +172,98 @@ fn times(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
     products.iter().zip(vector).map(|(k, x)| k * x).sum()
 }
 
-/// The regulator's gains; offsets act as the angles' negatives.
-fn gains(known: &DesignModel, options: &Options) -> Result<DMatrix<f64>> {
-    let narrow = regulator(known, options, &plant(known, false)?)?.k;
-    Ok(with_offsets(&narrow, JOINTS).resize_horizontally(ESTIMATED + PAST, 0.0))
+/// x' = A x + B u of [angles, speeds, offsets, torques].
+fn lagging(known: &DesignModel, timing: &BoardTiming) -> Continuous {
+    let plain = continuous(known, true);
+    let mut a = plain.a.resize(ESTIMATED, ESTIMATED, 0.0);
+    if timing.is_gyro() {
+        // Its angle is that from equilibrium; in the place of that one the gyro's offset stays.
+        a.column_mut(GYRO_OFFSET).fill(0.0);
+    }
+    let mut b = plain.b.resize(ESTIMATED, INPUTS, 0.0);
+    if timing.lag_s > 0.0 {
+        a.columns_mut(TORQUES, INPUTS).copy_from(&b);
+        b.fill(0.0);
+    }
+    for drive in TORQUES..ESTIMATED {
+        // Torques that follow at once are of no effect, and fade.
+        a[(drive, drive)] = match timing.lag_s > 0.0 {
+            true => -1.0 / timing.lag_s,
+            false => -1.0 / known.period_s,
+        };
+        if timing.lag_s > 0.0 {
+            b[(drive, drive - TORQUES)] = 1.0 / timing.lag_s;
+        }
+    }
+    Continuous {
+        a,
+        b,
+        c: DMatrix::identity(ESTIMATED, ESTIMATED),
+    }
 }
 
-/// The sampled plant with offsets and as many past inputs as the CM-5 keeps.
-fn widened(known: &DesignModel) -> Result<Discrete> {
-    let late = plant(known, true)?;
+/// The regulator's gains; offsets act as the angles' negatives.
+fn gains(
+    known: &DesignModel,
+    options: &Options,
+    timing: &BoardTiming,
+    wide: &Continuous,
+) -> Result<DMatrix<f64>> {
+    // Without the offsets, of which nothing is controllable.
+    let a = wide.a.clone().remove_columns(2 * JOINTS, JOINTS);
+    let narrow = Continuous {
+        a: a.remove_rows(2 * JOINTS, JOINTS),
+        b: wide.b.clone().remove_rows(2 * JOINTS, JOINTS),
+        c: DMatrix::identity(ESTIMATED - JOINTS, ESTIMATED - JOINTS),
+    };
+    let narrow = zoh(&narrow, known.period_s, known.delay_s)?;
+    let narrow = regulator(known, options, &narrow)?.k;
+    let mut gains = with_offsets(&narrow, JOINTS).resize_horizontally(ESTIMATED + PAST, 0.0);
+    if timing.is_gyro() {
+        gains.column_mut(GYRO_OFFSET).fill(0.0);
+    }
+    Ok(gains)
+}
+
+/// The stationary filter's gains, for each reading one column; a reading that there is not has none.
+fn filter(
+    known: &DesignModel,
+    options: &Options,
+    timing: &BoardTiming,
+    believed: &Discrete,
+    wide: &Continuous,
+    predict: &DMatrix<f64>,
+) -> Result<DMatrix<f64>> {
+    let mut process = process_noise(known, options, ESTIMATED + PAST)?;
+    if timing.lag_s > 0.0 {
+        let held = zoh(wide, known.period_s, 0.0)?.b * options.torque_noise_nm;
+        let mut late = process.view_mut((0, 0), (ESTIMATED, ESTIMATED));
+        late += &held * held.transpose();
+    }
+    if timing.is_gyro() {
+        let step_rad_s = timing.deviation[JOINTS] / ROUNDED;
+        process[(GYRO_OFFSET, GYRO_OFFSET)] = (OFFSET_WALK / step_rad_s).powi(2);
+    }
+    let first = usize::from(timing.is_gyro());
+    let variance: Vec<f64> = timing.deviation[first..]
+        .iter()
+        .map(|sd| sd.powi(2))
+        .collect();
+    let measured = Discrete {
+        c: predict.rows(first, READINGS - first).into_owned(),
+        ..believed.clone()
+    };
+    let filter = kalman(
+        &measured,
+        &process,
+        &DMatrix::from_diagonal(&variance.into()),
+    )?;
+    Ok(filter.gain.insert_columns(0, first, 0.0))
+}
+
+/// The sampled plant with offsets, torques and as many past inputs as the CM-5 keeps.
+fn widened(known: &DesignModel, wide: &Continuous) -> Result<Discrete> {
+    let late = zoh(wide, known.period_s, known.delay_s)?;
     if late.delayed_inputs > DELAYS {
         let delay_s = known.delay_s;
         return Err(ControllerReason::TooLate { delay_s }.into());
@@ -183,23 +295,25 @@ fn widened(known: &DesignModel) -> Result<Discrete> {
     })
 }
 
-/// What each reading tells of [x, offsets, past inputs], given its age.
-fn outputs(known: &DesignModel, timing: &BoardTiming) -> Result<DMatrix<f64>> {
+/// What each reading tells of [x, offsets, torques, past inputs], given its age.
+fn outputs(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Result<DMatrix<f64>> {
     let mut c = DMatrix::zeros(READINGS, ESTIMATED + PAST);
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
-        let ago = ago(known, timing.effect_s, age_s)?;
+        let ago = ago(known, wide, timing.effect_s, age_s)?;
         c.row_mut(reading).copy_from(&ago.row(reading));
+    }
+    if timing.is_gyro() {
+        c[(JOINTS, GYRO_OFFSET)] += 1.0;
     }
     Ok(c)
 }
 
-/// The state [x, offsets] `age_s` ago as a linear function of [x, offsets, past inputs] now.
+/// The state [x, offsets, torques] `age_s` ago as a linear function of that and past inputs now.
 ///
 /// Input u(k - n) begins to act at `effect_s` - n periods. Backwards over a span h under one input,
 /// x(t - h) = e^{-Ah} (x(t) - S(h) B u).
-fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
+fn ago(known: &DesignModel, wide: &Continuous, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
     let mut ago = DMatrix::identity(ESTIMATED, ESTIMATED + PAST);
-    let wide = continuous(known, true);
     let (mut at_s, mut past) = (0.0, 1_usize);
     while at_s > -age_s + 1e-9 {
         let begins_s = effect_s - past as f64 * known.period_s;
@@ -209,7 +323,7 @@ fn ago(known: &DesignModel, effect_s: f64, age_s: f64) -> Result<DMatrix<f64>> {
                 let delay_s = effect_s + age_s;
                 return Err(ControllerReason::TooLate { delay_s }.into());
             }
-            let held = zoh(&wide, span_s, 0.0)?;
+            let held = zoh(wide, span_s, 0.0)?;
             let from = ESTIMATED + INPUTS * (past - 1);
             let mut columns = ago.columns_mut(from, INPUTS);
             columns -= &held.b;

@@ -35,8 +35,11 @@ pub fn upload<L: SerialLink>(
     Ok(session.obey(&store, "keep the gains")?)
 }
 
-/// Read the plan that the CM-5 has.
-fn read_back<L: SerialLink>(session: &mut Session<L>) -> Result<Vec<u8>> {
+/// Read the plan that the CM-5 has; no bytes if it has none.
+///
+/// # Errors
+/// The CM-5 does not answer.
+pub fn read_back<L: SerialLink>(session: &mut Session<L>) -> Result<Vec<u8>> {
     let mut back = Vec::new();
     loop {
         let wanted = back.len() as u16;

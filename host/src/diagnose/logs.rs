@@ -5,8 +5,9 @@ use super::options::DiagnoseOptions;
 use super::progress::Progress;
 use super::search::diagnose;
 use super::words::{HELD_OUT, LOGS, MODEL};
+use crate::conventions::{self, ModelFile};
 use crate::error::Result;
-use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, check, split};
+use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, split};
 use crate::model::Model;
 use std::path::Path;
 
@@ -19,20 +20,27 @@ pub struct LogDiagnosis {
     pub split: Split,
 }
 
-/// Diagnoses the model of `file` from logs. Logs that the check refuses end in
-/// [`Verdict::Unfit`](super::Verdict::Unfit); without logs to judge by, the last third of the
+/// Diagnoses the model of `file` from logs. Logs that the checks refuse end in
+/// [`Verdict::Unfit`](super::Verdict::Unfit), where the options do not trust them; without logs to judge by, the last third of the
 /// motions is held out.
 ///
 /// # Errors
 /// Logs that cannot be read, or rows that are fitted and held out.
 pub fn diagnose_logs(
     model: &Model,
-    file: &Path,
+    file: ModelFile,
     logs: &LogSet,
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<LogDiagnosis> {
-    let findings = check(&logs.all(), model)?;
+    let mut findings = conventions::findings(&logs.all(), model, file)?;
+    if options.trust_log {
+        // What a simulation proves becomes a warning; what cannot be read stays refused.
+        let proven = findings
+            .iter_mut()
+            .filter(|finding| finding.proof.is_some());
+        proven.for_each(|finding| finding.severity = Severity::Warn);
+    }
     if findings.iter().any(|f| f.severity == Severity::Refuse) {
         return Ok(LogDiagnosis {
             diagnosis: Diagnosis::unfit(&findings),
@@ -46,7 +54,7 @@ pub fn diagnose_logs(
     let warned = findings.iter().filter(|f| f.severity == Severity::Warn);
     diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
-        *line = with_names(line, file, logs);
+        *line = with_names(line, file.path, logs);
     }
     Ok(LogDiagnosis { diagnosis, split })
 }

@@ -6,10 +6,11 @@
 //! `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind a port like a
 //! real one, so that `settings`, which open ports, know it.
 
+mod account;
 pub mod boot_loader;
 pub mod doctor;
 mod faulty;
-mod port;
+pub(crate) mod port;
 #[cfg(unix)]
 mod pty;
 pub mod record;
@@ -25,6 +26,7 @@ mod tap;
 #[cfg(feature = "virtual-cm5")]
 pub mod virtual_cm5;
 
+pub use account::{account_words, is_let_down};
 pub use faulty::Faulty;
 pub use port::{LineWriter, SerialLink, read_some};
 #[cfg(unix)]

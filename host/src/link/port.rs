@@ -160,4 +160,4 @@ macro_rules! left_to_inner {
         }
     };
 }
-pub(super) use left_to_inner;
+pub(crate) use left_to_inner;

@@ -145,6 +145,7 @@ pub fn condition_words(condition: Condition) -> &'static str {
         Condition::Fault(Cause::JointRange) => "stopped: a joint left its range",
         Condition::Fault(Cause::JointSpeed) => "stopped: a joint turned too fast",
         Condition::Fault(Cause::TorqueLost) => "stopped: a servo lost its torque",
+        Condition::Fault(Cause::LetDown) => "let down, as it was told",
         Condition::Fault(Cause::Watchdog) => "stopped: the watchdog reset the controller",
     }
 }

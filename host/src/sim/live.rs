@@ -4,6 +4,8 @@
 use super::drive::DriveInput;
 use super::plant::Plant;
 use super::rows::Many;
+use super::run::Start;
+use super::sensor_state::SensorState;
 use super::stepper::{Stepper, steps};
 use crate::error::{Error, Result};
 use crate::model::{Drive, Model};
@@ -13,6 +15,7 @@ use crate::model::{Drive, Model};
 pub struct Live {
     plant: Plant,
     stepper: Stepper<Many>,
+    sensors: SensorState,
     inputs: Vec<DriveInput>,
     nominal_supply_v: Vec<Option<f64>>,
 }
@@ -54,7 +57,16 @@ impl Live {
         let plant = Plant::without_log(&model);
         let angles = plant.decode_rad(angle_rad);
         let supply = |joint: &crate::model::Joint| joint.drive.motor()?.nominal_supply_v;
+        let mut sensors = SensorState::default();
+        let at_rest = Start {
+            speed_rad_s: vec![0.0; angles.len()],
+            angle_rad: angles.clone(),
+            ..Start::default()
+        };
+        sensors.begin(&plant, &at_rest);
+        sensors.step(&plant, &angles, 0.0);
         Ok(Live {
+            sensors,
             stepper: Stepper::new(&plant, &angles, &vec![0.0; angles.len()]),
             inputs: vec![
                 DriveInput {
@@ -83,6 +95,10 @@ impl Live {
         let (steps, h) = steps(span_s, self.plant.step_s);
         for _ in 0..steps {
             self.stepper.advance(&self.plant, &self.inputs, h);
+            if self.plant.senses {
+                self.sensors
+                    .step(&self.plant, self.stepper.angle.as_ref(), h);
+            }
         }
     }
 
@@ -106,12 +122,26 @@ impl Live {
         self.plant.encoded_rad_s(joint, &self.stepper.speed)
     }
 
-    /// Angle and speed of the shaft in a joint: from the link before it, whatever the model's
-    /// convention, rad and rad/s.
+    /// Angle of a joint in the model's convention as its encoder reads it, rad: behind backlash and
+    /// lag.
+    pub fn reading_rad(&self, joint: usize) -> f64 {
+        match self.plant.senses {
+            true => self.sensors.reading_rad[joint],
+            false => self.angle_rad(joint),
+        }
+    }
+
+    /// Angle and speed of the shaft in a joint as its encoder reads them: from the link before it,
+    /// whatever the model's convention, rad and rad/s.
     pub fn shaft(&self, joint: usize) -> (f64, f64) {
         match self.plant.is_absolute() && joint > 0 {
-            true => (self.stepper.angle[joint], self.stepper.speed[joint]),
-            false => (self.angle_rad(joint), self.speed_rad_s(joint)),
+            true => {
+                // Readings of absolute angles differ by the link's before.
+                let trail = |at: usize| self.reading_rad(at) - self.angle_rad(at);
+                let angle_rad = self.stepper.angle[joint] + trail(joint) - trail(joint - 1);
+                (angle_rad, self.stepper.speed[joint])
+            }
+            false => (self.reading_rad(joint), self.speed_rad_s(joint)),
         }
     }
 }

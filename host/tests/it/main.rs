@@ -3,6 +3,7 @@
 
 mod common;
 
+mod balance;
 mod bus;
 mod cli;
 mod closed_loop;

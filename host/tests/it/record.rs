@@ -78,15 +78,17 @@ fn a_run_through_the_firmware_is_what_its_model_says() {
 fn a_motion_is_followed_by_adapter_and_by_stream() {
     let bench = Bench::new();
     bench.put("motion.csv", motion(0.4));
-    for port in [
-        "--port sim:ids=1-2,delay=0",
-        "--port sim-cm5:ids=1-2,delay=0 --stream",
+    for (port, way) in [
+        ("--port sim:ids=1-2,delay=0", "adapter"),
+        ("--port sim-cm5:ids=1-2,delay=0", "stream"),
+        ("--port sim-cm5:ids=1-2,delay=0 --stream", "stream"),
     ] {
         let ran = bench.run(&format!(
             "replay motion.csv {port} --yes --record out.csv --force --json"
         ));
         assert_eq!(ran.code, Some(0), "{port}: {ran:?}");
         let data = ran.json();
+        assert_eq!(data["way"], way, "{port}");
         assert_eq!(data["stopped"], serde_json::Value::Null);
         // A servo drags behind its goal by some 50 ms; the motion's fastest is 0.8 rad/s.
         let error = data["tracking_rms_rad"].as_f64().unwrap();

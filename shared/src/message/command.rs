@@ -58,6 +58,9 @@ pub enum Command {
         /// CRC-32 of them.
         check: u32,
     },
+    /// Lets an armed robot down softly: positions held, or stopped in wheel mode, the torque limit
+    /// falling to nothing.
+    LetDown,
 }
 
 impl Command {
@@ -72,6 +75,7 @@ impl Command {
             | Command::Mode(_)
             | Command::ServoList(_)
             | Command::Disarm
+            | Command::LetDown
             | Command::Ask(_)
             | Command::PlanRead { .. }
             | Command::Arm { .. }
@@ -95,6 +99,12 @@ impl ArmLimits {
     pub const FULL: ArmLimits = ArmLimits {
         torque: TorqueLimit::FULL,
         speed: MovingSpeed(1023),
+    };
+
+    /// Nothing at all; no robot is armed so.
+    pub const NONE: ArmLimits = ArmLimits {
+        torque: TorqueLimit::NONE,
+        speed: MovingSpeed(0),
     };
 
     /// Whether both are limits a servo knows.

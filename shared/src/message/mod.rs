@@ -19,7 +19,7 @@ use crate::frame::{self, MAX_BODY, MAX_FRAME};
 use serde::{Deserialize, Serialize};
 
 /// Version of the messages; host and firmware must have the same.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 
 /// A message for one direction of the line.
 pub trait Message: Serialize + for<'de> Deserialize<'de> {
@@ -46,6 +46,7 @@ impl Message for Command {
             | Command::Attitude(_)
             | Command::KeepAlive
             | Command::Disarm
+            | Command::LetDown
             | Command::Ask(_)
             | Command::PlanRead { .. } => false,
         }

@@ -83,6 +83,8 @@ pub enum Cause {
     JointSpeed,
     /// A servo that was commanded said that its torque was off.
     TorqueLost,
+    /// The host let the robot down.
+    LetDown,
 }
 
 /// The outcome of a command.

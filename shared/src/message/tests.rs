@@ -142,7 +142,8 @@ proptest! {
     fn commands_survive(sequence: u8, codes: [u16; SERVOS], token: u16, length: u16, check: u32, bytes: [u8; PLAN_CHUNK], angle: i16, rate: i16, ids: [u8; SERVOS], count: u8) {
         for command in [
             Command::Goals(Positions::pack(codes)), Command::Speeds(Speeds::pack(codes)), Command::Arm { token, limits: ArmLimits::FULL },
-            Command::PlanChunk { offset: length, bytes }, Command::PlanStore { length, check }, Command::Disarm, Command::KeepAlive,
+            Command::PlanChunk { offset: length, bytes }, Command::PlanStore { length, check }, Command::Disarm, Command::LetDown,
+            Command::KeepAlive,
             Command::Attitude(Attitude { angle, rate }), Command::ServoList(ServoList { count, ids }),
             Command::Mode(Mode::Balance), Command::Ask(Subject::Statistics), Command::PlanRead { offset: length },
         ] {

@@ -128,7 +128,7 @@ fn rounds(trace: &[(u64, u8)]) -> Vec<Round> {
         };
         let (began, ended) = (to_ms(*began), to_ms(*ended));
         match (kind, rest) {
-            (2, _) if *id == SHOULDER && round.is_none_or(|round| began > round.began + 5.0) => {
+            (2, _) if round.is_none_or(|round| began > round.began + 8.0) => {
                 round = Some(Round {
                     began,
                     ..Round::default()

@@ -42,8 +42,11 @@ impl Source {
                 scale: (GYRO_STEP_RAD_S / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
             },
         };
+        // From the corners of 2 deg an ideal servo turns so far and so fast.
         Board {
             gyro,
+            joint_range_rad: 1.5,
+            joint_speed_rad_s: 12.0,
             ..Board::BIOLOID
         }
     }

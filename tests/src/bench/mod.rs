@@ -16,6 +16,7 @@ mod robot;
 mod run;
 #[cfg(unix)]
 mod serve;
+mod servos;
 mod stream;
 
 #[cfg(simavr)]
@@ -36,4 +37,5 @@ pub use power::{PowerCuts, power_cuts};
 pub use run::REPORT_MS;
 #[cfg(unix)]
 pub use serve::serve;
+pub use servos::{Rig, corners, random_starts};
 pub use stream::{StreamRun, stream};

@@ -9,6 +9,7 @@ mod frames;
 mod laws;
 mod loops;
 mod safety;
+mod servos;
 mod streams;
 
 use super::page::Page;
@@ -109,6 +110,7 @@ const ROWS: &[(&str, Measure)] = &[
     ("law", laws::laws),
     ("age of readings", ages::readings),
     ("closed loop", loops::loops),
+    ("servos", servos::servos),
     ("gyro alone", loops::gyros),
     ("balancing", loops::balancing),
     ("power cut", safety::cuts),

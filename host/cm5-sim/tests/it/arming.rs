@@ -189,5 +189,5 @@ fn nothing_is_kept_at_the_first_bytes_of_eeprom() {
         ready_to_balance(&mut cm5, &plan());
     }
     assert!(cm5.board.eeprom[..16].iter().all(|byte| *byte == 0xff));
-    assert!(cm5.board.eeprom[0x840..].iter().all(|byte| *byte == 0xff));
+    assert!(cm5.board.eeprom[0xcf8..].iter().all(|byte| *byte == 0xff));
 }

@@ -44,6 +44,7 @@ enum Step {
     Mode(Mode),
     Arm(Token, ArmLimits),
     Disarm,
+    LetDown,
     KeepAlive,
     Attitude(i16),
     Goals(u16),
@@ -109,6 +110,7 @@ impl ReferenceStateMachine for Steps {
             3 => mode.clone().prop_map(Step::Mode),
             6 => (token, limits()).prop_map(|(token, limits)| Step::Arm(token, limits)),
             1 => Just(Step::Disarm),
+            1 => Just(Step::LetDown),
             14 => Just(Step::KeepAlive),
             24 => prop_oneof![6 => -400i16..400, 1 => any::<i16>()].prop_map(Step::Attitude),
             8 => (0u16..1024).prop_map(Step::Goals),
@@ -516,6 +518,9 @@ impl Judged {
             Step::Disarm => {
                 self.send(&Command::Disarm);
             }
+            Step::LetDown => {
+                self.send(&Command::LetDown);
+            }
             Step::KeepAlive => {
                 self.send(&Command::KeepAlive);
             }
@@ -572,8 +577,13 @@ impl Judged {
                 self.servo(*at).faults.dead = *dead;
             }
             Step::Overload(at) => {
+                // Without torque there was nothing to give up: arming, which for balancing switches
+                // torque on a tick later, brings it back.
+                let had_torque = self.servo(*at).torque_is_on();
                 self.servo(*at).overload();
-                self.gave_up.push(IDS[*at]);
+                if had_torque {
+                    self.gave_up.push(IDS[*at]);
+                }
             }
             Step::Hot(at, hot) => {
                 self.servo(*at).temperature = if *hot { 90.0 } else { 30.0 };

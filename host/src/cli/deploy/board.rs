@@ -33,6 +33,9 @@ pub struct BoardArgs {
     /// ADC code of the gyro at rest
     #[arg(long, default_value_t = 512)]
     gyro_zero: u16,
+    /// Time constant with which a servo's torque follows its command, s; 0: at once
+    #[arg(long, default_value_t = BoardTiming::SERVO_LAG_S)]
+    servo_lag: f64,
     /// Departure of the first link at which it counts as fallen, rad
     #[arg(long, default_value_t = 0.5)]
     fallen: f64,
@@ -55,10 +58,18 @@ fn joints(text: &str) -> Result<JointServos, String> {
 
 impl BoardArgs {
     /// When readings are taken and torques act.
-    pub fn timing(&self) -> BoardTiming {
-        match self.gyro_per_code {
-            Some(_) => BoardTiming::GYRO,
+    ///
+    /// # Errors
+    /// A lag that is none.
+    pub fn timing(&self) -> Result<BoardTiming> {
+        let timing = match self.gyro_per_code {
+            Some(step) => BoardTiming::gyro(step.abs()),
             None => BoardTiming::HOST_ATTITUDE,
+        };
+        // Shorter ones are lost in the period, and the state before them hardly to be computed.
+        match self.servo_lag {
+            0.0 => Ok(timing),
+            lag => Ok(timing.with_lag(within("--servo-lag", lag, 2e-3, 0.2)?)),
         }
     }
 

@@ -29,15 +29,15 @@ const kept = JSON.parse(sessionStorage.getItem("scroll") ?? "[]");
 sessionStorage.removeItem("scroll");
 if (kept[0] === location.pathname) scrollTo(0, kept[1]);
 
-// The error in force, where the page did not wait for it.
-const lacking = $("#error-wanted");
-if (lacking) {
-  fetch(`${base}/error`).then(async (answer) => {
-    if (!answer.ok) { lacking.textContent = "Error: the logs cannot be read by this model"; return;
-      }
-    lacking.outerHTML = await answer.text();
-  }).catch(() => { lacking.textContent = ""; });
-}
+// What the page did not wait for: the error in force, what the check finds.
+const fill = async (selector, path, otherwise) => {
+  const place = $(selector);
+  if (!place) return;
+  const answer = await fetch(`${base}/${path}`);
+  if (answer.ok) place.outerHTML = await answer.text(); else place.textContent = otherwise;
+};
+fill("#error-wanted", "error", "Error: the logs cannot be read by this model").catch(() => {});
+fill("#findings-wanted", "findings", "The check came to no end.").catch(() => {});
 
 // A form sends its fields as JSON; `data-number` ones as numbers.
 for (const form of $$("form[data-send]")) {

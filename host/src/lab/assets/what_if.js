@@ -8,7 +8,7 @@ const root = document.getElementById("curves"), motion = document.getElementById
 const group = new ChartGroup(root);
 const library = JSON.parse(document.getElementById("library").textContent);
 const values = new Map(), added = [];
-let plain = null, wanted = false, busy = false;
+let plain = null, wanted = null, busy = false;
 
 const draw = (changed) => {
   const data = { ...plain.data, ...(changed?.data ?? {}) };
@@ -18,20 +18,27 @@ const draw = (changed) => {
   document.getElementById("error-if").textContent = milli(changed?.meta.rms ?? plain.meta.rms,
     plain.meta.unit);
 };
-const tried = () => ({ motion: Number(motion.value), effects: added.map((effect) => effect.name),
-  values: [...values] });
-// One request at a time: while it runs only the last wish is kept.
-const ask = async () => {
-  wanted = true;
+const tried = (moving = false) => ({
+  motion: Number(motion.value), moving,
+  effects: added.map((effect) => effect.name), values: [...values],
+});
+const run = (moving) => arrays(`${base}/what-if`, {
+  method: "POST", headers: { "content-type": "application/json" },
+  body: JSON.stringify(tried(moving)),
+});
+// One request at a time: while it runs only the last wish is kept. While a slider moves, windows
+// start where they do for the model as it is; when it rests, their starts are fitted anew.
+const ask = async (moving = false) => {
+  wanted = { moving };
   if (busy) return;
   busy = true;
   while (wanted) {
-    wanted = false;
+    const next = wanted;
+    wanted = null;
     const begun = performance.now();
     try {
-      if (!values.size && !added.length) draw(null);
-      else draw(await arrays(`${base}/what-if`, { method: "POST", headers: {
-        "content-type": "application/json" }, body: JSON.stringify(tried()) }));
+      draw(values.size || added.length ? await run(next.moving) : null);
+      document.getElementById("error-about").textContent = next.moving ? "about " : "";
       say("");
     } catch (error) { say(error.message); }
     root.dataset.answered = String(Math.round(performance.now() - begun));
@@ -56,17 +63,18 @@ const slider = ({ path, unit, low, high, value, meaning }) => {
     Number(value.toPrecision(5)) });
   number.setAttribute("aria-label", `${path}, ${unit}`);
   range.dataset.path = path;
-  const set = (v) => { values.set(path, v); ask(); };
+  const set = (v, moving) => { values.set(path, v); ask(moving); };
   range.addEventListener("input", () => {
     const v = Number(from(range.value / 1000).toPrecision(4));
     number.value = v;
-    set(v);
+    set(v, true);
   });
+  range.addEventListener("change", () => ask(false));
   number.addEventListener("change", () => {
     const v = Number(number.value);
     if (!Number.isFinite(v)) return;
     range.value = Math.round(1000 * to(v));
-    set(v);
+    set(v, false);
   });
   const name = element("label", { htmlFor: id, title: meaning ?? "" }, path);
   return element("div", { className: "slider" }, name, number, element("span", {

@@ -23,7 +23,7 @@ pub fn page(session: &Session) -> Result<Markup> {
             }
             section {
                 h2 { "What the check finds" }
-                @if model.is_some() { (findings(session, &session.findings(&saved)?)) }
+                @if model.is_some() { p #findings-wanted { "Checking …" } }
                 @else { p.lead { "Bring or make a model: it says what the columns mean." } }
             }
             section {
@@ -118,7 +118,8 @@ fn log(fact: &LogFacts) -> Markup {
     }
 }
 
-fn findings(session: &Session, findings: &[LogFinding]) -> Markup {
+/// What the check finds; it simulates, so the page does not wait for it.
+pub fn findings(session: &Session, findings: &[LogFinding]) -> Markup {
     html! {
         @if findings.is_empty() { p.good { "Nothing is wrong with these logs." } }
         ul.plain #findings { @for finding in findings {

@@ -30,7 +30,7 @@ pub fn sections(session: &Session, saved: &SavedSession, model: Option<&Model>) 
         }
         section {
             details open[model.is_none()] {
-                summary { h2.row { "Make a new model from a form" } }
+                summary { h2 { "Make a new model from a form" } }
                 (form(model.is_some()))
             }
         }

@@ -71,7 +71,8 @@ fn shown(evaluation: &Evaluation) -> Markup {
                 }
                 div {
                     div.big-error aria-live="polite" {
-                        span { "Error " b #error-if { (in_milli(evaluation.rms(), evaluation)) } }
+                        span { "Error " span #error-about {}
+                            b #error-if { (in_milli(evaluation.rms(), evaluation)) } }
                         span { "as it is " b #error-was { (in_milli(evaluation.rms(), evaluation)) }
                             }
                         span { "floor " (in_milli(evaluation.floor(), evaluation)) }

@@ -23,6 +23,16 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
     blocking(move || Ok(page(pages::page(&session)?))).await
 }
 
+/// What the check finds.
+pub(super) async fn findings(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let found = session.findings(&session.saved())?;
+        Ok(page(pages::findings(&session, &found)))
+    })
+    .await
+}
+
 #[derive(Debug, Deserialize)]
 pub(super) struct Upload {
     name: String,

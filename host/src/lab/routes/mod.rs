@@ -33,6 +33,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/sessions", get(enter::sessions).post(enter::begin))
         .route("/assets/{name}", get(asset))
         .route("/s/{number}/data", get(data::show))
+        .route("/s/{number}/findings", get(data::findings))
         .route("/s/{number}/upload", post(data::upload))
         .route("/s/{number}/example", post(data::example))
         .route("/s/{number}/log", post(data::log))

@@ -28,6 +28,10 @@ pub(super) struct Tried {
     /// The motion to draw.
     #[serde(default)]
     motion: usize,
+    /// Whether a slider moves still: windows then start where those of the model in force start,
+    /// which takes one simulation; else their starts are fitted anew.
+    #[serde(default)]
+    moving: bool,
     /// Effects to add: `coulomb@1`, at their start values.
     effects: Vec<String>,
     /// Addresses and values.
@@ -83,7 +87,11 @@ pub(super) async fn run(
         let base = session.evaluation(&saved, saved.current)?;
         let base = base.ok_or(LabError::NotFound("comparison"))?;
         let (model, _) = tried.applied_to(&base.run.model)?;
-        let run = ModelRun::new(model, base.run.data.clone(), base.run.horizon);
+        let (data, horizon) = (base.run.data.clone(), base.run.horizon);
+        let run = match tried.moving {
+            true => ModelRun::from_nodes(model, data, horizon, base.run.nodes.clone()),
+            false => ModelRun::new(model, data, horizon),
+        };
         let predicted = run.predicted.get(tried.motion);
         let mut arrays = Arrays::default();
         for (joint, angles) in predicted

@@ -2,8 +2,9 @@
 
 use super::Session;
 use super::saved::{SavedLog, SavedSession, SavedStep};
+use crate::conventions::{self, ModelFile};
 use crate::error::{Error, Result};
-use crate::log::{LogFinding, LogRequest, LogSet, Split, check, split};
+use crate::log::{LogFinding, LogRequest, LogSet, Split, split};
 use crate::model::Model;
 use crate::output::write_new_bytes;
 use std::path::{Path, PathBuf};
@@ -158,13 +159,19 @@ impl Session {
         saved.step().map(|step| parse(&step.toml)).transpose()
     }
 
-    /// What the log check finds; nothing without model or logs.
+    /// What `handstand log check` finds; nothing without model or logs.
     ///
     /// # Errors
     /// The system's refusal.
     pub fn findings(&self, saved: &SavedSession) -> Result<Vec<LogFinding>> {
         match self.model(saved)? {
-            Some(model) if !saved.logs.is_empty() => check(&self.log_set(saved).all(), &model),
+            Some(model) if !saved.logs.is_empty() => {
+                let file = ModelFile {
+                    path: &model_file(saved.current),
+                    text: saved.step().map_or("", |step| &step.toml),
+                };
+                conventions::findings(&self.log_set(saved).all(), &model, file)
+            }
             _ => Ok(Vec::new()),
         }
     }

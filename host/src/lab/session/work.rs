@@ -5,6 +5,7 @@ use super::card::SavedDiagnosis;
 use super::data::model_file;
 use super::job::JobReport;
 use super::saved::{SavedSession, SavedStep};
+use crate::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
@@ -25,17 +26,20 @@ impl Session {
             horizon: begun.window.by_hand(),
             ..DiagnoseOptions::default()
         };
-        let (file, logs) = (model_file(begun.current), self.log_set(&begun));
+        let (path, logs) = (model_file(begun.current), self.log_set(&begun));
+        let file = ModelFile {
+            path: &path,
+            text: self.toml(&begun)?,
+        };
         let progress = |p: crate::diagnose::Progress| report.tell(p.what, p.done, p.total);
-        let found = diagnose_logs(&model, &file, &logs, &options, &progress)?;
+        let found = diagnose_logs(&model, file, &logs, &options, &progress)?;
         let mut said = SavedDiagnosis::of(&found.diagnosis, begun.current);
-        for line in said
-            .summary
-            .iter_mut()
-            .chain(&mut said.next)
-            .chain(&mut said.warnings)
-        {
+        for line in said.summary.iter_mut().chain(&mut said.warnings) {
             *line = self.shortened(line);
+        }
+        // Commands are typed in the session's folder.
+        for line in &mut said.next {
+            *line = line.replace(&format!("{}/", self.folder().display()), "");
         }
         self.change(|saved| {
             unchanged(saved, &begun)?;

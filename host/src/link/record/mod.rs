@@ -12,6 +12,7 @@ mod mcap;
 mod motion;
 mod read;
 mod recorder;
+mod report_reader;
 mod sample;
 mod source;
 mod stream;
@@ -23,9 +24,10 @@ pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
 pub use read::{Recording, read};
 pub use recorder::{FileFormat, RobotRecorder};
+pub use report_reader::ReportReader;
 pub use sample::{GyroSample, RobotSample, ServoSample};
 pub use source::{EmergencyOff, SampleSource};
-pub use stream::Stream;
+pub use stream::{Stream, emergency_off};
 pub use tally::{Quantiles, RecordingTally, Rms};
 
 #[cfg(test)]

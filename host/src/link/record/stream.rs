@@ -1,15 +1,15 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
-use super::sample::{GyroSample, RobotSample, ServoSample};
+use super::report_reader::ReportReader;
+use super::sample::RobotSample;
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
-use crate::link::{SerialLink, Session, condition_words};
-use handstand_shared::dynamixel::ErrorBits;
+use crate::link::{SerialLink, Session, account_words, condition_words, is_let_down};
 use handstand_shared::message::{
-    ArmLimits, Attitude, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
+    ArmLimits, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
 };
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::{Position, Supply};
+use handstand_shared::raw::Position;
 use std::time::Duration;
 
 const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
@@ -18,17 +18,21 @@ const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
 pub struct Stream<L: SerialLink> {
     session: Session<L>,
     count: usize,
-    begun: Duration,
+    reader: ReportReader,
     goals: Option<Vec<Position>>,
     /// Where all stood in the newest report that has them all.
     stood: Option<Vec<Position>>,
-    housekeeping: Vec<ServoSample>,
-    /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
-    gyro: Option<(u16, f64)>,
     armed: bool,
     condition: Condition,
     /// The CM-5's account of itself when it began to let the robot down.
     account: Option<Telemetry>,
+}
+
+/// Disarms the CM-5 from another thread; none on a line that ends with the program.
+pub fn emergency_off<L: SerialLink>(session: &mut Session<L>) -> Option<EmergencyOff> {
+    let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
+    let off = off.map(|command| session.bytes(&command)).concat();
+    Some(send_twice(session.link().second_writer()?, off))
 }
 
 impl<L: SerialLink> Stream<L> {
@@ -56,16 +60,13 @@ impl<L: SerialLink> Stream<L> {
             Report::Telemetry(telemetry) => Some(*telemetry),
             _ => None,
         })?;
-        let scale = f64::from(telemetry.gyro_scale) / 16.0 * Attitude::RATE_LSB_RAD_S;
         let begun = session.link().now();
         Ok(Stream {
-            gyro: (scale != 0.0).then_some((telemetry.gyro_zero, scale)),
+            reader: ReportReader::new(ids.len(), begun, &telemetry),
             session,
             count: ids.len(),
-            begun,
             goals: None,
             stood: None,
-            housekeeping: vec![ServoSample::default(); ids.len()],
             armed: false,
             condition: Condition::Stream,
             account: None,
@@ -113,46 +114,11 @@ impl<L: SerialLink> SampleSource for Stream<L> {
             };
             self.condition = report.condition;
             self.ask_why();
-            for (place, housekeeping) in report.housekeeping(self.count) {
-                if housekeeping.error == 0xff {
-                    continue;
-                }
-                if let Some(joint) = self.housekeeping.get_mut(place) {
-                    let (speed, load) = (housekeeping.speed, housekeeping.load);
-                    *joint = ServoSample::measured(
-                        u16::from_le_bytes(speed),
-                        u16::from_le_bytes(load),
-                        housekeeping.supply,
-                        housekeeping.temperature,
-                        housekeeping.error,
-                    );
-                }
-            }
             let stood = (0..self.count).map(|place| report.position(place).map(Position));
             self.stood = stood.collect::<Option<_>>().or(self.stood.take());
-            let goal = |place: usize| {
-                self.goals
-                    .as_ref()
-                    .and_then(|goals| goals.get(place))
-                    .map(|goal| goal.to_rad())
-            };
-            let joints = (0..self.count).map(|place| ServoSample {
-                position_rad: report.position(place).map(|code| Position(code).to_rad()),
-                goal_rad: goal(place),
-                // Each servo's turn comes every few ticks; between them nothing was measured.
-                ..std::mem::take(&mut self.housekeeping[place])
-            });
-            let joints = joints.collect();
-            let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
-            return Ok(Some(RobotSample {
-                time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
-                joints,
-                gyro: Some(GyroSample {
-                    code: f64::from(report.gyro),
-                    zero: self.gyro.map(|(zero, _)| f64::from(zero)),
-                    rate_rad_s: self.gyro.map(rate),
-                }),
-            }));
+            let goals = self.goals.as_deref();
+            let goal_rad = |place: usize| Some(goals?.get(place)?.to_rad());
+            return Ok(Some(self.reader.sample(time, &report, goal_rad)));
         }
     }
 
@@ -178,40 +144,18 @@ impl<L: SerialLink> SampleSource for Stream<L> {
     }
 
     fn emergency_off(&mut self) -> Option<EmergencyOff> {
-        let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
-        let off = off.map(|command| self.session.bytes(&command)).concat();
-        Some(send_twice(self.session.link().second_writer()?, off))
+        emergency_off(&mut self.session)
     }
 
     fn danger(&self) -> Option<String> {
         let is_down = self.armed && is_let_down(self.condition);
         is_down.then(|| {
-            let why = self
-                .account
-                .map_or(String::new(), |account| words(&account));
+            let why = self.account.map_or(String::new(), |account| {
+                format!(": {}", account_words(&account))
+            });
             format!("the CM-5 is {}{why}", condition_words(self.condition))
         })
     }
-}
-
-fn is_let_down(condition: Condition) -> bool {
-    matches!(condition, Condition::Soft | Condition::Fault(_))
-}
-
-/// What may have been the cause: silence of the line, a servo, the supply.
-fn words(account: &Telemetry) -> String {
-    let servo = account.tripped.map_or(String::new(), |tripped| {
-        let names: Vec<&str> = ErrorBits(tripped.error).names().collect();
-        match names.is_empty() {
-            true => format!(", servo {} lost its torque", tripped.id),
-            false => format!(", servo {} reports {}", tripped.id, names.join(" and ")),
-        }
-    });
-    format!(
-        ": the line was silent for {} ms at most{servo}, supply {:.1} V",
-        account.longest_silence_ms,
-        Supply(account.supply).to_v()
-    )
 }
 
 impl<L: SerialLink> Drop for Stream<L> {

@@ -7,12 +7,14 @@
 //!
 //! [`sim::Live`]: crate::sim::Live
 
+mod attitude;
 mod link;
 mod robot;
 #[cfg(unix)]
 mod serve;
 mod state_log;
 
+pub use attitude::{AttitudeSensor, attitude_sensor};
 pub use handstand_cm5_sim::{AdapterPort, Bus, BusSpec, Cm5Port, RobotSpec, RobotState};
 pub use link::SimLink;
 pub use robot::{set_up, spec, spec_with_robot};

@@ -70,12 +70,31 @@ fn robot(spec: &RobotSpec, ids: &[u8]) -> Result<Robot> {
             "say which servos move each, from the base outwards: joints=1+2/11+12",
         ));
     }
-    let angle_rad = match spec.start {
+    let mut angle_rad = match spec.start {
         Start::Hanging => hanging(&model),
-        Start::Upright => upright(&model),
+        Start::Upright | Start::Held => upright(&model),
     };
+    if spec.lean_rad.len() > angle_rad.len() {
+        return Err(Error::usage(
+            format!(
+                "lean names {} joints, and `{}` has {}",
+                spec.lean_rad.len(),
+                model.name,
+                angle_rad.len()
+            ),
+            "give degrees for each joint from the base outwards: lean=1/-1/0.5",
+        ));
+    }
+    let leans = angle_rad.iter_mut().zip(&spec.lean_rad);
+    leans.for_each(|(angle, lean)| *angle += lean);
     let live = Live::new(&with_motors(model), &angle_rad)?;
-    Ok(Robot::new(Box::new(live), driven.into_iter().zip(servos)))
+    let mut robot = Robot::new(Box::new(live), driven.into_iter().zip(servos));
+    robot.set_lag(spec.lag_s);
+    robot.set_gyro(spec.gyro);
+    if spec.start == Start::Held {
+        robot.hold();
+    }
+    Ok(robot)
 }
 
 /// A joint driven by a torque gets a motor with the paper's limit.

@@ -35,6 +35,7 @@ fn from_a_log_to_a_better_model_and_back() {
     browser.value(&format!("document.getElementById('toml').value = {model}"));
     browser.press_on("form[data-send=model] button", "Enter");
     browser.until("document.getElementById('error-now')");
+    browser.until("document.getElementById('findings')");
     assert!(browser.text("#findings").contains("note"));
     browser.value(
         "document.querySelectorAll('[data-submit]')[1].value = 'hold_out'; \

@@ -76,7 +76,10 @@ fn a_minute_of_eighteen_joints_is_drawn_at_once() {
 fn a_slider_of_one_arm_answers_at_once() {
     let bench = Bench::new();
     let server = Server::start(&bench, "model.toml a.csv b.csv");
-    let tried = |mass: f64| json!({ "effects": [], "values": [["link1.mass_kg", mass]] });
+    let tried = |mass: f64| {
+        let values = json!([["link1.mass_kg", mass]]);
+        json!({ "effects": [], "values": values, "moving": true })
+    };
     server.post("/s/1/what-if", &tried(0.2)).curves();
     let mut times: Vec<Duration> = (1..10)
         .map(|k| {

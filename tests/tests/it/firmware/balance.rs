@@ -125,3 +125,32 @@ fn balancing_without_gains_is_refused() {
     rig.run_ms(300.0);
     assert_eq!(refused(&mut rig, arm_with(token)), Some(Refusal::NoPlan));
 }
+
+/// Real servos, which a plan with their lag stands on and one without does not; ideal ones from the
+/// longest way back; and a gyro alone whose zero is not the plan's.
+#[test]
+fn it_stands_on_real_servos_and_by_its_gyro() {
+    let one = 1f64.to_radians();
+    for start in random_starts(6, one, 3) {
+        assert_eq!(
+            Rig::REAL.stands_s(&Rig::REAL.plan(), start, 10.0),
+            10.0,
+            "{start:?}"
+        );
+    }
+    let blind = Rig {
+        lag_s: 0.0,
+        ..Rig::REAL
+    };
+    assert!(Rig::REAL.stands_s(&blind.plan(), [one, 0.0, one], 10.0) < 2.0);
+    let far = [2.0 * one; 3];
+    assert_eq!(Rig::IDEAL.stands_s(&Rig::IDEAL.plan(), far, 10.0), 10.0);
+    let gyro = Rig {
+        gyro_step_rad_s: Some(10.0 * one),
+        gyro_off: 1.0,
+        ..Rig::IDEAL
+    };
+    for start in random_starts(4, one, 4) {
+        assert_eq!(gyro.stands_s(&gyro.plan(), start, 10.0), 10.0, "{start:?}");
+    }
+}

@@ -1,0 +1,20 @@
+//! Balance a robot through the CM-5's firmware: set its servos up, arm, supervise, let it down.
+//!
+//! `attitude` (where the first link's attitude comes from), `wheel_mode` (servos that turn without
+//! end) -> [`Balancer`], which talks with the firmware -> `outcome` (how it ended).
+
+mod attitude;
+mod balancer;
+mod outcome;
+mod status;
+mod wheel_mode;
+
+pub use attitude::{AttitudeLines, AttitudeSource};
+pub use balancer::Balancer;
+pub use outcome::{BalanceEnd, BalanceOutcome};
+pub use status::BalanceStatus;
+pub use wheel_mode::WheelChange;
+
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod tests;

@@ -1,0 +1,412 @@
+//! `handstand balance [MODEL.toml|PLAN.rs]`: balance the robot through the CM-5, and supervise it.
+//!
+//! With a model the plan is designed, as `handstand gains deploy` does with the same options; a
+//! file that `--header` of that command wrote is taken as it is; without either the plan that the
+//! CM-5 has is used. What the CM-5 does not have is uploaded and read back.
+//!
+//! ```console
+//! $ handstand balance handstand.toml --port /dev/ttyUSB0 --gyro-per-code 0.0175
+//! $ imu-lines | handstand balance handstand.toml --port /dev/ttyUSB0 --attitude lines --yes
+//! $ handstand balance handstand.toml --port sim-cm5:robot=handstand.toml,start=held --yes
+//! ```
+//!
+//! Step by step: the driven servos get into wheel mode and all of `--ids` return delay 0, which their
+//! EEPROM keeps (read back; `handstand bus restore` brings the old limits back); the servos are
+//! named to the CM-5; it asks, unless `--yes`; after `--countdown` seconds torque comes on. Hold the robot
+//! upright and straight until then. The CM-5 refuses to arm where something speaks against it, and
+//! says what. A terminal shows joints, attitude, supply and latency as they are.
+//!
+//! `--attitude` says where the first link's attitude comes from: `gyro`, the gyro at the CM-5's
+//! ADC; `lines`, an IMU or a camera that writes a line for each attitude to standard input, angle
+//! from upright in rad and rate in rad/s, 100 times a second; `robot`, the simulated robot of
+//! `--port sim-cm5:robot=..`, exactly. Unless given it is what the plan wants: the gyro, or the
+//! simulated robot where there is one.
+//!
+//! After `--seconds`, at Ctrl-C and at the end of the lines the robot is let down softly: motors
+//! stop, the torque limit falls to nothing in 160 ms. A second Ctrl-C switches torque off at once.
+//! Exit code 5: the CM-5 let the robot down for its safety, or no attitude came any more.
+//!
+//! `--json` prints `ended` (`finished`, `interrupted`, `attitude_ended`, `stopped`), `cause` (in
+//! words, null unless stopped), `balanced_s`, `lean_rms_rad`, `fingerprint`, `uploaded`, `changes`
+//! (registers set: `id`, `register`, `before`), `longest_report_s`, `longest_attitude_s`,
+//! `longest_silence_ms`, `tripped` (`id`, `error_flags`), `supply_v`, `samples`, `record`.
+
+use super::deploy::board::BoardArgs;
+use super::flash::agreed;
+use super::interrupt::Interrupt;
+use super::port::{AnyLink, Ids, Port, id_list};
+use super::show::{or_dash, table};
+use super::{ExitStatus, Talk};
+use handstand::balance::{
+    AttitudeLines, AttitudeSource, BalanceEnd, BalanceOutcome, BalanceStatus, Balancer, WheelChange,
+};
+use handstand::deploy::{self, BoardLaw, plan_of_file};
+use handstand::link::condition_words;
+use handstand::link::record::RobotRecorder;
+use handstand::{Error, Model, Result, output};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::message::ArmLimits;
+use handstand_shared::plan::Plan;
+use handstand_shared::raw::{Supply, TorqueLimit};
+use indicatif::ProgressBar;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Samples between two drawings of the table: ten a second.
+const DRAW_EVERY: u64 = 10;
+
+/// Balance the robot through the CM-5.
+#[derive(Debug, clap::Args)]
+pub struct BalanceArgs {
+    /// Model to design the plan for, or a plan that `gains deploy --header` wrote; without it the
+    /// plan that the CM-5 has
+    #[arg(value_name = "MODEL.toml|PLAN.rs")]
+    plan: Option<PathBuf>,
+    #[command(flatten)]
+    port: Port,
+    /// Servos that hold the robot, those that balance among them
+    #[arg(long, default_value = "1-18", value_parser = id_list)]
+    ids: Ids,
+    #[command(flatten)]
+    board: BoardArgs,
+    /// Where the first link's attitude comes from
+    #[arg(long, value_enum)]
+    attitude: Option<AttitudeKind>,
+    /// Torque limit of all servos, a share of full torque
+    #[arg(long, default_value_t = 1.0)]
+    torque: f64,
+    /// Seconds until torque comes on
+    #[arg(long, default_value_t = 3.0)]
+    countdown: f64,
+    /// How long; until Ctrl-C without
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// Record what the servos do, .csv or .mcap
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Replace the recording if it exists
+    #[arg(long)]
+    force: bool,
+    /// Do not ask
+    #[arg(long)]
+    yes: bool,
+}
+
+/// Where the attitude comes from.
+#[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
+enum AttitudeKind {
+    /// The gyro at the CM-5's ADC
+    Gyro,
+    /// Lines on standard input: angle from upright, rad, and rate, rad/s
+    Lines,
+    /// The simulated robot
+    Robot,
+}
+
+/// Sets up, arms, supervises, lets down.
+pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
+    let limits = checked(args)?;
+    let given = args
+        .plan
+        .as_deref()
+        .map(|file| plan(args, file))
+        .transpose()?;
+    let interrupt = Interrupt::listen();
+    let (link, robot) = args.port.open_with_attitude()?;
+    let (source, is_gyro) = attitude(args, given.as_ref(), robot)?;
+    let mut balancer = Balancer::new(link, &args.ids.0, source)?;
+    let plan = match given {
+        Some(plan) => plan,
+        None => balancer.stored_plan()?,
+    };
+    if plan.gyro.from_host == is_gyro {
+        return Err(wrong_attitude(plan.gyro.from_host));
+    }
+    let mut report = BalanceReport {
+        fingerprint: plan.fingerprint(),
+        ..BalanceReport::default()
+    };
+    set_up(args, &plan, &mut balancer, &mut report, talk)?;
+    balancer.make_ready(&plan)?;
+    agreed(
+        args.yes,
+        "Is the robot upright and straight, and room around it?",
+    )?;
+    let create = |file: &PathBuf| RobotRecorder::create(file, &args.ids.0, args.force);
+    let mut recorder = args.record.as_ref().map(create).transpose()?;
+    interrupt.at_once(balancer.emergency_off());
+    let live = talk.live();
+    let outcome = balance(
+        args,
+        limits,
+        &mut balancer,
+        recorder.as_mut(),
+        &interrupt,
+        &live,
+    );
+    live.finish_and_clear();
+    if let Some(recorder) = recorder {
+        report.samples = recorder.samples;
+        recorder.finish()?;
+    }
+    report.print(&outcome?, &balancer.status, args, talk)
+}
+
+/// The limits that torque comes on with.
+fn checked(args: &BalanceArgs) -> Result<ArmLimits> {
+    let within = |name: &str, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
+        true => Ok(value),
+        false => Err(Error::usage(
+            format!("{name} {value} does not fit"),
+            format!("give {low} to {high}"),
+        )),
+    };
+    within("--countdown", args.countdown, 0.0, 60.0)?;
+    within("--seconds", args.seconds.unwrap_or(1.0), 0.01, 1e6)?;
+    let share = within("--torque", args.torque, 0.01, 1.0)?;
+    if let Some(file) = &args.record {
+        handstand::link::record::FileFormat::of(file)?;
+        output::vacant(file, args.force)?;
+    }
+    if args.attitude == Some(AttitudeKind::Lines) && !args.yes {
+        return Err(Error::usage(
+            "standard input has the attitude: nobody can be asked there",
+            "pass --yes if you mean it; --countdown leaves time to hold the robot",
+        ));
+    }
+    Ok(ArmLimits {
+        torque: TorqueLimit((share * 1023.0).round() as u16),
+        ..ArmLimits::FULL
+    })
+}
+
+/// The plan of a file: read, or designed for a model.
+fn plan(args: &BalanceArgs, file: &Path) -> Result<Plan> {
+    if file.extension().is_some_and(|ending| ending == "rs") {
+        let text = std::fs::read_to_string(file);
+        let text = text.map_err(|error| Error::file(file, "read", error))?;
+        return plan_of_file(&text, file);
+    }
+    let (model, board) = (Model::load(file)?, args.board.board()?);
+    let machine = deploy::observer_design(&model, &board, &args.board.timing()?)?;
+    deploy::plan(&model, BoardLaw::Observer(&machine), &board)
+}
+
+/// Where the attitude comes from, and whether that is the gyro.
+fn attitude(
+    args: &BalanceArgs,
+    plan: Option<&Plan>,
+    robot: Option<AttitudeSource>,
+) -> Result<(AttitudeSource, bool)> {
+    let wants_gyro = plan.is_some_and(|plan| !plan.gyro.from_host);
+    let kind = match args.attitude {
+        Some(kind) => kind,
+        None if wants_gyro || robot.is_none() => AttitudeKind::Gyro,
+        None => AttitudeKind::Robot,
+    };
+    let source = match kind {
+        AttitudeKind::Gyro => AttitudeSource::Gyro,
+        AttitudeKind::Lines => {
+            let lines = std::io::BufReader::new(std::io::stdin());
+            AttitudeSource::Lines(AttitudeLines::read(lines, "stdin"))
+        }
+        AttitudeKind::Robot => robot.ok_or_else(|| {
+            Error::usage(
+                "there is no simulated robot behind this port",
+                "--port sim-cm5:robot=MODEL.toml,start=held has one; else --attitude lines",
+            )
+        })?,
+    };
+    Ok((source, kind == AttitudeKind::Gyro))
+}
+
+fn wrong_attitude(plan_wants_host: bool) -> Error {
+    match plan_wants_host {
+        true => Error::usage(
+            "the plan wants the first link's attitude from the PC, and none is given",
+            "--attitude lines takes it from standard input; or deploy with --gyro-per-code",
+        ),
+        false => Error::usage(
+            "the plan takes the first link's rate from the CM-5's gyro",
+            "leave --attitude out, or deploy without --gyro-per-code",
+        ),
+    }
+}
+
+/// The plan onto the CM-5, the servos into wheel mode.
+fn set_up(
+    args: &BalanceArgs,
+    plan: &Plan,
+    balancer: &mut Balancer<AnyLink>,
+    report: &mut BalanceReport,
+    talk: &Talk,
+) -> Result<()> {
+    let mut bytes = 0;
+    plan.bytes(|_| bytes += 1);
+    let bar = talk.bar(bytes);
+    report.uploaded = balancer.deploy(plan, |sent| bar.set_position(sent))?;
+    drop(bar);
+    let done = if report.uploaded {
+        "uploaded"
+    } else {
+        "on the CM-5"
+    };
+    talk.say(&format!("plan {:08X}: {done}", report.fingerprint));
+    report.changes = balancer.wheel_changes(plan)?;
+    if report.changes.is_empty() {
+        talk.say("servos: in wheel mode where driven, return delay 0");
+        return Ok(());
+    }
+    let mut names: Vec<&str> = report.changes.iter().map(|c| c.register.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    for name in names {
+        let of = report.changes.iter().filter(|c| c.register.name == name);
+        let of: Vec<String> = of.map(|c| format!("{} ({})", c.id, c.before)).collect();
+        talk.say(&format!(
+            "{name} has to be 0, of servo (now): {}",
+            of.join(", ")
+        ));
+    }
+    agreed(
+        args.yes,
+        "These registers are kept without power. Write them?",
+    )?;
+    balancer.set_up(&report.changes)?;
+    talk.say("servos: now in wheel mode where driven, return delay 0");
+    Ok(())
+}
+
+/// Counts down, arms, and supervises until it ends.
+fn balance(
+    args: &BalanceArgs,
+    limits: ArmLimits,
+    balancer: &mut Balancer<AnyLink>,
+    mut recorder: Option<&mut RobotRecorder>,
+    interrupt: &Interrupt,
+    live: &ProgressBar,
+) -> Result<BalanceOutcome> {
+    let armed_at = balancer.link().now() + Duration::from_secs_f64(args.countdown);
+    while balancer.link().now() < armed_at {
+        balancer.step()?;
+        if interrupt.has_come() {
+            return Err(Error::usage(
+                "Ctrl-C before torque came on",
+                "nothing was moved",
+            ));
+        }
+        let left_s = armed_at.saturating_sub(balancer.link().now()).as_secs_f64();
+        live.set_message(format!(
+            "torque in {left_s:.0} s\n{}",
+            text(&balancer.status)
+        ));
+    }
+    balancer.arm(limits)?;
+    let mut count = 0;
+    loop {
+        let sample = balancer.step()?;
+        if let Some(recorder) = &mut recorder {
+            recorder.write(&sample)?;
+        }
+        if let Some(outcome) = balancer.end()? {
+            return Ok(outcome);
+        }
+        if interrupt.has_come() {
+            return balancer.let_down(BalanceEnd::Interrupted);
+        }
+        let is_over = |seconds| balancer.status.balanced_s >= seconds;
+        if args.seconds.is_some_and(is_over) {
+            return balancer.let_down(BalanceEnd::Finished);
+        }
+        count += 1;
+        if count % DRAW_EVERY == 0 {
+            live.set_message(text(&balancer.status));
+        }
+    }
+}
+
+/// The live table.
+fn text(status: &BalanceStatus) -> String {
+    let degrees = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} deg", rad.to_degrees()));
+    let mut joints = table(["", "Angle", "Output or rate"]);
+    let lean = degrees(status.lean_rad);
+    let rate = or_dash(status.rate_rad_s, |rate| {
+        format!("{:.1} deg/s", rate.to_degrees())
+    });
+    joints.add_row(["first link", &lean, &rate]);
+    for (name, joint) in [("shoulder", 0), ("hip", 1)] {
+        let output = or_dash(status.output[joint], |share| {
+            format!("{:.0} %", 100.0 * share)
+        });
+        joints.add_row([name, &degrees(status.joint_rad[joint]), &output]);
+    }
+    format!(
+        "{}, {:.1} s\n{joints}\nsupply {}, hottest servo {}, reports every {:.0} ms (longest {:.0})",
+        condition_words(status.condition),
+        status.balanced_s,
+        or_dash(status.supply_v(), |supply| format!("{supply:.1} V")),
+        or_dash(status.hottest_celsius(), |heat| format!("{heat:.0} C")),
+        1e3 * status.report_s,
+        1e3 * status.longest_report_s,
+    )
+}
+
+/// What was done, for the summary.
+#[derive(Default)]
+struct BalanceReport {
+    fingerprint: u32,
+    uploaded: bool,
+    changes: Vec<WheelChange>,
+    samples: u64,
+}
+
+impl BalanceReport {
+    fn print(
+        &self,
+        outcome: &BalanceOutcome,
+        status: &BalanceStatus,
+        args: &BalanceArgs,
+        talk: &Talk,
+    ) -> Result<ExitStatus> {
+        let account = outcome.account.as_ref();
+        let tripped = account.and_then(|account| account.tripped);
+        let data = json!({
+            "ended": outcome.id(),
+            "cause": outcome.is_safety_stop().then(|| outcome.words()),
+            "balanced_s": outcome.balanced_s,
+            "lean_rms_rad": status.lean_rms_rad(),
+            "fingerprint": format!("{:08X}", self.fingerprint),
+            "uploaded": self.uploaded,
+            "changes": self.changes,
+            "longest_report_s": status.longest_report_s,
+            "longest_attitude_s": status.lean_rad.map(|_| status.longest_attitude_s),
+            "longest_silence_ms": account.map(|account| account.longest_silence_ms),
+            "tripped": tripped.map(|tripped| json!({
+                "id": tripped.id,
+                "error_flags": ErrorBits(tripped.error).names().collect::<Vec<_>>(),
+            })),
+            "supply_v": account.map(|account| Supply(account.supply).to_v()),
+            "samples": args.record.as_ref().map(|_| self.samples),
+            "record": args.record.as_ref().map(|file| file.display().to_string()),
+        });
+        let rms = or_dash(status.lean_rms_rad(), |rad| {
+            format!(", {:.1} mrad rms from upright", 1e3 * rad)
+        });
+        let rms = if status.lean_rad.is_some() {
+            rms
+        } else {
+            String::new()
+        };
+        let text = format!(
+            "balanced for {:.1} s{rms}; {}",
+            outcome.balanced_s,
+            outcome.words()
+        );
+        talk.result(&data, || text)?;
+        match outcome.is_safety_stop() {
+            true => Ok(ExitStatus::Stopped),
+            false => Ok(ExitStatus::Done),
+        }
+    }
+}

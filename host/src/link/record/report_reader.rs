@@ -1,0 +1,79 @@
+//! Samples from a CM-5's stream reports.
+
+use super::sample::{GyroSample, RobotSample, ServoSample};
+use handstand_shared::message::{Attitude, Condition, StreamReport, Telemetry};
+use handstand_shared::raw::Position;
+use std::time::Duration;
+
+/// Turns stream reports into samples of the servos in the servo list's order.
+#[derive(Debug)]
+pub struct ReportReader {
+    begun: Duration,
+    housekeeping: Vec<ServoSample>,
+    /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
+    gyro: Option<(u16, f64)>,
+}
+
+impl ReportReader {
+    /// Of `count` servos; times count from `begun`, the gyro's zero and scale are the CM-5's.
+    pub fn new(count: usize, begun: Duration, account: &Telemetry) -> Self {
+        let scale = f64::from(account.gyro_scale) / 16.0 * Attitude::RATE_LSB_RAD_S;
+        ReportReader {
+            begun,
+            housekeeping: vec![ServoSample::default(); count],
+            gyro: (scale != 0.0).then_some((account.gyro_zero, scale)),
+        }
+    }
+
+    /// The sample of a report that arrived at `time`; `goal_rad` tells each servo's goal.
+    pub fn sample(
+        &mut self,
+        time: Duration,
+        report: &StreamReport,
+        goal_rad: impl Fn(usize) -> Option<f64>,
+    ) -> RobotSample {
+        let count = self.housekeeping.len();
+        for (place, housekeeping) in report.housekeeping(count) {
+            if housekeeping.error == 0xff {
+                continue;
+            }
+            if let Some(joint) = self.housekeeping.get_mut(place) {
+                let (speed, load) = (housekeeping.speed, housekeeping.load);
+                *joint = ServoSample::measured(
+                    u16::from_le_bytes(speed),
+                    u16::from_le_bytes(load),
+                    housekeeping.supply,
+                    housekeeping.temperature,
+                    housekeeping.error,
+                );
+            }
+        }
+        let joints = (0..count).map(|place| ServoSample {
+            position_rad: report.position(place).map(|code| Position(code).to_rad()),
+            goal_rad: goal_rad(place),
+            // Each servo's turn comes every few ticks; between them nothing was measured.
+            ..std::mem::take(&mut self.housekeeping[place])
+        });
+        let joints = joints.collect();
+        let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
+        RobotSample {
+            time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
+            joints,
+            gyro: Some(GyroSample {
+                code: f64::from(report.gyro),
+                zero: self.gyro.map(|(zero, _)| f64::from(zero)),
+                rate_rad_s: self.gyro.map(rate),
+            }),
+            torque_on: torque(report.condition),
+        }
+    }
+}
+
+/// Whether torque is on in this condition; none where it is not known.
+fn torque(condition: Condition) -> Option<bool> {
+    match condition {
+        Condition::StreamArmed | Condition::BalanceArmed | Condition::Soft => Some(true),
+        Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
+        Condition::Bridge => None,
+    }
+}
