@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, diagnose};
-use handstand::fitting::{FitData, FitOptions, Horizon, Node, fit};
+use handstand::fitting::{FitData, FitOptions, Horizon, fit};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
 use handstand::sim::{Plant, SensorState, predict};
@@ -49,7 +49,7 @@ fn identify(c: &mut Criterion) {
     let data = FitData::new(&model, one, Horizon::Whole);
     let motion = &data.motions[0];
     let plant = Plant::new(&model, motion);
-    let start = Node::guess(&data.motions[0], &data.sigma_rad, &data.windows[0]).start(&plant);
+    let start = data.guessed(&data.windows[0]).start(&plant);
     let mut out = vec![0.0; motion.len()];
     c.bench_function("predict 20 s", |b| {
         b.iter(|| {

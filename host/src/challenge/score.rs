@@ -56,7 +56,7 @@ pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore> {
     let error = |model: &Model| -> Result<f64> {
         let motions = read(std::slice::from_ref(&last), &model.log)?;
         let data = FitData::new(model, motions, Horizon::Whole);
-        Ok(fit_start_states(model, &data).rms_rad(&data))
+        Ok(fit_start_states(model, &data).rms(&data))
     };
     Ok(ChallengeScore {
         solved: names.iter().eq(hidden.iter()),

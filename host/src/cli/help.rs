@@ -8,7 +8,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Measure",
         &[
-            "log", "compare", "diagnose", "add", "fit", "effects", "view", "identify", "map",
+            "excite", "log", "compare", "diagnose", "add", "fit", "effects", "model", "view",
+            "identify", "map",
         ],
     ),
     (

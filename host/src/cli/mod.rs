@@ -17,7 +17,9 @@ mod demo;
 mod deploy;
 mod diagnose;
 mod doctor;
+mod drift;
 mod effects;
+mod excite;
 mod fit;
 mod flash;
 mod gains;
@@ -29,6 +31,7 @@ mod latency;
 mod log;
 mod man;
 mod map;
+mod model;
 mod page;
 mod paper;
 mod port;
@@ -97,6 +100,8 @@ pub enum Command {
     Log(log::LogCommand),
     /// Fit a model's free parameters to logs
     Fit(fit::FitArgs),
+    /// Test whether a model's values differ between sessions or servos
+    Drift(drift::DriftArgs),
     /// Add an effect to a model, its parameters fitted to logs
     Add(add::AddArgs),
     /// Synthesise LQR gains that balance a model, and export them for firmware
@@ -104,6 +109,9 @@ pub enum Command {
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Export a model for other simulators
+    #[command(subcommand)]
+    Model(model::ModelCommand),
     /// Identify a servo's discrete-time black-box model by prediction error
     Identify(identify::IdentifyArgs),
     /// Estimate a servo's static maps: dead zone, saturation, supply
@@ -127,9 +135,11 @@ pub enum Command {
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
     Bus(bus::BusCommand),
+    /// Write the motions that a measurement needs, within given limits
+    Excite(excite::ExciteArgs),
     /// Record servo states to a log
     Record(record::RecordArgs),
-    /// Replay a recording on servos
+    /// Replay a motion on servos
     Replay(replay::ReplayArgs),
     /// Balance the robot through the CM-5, and supervise it
     Balance(Box<balance::BalanceArgs>),
@@ -161,9 +171,11 @@ impl Command {
             Command::Effects(args) => effects::run(args, talk),
             Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
+            Command::Drift(args) => drift::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),
+            Command::Model(model::ModelCommand::Export(args)) => model::export(args, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),
             Command::View(args) => view::run(args, talk),
@@ -174,6 +186,7 @@ impl Command {
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
             Command::Bus(command) => bus::run(command, talk),
+            Command::Excite(args) => excite::run(args, talk),
             Command::Record(args) => record::run(args, talk),
             Command::Replay(args) => replay::run(args, talk),
             Command::Balance(args) => balance::run(args, talk),

@@ -1,7 +1,7 @@
 //! Which columns of a log are a servo's input and output: by a model file, or by flags; never
 //! guessed.
 
-use handstand::model::{Column, Dimension, JointColumns, LogColumns, Unit};
+use handstand::model::{Column, ColumnMean, Dimension, JointColumns, LogColumns, Unit};
 use handstand::sysid::OutputQuantity;
 use handstand::{Error, Model, Result};
 use std::path::PathBuf;
@@ -64,12 +64,18 @@ impl ServoColumns {
             None => (self.declared()?, 0),
         };
         let own = &columns.joints[joint];
-        let measured = own.position.unit.dimension;
+        let Some(position) = &own.position else {
+            return Err(Error::usage(
+                format!("the log holds no angle of joint {}", joint + 1),
+                "name its column under [[log.joint]], or another joint",
+            ));
+        };
+        let measured = position.dimension();
         let output = match measured {
             Dimension::Angle if !self.as_measured => OutputQuantity::Velocity,
             _ => OutputQuantity::AsMeasured,
         };
-        let input = own.input.as_ref().map(|input| input.unit.dimension);
+        let input = own.input.as_ref().map(ColumnMean::dimension);
         Ok(ChosenColumns {
             input_unit: input.map_or("1", si),
             output_unit: match output {
@@ -123,9 +129,9 @@ impl ServoColumns {
             payload_at_m: 0.0,
             turned: None,
             joints: vec![JointColumns {
-                position: output.clone(),
+                position: Some(output.clone().into()),
                 velocity: None,
-                input: Some(input.clone()),
+                input: Some(input.clone().into()),
             }],
             split_at_gap_s: None,
         })
@@ -158,6 +164,7 @@ fn column(text: &str) -> Result<Column, String> {
             offset: 0.0,
             reversed: false,
             resolution: (unit.name == "ticks").then_some(unit.si),
+            shift_s: 0.0,
         }),
         Some(_) if !name.is_empty() => Err("say how many make a turn: ticks/1228.8".to_string()),
         _ => Err(format!(

@@ -47,6 +47,12 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
     let model = Model::load(&args.model)?;
+    if let Some(sentence) = model.log.unobserved().into_iter().next() {
+        return Err(Error::usage(
+            sentence,
+            "a page shows measured angles: name the column of this one under [[log.joint]]",
+        ));
+    }
     let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
     for file in &args.others {
         let other = Model::load(file)?;

@@ -22,7 +22,7 @@ const LEAST_ABOVE_FLOOR: f64 = 0.1;
 ///
 /// It says where the error shows. In a long run an error shows after its cause, where angles move
 /// fast or late in the motion; the shorter the horizon, the nearer the two are. `residuals` is
-/// `[joint][motion][sample]`, rad.
+/// `[joint][motion][sample]`, rad or rad/s.
 pub(super) fn failures(
     model: &Model,
     motions: &[Motion],
@@ -30,12 +30,17 @@ pub(super) fn failures(
     signals: &[SignalError],
 ) -> Vec<Failure> {
     let mut all = Vec::new();
-    for (joint, signal) in signals.iter().enumerate() {
+    for signal in signals {
+        let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
             let conditions = met(&features(model, motions, joint));
-            let ranked = ranked(&error, signal.floor_rad, conditions);
-            all.extend(ranked.into_iter().map(|r| r.told(joint, signals.len() > 1)));
+            let ranked = ranked(&error, signal.floor, conditions);
+            all.extend(
+                ranked
+                    .into_iter()
+                    .map(|r| r.told(joint, model.link_count() > 1)),
+            );
         }
     }
     all.sort_by(|a, b| excess(b).total_cmp(&excess(a)));

@@ -1,10 +1,11 @@
-//! Measured and predicted angles of whole motions, side by side.
+//! Measured and predicted angles (rates of joints without a measured angle) of whole motions.
 
-use crate::fitting::{FitData, Node, predicted_rad};
+use crate::fitting::{self, FitData, Node};
+use crate::model::MeasuredSignal;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// Predicted angles, rad, `[motion][joint][sample]`, every window started from its node.
+/// Predicted signals, rad or rad/s, `[motion][joint][sample]`, every window started from its node.
 ///
 /// Unlike the fit's residuals these are not capped, so an error counts in full however small the
 /// noise is. From where a prediction runs away to infinity its last finite value stands.
@@ -18,10 +19,11 @@ pub(super) fn predicted(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Ve
 fn one_motion(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let mut angles = vec![Vec::with_capacity(log.len()); data.joints()];
-    let windows = predicted_rad(model, data, nodes, motion);
+    let windows = fitting::predicted(model, data, nodes, motion);
     for ((index, window), readings) in data.windows_of(motion).zip(windows) {
         for (joint, part) in readings.chunks(window.samples.len()).enumerate() {
-            let mut last = nodes[index].unknowns[joint];
+            let order = usize::from(data.signals[joint] == MeasuredSignal::Rate);
+            let mut last = nodes[index].unknowns[order * data.joints() + joint];
             angles[joint].extend(part.iter().map(|value| {
                 if value.is_finite() {
                     last = *value;
@@ -33,12 +35,12 @@ fn one_motion(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> V
     angles
 }
 
-/// Measured minus predicted, rad, per motion; not a number where nothing was measured.
+/// Measured minus predicted, rad or rad/s, per motion; not a number where nothing was measured.
 pub(super) fn residual(data: &FitData, predicted: &[Vec<Vec<f64>>], joint: usize) -> Vec<Vec<f64>> {
-    let pairs = data.motions.iter().zip(predicted);
-    pairs
+    let motions = predicted.iter().enumerate();
+    motions
         .map(|(motion, predicted)| {
-            let measured = &motion.position_rad[joint];
+            let measured = data.measured(motion, joint);
             measured
                 .iter()
                 .zip(&predicted[joint])

@@ -4,7 +4,8 @@
 //! borders.
 
 use super::result::ResidualTest;
-use crate::log::Motion;
+use crate::fitting::FitData;
+use crate::model::MeasuredSignal;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Lags looked at, in samples, as in MATLAB's `resid`.
@@ -16,24 +17,29 @@ const LEAST_SAMPLES: usize = 40;
 /// Normal quantile of 1 - 0.01 / (2 * 51): the largest of 51 lags, two-sided (Bonferroni).
 const Z_99_OF_51: f64 = 3.725;
 
-/// Tests of one joint's residual, rad per motion; none where there are too few samples.
+/// Tests of one joint's residual, rad or rad/s, per motion; none where there are too few samples.
 pub(super) fn residual_tests(
-    motions: &[Motion],
+    data: &FitData,
     joint: usize,
     residual: &[Vec<f64>],
 ) -> Vec<ResidualTest> {
     if residual.iter().map(Vec::len).sum::<usize>() < LEAST_SAMPLES {
         return Vec::new();
     }
+    let motions = &data.motions;
     let driven = motions.iter().all(|m| m.input[joint].is_some());
     let cause: Vec<Vec<f64>> = motions
         .iter()
         .map(|m| match &m.input[joint] {
             Some(input) if driven => input.clone(),
-            _ => m.position_rad[joint].clone(),
+            _ => m.measured(joint, data.signals[joint]).to_vec(),
         })
         .collect();
-    let cause_name = if driven { "input" } else { "angle" };
+    let cause_name = match (driven, data.signals[joint]) {
+        (true, _) => "input",
+        (false, MeasuredSignal::Rate) => "rate",
+        (false, _) => "angle",
+    };
     let residual = zero_gaps(residual);
     let mut tests = vec![whiteness(&residual)];
     tests.extend(independence(&residual, &cause, cause_name));

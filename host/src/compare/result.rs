@@ -2,7 +2,9 @@
 
 use super::closed_loop::ClosedLoopComparison;
 use crate::fitting::MotionWindow;
-use serde::Serialize;
+use crate::model::MeasuredSignal;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 /// One model against a set of motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,7 +15,9 @@ pub struct Comparison {
     pub horizon_s: Option<f64>,
     /// How long the windows of each motion are: no longer than its start errors stay small.
     pub windows: Vec<MotionWindow>,
-    /// Per joint, all motions together.
+    /// What the logs cannot observe of the joints' motion, a sentence each.
+    pub unobserved: Vec<String>,
+    /// Per measured joint, all motions together.
     pub signals: Vec<SignalError>,
     /// How the error grows with the time the model runs without correction, all joints together.
     pub horizons: Vec<HorizonError>,
@@ -25,19 +29,22 @@ pub struct Comparison {
     pub closed_loop: Option<ClosedLoopComparison>,
 }
 
-/// Error of one joint's position.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Error of one joint's angle, rad, or of its rate where no angle is measured, rad/s. Keys of JSON
+/// end in the unit: `rms_rad`, `rms_rad_s`.
+#[derive(Debug, Clone, PartialEq)]
 pub struct SignalError {
     /// Joint counted from 1.
     pub joint: usize,
-    /// Root-mean-square error, rad.
-    pub rms_rad: f64,
-    /// Largest error, rad.
-    pub largest_rad: f64,
+    /// What is measured of it.
+    pub quantity: MeasuredSignal,
+    /// Root-mean-square error.
+    pub rms: f64,
+    /// Largest error.
+    pub largest: f64,
     /// 100 (1 - |y - yhat| / |y - mean y|), as MATLAB's `compare` defines it; 100 is perfect.
     pub fit_percent: f64,
-    /// What resolution and noise alone leave, rad.
-    pub floor_rad: f64,
+    /// What resolution and noise alone leave.
+    pub floor: f64,
     /// Share of the squared error above the floor, 0 to 1.
     pub share_above_floor: f64,
     /// Tests of what is left.
@@ -59,13 +66,16 @@ pub struct ResidualTest {
     pub meaning: String,
 }
 
-/// Error when the model starts afresh every `horizon_s`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Error when the model starts afresh every `horizon_s`, of all joints with a measured angle, rad, or
+/// of the rates where no angle is measured, rad/s.
+#[derive(Debug, Clone, PartialEq)]
 pub struct HorizonError {
+    /// What it is an error of.
+    pub quantity: MeasuredSignal,
     /// Window length, s; absent for whole motions.
     pub horizon_s: Option<f64>,
-    /// Root-mean-square error, rad.
-    pub rms_rad: f64,
+    /// Root-mean-square error.
+    pub rms: f64,
 }
 
 /// A condition that holds more than its share of the error.
@@ -83,24 +93,82 @@ pub struct Failure {
     pub sentence: String,
 }
 
-/// One joint of one motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// One joint of one motion: its angle, rad, or its rate where no angle is measured, rad/s.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// The motion.
     pub motion: String,
     /// Joint counted from 1.
     pub joint: usize,
-    /// Root-mean-square error of this motion, rad.
-    pub rms_rad: f64,
+    /// What is measured of it.
+    pub quantity: MeasuredSignal,
+    /// Root-mean-square error of this motion.
+    pub rms: f64,
     /// Sample times, s.
     pub time_s: Vec<f64>,
-    /// Measured, rad.
-    pub measured_rad: Vec<f64>,
-    /// Predicted, rad.
-    pub predicted_rad: Vec<f64>,
+    /// Measured.
+    pub measured: Vec<f64>,
+    /// Predicted.
+    pub predicted: Vec<f64>,
+}
+
+/// The key of a quantity: its name and its unit.
+fn key(name: &str, quantity: MeasuredSignal) -> String {
+    format!("{name}{}", quantity.suffix())
+}
+
+impl Serialize for SignalError {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("joint", &self.joint)?;
+        map.serialize_entry(&key("rms", self.quantity), &self.rms)?;
+        map.serialize_entry(&key("largest", self.quantity), &self.largest)?;
+        map.serialize_entry("fit_percent", &self.fit_percent)?;
+        map.serialize_entry(&key("floor", self.quantity), &self.floor)?;
+        map.serialize_entry("share_above_floor", &self.share_above_floor)?;
+        map.serialize_entry("tests", &self.tests)?;
+        map.end()
+    }
+}
+
+impl Serialize for HorizonError {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("horizon_s", &self.horizon_s)?;
+        map.serialize_entry(&key("rms", self.quantity), &self.rms)?;
+        map.end()
+    }
+}
+
+impl Serialize for Trace {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("motion", &self.motion)?;
+        map.serialize_entry("joint", &self.joint)?;
+        map.serialize_entry(&key("rms", self.quantity), &self.rms)?;
+        map.serialize_entry("time_s", &self.time_s)?;
+        map.serialize_entry(&key("measured", self.quantity), &self.measured)?;
+        map.serialize_entry(&key("predicted", self.quantity), &self.predicted)?;
+        map.end()
+    }
 }
 
 impl Comparison {
+    /// The signals whose errors can be pooled: angles, or rates where no angle is measured.
+    pub fn pooled(&self) -> impl Iterator<Item = &SignalError> {
+        let quantity = self.quantity();
+        self.signals.iter().filter(move |s| s.quantity == quantity)
+    }
+
+    /// What errors over all joints are of.
+    pub fn quantity(&self) -> MeasuredSignal {
+        let angles = |signal: &SignalError| signal.quantity == MeasuredSignal::Angle;
+        match self.signals.is_empty() || self.signals.iter().any(angles) {
+            true => MeasuredSignal::Angle,
+            false => MeasuredSignal::Rate,
+        }
+    }
+
     /// The model's name and its closed loop, where the controller is known.
     pub(crate) fn named_loop(&self) -> Option<(&str, &ClosedLoopComparison)> {
         Some((self.model.as_str(), self.closed_loop.as_ref()?))

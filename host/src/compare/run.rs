@@ -6,7 +6,7 @@ use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
 use crate::fitting::{FitData, Horizon, fit_start_states};
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{MeasuredSignal, Model};
 
 /// Times without correction at which the error is told, s.
 const LADDER_S: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
@@ -35,18 +35,27 @@ pub fn compare(
     let signals: Vec<SignalError> = residuals
         .iter()
         .enumerate()
+        .filter(|(joint, _)| data.signals[*joint] != MeasuredSignal::Nothing)
         .map(|(joint, residual)| signal(&data, joint, residual))
         .collect();
     Comparison {
         model: name.to_string(),
         horizon_s: horizon.seconds(),
         windows: data.motion_windows(horizon),
-        horizons: horizons(model, &data, horizon, rms(residuals.iter().flatten())),
+        unobserved: model.log.unobserved(),
+        horizons: horizons(model, &data, horizon, pooled(&data, &residuals)),
         failures: failures(model, &data.motions, &residuals, &signals),
         traces: traces(&data, &predicted),
         closed_loop: None,
         signals,
     }
+}
+
+/// Root-mean-square error of the joints that count together.
+fn pooled(data: &FitData, residuals: &[Vec<Vec<f64>>]) -> f64 {
+    let joints = residuals.iter().enumerate();
+    let counted = joints.filter(|(joint, _)| data.counts(*joint));
+    rms(counted.flat_map(|(_, motions)| motions))
 }
 
 /// Root-mean-square of what was measured.
@@ -65,21 +74,19 @@ fn rms<'a>(residuals: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
 
 fn signal(data: &FitData, joint: usize, residual: &[Vec<f64>]) -> SignalError {
     let rms = rms(residual.iter());
-    let floor = data.sigma_rad[joint];
-    let measured: Vec<&[f64]> = data
-        .motions
-        .iter()
-        .map(|m| m.position_rad[joint].as_slice())
-        .collect();
+    let floor = data.sigma[joint];
+    let motions = 0..data.motions.len();
+    let measured: Vec<&[f64]> = motions.map(|motion| data.measured(motion, joint)).collect();
     let errors = residual.iter().flatten().map(|e| e.abs());
     SignalError {
         joint: joint + 1,
-        rms_rad: rms,
-        largest_rad: errors.fold(0.0, f64::max),
+        quantity: data.signals[joint],
+        rms,
+        largest: errors.fold(0.0, f64::max),
         fit_percent: fit_percent(&measured, residual),
-        floor_rad: floor,
+        floor,
         share_above_floor: share_above(rms, floor),
-        tests: residual_tests(&data.motions, joint, residual),
+        tests: residual_tests(data, joint, residual),
     }
 }
 
@@ -113,7 +120,7 @@ pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
 }
 
 /// The error over ever longer runs, up to the horizon of the comparison, whose error is known.
-fn horizons(model: &Model, data: &FitData, horizon: Horizon, known_rad: f64) -> Vec<HorizonError> {
+fn horizons(model: &Model, data: &FitData, horizon: Horizon, known: f64) -> Vec<HorizonError> {
     let longest = data.longest_s();
     let (mut time, mut intervals) = (0.0, 0.0);
     for motion in &data.motions {
@@ -128,28 +135,33 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon, known_rad: f64) -> 
         .map(|s| {
             let data = data.recut(Horizon::Seconds(s));
             let predicted = predicted(model, &data, &fit_start_states(model, &data).nodes);
-            let residuals: Vec<Vec<f64>> = (0..model.link_count())
-                .flat_map(|joint| residual(&data, &predicted, joint))
-                .collect();
+            let joints = 0..model.link_count();
+            let residuals: Vec<_> = joints.map(|j| residual(&data, &predicted, j)).collect();
             HorizonError {
+                quantity: data.quantity(),
                 horizon_s: Some(s),
-                rms_rad: rms(residuals.iter()),
+                rms: pooled(&data, &residuals),
             }
         })
         .collect();
     ladder.push(HorizonError {
+        quantity: data.quantity(),
         horizon_s: horizon.seconds(),
-        rms_rad: known_rad,
+        rms: known,
     });
     ladder
 }
 
 fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
     let mut traces = Vec::new();
-    for (motion, predicted) in data.motions.iter().zip(predicted) {
+    for (index, predicted) in predicted.iter().enumerate() {
+        let motion = &data.motions[index];
         let stride = motion.len().div_ceil(DRAWN).max(1);
         for (joint, predicted) in predicted.iter().enumerate() {
-            let measured = &motion.position_rad[joint];
+            if data.signals[joint] == MeasuredSignal::Nothing {
+                continue;
+            }
+            let measured = data.measured(index, joint);
             let error: Vec<f64> = measured.iter().zip(predicted).map(|(y, m)| y - m).collect();
             let drawn: Vec<usize> = (0..motion.len())
                 .step_by(stride)
@@ -159,10 +171,11 @@ fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
             traces.push(Trace {
                 motion: motion.name.clone(),
                 joint: joint + 1,
-                rms_rad: rms(std::iter::once(&error)),
+                quantity: data.signals[joint],
+                rms: rms(std::iter::once(&error)),
                 time_s: pick(&motion.time_s),
-                measured_rad: pick(measured),
-                predicted_rad: pick(predicted),
+                measured: pick(measured),
+                predicted: pick(predicted),
             });
         }
     }

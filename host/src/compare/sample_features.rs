@@ -3,7 +3,7 @@
 
 use super::order::{quantile, ranks};
 use crate::log::Motion;
-use crate::model::{Angles, Drive, Model};
+use crate::model::{Angles, Drive, MeasuredSignal, Model};
 
 /// Half the time over which speed is estimated, s.
 const SPEED_REACH_S: f64 = 0.025;
@@ -47,7 +47,11 @@ pub(super) struct SampleFeatures {
 pub(super) fn features(model: &Model, motions: &[Motion], joint: usize) -> Vec<SampleFeatures> {
     let collect =
         |of: &dyn Fn(&Motion) -> Vec<f64>| -> Vec<f64> { motions.iter().flat_map(of).collect() };
-    let speed = collect(&|m| speed_rad_s(&m.time_s, &m.position_rad[joint]));
+    let rate_alone = model.log.joints[joint].signal() == MeasuredSignal::Rate;
+    let speed = collect(&|m| match &m.velocity_rad_s[joint] {
+        Some(rate) if rate_alone => rate.clone(),
+        _ => speed_rad_s(&m.time_s, &m.position_rad[joint]),
+    });
     let fast = quantile(&speed, 0.95);
     let gravity = collect(&|m| gravity_nm(model, m, joint));
     let load = collect(&|m| load_nm(model, m, joint));

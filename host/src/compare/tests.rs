@@ -228,9 +228,9 @@ fn a_joint_at_its_floor_has_no_failures() {
     let comparison = compare(&pendulum(), "right", &motions, None);
     assert_eq!(comparison.horizon_s, None);
     let signal = &comparison.signals[0];
-    assert!(signal.rms_rad < 1e-4, "{}", signal.rms_rad);
+    assert!(signal.rms < 1e-4, "{}", signal.rms);
     assert!(signal.fit_percent > 99.9);
-    assert!(signal.share_above_floor <= 0.1 || signal.rms_rad < 2.0 * signal.floor_rad);
+    assert!(signal.share_above_floor <= 0.1 || signal.rms < 2.0 * signal.floor);
     let signals = [SignalError {
         share_above_floor: 0.05,
         ..signal.clone()
@@ -244,17 +244,13 @@ fn missing_friction_shows_and_grows_with_the_run() {
     let motions = [swing(0.8, 0.02, 500), swing(-0.5, 0.02, 300)];
     let comparison = compare(&pendulum(), "no Coulomb", &motions, Some(Horizon::Whole));
     let signal = &comparison.signals[0];
-    assert!(
-        signal.rms_rad > 20.0 * signal.floor_rad,
-        "{}",
-        signal.rms_rad
-    );
+    assert!(signal.rms > 20.0 * signal.floor, "{}", signal.rms);
     assert!(!signal.tests[0].passed);
     let rungs: Vec<Option<f64>> = comparison.horizons.iter().map(|h| h.horizon_s).collect();
     assert_eq!(rungs, [Some(0.1), Some(0.3), Some(1.0), Some(3.0), None]);
-    let errors: Vec<f64> = comparison.horizons.iter().map(|h| h.rms_rad).collect();
+    let errors: Vec<f64> = comparison.horizons.iter().map(|h| h.rms).collect();
     assert!(errors.is_sorted(), "{errors:?}");
-    assert_eq!(*errors.last().unwrap(), signal.rms_rad);
+    assert_eq!(*errors.last().unwrap(), signal.rms);
     assert_eq!(comparison.traces.len(), 2);
     assert_eq!(comparison.traces[0].time_s.len(), 500);
 }
@@ -312,7 +308,7 @@ fn conditions_are_worded_to_end_a_sentence() {
 #[test]
 fn no_motion_at_all_is_no_panic() {
     let nothing = compare(&pendulum(), "nothing", &[], None);
-    assert_eq!(nothing.signals[0].rms_rad, 0.0);
+    assert_eq!(nothing.signals[0].rms, 0.0);
     assert!(text(std::slice::from_ref(&nothing)).contains("nothing"));
     assert_eq!(waterfall(&[nothing]).lines().count(), 2);
     assert!(text(&[]).is_empty() && waterfall(&[]).is_empty());

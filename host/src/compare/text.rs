@@ -3,6 +3,7 @@
 use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
 use crate::fitting::in_windows;
+use crate::model::MeasuredSignal;
 use crate::output::number::mrad_in_column;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
@@ -34,6 +35,9 @@ pub fn text(comparisons: &[Comparison]) -> String {
         let _ = write!(text, "\nWhere {} fails most\n  {where_}\n", other.model);
     }
     let _ = write!(text, "\nWhere {} fails\n", last.model);
+    for sentence in &last.unobserved {
+        let _ = writeln!(text, "  {sentence}");
+    }
     if last.failures.is_empty() {
         let _ = writeln!(text, "  {NOWHERE}");
     }
@@ -56,10 +60,10 @@ const NOWHERE: &str = "no condition holds more than its share of the error";
 pub fn waterfall(comparisons: &[Comparison]) -> String {
     let mut steps: Vec<(&str, f64)> = comparisons
         .iter()
-        .map(|c| (c.model.as_str(), together(c, |s| s.rms_rad)))
+        .map(|c| (c.model.as_str(), together(c, |s| s.rms)))
         .collect();
     if let Some(last) = comparisons.last() {
-        steps.push(("floor", together(last, |s| s.floor_rad)));
+        steps.push(("floor", together(last, |s| s.floor)));
     }
     let most = steps.iter().map(|step| step.1).fold(0.0, f64::max);
     let width = steps.iter().map(|s| s.0.chars().count()).max().unwrap_or(0);
@@ -67,7 +71,10 @@ pub fn waterfall(comparisons: &[Comparison]) -> String {
     for (name, rad) in steps {
         let length = if most > 0.0 { rad / most } else { 0.0 };
         let bar = "#".repeat((length * BAR as f64).round() as usize);
-        let line = format!("  {name:width$}  {:>8} mrad  {bar}", mrad_in_column(rad));
+        let milli = comparisons
+            .last()
+            .map_or("mrad", |last| last.quantity().milli());
+        let line = format!("  {name:width$}  {:>8} {milli}  {bar}", mrad_in_column(rad));
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
@@ -75,12 +82,12 @@ pub fn waterfall(comparisons: &[Comparison]) -> String {
 
 /// Root-mean-square over the joints.
 fn together(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
-    let squares: f64 = comparison.signals.iter().map(|s| of(s).powi(2)).sum();
-    (squares / comparison.signals.len().max(1) as f64).sqrt()
+    let squares: f64 = comparison.pooled().map(|s| of(s).powi(2)).sum();
+    (squares / comparison.pooled().count().max(1) as f64).sqrt()
 }
 
 fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
-    if comparison.signals.len() > 1 {
+    if comparison.signals.len() > 1 || !comparison.unobserved.is_empty() {
         format!(", joint {}", signal.joint)
     } else {
         String::new()
@@ -117,8 +124,11 @@ fn table(comparisons: &[Comparison]) -> Table {
     row(&mut table, comparisons, "runs uncorrected", |c| {
         in_windows(&c.windows)
     });
-    let joints = comparisons.iter().map(|c| c.signals.len()).max();
-    for joint in 0..joints.unwrap_or(0) {
+    let signals = comparisons.iter().flat_map(|c| &c.signals);
+    let mut joints: Vec<usize> = signals.map(|signal| signal.joint).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    for joint in joints {
         signal_rows(&mut table, comparisons, joint);
     }
     let mut rungs: Vec<f64> = comparisons
@@ -131,14 +141,17 @@ fn table(comparisons: &[Comparison]) -> Table {
         .iter()
         .flat_map(|c| &c.horizons)
         .any(|h| h.horizon_s.is_none());
+    let milli = comparisons
+        .last()
+        .map_or("mrad", |last| last.quantity().milli());
     for rung in rungs.into_iter().map(Some).chain(whole.then_some(None)) {
         let label = match rung {
-            Some(seconds) => format!("rms of runs of {} s, mrad", short(seconds)),
-            None => "rms of whole motions, mrad".to_string(),
+            Some(seconds) => format!("rms of runs of {} s, {milli}", short(seconds)),
+            None => format!("rms of whole motions, {milli}"),
         };
         row(&mut table, comparisons, &label, |c| {
             let found = c.horizons.iter().find(|h| h.horizon_s == rung);
-            found.map_or("-".to_string(), |h| mrad_in_column(h.rms_rad))
+            found.map_or("-".to_string(), |h| mrad_in_column(h.rms))
         });
     }
     align(&mut table);
@@ -149,16 +162,23 @@ fn table(comparisons: &[Comparison]) -> Table {
 type Cell = fn(&SignalError) -> String;
 
 fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
-    let prefix = if comparisons.iter().any(|c| c.signals.len() > 1) {
-        format!("joint {}: ", joint + 1)
-    } else {
-        String::new()
+    fn own(comparison: &Comparison, joint: usize) -> Option<&SignalError> {
+        comparison.signals.iter().find(|s| s.joint == joint)
+    }
+    let named = |c: &Comparison| c.signals.len() > 1 || !c.unobserved.is_empty();
+    let prefix = match comparisons.iter().any(named) {
+        true => format!("joint {joint}: "),
+        false => String::new(),
     };
+    let quantity = comparisons
+        .iter()
+        .find_map(|c| Some(own(c, joint)?.quantity));
+    let milli = quantity.map_or("mrad", MeasuredSignal::milli);
     let lines: [(&str, Cell); 6] = [
-        ("rms, mrad", |s| mrad_in_column(s.rms_rad)),
-        ("largest, mrad", |s| mrad_in_column(s.largest_rad)),
+        ("rms, mrad", |s| mrad_in_column(s.rms)),
+        ("largest, mrad", |s| mrad_in_column(s.largest)),
         ("fit, %", |s| format!("{:.1}", s.fit_percent)),
-        ("floor, mrad", |s| mrad_in_column(s.floor_rad)),
+        ("floor, mrad", |s| mrad_in_column(s.floor)),
         ("squared error above floor, %", |s| {
             format!("{:.0}", 100.0 * s.share_above_floor)
         }),
@@ -168,8 +188,9 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
         }),
     ];
     for (label, cell) in lines {
+        let label = label.replace("mrad", milli);
         row(table, comparisons, &format!("{prefix}{label}"), |c| {
-            c.signals.get(joint).map_or("-".to_string(), cell)
+            own(c, joint).map_or("-".to_string(), cell)
         });
     }
 }

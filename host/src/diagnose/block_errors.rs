@@ -10,7 +10,8 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct BlockErrors {
     /// In order of motions and time.
     blocks: Vec<Block>,
-    /// Per motion: sum of squared residuals, rad^2, and their number.
+    /// Per motion: sum of squared residuals, rad^2 (rad^2/s^2 where no angle is measured), and their
+    /// number.
     pub motions: Vec<(f64, usize)>,
 }
 
@@ -39,7 +40,6 @@ impl BlockErrors {
             motions: vec![(0.0, 0); data.motions.len()],
             ..BlockErrors::default()
         };
-        let joints = data.joints();
         for (window, residuals) in data.windows.iter().zip(&residuals.windows) {
             let motion = &data.motions[window.motion];
             let time = &motion.time_s[window.samples.clone()];
@@ -51,19 +51,27 @@ impl BlockErrors {
                 while end < samples && time[end] - time[begin] < block_s {
                     end += 1;
                 }
-                let mut sum = 0.0;
+                let (mut sum, mut count) = (0.0, 0);
                 let total = &mut errors.motions[window.motion];
-                for (joint, sigma) in data.sigma_rad.iter().enumerate() {
+                for (joint, sigma) in data.sigma.iter().enumerate() {
+                    let measured = &data.measured(window.motion, joint)[window.samples.clone()];
+                    let known = measured[begin..end]
+                        .iter()
+                        .filter(|y| y.is_finite())
+                        .count();
+                    count += known;
+                    total.1 += if data.counts(joint) { known } else { 0 };
                     for r in &residuals[joint * samples + begin..joint * samples + end] {
                         sum += r * r;
-                        total.0 += (r * sigma).powi(2);
+                        if data.counts(joint) {
+                            total.0 += (r * sigma).powi(2);
+                        }
                     }
                 }
-                total.1 += (end - begin) * joints;
                 errors.blocks.push(Block {
                     motion: window.motion,
                     sum,
-                    count: (end - begin) * joints,
+                    count,
                 });
                 begin = end;
             }

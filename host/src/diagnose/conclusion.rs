@@ -59,7 +59,7 @@ fn error(evidence: &Evidence) -> ErrorReduction {
         before_rad: given.deciding_rms_rad(),
         refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),
-        floor_rad: evidence.evaluator.training.floor_rad(),
+        floor_rad: evidence.evaluator.training.floor(),
         held_out: evidence.evaluator.held_out.is_some(),
         reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
     }

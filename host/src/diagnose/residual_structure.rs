@@ -168,5 +168,6 @@ fn split_like(values: &DVector<f64>, like: &Residuals) -> Residuals {
     });
     Residuals {
         windows: windows.collect(),
+        gaps: like.gaps,
     }
 }

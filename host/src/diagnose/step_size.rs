@@ -13,7 +13,7 @@ pub(super) fn coarsened(model: &Model, data: &FitData) -> Model {
     let nodes: Vec<Node> = data
         .windows
         .iter()
-        .map(|window| Node::guess(&data.motions[window.motion], &data.sigma_rad, window))
+        .map(|window| data.guessed(window))
         .collect();
     let fine = residuals(model, data, &nodes);
     let period_s = data

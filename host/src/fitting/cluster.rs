@@ -55,7 +55,7 @@ pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
                 });
             }
             if let Some(cluster) = clusters.last_mut() {
-                for joint in 0..data.sigma_rad.len() {
+                for joint in 0..data.joints() {
                     let first = joint * samples + begin;
                     let rows = columns.rows(first, end - begin);
                     let residuals = DVector::from_column_slice(&residuals[first..][..end - begin]);

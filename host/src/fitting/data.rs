@@ -1,10 +1,12 @@
 //! Motions cut into windows, with the weight of each joint's residual.
 
+use super::assumed::{AssumedStates, assumed};
 use super::growth::stable_horizon;
-use super::noise::noise_rad;
+use super::node::{Guess, Node};
+use super::noise::noise;
 use super::windows::MotionWindow;
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{ColumnMean, MeasuredSignal, Model};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -55,29 +57,48 @@ pub struct FitData {
     pub motions: Vec<Motion>,
     /// Windows in the order of motions and time.
     pub windows: Vec<Window>,
-    /// Per joint: standard deviation of the measurement, rad, by which residuals are divided.
-    pub sigma_rad: Vec<f64>,
+    /// Per joint: what is measured of it.
+    pub signals: Vec<MeasuredSignal>,
+    /// Per joint: standard deviation of the measurement, rad, of a rate rad/s, by which residuals are
+    /// divided.
+    pub sigma: Vec<f64>,
     /// Per motion: the longest windows in which start errors stay small.
     stable: Vec<Horizon>,
+    /// Per motion: guessed states of the joints whose angle is not measured.
+    assumed: Vec<AssumedStates>,
 }
+
+/// Stands for the noise of a joint of which nothing is measured.
+const NO_NOISE: f64 = 1e-3;
 
 impl FitData {
     /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
     /// allow; the noise is estimated from the motions and the declared resolution.
     pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
-        let resolution = |joint: usize| model.log.joints[joint].position.resolution;
-        let sigma_rad: Vec<f64> = (0..model.link_count())
-            .map(|joint| noise_rad(&motions, joint, resolution(joint)))
+        let columns = model.log.joints.iter();
+        let signals: Vec<MeasuredSignal> = columns.map(|columns| columns.signal()).collect();
+        let sigma: Vec<f64> = (0..model.link_count())
+            .map(|joint| match signals[joint] {
+                MeasuredSignal::Nothing => NO_NOISE,
+                signal => {
+                    let columns = model.log.joints[joint].measured();
+                    let resolution = columns.and_then(ColumnMean::resolution);
+                    noise(&motions, joint, signal, resolution)
+                }
+            })
             .collect();
-        let stable = motions
-            .par_iter()
-            .map(|motion| stable_horizon(model, &sigma_rad, motion));
-        let stable: Vec<Horizon> = stable.collect();
+        let prepared = motions.par_iter().map(|motion| {
+            let assumed = assumed(model, &signals, &sigma, motion);
+            (stable_horizon(model, &sigma, &assumed, motion), assumed)
+        });
+        let (stable, assumed): (Vec<Horizon>, Vec<AssumedStates>) = prepared.unzip();
         FitData {
             windows: cut(&motions, &stable, horizon),
             motions,
-            sigma_rad,
+            signals,
+            sigma,
             stable,
+            assumed,
         }
     }
 
@@ -85,7 +106,7 @@ impl FitData {
     /// it was fitted to.
     pub fn weighted_like(self, other: &FitData) -> FitData {
         FitData {
-            sigma_rad: other.sigma_rad.clone(),
+            sigma: other.sigma.clone(),
             ..self
         }
     }
@@ -113,6 +134,7 @@ impl FitData {
         joined.windows.extend(moved);
         joined.motions.extend(other.motions.iter().cloned());
         joined.stable.extend(&other.stable);
+        joined.assumed.extend(other.assumed.iter().cloned());
         joined
     }
 
@@ -150,8 +172,10 @@ impl FitData {
         FitData {
             windows: windows.collect(),
             motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
-            sigma_rad: self.sigma_rad.clone(),
+            signals: self.signals.clone(),
+            sigma: self.sigma.clone(),
             stable: kept.iter().map(|&m| self.stable[m]).collect(),
+            assumed: kept.iter().map(|&m| self.assumed[m].clone()).collect(),
         }
     }
 
@@ -176,7 +200,49 @@ impl FitData {
 
     /// Number of joints.
     pub fn joints(&self) -> usize {
-        self.sigma_rad.len()
+        self.sigma.len()
+    }
+
+    /// What is measured of a joint in a motion, rad, of a rate rad/s; not a number in gaps.
+    pub fn measured(&self, motion: usize, joint: usize) -> &[f64] {
+        self.motions[motion].measured(joint, self.signals[joint])
+    }
+
+    /// How many samples of joints in all windows were not measured.
+    pub fn gaps(&self) -> usize {
+        let of_window = |window: &Window| {
+            let gaps = |joint: usize| {
+                let values = &self.measured(window.motion, joint)[window.samples.clone()];
+                values.iter().filter(|value| value.is_nan()).count()
+            };
+            (0..self.joints()).map(gaps).sum::<usize>()
+        };
+        self.windows.iter().map(of_window).sum()
+    }
+
+    /// What an error over all joints together is made of: angles, or rates where no angle is
+    /// measured.
+    pub fn quantity(&self) -> MeasuredSignal {
+        match self.signals.contains(&MeasuredSignal::Angle) {
+            true => MeasuredSignal::Angle,
+            false => MeasuredSignal::Rate,
+        }
+    }
+
+    /// Whether a joint counts in an error over all joints together.
+    pub fn counts(&self, joint: usize) -> bool {
+        self.signals[joint] == self.quantity()
+    }
+
+    /// The start state that the samples around a window's start suggest.
+    pub fn guessed(&self, window: &Window) -> Node {
+        self.guess(window).node
+    }
+
+    /// The same with how sure it is.
+    pub(super) fn guess(&self, window: &Window) -> Guess {
+        let (motion, assumed) = (&self.motions[window.motion], &self.assumed[window.motion]);
+        Guess::of(motion, &self.sigma, assumed, window)
     }
 
     /// Number of samples in all windows.
@@ -201,10 +267,16 @@ impl FitData {
         durations.fold(0.0, f64::max)
     }
 
-    /// Root-mean-square error that a perfect model would show, rad, all joints together.
-    pub fn floor_rad(&self) -> f64 {
-        let squares: f64 = self.sigma_rad.iter().map(|sigma| sigma * sigma).sum();
-        (squares / self.joints().max(1) as f64).sqrt()
+    /// Root-mean-square error that a perfect model would show, rad, all joints together; rad/s where
+    /// no angle is measured.
+    pub fn floor(&self) -> f64 {
+        let joints = (0..self.joints()).filter(|&joint| self.counts(joint));
+        let (mut squares, mut count) = (0.0, 0);
+        for joint in joints {
+            squares += self.sigma[joint] * self.sigma[joint];
+            count += 1;
+        }
+        (squares / f64::from(count.max(1))).sqrt()
     }
 }
 

@@ -84,16 +84,16 @@ impl Fit {
         .collect()
     }
 
-    /// Root-mean-square position error, rad, over all joints and every sample of `data` that was
-    /// measured; `data` are those of the fit.
-    pub fn rms_rad(&self, data: &FitData) -> f64 {
+    /// Root-mean-square error, rad, over all joints with a measured angle and every sample of `data`
+    /// that was measured, rad/s where no angle is; `data` are those of the fit.
+    pub fn rms(&self, data: &FitData) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {
-            let motion = &data.motions[window.motion];
-            for (joint, part) in residuals.chunks(window.samples.len()).enumerate() {
-                let measured = &motion.position_rad[joint][window.samples.clone()];
+            let joints = residuals.chunks(window.samples.len()).enumerate();
+            for (joint, part) in joints.filter(|(joint, _)| data.counts(*joint)) {
+                let measured = &data.measured(window.motion, joint)[window.samples.clone()];
                 for (residual, _) in part.iter().zip(measured).filter(|(_, m)| !m.is_nan()) {
-                    sum += (residual * data.sigma_rad[joint]).powi(2);
+                    sum += (residual * data.sigma[joint]).powi(2);
                     count += 1;
                 }
             }

@@ -5,6 +5,7 @@
 //! along the measured states, from one to the next, and not along a simulation, which may have left
 //! the motion long before (Lyapunov growth: Benettin et al. 1980, Meccanica 15, 9).
 
+use super::assumed::AssumedStates;
 use super::data::{Horizon, Window};
 use super::node::Node;
 use crate::log::Motion;
@@ -23,9 +24,14 @@ const LEAST_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 8;
 
 /// The longest windows of a motion in which no start error grows more than thirty times; the whole
-/// motion where none does. `sigma_rad` as in [`super::FitData`].
-pub(super) fn stable_horizon(model: &Model, sigma_rad: &[f64], motion: &Motion) -> Horizon {
-    Growth::along(model, sigma_rad, motion).longest()
+/// motion where none does. `sigma` as in [`super::FitData`].
+pub(super) fn stable_horizon(
+    model: &Model,
+    sigma: &[f64],
+    assumed: &AssumedStates,
+    motion: &Motion,
+) -> Horizon {
+    Growth::along(model, sigma, assumed, motion).longest()
 }
 
 /// Transition matrices along a motion.
@@ -37,7 +43,7 @@ struct Growth {
 }
 
 impl Growth {
-    fn along(model: &Model, sigma_rad: &[f64], motion: &Motion) -> Growth {
+    fn along(model: &Model, sigma: &[f64], assumed: &AssumedStates, motion: &Motion) -> Growth {
         let plant = Plant::new(model, motion);
         let duration_s = motion.duration_s();
         let spacing_s = duration_s / motion.len().max(2) as f64;
@@ -47,7 +53,7 @@ impl Growth {
         let transition = |piece: usize| {
             let samples = edge(piece)..(edge(piece + 1) + 1).min(motion.len());
             let window = Window { motion: 0, samples };
-            let start = Node::guess(motion, sigma_rad, &window).start(&plant);
+            let start = Node::guess(motion, sigma, assumed, &window).start(&plant);
             transition(&plant, motion, &window, &start)
         };
         Growth {
@@ -151,7 +157,7 @@ mod tests {
             turned: false,
             time_s,
         };
-        stable_horizon(&model, &[1e-4], &motion)
+        stable_horizon(&model, &[1e-4], &vec![None], &motion)
     }
 
     #[test]

@@ -73,7 +73,7 @@ impl LevenbergMarquardt<'_> {
         }
         let unknown = column - fit.free.len();
         let joints = self.data.joints();
-        let delta = self.data.sigma_rad[unknown % joints] * DIFFERENCES[unknown / joints];
+        let delta = self.data.sigma[unknown % joints] * DIFFERENCES[unknown / joints];
         let mut nodes = fit.nodes.clone();
         for node in &mut nodes {
             node.unknowns[unknown] += delta;

@@ -6,11 +6,13 @@
 //! so that P + 3 n simulations make the whole Jacobian, and eliminating the start states leaves a
 //! system of P unknowns (`normal`).
 
+mod assumed;
 mod broyden;
 mod candidate;
 mod cluster;
 mod covariance;
 mod data;
+mod drift;
 mod error_reduction;
 mod fit;
 mod fitted_value;
@@ -34,17 +36,18 @@ mod windows;
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
 pub use data::{FitData, Horizon, Window};
+pub use drift::{Drift, DriftReport, OneValue, Session, drift};
 pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
 pub use fitted_value::{FittedValue, fitted_values};
 pub use free::{FreeError, free_parameters};
 pub use node::Node;
-pub use noise::{estimated_resolution_rad, noise_rad};
+pub use noise::{estimated_resolution, noise};
 pub use profile::profile_intervals;
 pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};
-pub use residual::{Residuals, predicted_rad, residuals};
-pub use solve::{fit, fit_start_states};
+pub use residual::{Residuals, predicted, residuals};
+pub use solve::{fit, fit_start_states, guessed_nodes};
 pub use staged::fit_staged;
 pub(crate) use student::quantile_975;
 pub use windows::{MotionWindow, in_windows};

@@ -1,6 +1,7 @@
 //! Shooting nodes: the state a window starts from, guessed from the measurement, then fitted close
 //! to the guess.
 
+use super::assumed::{AssumedJoint, AssumedStates};
 use super::data::Window;
 use crate::log::Motion;
 use crate::sim::{Plant, Start};
@@ -30,16 +31,27 @@ const REACH_DEVIATIONS: f64 = 6.0;
 const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// Half the span of the samples that determine a window's start.
 const REACH_S: f64 = 0.06;
+/// Standard deviation of a speed of which nothing is known, rad/s.
+const SPEED_UNKNOWN_RAD_S: f64 = 2.0;
 
 impl Guess {
-    /// From a parabola through the samples around the window's start; `sigma_rad` is each joint's
-    /// noise.
-    pub fn of(motion: &Motion, sigma_rad: &[f64], window: &Window) -> Guess {
+    /// From a parabola through the samples around the window's start; `sigma` is each joint's noise,
+    /// `assumed` says where joints are whose angle is not measured.
+    pub fn of(motion: &Motion, sigma: &[f64], assumed: &AssumedStates, window: &Window) -> Guess {
         let (joints, first) = (motion.position_rad.len(), window.samples.start);
         let mut unknowns = DVector::zeros(3 * joints);
         let mut deviation = DVector::zeros(3 * joints);
         for (joint, position) in motion.position_rad.iter().enumerate() {
             let time = &motion.time_s;
+            if let Some(state) = &assumed[joint] {
+                let rate = (sigma[joint], motion.velocity_rad_s[joint].as_deref());
+                let guessed = assumed_start(time, state, rate, first);
+                for (order, (value, own)) in guessed.into_iter().enumerate() {
+                    unknowns[order * joints + joint] = value;
+                    deviation[order * joints + joint] = own;
+                }
+                continue;
+            }
             let [wide, near] = [REACH_S, REACH_S / 2.0]
                 .map(|reach| LocalParabola::around(time, position, first, reach));
             for (order, least) in LEAST_DEVIATIONS.into_iter().enumerate() {
@@ -47,7 +59,7 @@ impl Guess {
                 unknowns[at] = wide.derivatives[order];
                 // Where a shorter parabola says otherwise, the motion is no parabola.
                 deviation[at] = least
-                    + sigma_rad[joint] * wide.gains[order]
+                    + sigma[joint] * wide.gains[order]
                     + (wide.derivatives[order] - near.derivatives[order]).abs();
             }
             let speed = joints + joint;
@@ -92,8 +104,13 @@ impl Guess {
 
 impl Node {
     /// The node the samples around a window's start suggest.
-    pub fn guess(motion: &Motion, sigma_rad: &[f64], window: &Window) -> Node {
-        Guess::of(motion, sigma_rad, window).node
+    pub(super) fn guess(
+        motion: &Motion,
+        sigma: &[f64],
+        assumed: &AssumedStates,
+        window: &Window,
+    ) -> Node {
+        Guess::of(motion, sigma, assumed, window).node
     }
 
     /// The simulator's start state.
@@ -109,6 +126,35 @@ impl Node {
     }
 }
 
+/// Angle, speed and acceleration of a joint whose angle is not measured, each with its standard
+/// deviation; `rate` is the noise of its rate, and the rate if that is measured.
+fn assumed_start(
+    time_s: &[f64],
+    state: &AssumedJoint,
+    (sigma, rate): (f64, Option<&[f64]>),
+    first: usize,
+) -> [(f64, f64); 3] {
+    let angle = (state.angle_rad[first], state.angle_deviation_rad);
+    let Some(rate) = rate.filter(|_| state.speed_deviation_rad_s.is_none()) else {
+        let deviation = state.speed_deviation_rad_s.unwrap_or(SPEED_UNKNOWN_RAD_S);
+        let acceleration = deviation / REACH_S;
+        return [
+            angle,
+            (state.speed_rad_s[first], deviation),
+            (0.0, acceleration),
+        ];
+    };
+    let [wide, near] =
+        [REACH_S, REACH_S / 2.0].map(|reach| LocalParabola::around(time_s, rate, first, reach));
+    let of = |order: usize| {
+        let deviation = LEAST_DEVIATIONS[order + 1]
+            + sigma * wide.gains[order]
+            + (wide.derivatives[order] - near.derivatives[order]).abs();
+        (wide.derivatives[order], deviation)
+    };
+    [angle, of(0), of(1)]
+}
+
 /// Value, slope and second derivative of a local parabola, and their standard deviations per unit
 /// of measurement noise.
 struct LocalParabola {
@@ -117,7 +163,8 @@ struct LocalParabola {
 }
 
 impl LocalParabola {
-    /// Fitted around sample `at` to its neighbours within `reach` seconds (at least 5 samples).
+    /// Fitted around sample `at` to its neighbours within `reach` seconds: at least 5 samples that
+    /// were measured, where there are as many.
     fn around(time_s: &[f64], values: &[f64], at: usize, reach: f64) -> Self {
         let mut first = at;
         while first > 0 && time_s[at] - time_s[first - 1] <= reach {
@@ -127,10 +174,14 @@ impl LocalParabola {
         while last + 1 < values.len() && (time_s[last + 1] - time_s[at] <= reach || last < at + 2) {
             last += 1;
         }
-        while last - first < 4 && first > 0 {
+        let few = |first: usize, last: usize| {
+            let measured = values[first..=last].iter().filter(|v| v.is_finite());
+            measured.count() < 5
+        };
+        while few(first, last) && first > 0 {
             first -= 1;
         }
-        while last - first < 4 && last + 1 < values.len() {
+        while few(first, last) && last + 1 < values.len() {
             last += 1;
         }
         let mut normal = Matrix3::<f64>::identity() * 1e-9;

@@ -1,17 +1,24 @@
 //! How exactly a motion was measured: the floor below which no model can be judged.
 
 use crate::log::Motion;
+use crate::model::MeasuredSignal;
 
-/// Standard deviation of a joint's position measurement, rad.
+/// Standard deviation of what is measured of a joint, rad or rad/s.
 ///
 /// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
 /// differences. Motion leaks into them where sampling is slow; then neighbours agree, while those
 /// of noise alternate (correlation -6/7), and the resolution alone counts.
-pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Option<f64>) -> f64 {
-    let resolution = declared_resolution_rad.or_else(|| estimated_resolution_rad(motions, joint));
+pub fn noise(
+    motions: &[Motion],
+    joint: usize,
+    signal: MeasuredSignal,
+    declared_resolution: Option<f64>,
+) -> f64 {
+    let series: Vec<&[f64]> = motions.iter().map(|m| m.measured(joint, signal)).collect();
+    let resolution = declared_resolution.or_else(|| estimated_resolution(&series));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
-    let differences = differences(motions, joint, ORDER);
-    let seen = difference_noise_rad(&differences);
+    let differences = differences(&series, ORDER);
+    let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
     rounding.max(if counts { seen } else { 0.0 }).max(1e-6)
 }
@@ -19,12 +26,12 @@ pub fn noise_rad(motions: &[Motion], joint: usize, declared_resolution_rad: Opti
 /// Order of the differences in which noise is looked for.
 const ORDER: usize = 6;
 
-/// The step of a quantised position, rad, where all readings are multiples of one.
-pub fn estimated_resolution_rad(motions: &[Motion], joint: usize) -> Option<f64> {
+/// The step of a quantised series, in its unit, where all readings are multiples of one.
+pub fn estimated_resolution(series: &[&[f64]]) -> Option<f64> {
     let steps = || {
-        motions
+        series
             .iter()
-            .flat_map(move |m| m.position_rad[joint].windows(2))
+            .flat_map(|values| values.windows(2))
             .map(|pair| (pair[1] - pair[0]).abs())
             .filter(|step| *step > 1e-9)
     };
@@ -43,11 +50,11 @@ pub fn estimated_resolution_rad(motions: &[Motion], joint: usize) -> Option<f64>
 }
 
 /// Differences of this order, motion by motion.
-fn differences(motions: &[Motion], joint: usize, order: usize) -> Vec<Vec<f64>> {
-    motions
+fn differences(series: &[&[f64]], order: usize) -> Vec<Vec<f64>> {
+    series
         .iter()
-        .map(|motion| {
-            let mut row = motion.position_rad[joint].clone();
+        .map(|values| {
+            let mut row = values.to_vec();
             for _ in 0..order {
                 row = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
             }
@@ -69,7 +76,7 @@ fn alternation(differences: &[Vec<f64>]) -> f64 {
 }
 
 /// Standard deviation of the white noise whose differences have this median magnitude.
-fn difference_noise_rad(differences: &[Vec<f64>]) -> f64 {
+fn difference_noise(differences: &[Vec<f64>]) -> f64 {
     let mut magnitudes: Vec<f64> = differences.iter().flatten().map(|x| x.abs()).collect();
     if magnitudes.is_empty() {
         return f64::INFINITY;

@@ -178,14 +178,14 @@ fn finish(
     if !split.held_out.is_empty() {
         windows.extend(judged.motion_windows(horizon));
     }
-    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms_rad(&judged);
+    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms(&judged);
     Ok(Refitted {
         values,
         error: ErrorReduction {
             before_rad: rms_rad(before),
             refitted_rad: None,
             after_rad: rms_rad(&found.model),
-            floor_rad: judged.floor_rad(),
+            floor_rad: judged.floor(),
             held_out: !split.held_out.is_empty(),
             reduction: None,
         },
@@ -198,7 +198,7 @@ fn finish(
 }
 
 /// The free parameters whose change leaves every prediction as it was.
-fn blind(found: &Fit, data: &FitData) -> Vec<String> {
+pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<String> {
     let base = residuals(&found.model, data, &found.nodes);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);

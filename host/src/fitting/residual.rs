@@ -2,7 +2,7 @@
 
 use super::data::FitData;
 use super::node::Node;
-use crate::model::Model;
+use crate::model::{MeasuredSignal, Model};
 use crate::sim::{Plant, SensorState, predict};
 use rayon::prelude::*;
 
@@ -11,10 +11,30 @@ use rayon::prelude::*;
 pub struct Residuals {
     /// Per window: `joints * samples` values. A sample that was not measured counts 0.
     pub windows: Vec<Vec<f64>>,
+    /// How many of the values were not measured.
+    pub gaps: usize,
 }
 
-/// A prediction that diverges counts as this far off, rad, so that a fit can turn back.
+/// A prediction that diverges counts as this far off, rad or rad/s, so that a fit can turn back.
 const DIVERGED_RAD: f64 = 10.0;
+const DIVERGED_RAD_S: f64 = 100.0;
+
+/// The largest weighted residual that counts.
+pub(super) fn worst(signal: MeasuredSignal, sigma: f64) -> f64 {
+    match signal {
+        MeasuredSignal::Rate => DIVERGED_RAD_S / sigma,
+        MeasuredSignal::Angle | MeasuredSignal::Nothing => DIVERGED_RAD * (1.0 / sigma),
+    }
+}
+
+/// Measured less predicted over the noise, capped; 0 where nothing was measured.
+pub(super) fn weighted(measured: f64, predicted: f64, sigma: f64, most: f64) -> f64 {
+    match (measured.is_nan(), predicted.is_nan()) {
+        (true, _) => 0.0,
+        (false, true) => most,
+        (false, false) => ((measured - predicted) * (1.0 / sigma)).clamp(-most, most),
+    }
+}
 
 impl Residuals {
     /// Sum of squares.
@@ -22,9 +42,10 @@ impl Residuals {
         self.windows.iter().flatten().map(|r| r * r).sum()
     }
 
-    /// Number of residuals.
+    /// Number of residuals: of samples that were measured.
     pub fn count(&self) -> usize {
-        self.windows.iter().map(Vec::len).sum()
+        let all: usize = self.windows.iter().map(Vec::len).sum();
+        all - self.gaps
     }
 
     /// Their difference, window by window.
@@ -47,18 +68,15 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
         .map(|motion| motion_residuals(model, data, nodes, motion))
         .collect();
     Residuals {
+        gaps: data.gaps(),
         windows: per_motion.into_iter().flatten().collect(),
     }
 }
 
-/// Readings that a model predicts for one motion's windows, rad, in order, joint after joint; every
-/// window starts from its node, and the sensors' memory runs on from window to window.
-pub fn predicted_rad(
-    model: &Model,
-    data: &FitData,
-    nodes: &[Node],
-    motion: usize,
-) -> Vec<Vec<f64>> {
+/// What a model predicts for one motion's windows, in order, joint after joint: readings, rad, and
+/// rates, rad/s, of joints whose rate alone is logged. Every window starts from its node, and the
+/// sensors' memory runs on from window to window.
+pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
     let mut memory = SensorState::default();
@@ -81,18 +99,14 @@ pub(super) fn motion_residuals(
     nodes: &[Node],
     motion: usize,
 ) -> Vec<Vec<f64>> {
-    let mut windows = predicted_rad(model, data, nodes, motion);
+    let mut windows = predicted(model, data, nodes, motion);
     for (values, (_, window)) in windows.iter_mut().zip(data.windows_of(motion)) {
         for (joint, part) in values.chunks_mut(window.samples.len()).enumerate() {
-            let measured = &data.motions[motion].position_rad[joint][window.samples.clone()];
-            let weight = 1.0 / data.sigma_rad[joint];
-            let most = DIVERGED_RAD * weight;
+            let measured = &data.measured(motion, joint)[window.samples.clone()];
+            let sigma = data.sigma[joint];
+            let most = worst(data.signals[joint], sigma);
             for (value, measured) in part.iter_mut().zip(measured) {
-                *value = match (measured.is_nan(), value.is_nan()) {
-                    (true, _) => 0.0,
-                    (false, true) => most,
-                    (false, false) => ((measured - *value) * weight).clamp(-most, most),
-                };
+                *value = weighted(*measured, *value, sigma, most);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The calls that start a fit, or go on with one.
 
-use super::data::{FitData, Window};
+use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::node::{Guess, Node};
@@ -57,7 +57,11 @@ pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
     fit(model, &[], data, None, FitOptions::iterations(8))
 }
 
+/// The start states that the samples around each window's start suggest.
+pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
+    guesses(data).into_iter().map(|guess| guess.node).collect()
+}
+
 fn guesses(data: &FitData) -> Vec<Guess> {
-    let guess = |w: &Window| Guess::of(&data.motions[w.motion], &data.sigma_rad, w);
-    data.windows.iter().map(guess).collect()
+    data.windows.iter().map(|w| data.guess(w)).collect()
 }

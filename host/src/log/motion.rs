@@ -1,5 +1,6 @@
 //! One motion: samples recorded without interruption, in SI and in the model's angle convention.
 
+use crate::model::MeasuredSignal;
 use std::path::PathBuf;
 
 /// Where a motion came from.
@@ -23,11 +24,11 @@ pub struct Motion {
     /// Strictly increasing, s.
     pub time_s: Vec<f64>,
     /// Per joint: measured angle, rad, in the log's convention (zero and relative/absolute as the
-    /// model says).
+    /// model says); not a number where it was not measured.
     pub position_rad: Vec<Vec<f64>>,
-    /// Per joint: measured speed, rad/s, where logged.
+    /// Per joint: measured speed, rad/s, where logged; not a number where it was not measured.
     pub velocity_rad_s: Vec<Option<Vec<f64>>>,
-    /// Per joint: the drive's input, in SI of its kind; none for a passive joint.
+    /// Per joint: the drive's input, in SI of its kind, never a gap; none for a passive joint.
     pub input: Vec<Option<Vec<f64>>>,
     /// Supply, V, where logged.
     pub supply_v: Option<Vec<f64>>,
@@ -48,6 +49,14 @@ impl Motion {
     /// Whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.time_s.is_empty()
+    }
+
+    /// What is measured of a joint: its angles, rad, or its rates, rad/s; all gaps where nothing is.
+    pub fn measured(&self, joint: usize, signal: MeasuredSignal) -> &[f64] {
+        match (signal, &self.velocity_rad_s[joint]) {
+            (MeasuredSignal::Rate, Some(rate)) => rate,
+            _ => &self.position_rad[joint],
+        }
     }
 
     /// From the first sample to the last, s.

@@ -18,8 +18,11 @@ pub const LEAST_ROWS: usize = 10;
 /// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
 /// not judged.
 ///
+/// An empty field is a gap. An angle or a rate is not a number there; an input and the supply hold
+/// the value before. A motion begins when all its inputs are known, or while torque is off.
+///
 /// # Errors
-/// Unreadable cells and rows, time that does not increase, a payload or orientation that changes
+/// Columns without any value, unreadable cells and rows, time that does not increase, a payload or orientation that changes
 /// within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut motions = Vec::new();
@@ -36,8 +39,9 @@ pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>
 fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut cutter = Cutter {
         request,
-        split_at_gap_s: columns.split_at_gap_s,
+        columns,
         pieces: Vec::new(),
+        without_input: None,
     };
     let facts = visit(
         &request.path,
@@ -50,7 +54,22 @@ fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
     if let Some(reason) = request.beyond(facts.rows) {
         return Err(Error::refused(Place::file(&request.path), reason));
     }
-    cutter.finish(&facts.sha256)
+    let motions = cutter.finish(&facts.sha256)?.into_iter();
+    motions.map(|motion| moved(motion, columns)).collect()
+}
+
+/// The motion with its columns moved in time, refused where too little is left of it.
+fn moved(motion: Motion, columns: &LogColumns) -> Result<Motion> {
+    let motion = motion.shifted(columns);
+    if motion.len() >= LEAST_ROWS {
+        return Ok(motion);
+    }
+    let place = Place {
+        line: Some(motion.source.lines.0),
+        ..Place::file(&motion.source.path)
+    };
+    let rows = motion.len();
+    Err(Error::refused(place, LogReason::TooShort { rows }))
 }
 
 struct Piece {
@@ -76,15 +95,22 @@ impl Piece {
 
 struct Cutter<'a> {
     request: &'a LogRequest,
-    split_at_gap_s: Option<f64>,
+    columns: &'a LogColumns,
     pieces: Vec<Piece>,
+    /// Joint without input in the rows that were left out last.
+    without_input: Option<usize>,
 }
 
 impl Cutter<'_> {
     fn take(&mut self, row: &LogRow) -> Result<()> {
         let previous = self.pieces.last().map(Piece::before);
-        match previous.and_then(|previous| row.follows(&previous, self.split_at_gap_s)) {
+        let split_at_gap_s = self.columns.split_at_gap_s;
+        match previous.and_then(|previous| row.follows(&previous, split_at_gap_s)) {
             None => {
+                if let Some(joint) = lacks_input(row) {
+                    self.without_input = Some(joint);
+                    return Ok(());
+                }
                 self.close()?;
                 self.pieces.push(Piece {
                     segment: row.segment.clone(),
@@ -104,7 +130,13 @@ impl Cutter<'_> {
     }
 
     /// Refuses the motion just ended if it is too short.
-    fn close(&self) -> Result<()> {
+    fn close(&mut self) -> Result<()> {
+        if let Some(piece) = self.pieces.last_mut() {
+            let place = Place::file(&self.request.path);
+            let name = self.request.name();
+            filled(&mut piece.motion, self.columns, &name)
+                .map_err(|reason| Error::refused(place, reason))?;
+        }
         match self.pieces.last() {
             Some(Piece { motion, .. }) if motion.len() < LEAST_ROWS => {
                 let place = Place {
@@ -118,10 +150,15 @@ impl Cutter<'_> {
         }
     }
 
-    fn finish(self, sha256: &str) -> Result<Vec<Motion>> {
+    fn finish(mut self, sha256: &str) -> Result<Vec<Motion>> {
         if self.pieces.is_empty() {
             let place = Place::file(&self.request.path);
-            return Err(Error::refused(place, LogReason::NoSample));
+            let input = |joint: usize| self.columns.joints[joint].input.as_ref();
+            let reason = match self.without_input.and_then(input) {
+                Some(input) => empty(input.name(), &self.request.name()),
+                None => LogReason::NoSample,
+            };
+            return Err(Error::refused(place, reason));
         }
         self.close()?;
         let file = self.request.name();
@@ -146,6 +183,69 @@ impl Cutter<'_> {
             motion
         });
         Ok(named.collect())
+    }
+}
+
+/// The joint whose input is not known though its drive is energised, if there is one.
+fn lacks_input(row: &LogRow) -> Option<usize> {
+    let unknown = |input: &Option<f64>| input.is_some_and(f64::is_nan);
+    let joint = row.input.iter().position(unknown)?;
+    (row.torque_on != Some(false)).then_some(joint)
+}
+
+fn empty(column: String, motion: &str) -> LogReason {
+    LogReason::EmptyColumn {
+        column,
+        motion: motion.to_string(),
+    }
+}
+
+/// Fills the gaps of supply and inputs with the value before, at the start with the first; refuses
+/// columns without any value.
+fn filled(motion: &mut Motion, columns: &LogColumns, name: &str) -> Result<(), LogReason> {
+    let known = |values: &[f64]| values.iter().any(|value| value.is_finite());
+    for (joint, columns) in columns.joints.iter().enumerate() {
+        if motion.velocity_rad_s[joint]
+            .as_deref()
+            .is_some_and(|v| !known(v))
+        {
+            motion.velocity_rad_s[joint] = None;
+        }
+        let measured = known(&motion.position_rad[joint]) || motion.velocity_rad_s[joint].is_some();
+        let column = match &columns.position {
+            Some(position) => (!known(&motion.position_rad[joint])).then_some(position),
+            None => columns.velocity.as_ref().filter(|_| !measured),
+        };
+        if let Some(column) = column {
+            return Err(empty(column.name(), name));
+        }
+        let on = motion.torque_on.as_ref();
+        if let (Some(column), Some(input)) = (&columns.input, &mut motion.input[joint]) {
+            let unknown = input.iter().take_while(|value| value.is_nan()).count();
+            if (0..unknown).any(|k| on.is_none_or(|on| on[k])) {
+                return Err(empty(column.name(), name));
+            }
+            // Without torque an input does nothing.
+            hold(input, 0.0);
+        }
+    }
+    if let (Some(column), Some(supply)) = (&columns.supply, &mut motion.supply_v) {
+        match supply.iter().copied().find(|value| value.is_finite()) {
+            Some(first) => hold(supply, first),
+            None => return Err(empty(column.name.clone(), name)),
+        }
+    }
+    Ok(())
+}
+
+/// Fills gaps with the value before; those at the start with `first`.
+fn hold(values: &mut [f64], first: f64) {
+    let mut held = first;
+    for value in values {
+        match value.is_nan() {
+            true => *value = held,
+            false => held = *value,
+        }
     }
 }
 

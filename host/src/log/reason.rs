@@ -64,6 +64,14 @@ pub enum LogReason {
         /// What it must be.
         expected: &'static str,
     },
+    /// A column that holds no value throughout a motion.
+    #[error("{column} holds no value in {motion}")]
+    EmptyColumn {
+        /// The column.
+        column: String,
+        /// The motion.
+        motion: String,
+    },
     /// Time that does not increase.
     #[error("time does not increase: {time_s} s after {previous_s} s")]
     TimeNotIncreasing {
@@ -182,6 +190,10 @@ impl Reason for LogReason {
             WrongField { .. } => {
                 "the model reads this column: delete the line, or leave it out by a row range \
                  such as log.csv:26-139"
+            }
+            EmptyColumn { .. } => {
+                "record it (goals: by `handstand replay --record`), or take the column out of the \
+                 model's [log]"
             }
             TimeNotIncreasing { .. } => {
                 "cut the log there, mark the recordings in a segment column, or name a range of \

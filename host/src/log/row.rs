@@ -17,7 +17,7 @@ pub struct Fields {
     pub payload: usize,
     /// Which way round the rig stood, where the file has it.
     pub turned: usize,
-    /// Each joint's angle.
+    /// Each joint's angle, or rate where it has no angle; 0 where it has neither.
     pub position: Vec<usize>,
     /// Each joint's input; 0 where it has none.
     pub input: Vec<usize>,
@@ -38,13 +38,13 @@ pub struct LogRow {
     pub time_s: f64,
     /// Value of the segment column as written.
     pub segment: Option<String>,
-    /// Per joint: angle, rad.
+    /// Per joint: angle, rad; not a number where it was not measured.
     pub position_rad: Vec<f64>,
-    /// Per joint: speed, rad/s, where logged.
+    /// Per joint: speed, rad/s, where logged; not a number where it was not measured.
     pub velocity_rad_s: Vec<Option<f64>>,
-    /// Per joint: the drive's input, SI of its kind.
+    /// Per joint: the drive's input, SI of its kind; not a number where the field is empty.
     pub input: Vec<Option<f64>>,
-    /// Supply, V, where logged.
+    /// Supply, V, where logged; not a number where the field is empty.
     pub supply_v: Option<f64>,
     /// Whether the drives were energised, where logged.
     pub torque_on: Option<bool>,

@@ -4,7 +4,7 @@ use super::header::{LogCell, LogHeader, fields, number};
 use super::reason::LogReason;
 use super::row::{Fields, LogRow};
 use crate::error::{Error, Place, Result};
-use crate::model::{Column, LogColumns};
+use crate::model::{Column, ColumnMean, LogColumns};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -14,10 +14,13 @@ struct LogQuantity<'a> {
     column: &'a Column,
 }
 
+/// Columns whose mean counts; none where the model names none.
+type Mean<'a> = Vec<LogQuantity<'a>>;
+
 struct JointQuantities<'a> {
-    position: LogQuantity<'a>,
-    velocity: Option<LogQuantity<'a>>,
-    input: Option<LogQuantity<'a>>,
+    position: Mean<'a>,
+    velocity: Mean<'a>,
+    input: Mean<'a>,
 }
 
 /// Reads the lines of one file.
@@ -46,11 +49,15 @@ impl<'a> RowReader<'a> {
             Ok::<_, Error>(LogQuantity { cell, column })
         };
         let maybe = |column: &'a Option<Column>| column.as_ref().map(quantity).transpose();
+        let mean = |columns: &'a Option<ColumnMean>| {
+            let columns = columns.iter().flat_map(ColumnMean::columns);
+            columns.map(quantity).collect::<Result<Mean>>()
+        };
         let joints = columns.joints.iter().map(|joint| {
             Ok(JointQuantities {
-                position: quantity(&joint.position)?,
-                velocity: maybe(&joint.velocity)?,
-                input: maybe(&joint.input)?,
+                position: mean(&joint.position)?,
+                velocity: mean(&joint.velocity)?,
+                input: mean(&joint.input)?,
             })
         });
         Ok(RowReader {
@@ -71,20 +78,31 @@ impl<'a> RowReader<'a> {
     pub fn fields(&self) -> Fields {
         let column =
             |quantity: &Option<LogQuantity>| quantity.as_ref().map_or(0, |q| q.cell.column());
+        let first = |mean: &Mean| mean.first().map(|quantity| quantity.cell.column());
+        let measured = |joint: &JointQuantities| {
+            first(&joint.position)
+                .or(first(&joint.velocity))
+                .unwrap_or(0)
+        };
         let joints = || self.joints.iter();
         Fields {
             time: self.time.cell.column(),
             payload: column(&self.payload),
             turned: self.turned.as_ref().map_or(0, LogCell::column),
-            position: joints().map(|joint| joint.position.cell.column()).collect(),
-            input: joints().map(|joint| column(&joint.input)).collect(),
+            position: joints().map(measured).collect(),
+            input: joints()
+                .map(|joint| first(&joint.input).unwrap_or(0))
+                .collect(),
         }
     }
 
     /// Fills `row` from one line.
     ///
+    /// An empty field, or one that says `nan`, is a gap: that quantity is not a number in this row.
+    ///
     /// # Errors
-    /// Too few or too many fields, and needed fields that hold no finite number.
+    /// Too few or too many fields, fields that hold something else than a finite number, and a row
+    /// without a time.
     pub fn fill(&self, line: &str, at: usize, row: &mut LogRow) -> Result<()> {
         let fields = fields(line, self.separator);
         let (found, expected) = (fields.len(), self.names.len());
@@ -100,7 +118,7 @@ impl<'a> RowReader<'a> {
         };
         row.time_s = line.value(&self.time)?;
         row.segment = self.segment.as_ref().map(|cell| line.text(cell).into());
-        row.supply_v = line.maybe(&self.supply)?;
+        row.supply_v = self.supply.as_ref().map(|q| line.gap_or(q)).transpose()?;
         row.torque_on = line.flag(&self.torque_on)?;
         row.payload_kg = line.maybe(&self.payload)?.unwrap_or(0.0);
         row.turned = line.flag(&self.turned)?.unwrap_or(false);
@@ -108,9 +126,10 @@ impl<'a> RowReader<'a> {
         row.velocity_rad_s.clear();
         row.input.clear();
         for joint in &self.joints {
-            row.position_rad.push(line.value(&joint.position)?);
-            row.velocity_rad_s.push(line.maybe(&joint.velocity)?);
-            row.input.push(line.maybe(&joint.input)?);
+            let position = line.mean(&joint.position)?;
+            row.position_rad.push(position.unwrap_or(f64::NAN));
+            row.velocity_rad_s.push(line.mean(&joint.velocity)?);
+            row.input.push(line.mean(&joint.input)?);
         }
         Ok(())
     }
@@ -129,6 +148,24 @@ impl Cells<'_> {
             .as_ref()
             .map(|quantity| self.value(quantity))
             .transpose()
+    }
+
+    /// The mean of columns, a gap if one of them has one; none of none.
+    fn mean(&self, columns: &[LogQuantity]) -> Result<Option<f64>> {
+        let mut sum = 0.0;
+        for quantity in columns {
+            sum += self.gap_or(quantity)?;
+        }
+        Ok((!columns.is_empty()).then(|| sum / columns.len() as f64))
+    }
+
+    /// The value, or not a number where there is none.
+    fn gap_or(&self, quantity: &LogQuantity) -> Result<f64> {
+        let text = self.text(&quantity.cell);
+        match text.is_empty() || text.eq_ignore_ascii_case("nan") {
+            true => Ok(f64::NAN),
+            false => self.value(quantity),
+        }
     }
 
     fn value(&self, LogQuantity { cell, column }: &LogQuantity) -> Result<f64> {

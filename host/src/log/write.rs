@@ -1,7 +1,7 @@
 //! Writes a motion as a CSV log.
 
 use super::Motion;
-use crate::model::{Column, LogColumns};
+use crate::model::{Column, ColumnMean, LogColumns};
 
 /// The text of a log that [`super::read`] reads back to the same motion under the same columns.
 ///
@@ -48,12 +48,18 @@ fn series<'a>(motion: &'a Motion, columns: &'a LogColumns) -> Vec<(&'a str, Valu
     }
     let mut series = vec![numbers(&columns.time, &motion.time_s)];
     for (i, joint) in columns.joints.iter().enumerate() {
-        series.push(numbers(&joint.position, &motion.position_rad[i]));
-        if let (Some(column), Some(values)) = (&joint.velocity, &motion.velocity_rad_s[i]) {
-            series.push(numbers(column, values));
-        }
-        if let (Some(column), Some(values)) = (&joint.input, &motion.input[i]) {
-            series.push(numbers(column, values));
+        let own = [
+            (&joint.position, Some(&motion.position_rad[i])),
+            (&joint.velocity, motion.velocity_rad_s[i].as_ref()),
+            (&joint.input, motion.input[i].as_ref()),
+        ];
+        for (mean, values) in own {
+            let columns = mean.iter().flat_map(ColumnMean::columns);
+            series.extend(
+                values
+                    .into_iter()
+                    .flat_map(|values| columns.clone().map(move |column| numbers(column, values))),
+            );
         }
     }
     if let (Some(column), Some(values)) = (&columns.supply, &motion.supply_v) {
@@ -65,8 +71,11 @@ fn series<'a>(motion: &'a Motion, columns: &'a LogColumns) -> Vec<(&'a str, Valu
     series
 }
 
-/// The inverse of [`Column::to_si`], as text.
+/// The inverse of [`Column::to_si`], as text; nothing of what was not measured.
 fn written(column: &Column, si: f64) -> String {
+    if si.is_nan() {
+        return String::new();
+    }
     let sign = if column.reversed { -1.0 } else { 1.0 };
     let value = sign * (si - column.offset) / column.unit.si;
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);

@@ -1,6 +1,6 @@
 //! The columns of a rig's logs: names, units, offsets.
 
-use super::unit::Unit;
+use super::unit::{Dimension, Unit};
 
 /// One quantity of the log.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,9 @@ pub struct Column {
     pub reversed: bool,
     /// Smallest step of the value in SI, if the sensor's resolution is known.
     pub resolution: Option<f64>,
+    /// Added to the time of this column's samples, s: above 0 where they were taken later than the
+    /// time column says.
+    pub shift_s: f64,
 }
 
 impl Column {
@@ -25,15 +28,128 @@ impl Column {
     }
 }
 
+/// Columns of one dimension whose mean is a quantity of a joint: one, or one for each of the servos
+/// that turn it together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnMean {
+    /// At least one.
+    columns: Vec<Column>,
+}
+
+impl From<Column> for ColumnMean {
+    fn from(column: Column) -> ColumnMean {
+        ColumnMean {
+            columns: vec![column],
+        }
+    }
+}
+
+impl ColumnMean {
+    /// The mean of these columns; none of none.
+    pub fn of(columns: Vec<Column>) -> Option<ColumnMean> {
+        (!columns.is_empty()).then_some(ColumnMean { columns })
+    }
+
+    /// The columns, in the order of the model file.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The columns, to be changed.
+    pub fn columns_mut(&mut self) -> &mut [Column] {
+        &mut self.columns
+    }
+
+    /// Their names, for people: `q1_rad` or `q1_rad and q2_rad`.
+    pub fn name(&self) -> String {
+        let names: Vec<&str> = self.columns.iter().map(|c| c.name.as_str()).collect();
+        names.join(" and ")
+    }
+
+    /// What they measure.
+    pub fn dimension(&self) -> Dimension {
+        self.columns[0].unit.dimension
+    }
+
+    /// Smallest step in SI where it is known: the largest of the columns', for servos of one shaft
+    /// round alike.
+    pub fn resolution(&self) -> Option<f64> {
+        let steps = self.columns.iter().filter_map(|column| column.resolution);
+        steps.reduce(f64::max)
+    }
+}
+
+/// What a log holds of a joint's motion, and so what a model is compared with there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasuredSignal {
+    /// Its angle, rad; a logged speed only helps to guess start states.
+    Angle,
+    /// Its speed alone, rad/s, as of a gyro.
+    Rate,
+    /// Nothing.
+    Nothing,
+}
+
+impl MeasuredSignal {
+    /// SI unit, as text.
+    pub fn unit(self) -> &'static str {
+        match self {
+            MeasuredSignal::Rate => "rad/s",
+            MeasuredSignal::Angle | MeasuredSignal::Nothing => "rad",
+        }
+    }
+
+    /// A thousandth of the unit, as text.
+    pub fn milli(self) -> &'static str {
+        match self {
+            MeasuredSignal::Rate => "mrad/s",
+            MeasuredSignal::Angle | MeasuredSignal::Nothing => "mrad",
+        }
+    }
+
+    /// How a key of such a quantity ends.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            MeasuredSignal::Rate => "_rad_s",
+            MeasuredSignal::Angle | MeasuredSignal::Nothing => "_rad",
+        }
+    }
+}
+
 /// The columns of one joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointColumns {
-    /// Measured angle in the model's convention.
-    pub position: Column,
+    /// Measured angle in the model's convention, if logged.
+    pub position: Option<ColumnMean>,
     /// Measured speed, if logged.
-    pub velocity: Option<Column>,
+    pub velocity: Option<ColumnMean>,
     /// The drive's input: torque, duty, goal angle or goal speed; none for a passive joint.
-    pub input: Option<Column>,
+    pub input: Option<ColumnMean>,
+}
+
+impl JointColumns {
+    /// What the log holds of the joint's motion.
+    pub fn signal(&self) -> MeasuredSignal {
+        match (&self.position, &self.velocity) {
+            (Some(_), _) => MeasuredSignal::Angle,
+            (None, Some(_)) => MeasuredSignal::Rate,
+            (None, None) => MeasuredSignal::Nothing,
+        }
+    }
+
+    /// The columns of [`JointColumns::signal`].
+    pub fn measured(&self) -> Option<&ColumnMean> {
+        self.position.as_ref().or(self.velocity.as_ref())
+    }
+}
+
+impl JointColumns {
+    /// By how much position, velocity and input are moved in time, s; of several columns for one
+    /// quantity the first says so for all.
+    pub fn shifts_s(&self) -> [f64; 3] {
+        let of = |mean: &Option<ColumnMean>| mean.as_ref().map_or(0.0, |m| m.columns[0].shift_s);
+        [of(&self.position), of(&self.velocity), of(&self.input)]
+    }
 }
 
 /// Every column the model reads.
@@ -59,4 +175,23 @@ pub struct LogColumns {
     /// A new motion begins where time jumps by more than this, s; without it a motion goes on
     /// across every gap.
     pub split_at_gap_s: Option<f64>,
+}
+
+impl LogColumns {
+    /// What the logs cannot observe of the joints' motion, a sentence each.
+    pub fn unobserved(&self) -> Vec<String> {
+        let joints = (1..).zip(&self.joints);
+        let sentence = |(joint, columns): (usize, &JointColumns)| match columns.signal() {
+            MeasuredSignal::Angle => None,
+            MeasuredSignal::Rate => Some(format!(
+                "Joint {joint} has no measured angle, only a rate: its angle is an unknown of each \
+                 window, errors are those of the rate, and an offset of the angle does not show."
+            )),
+            MeasuredSignal::Nothing => Some(format!(
+                "Joint {joint} is not measured: its angle and speed are unknowns of each window, \
+                 and what acts on it shows only in how the other joints move."
+            )),
+        };
+        joints.filter_map(sentence).collect()
+    }
 }

@@ -196,6 +196,12 @@ impl<'a> Table<'a> {
         texts.collect::<Result<_>>().map(Some)
     }
 
+    /// Whether the item under `key` is a list.
+    pub fn is_list(&self, key: &str) -> bool {
+        let item = self.items.get(key);
+        item.is_some_and(|item| item.is_array() || item.is_array_of_tables())
+    }
+
     /// The table under `key`, if there is one.
     pub fn table(&self, key: &str) -> Result<Option<Table<'a>>> {
         let table = self.get(key, "a table", |item| Some((item, item.as_table_like()?)))?;
@@ -248,6 +254,24 @@ impl<'a> Table<'a> {
     pub fn bad(&self, key: &str, reason: impl Reason) -> Error {
         let value = self.items.get(key).and_then(Item::span);
         self.refused(value.or_else(|| self.key_span(key)), reason)
+    }
+
+    /// Refuses a character of the text under `key`, counted from 0.
+    pub fn bad_character(&self, key: &str, at: usize, reason: impl Reason) -> Error {
+        let Some(value) = self.items.get(key).and_then(Item::span) else {
+            return self.bad(key, reason);
+        };
+        let written = self.source.text.get(value.clone()).unwrap_or_default();
+        let quotes = ["\"\"\"", "'''"]
+            .into_iter()
+            .find(|q| written.starts_with(q));
+        let begin = value.start + quotes.map_or(1, str::len);
+        let inside = self.source.text.get(begin..value.end).unwrap_or_default();
+        let offset = inside
+            .char_indices()
+            .nth(at)
+            .map_or(inside.len(), |(offset, _)| offset);
+        self.refused(Some(begin + offset..begin + offset + 1), reason)
     }
 
     /// Refuses the key itself.

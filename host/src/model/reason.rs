@@ -87,6 +87,15 @@ pub enum ModelReason {
         /// What that measures.
         wanted: Dimension,
     },
+    /// A log of which no joint is measured.
+    #[error("[log] names neither a position nor a velocity of any joint")]
+    NothingMeasured,
+    /// A list of columns without any.
+    #[error("`{quantity}` names no column")]
+    NoColumns {
+        /// The quantity.
+        quantity: &'static str,
+    },
     /// An input column for a passive joint.
     #[error("a passive joint has no input")]
     PassiveInput,
@@ -158,6 +167,8 @@ impl Reason for ModelReason {
             UnknownUnit { wanted, .. } | OtherDimension { wanted, .. } => {
                 return format!("write one of: {}", units(wanted)).into();
             }
+            NothingMeasured => "name the column of an angle, or of a rate: `velocity`",
+            NoColumns { .. } => "name one, such as { column = \"q_rad\", unit = \"rad\" }",
             PassiveInput => "remove `input`, or say what drives the joint",
             MissingInput { wanted, .. } => {
                 let unit = wanted.unit_names().next().unwrap_or("1");

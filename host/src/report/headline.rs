@@ -60,15 +60,11 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
 
 /// Without a diagnosis the figures are the models' own.
 fn compared(report: &Report) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
+    let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
     let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
         return html! { h1 { "Nothing was compared." } };
     };
-    let floor = (
-        "floor",
-        FLOOR,
-        pooled(&before.signals, |signal| signal.floor_rad),
-    );
+    let floor = ("floor", FLOOR, pooled(before, |signal| signal.floor));
     let first = (before.model.as_str(), BEFORE, error(before));
     match report.after() {
         Some(after) => {

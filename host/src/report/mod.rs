@@ -98,7 +98,7 @@ impl Report {
 }
 
 /// Root-mean-square over the joints, which share their samples.
-fn pooled(signals: &[SignalError], of: fn(&SignalError) -> f64) -> f64 {
-    let squares: f64 = signals.iter().map(|signal| of(signal).powi(2)).sum();
-    (squares / signals.len() as f64).sqrt()
+fn pooled(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
+    let squares: f64 = comparison.pooled().map(|signal| of(signal).powi(2)).sum();
+    (squares / comparison.pooled().count() as f64).sqrt()
 }

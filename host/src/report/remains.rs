@@ -60,7 +60,7 @@ fn growth(comparisons: &[Comparison], horizons: &[Option<f64>]) -> Markup {
     let error = |comparison: &Comparison, horizon: Option<f64>| {
         let same = |error: &&HorizonError| error.horizon_s == horizon;
         let found = comparison.horizons.iter().find(same);
-        found.map_or(NONE.into(), |error| mrad(error.rms_rad))
+        found.map_or(NONE.into(), |error| mrad(error.rms))
     };
     let name = |horizon: &Option<f64>| match horizon {
         Some(seconds) => format!("{} s", given(*seconds)),

@@ -2,7 +2,8 @@
 
 use super::page::{Section, table};
 use super::{AFTER, BEFORE, FLOOR, MEASURED, Report};
-use crate::compare::{Comparison, Trace};
+use crate::compare::{Comparison, SignalError, Trace};
+use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, short};
 use crate::plot::{Axes, Scale, Tone, span};
 use maud::{Markup, html};
@@ -14,7 +15,7 @@ const OPEN: usize = 6;
 struct Pair<'a> {
     before: &'a Trace,
     after: Option<&'a Trace>,
-    floor_rad: Option<f64>,
+    floor: Option<f64>,
 }
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -49,12 +50,12 @@ fn pairs<'a>(before: &'a Comparison, after: Option<&'a Comparison>) -> Vec<Pair<
     let same = |a: &Trace, b: &Trace| a.motion == b.motion && a.joint == b.joint;
     let floor = |joint| {
         let signal = before.signals.iter().find(|signal| signal.joint == joint);
-        signal.map(|signal| signal.floor_rad)
+        signal.map(|signal| signal.floor)
     };
     let pair = |trace: &'a Trace| Pair {
         before: trace,
         after: after.and_then(|after| after.traces.iter().find(|other| same(trace, other))),
-        floor_rad: floor(trace.joint),
+        floor: floor(trace.joint),
     };
     before.traces.iter().map(pair).collect()
 }
@@ -73,9 +74,9 @@ fn drawn(pair: &Pair, open: bool) -> Markup {
     html! {
         details.chart open[open] {
             summary {
-                b { (trace.motion) } ", joint " (trace.joint) " · error " (mrad(trace.rms_rad))
-                @if let Some(after) = pair.after { " → " (mrad(after.rms_rad)) }
-                " mrad"
+                b { (trace.motion) } ", joint " (trace.joint) " · error " (mrad(trace.rms))
+                @if let Some(after) = pair.after { " → " (mrad(after.rms)) }
+                " " (trace.quantity.milli())
             }
             div.scroll { (chart(pair)) }
         }
@@ -87,7 +88,7 @@ fn timed<'a>(trace: &'a Trace, of: &'a [f64]) -> impl Iterator<Item = (f64, f64)
 }
 
 fn residual(trace: &Trace) -> impl Iterator<Item = (f64, f64)> + '_ {
-    let left = trace.measured_rad.iter().zip(&trace.predicted_rad);
+    let left = trace.measured.iter().zip(&trace.predicted);
     let left = left.map(|(measured, predicted)| 1e3 * (measured - predicted));
     trace.time_s.iter().copied().zip(left)
 }
@@ -96,8 +97,8 @@ fn chart(pair: &Pair) -> Markup {
     let both = || std::iter::once(pair.before).chain(pair.after);
     let times = both().flat_map(|trace| trace.time_s.iter().copied());
     let x = Scale::new(span(times, 0.0), (56.0, 750.0));
-    let angles = both().flat_map(|t| t.measured_rad.iter().chain(&t.predicted_rad).copied());
-    let floor_mrad = 1e3 * pair.floor_rad.unwrap_or(0.0).abs();
+    let angles = both().flat_map(|t| t.measured.iter().chain(&t.predicted).copied());
+    let floor_mrad = 1e3 * pair.floor.unwrap_or(0.0).abs();
     let left = both().flat_map(|t| residual(t).map(|point| point.1));
     let left = span(left.chain([floor_mrad, -floor_mrad]), 0.08);
     let above = Axes {
@@ -109,21 +110,34 @@ fn chart(pair: &Pair) -> Markup {
         y: Scale::new(left, (345.0, 232.0)),
     };
     let trace = pair.before;
+    let label_above = match trace.quantity {
+        MeasuredSignal::Rate => "rate, rad/s",
+        MeasuredSignal::Angle | MeasuredSignal::Nothing => "angle, rad",
+    };
+    let label_below = format!("residual, {}", trace.quantity.milli());
     let label = format!("motion {}, joint {}", trace.motion, trace.joint);
     html! {
         svg viewBox="0 0 760 380" role="img" aria-label=(label) {
-            (above.columns(8)) (above.rows(5, "angle, rad"))
-            (above.curve(timed(trace, &trace.measured_rad), MEASURED))
-            (above.curve(timed(trace, &trace.predicted_rad), BEFORE))
+            (above.columns(8)) (above.rows(5, label_above))
+            (above.curve(timed(trace, &trace.measured), MEASURED))
+            (above.curve(timed(trace, &trace.predicted), BEFORE))
             @if let Some(after) = pair.after {
-                (above.curve(timed(after, &after.predicted_rad), AFTER))
+                (above.curve(timed(after, &after.predicted), AFTER))
             }
-            (below.columns(8)) (below.rows(4, "residual, mrad"))
+            (below.columns(8)) (below.rows(4, &label_below))
             @if floor_mrad > 0.0 { (below.band(-floor_mrad, floor_mrad, FLOOR)) }
             (below.curve(residual(trace), BEFORE))
             @if let Some(after) = pair.after { (below.curve(residual(after), AFTER)) }
             (below.x_labels(8, "time, s"))
         }
+    }
+}
+
+/// Behind the figures of a rate in a column of mrad.
+fn per_s(signal: &SignalError) -> &'static str {
+    match signal.quantity {
+        MeasuredSignal::Rate => " /s",
+        MeasuredSignal::Angle | MeasuredSignal::Nothing => "",
     }
 }
 
@@ -139,10 +153,10 @@ fn fits(report: &Report) -> Markup {
                 tr {
                     td { (comparison.model) }
                     td.number { (signal.joint) }
-                    td.number { (mrad(signal.rms_rad)) }
-                    td.number { (mrad(signal.largest_rad)) }
+                    td.number { (mrad(signal.rms)) (per_s(signal)) }
+                    td.number { (mrad(signal.largest)) (per_s(signal)) }
                     td.number { (short(signal.fit_percent)) " %" }
-                    td.number { (mrad(signal.floor_rad)) }
+                    td.number { (mrad(signal.floor)) (per_s(signal)) }
                 }
             }
         }

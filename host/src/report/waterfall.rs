@@ -36,9 +36,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn steps(chain: &[&Comparison]) -> Markup {
-    let error = |comparison: &Comparison| pooled(&comparison.signals, |signal| signal.rms_rad);
+    let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
-    let floor = pooled(&chain[0].signals, |signal| signal.floor_rad);
+    let floor = pooled(chain[0], |signal| signal.floor);
     let full = largest(errors.iter().copied().chain([floor]));
     let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
     let bar = |index: usize| Bar {

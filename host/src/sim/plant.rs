@@ -1,8 +1,9 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
+use super::run::Start;
 use crate::effects::{CONTROLS, EFFECTS, Effect, Needs, PLACEBO, Rig, Site};
 use crate::log::Motion;
-use crate::model::{Angles, Drive, Model};
+use crate::model::{Angles, Drive, MeasuredSignal, Model};
 
 /// Most values an effect has.
 const MOST_VALUES: usize = 4;
@@ -47,6 +48,8 @@ pub struct Plant {
     pub(super) base_m_s2: [f64; 2],
     pub(super) zero_rad: f64,
     pub(super) absolute: bool,
+    /// Per joint: whether the log holds its rate alone, which is then what is predicted.
+    pub(super) rates: Vec<bool>,
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
     pub(super) step_s: f64,
@@ -82,11 +85,24 @@ impl Plant {
                 }
             }
         }
+        for instance in model.effects.iter().filter(|e| e.effect.is_users()) {
+            for (index, joint) in joints.iter_mut().enumerate() {
+                if instance.acts_on(index, &model.joints[index]) {
+                    joint.add(instance.effect, &instance.values);
+                }
+            }
+        }
         for joint in &mut joints {
             joint.follows_input = joint.torque_is_held();
         }
+        let columns = model.log.joints.iter();
+        let mut rates: Vec<bool> = columns
+            .map(|columns| columns.signal() == MeasuredSignal::Rate)
+            .collect();
+        rates.resize(joints.len(), false);
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
+            rates,
             senses,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
@@ -135,6 +151,13 @@ impl Plant {
             .encode
             .iter()
             .fold(true_angle, |angle, e| e.effect.encode(e.values(), angle))
+    }
+
+    /// What a joint's encoder reads at a state and how fast that changes, rad and rad/s, before any
+    /// effect with memory.
+    pub fn reading(&self, joint: usize, state: &Start) -> (f64, f64) {
+        let angle_rad = self.encoded_rad(joint, &state.angle_rad);
+        (angle_rad, self.encoded_rad_s(joint, &state.speed_rad_s))
     }
 
     /// How fast those readings change, rad/s, at these relative speeds.
@@ -258,13 +281,21 @@ fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
     if !model.effects.iter().any(|e| e.effect.info().id == PLACEBO) {
         return Vec::new();
     }
-    motion
-        .position_rad
-        .iter()
-        .map(|position| {
+    let joints = motion.position_rad.iter().enumerate();
+    joints
+        .map(|(joint, position)| {
             let last = position.len() - 1;
             let reach = 3.min(last);
+            let logged = motion.velocity_rad_s[joint].as_ref();
+            let logged = logged.filter(|_| position.iter().all(|angle| angle.is_nan()));
             let speed = |k: usize| {
+                if let Some(logged) = logged {
+                    return if logged[k].is_finite() {
+                        logged[k]
+                    } else {
+                        0.0
+                    };
+                }
                 let (a, b) = (k.saturating_sub(reach), (k + reach).min(last));
                 let speed = (position[b] - position[a]) / (motion.time_s[b] - motion.time_s[a]);
                 if speed.is_finite() { speed } else { 0.0 }

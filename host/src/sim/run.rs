@@ -27,7 +27,8 @@ pub struct Start {
 /// over the period.
 const SPARED: f64 = 0.1;
 
-/// Predicted readings, rad in the log's convention, at samples `stretch` of the motion.
+/// Predicted readings, rad in the log's convention, at samples `stretch` of the motion; rates, rad/s,
+/// of joints whose rate alone is logged.
 ///
 /// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are
 /// the recorded ones, each held until the next sample. Returns the state at the last sample of the
@@ -63,7 +64,7 @@ fn predicted<R: Rows>(
     let mut cursors = vec![0; n];
     sensors.begin(plant, start);
     sensors.step(plant, stepper.angle.as_ref(), 0.0);
-    sensors.record(readings, 0, samples);
+    sensors.record(plant, stepper.speed.as_ref(), readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
         let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
@@ -87,7 +88,8 @@ fn predicted<R: Rows>(
             }
             break;
         }
-        sensors.record(readings, k + 1 - stretch.start, samples);
+        let at = k + 1 - stretch.start;
+        sensors.record(plant, stepper.speed.as_ref(), readings, at, samples);
     }
     Start {
         angle_rad: stepper.angle.as_ref().to_vec(),

@@ -50,10 +50,21 @@ impl SensorState {
         }
     }
 
-    /// Writes the readings as sample `k` of `samples`, joint by joint.
-    pub(super) fn record(&self, readings: &mut [f64], k: usize, samples: usize) {
+    /// Writes what the log holds as sample `k` of `samples`, joint by joint: the reading, or the rate
+    /// of a joint whose rate alone is logged.
+    pub(super) fn record(
+        &self,
+        plant: &Plant,
+        speed_rad_s: &[f64],
+        readings: &mut [f64],
+        k: usize,
+        samples: usize,
+    ) {
         for (joint, reading) in self.reading_rad.iter().enumerate() {
-            readings[joint * samples + k] = *reading;
+            readings[joint * samples + k] = match plant.rates[joint] {
+                true => plant.encoded_rad_s(joint, speed_rad_s),
+                false => *reading,
+            };
         }
     }
 }

@@ -20,7 +20,7 @@ fn the_comparison_shows_an_error_above_the_resolution() {
     let compared = compare::backlash_missing().unwrap();
     let error = &compared.signals[0];
     // A step of the encoder is 5.1 mrad, 1.5 mrad rms.
-    assert!(error.rms_rad > 2e-3, "{error:?}");
+    assert!(error.rms > 2e-3, "{error:?}");
     assert!(!compared.failures.is_empty(), "{compared:?}");
 }
 

@@ -47,6 +47,84 @@ fn a_refused_log_makes_a_diagnosis_unfit() {
 }
 
 #[test]
+fn a_reversed_position_is_never_named() {
+    let bench = Bench::new();
+    let made = bench.run("challenge new --seed 5 --effect coulomb -o riddle");
+    assert_eq!(made.code, Some(0), "{made:?}");
+    let model = bench.get("riddle/nominal.toml");
+    let reversed = model.replacen("position = { ", "position = { reversed = true, ", 1);
+    assert_ne!(model, reversed);
+    bench.put("reversed.toml", reversed);
+    let ran = bench.run("diagnose reversed.toml riddle/a.csv riddle/b.csv --json");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let data = ran.json();
+    assert_eq!(data["verdict"], "unfit");
+    assert!(
+        data["next"].to_string().contains("reversed.toml:"),
+        "{data}"
+    );
+    let checked = bench
+        .run("log check reversed.toml riddle/a.csv --json")
+        .json();
+    let first = &checked["findings"][0];
+    assert_eq!(first["kind"], "sign");
+    let share = |key: &str| first["proof"][key].as_f64().unwrap();
+    assert!(
+        share("after_share") < 0.8 * share("before_share"),
+        "{first}"
+    );
+}
+
+#[test]
+fn a_law_of_the_users_is_diagnosed_and_added() {
+    let bench = Bench::new();
+    let law = "[[expression]]\nname = \"calm\"\ntorque = \"-c * w\"\n\
+               parameter = [{ key = \"c\", unit = \"N m s/rad\", start = 1e-3, low = 0.0, \
+               high = 1.0 }]\n\n[log]";
+    bench.put(
+        "law.toml",
+        bench.get("model.toml").replacen("[log]", law, 1),
+    );
+    let ran = bench.run("diagnose law.toml a.csv b.csv --without viscous --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    assert_eq!(data["effects"][0]["kind"], "calm", "{data}");
+    let add = bench.run("add law.toml calm --fit a.csv --holdout b.csv -o new.toml");
+    assert_eq!(add.code, Some(0), "{add:?}");
+    let (with, without) = (
+        "compare new.toml b.csv --json",
+        "compare law.toml b.csv --json",
+    );
+    let rms = |line: &str| {
+        let data = bench.run(line).json();
+        data["comparisons"][0]["signals"][0]["rms_rad"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!(rms(with) < 0.1 * rms(without));
+    bench.put(
+        "wrong.toml",
+        bench.get("law.toml").replacen("-c * w", "-c * v", 1),
+    );
+    let wrong = bench.run("compare wrong.toml b.csv");
+    assert_eq!(wrong.code, Some(3), "{wrong:?}");
+    assert!(wrong.stderr.contains("wrong.toml:"), "{wrong:?}");
+}
+
+#[test]
+fn a_model_is_exported_with_what_it_loses() {
+    let bench = Bench::new();
+    let ran = bench.run("model export model.toml --to mjcf -o model.xml");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(bench.get("model.xml").contains("<mujoco"));
+    let again = bench.run("model export model.toml --to mjcf -o model.xml");
+    assert_eq!(again.code, Some(2), "{again:?}");
+    let urdf = bench.run("model export model.toml --to urdf --json").json();
+    assert!(urdf["text"].as_str().unwrap().contains("<robot"), "{urdf}");
+    assert_eq!(urdf["not_carried"][0]["part"], "gravity_m_s2");
+}
+
+#[test]
 fn a_challenge_is_made_once_and_scored() {
     let bench = Bench::new();
     let line = "challenge new --seed 5 --effect delay -o riddle";

@@ -210,8 +210,8 @@ fn errors(
     let mut error = |model: &Model| {
         let compared = compare(model, "model", held_out, horizon);
         horizon = Some(Horizon::from_seconds(compared.horizon_s));
-        let squares = compared.signals.iter().map(|signal| signal.rms_rad.powi(2));
-        let mean = squares.sum::<f64>() / compared.signals.len() as f64;
+        let squares = compared.pooled().map(|signal| signal.rms.powi(2));
+        let mean = squares.sum::<f64>() / compared.pooled().count() as f64;
         mean.is_finite().then_some(mean.sqrt())
     };
     let true_rad = truth.as_ref().and_then(&mut error);

@@ -136,7 +136,7 @@ impl Arm {
         let mut left = 0.0;
         let seconds = median_seconds(repeats, || {
             let found = fit(&start, &self.free, &data, None, FitOptions::default());
-            left = found.rms_rad(&data);
+            left = found.rms(&data);
         });
         (seconds, left)
     }
@@ -152,8 +152,8 @@ impl Arm {
             FitOptions::default(),
         );
         let floor_rad = at_truth
-            .rms_rad(&judged)
-            .min(fit_start_states(&self.model, &judged).rms_rad(&judged));
+            .rms(&judged)
+            .min(fit_start_states(&self.model, &judged).rms(&judged));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (mut ends, mut times) = (Vec::new(), Vec::new());
         for _ in 0..count {
@@ -168,7 +168,7 @@ impl Arm {
             times.push(median_seconds(1, || {
                 let data = FitData::new(&start, self.motions.clone(), Horizon::Whole);
                 let found = fit_staged(&start, &self.free, &data);
-                left = fit_start_states(&found.model, &judged).rms_rad(&judged);
+                left = fit_start_states(&found.model, &judged).rms(&judged);
                 values = found.values();
             }));
             let off = values

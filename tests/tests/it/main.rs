@@ -11,3 +11,5 @@ mod hidden;
 mod intervals;
 #[cfg(unix)]
 mod kills;
+mod mjcf;
+mod spoiled;

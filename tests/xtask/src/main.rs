@@ -42,6 +42,8 @@ enum Chore {
     Peers(Words),
     /// Diagnose public logs of real rigs
     Real(Words),
+    /// Spoil logs in every way, and measure what the check finds
+    Spoiled(Words),
     /// Offer the firmware, in simavr or in process, as a serial port
     Virtual(Words),
 }
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),
         Chore::Real(words) => ("real", words),
+        Chore::Spoiled(words) => ("spoiled", words),
         Chore::Virtual(words) => ("virtual", words),
     };
     measure(name, &words.words)

@@ -62,7 +62,9 @@ fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Resu
         ));
     }
     let columns = &model.log.joints;
-    let steps = columns.iter().filter_map(|joint| joint.position.resolution);
+    let steps = columns
+        .iter()
+        .filter_map(|joint| joint.position.as_ref()?.resolution());
     let logs_speeds = columns.iter().all(|joint| joint.velocity.is_some());
     let mut closed = ClosedLoop::around(plant, period_s(model, plan)?);
     closed.sensor = Sensor {

@@ -20,6 +20,8 @@ pub struct Adapter<L: SerialLink> {
     next: Duration,
     goals: Vec<Option<Position>>,
     armed: bool,
+    /// Whether it has ever been armed: before, the servos' torque is not known.
+    commanded: bool,
     danger: Option<String>,
 }
 
@@ -37,6 +39,7 @@ impl<L: SerialLink> Adapter<L> {
             next: begun,
             goals: vec![None; ids.len()],
             armed: false,
+            commanded: false,
             danger: None,
         }
     }
@@ -91,6 +94,7 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
             time_s: (now - self.begun).as_secs_f64(),
             joints,
             gyro: None,
+            torque_on: self.commanded.then_some(self.armed),
         }))
     }
 
@@ -100,7 +104,7 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
             let code = self.servos.get(id, PRESENT_POSITION)?;
             here.push(Position(code).to_rad());
         }
-        self.armed = true;
+        (self.armed, self.commanded) = (true, true);
         self.write_each(TORQUE_LIMIT, TorqueLimit::FULL.0)?;
         self.write_each(MOVING_SPEED, 0)?;
         self.send_goals(&here)?;

@@ -1,6 +1,10 @@
 //! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`,
 //! `supply1_v`, `temperature1_celsius`, `error1`; where a CM-5 reads the servos, `gyro_code`,
-//! `gyro_zero`, `gyro_rad_s` behind them. What a servo did not say is an empty field.
+//! `gyro_zero`, `gyro_rad_s` behind them; and `torque_on`, where that is known. What a servo did not
+//! say is an empty field.
+//!
+//! Columns are read by name, in any order; others are left alone. So any table with `time_s` and
+//! `goal1_rad` is a motion.
 
 use super::recorder::Writer;
 use super::sample::{GyroSample, RobotSample, ServoSample};
@@ -15,8 +19,8 @@ pub(super) struct CsvWriter {
     file: File,
     row: String,
     ids: Vec<u8>,
-    /// Whether there are columns of a gyro, once the header is written.
-    has_gyro: Option<bool>,
+    /// Whether there are columns of a gyro and of torque, once the header is written.
+    has: Option<(bool, bool)>,
 }
 
 impl CsvWriter {
@@ -26,11 +30,11 @@ impl CsvWriter {
             file,
             row: String::new(),
             ids: ids.to_vec(),
-            has_gyro: None,
+            has: None,
         }
     }
 
-    fn begin(&mut self, has_gyro: bool) -> std::io::Result<()> {
+    fn begin(&mut self, has_gyro: bool, has_torque: bool) -> std::io::Result<()> {
         let mut header = String::from("time_s");
         for id in &self.ids {
             for (before, behind) in ServoSample::NAMES {
@@ -41,19 +45,23 @@ impl CsvWriter {
         for name in GyroSample::NAMES.iter().filter(|_| has_gyro) {
             let _ = write!(header, ",{name}");
         }
-        header.push('\n');
-        self.has_gyro = Some(has_gyro);
+        header += if has_torque { ",torque_on\n" } else { "\n" };
+        self.has = Some((has_gyro, has_torque));
         self.file.write_all(header.as_bytes())
     }
 }
 
 impl Writer for CsvWriter {
     fn write(&mut self, sample: &RobotSample) -> std::io::Result<()> {
-        if self.has_gyro.is_none() {
-            self.begin(sample.gyro.is_some())?;
+        let has = (sample.gyro.is_some(), sample.torque_on.is_some());
+        if self.has.is_none() {
+            self.begin(has.0, has.1)?;
         }
+        let (has_gyro, has_torque) = self.has.unwrap_or(has);
         let gyro = sample.gyro.map_or([None; 3], |gyro| gyro.values());
-        let gyro = gyro.into_iter().filter(|_| self.has_gyro == Some(true));
+        let gyro = gyro.into_iter().filter(|_| has_gyro);
+        let torque = sample.torque_on.map(|on| f64::from(u8::from(on)));
+        let torque = std::iter::once(torque).filter(|_| has_torque);
         self.row.clear();
         let _ = write!(self.row, "{:.6}", sample.time_s);
         for value in sample
@@ -61,6 +69,7 @@ impl Writer for CsvWriter {
             .iter()
             .flat_map(ServoSample::values)
             .chain(gyro)
+            .chain(torque)
         {
             self.row.push(',');
             if let Some(value) = value {
@@ -78,10 +87,87 @@ impl Writer for CsvWriter {
     }
 
     fn finish(&mut self) -> std::io::Result<()> {
-        match self.has_gyro {
+        match self.has {
             Some(_) => Ok(()),
-            None => self.begin(false),
+            None => self.begin(false, false),
         }
+    }
+}
+
+/// Where each quantity stands in a row.
+struct RecordingLayout {
+    fields: usize,
+    time: usize,
+    ids: Vec<u8>,
+    /// Per servo, in the order of [`ServoSample::NAMES`].
+    joints: Vec<[Option<usize>; 7]>,
+    gyro: [Option<usize>; 3],
+    torque_on: Option<usize>,
+}
+
+impl RecordingLayout {
+    /// By the names of the header; none without a time and a servo's angles or goals.
+    fn of(header: &str) -> Option<RecordingLayout> {
+        let names: Vec<&str> = header.split(',').map(str::trim).collect();
+        let at = |wanted: &str| names.iter().position(|name| *name == wanted);
+        let mut ids: Vec<u8> = Vec::new();
+        for name in &names {
+            let id = ["q", "goal"].iter().find_map(|before| {
+                let id = name.strip_prefix(before)?.strip_suffix("_rad")?;
+                id.parse().ok()
+            });
+            ids.extend(id.filter(|id| !ids.contains(id)));
+        }
+        let of_servo = |id: &u8| {
+            ServoSample::NAMES.map(|(before, behind)| at(&format!("{before}{id}{behind}")))
+        };
+        (!ids.is_empty()).then_some(RecordingLayout {
+            fields: names.len(),
+            time: at("time_s")?,
+            joints: ids.iter().map(of_servo).collect(),
+            ids,
+            gyro: GyroSample::NAMES.map(at),
+            torque_on: at("torque_on"),
+        })
+    }
+
+    fn sample(&self, values: &[Option<f64>]) -> RobotSample {
+        let value = |at: Option<usize>| at.and_then(|at| values[at]);
+        let joints = self.joints.iter();
+        RobotSample {
+            time_s: values[self.time].unwrap_or(0.0),
+            joints: joints.map(|own| ServoSample::of(own.map(value))).collect(),
+            gyro: GyroSample::of(self.gyro.map(value)),
+            torque_on: value(self.torque_on).map(|on| on != 0.0),
+        }
+    }
+
+    /// The values of a row; empty fields, and those of columns that nothing is read from, are none.
+    fn values(&self, row: &str, path: &Path, line: usize) -> Result<Vec<Option<f64>>> {
+        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+        let damaged = |column: usize, what: String| {
+            Error::data(
+                Place::at(path, line, column),
+                what,
+                "the line is damaged: delete it",
+            )
+        };
+        if fields.len() != self.fields {
+            let (found, expected) = (fields.len(), self.fields);
+            let what = format!("{found} fields where the header has {expected}");
+            return Err(damaged(found, what));
+        }
+        let joints = self.joints.iter().flatten();
+        let others = self.gyro.iter().chain([&self.torque_on]);
+        let mut values = vec![None; fields.len()];
+        for at in joints.chain(others).copied().flatten().chain([self.time]) {
+            values[at] = match (fields[at], fields[at].parse::<f64>()) {
+                ("", _) if at != self.time => None,
+                (_, Ok(value)) if value.is_finite() => Some(value),
+                (field, _) => return Err(damaged(at + 1, format!("`{field}` is not a number"))),
+            };
+        }
+        Ok(values)
     }
 }
 
@@ -89,60 +175,18 @@ impl Writer for CsvWriter {
 pub(super) fn read(text: &str, path: &Path) -> Result<(Vec<u8>, Vec<RobotSample>, bool)> {
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let mut lines = text[..whole].lines();
-    let header: Vec<&str> = lines.next().unwrap_or("").split(',').collect();
-    let ids: Vec<u8> = header
-        .iter()
-        .filter_map(|name| name.strip_prefix('q')?.strip_suffix("_rad")?.parse().ok())
-        .collect();
-    let per_joint = ServoSample::NAMES.len();
-    let of_joints = 1 + per_joint * ids.len();
-    let has_gyro = header.ends_with(&GyroSample::NAMES);
-    let of_gyro = if has_gyro { GyroSample::NAMES.len() } else { 0 };
-    if header.first() != Some(&"time_s") || ids.is_empty() || header.len() != of_joints + of_gyro {
-        let what = "this is no recording: its first line must begin `time_s,q1_rad,dq1_rad_s,..`";
+    let Some(layout) = RecordingLayout::of(lines.next().unwrap_or("")) else {
+        let what = "this is no recording: its first line must name `time_s` and servos, as \
+                    `q1_rad` or `goal1_rad`";
         return Err(Error::data(
             Place::at(path, 1, 1),
             what,
-            "give a file that `handstand record` wrote",
+            "give a file that `handstand record` or `handstand excite` wrote",
         ));
-    }
+    };
     let mut samples = Vec::new();
     for (line, row) in (2..).zip(lines) {
-        let fields: Vec<&str> = row.split(',').collect();
-        let place = |column| Place::at(path, line, column);
-        if fields.len() != header.len() {
-            let what = format!(
-                "{} fields where the header has {}",
-                fields.len(),
-                header.len()
-            );
-            return Err(Error::data(
-                place(fields.len()),
-                what,
-                "the line is damaged: delete it",
-            ));
-        }
-        let mut values = Vec::new();
-        for (column, field) in (1..).zip(&fields) {
-            values.push(match (*field, field.parse::<f64>()) {
-                ("", _) if column > 1 => None,
-                (_, Ok(value)) if value.is_finite() => Some(value),
-                _ => {
-                    return Err(Error::data(
-                        place(column),
-                        format!("`{field}` is not a number"),
-                        "the line is damaged: delete it",
-                    ));
-                }
-            });
-        }
-        let joint =
-            |values: &[Option<f64>]| values.try_into().map(ServoSample::of).unwrap_or_default();
-        samples.push(RobotSample {
-            time_s: values[0].unwrap_or(0.0),
-            joints: values[1..of_joints].chunks(per_joint).map(joint).collect(),
-            gyro: values[of_joints..].try_into().ok().and_then(GyroSample::of),
-        });
+        samples.push(layout.sample(&layout.values(row, path, line)?));
     }
-    Ok((ids, samples, whole < text.len()))
+    Ok((layout.ids, samples, whole < text.len()))
 }

@@ -9,7 +9,8 @@ const APPROACH_RAD_S: f64 = 0.5;
 /// How a motion was followed.
 #[derive(Debug, Default)]
 pub struct FollowedMotion {
-    /// The samples of the motion itself, without the way to its first pose.
+    /// The samples of the motion itself, without the ways to its first pose and back to it after
+    /// torque was off.
     pub tally: RecordingTally,
     /// Measured minus commanded angle, rad.
     pub tracking: Rms,
@@ -29,7 +30,8 @@ pub enum MotionStop {
 }
 
 /// Torque on, to the first pose at 0.5 rad/s, along the motion at its own speed, torque off: the
-/// last whatever happened. Every sample goes to `recorder`. Before each, `goes_on` is asked;
+/// last whatever happened. Where the motion has torque off the servos are let go; when it comes back
+/// they go to the pose of that moment as to the first. Every sample goes to `recorder`. Before each, `goes_on` is asked;
 /// `progress` is told the place in the motion.
 ///
 /// # Errors
@@ -94,14 +96,30 @@ impl MotionFollower<'_> {
 
     /// Along the motion, which begins at `begin_s`.
     fn run(&mut self, motion: &GoalMotion, begin_s: f64, progress: &dyn Fn(usize)) -> Result<()> {
-        let mut now_s = begin_s;
+        let (mut begin_s, mut now_s, mut on) = (begin_s, begin_s, true);
         while let Some((at, goals)) = motion.at(now_s - begin_s) {
-            let Some(sample) = self.step(Some(&goals))? else {
+            if motion.torque_on[at] != on {
+                on = !on;
+                if !on {
+                    self.source.disarm()?;
+                } else {
+                    self.source.arm()?;
+                    let Some(there_s) = self.approach(&goals)? else {
+                        break;
+                    };
+                    begin_s += there_s - now_s;
+                }
+            }
+            let Some(sample) = self.step(on.then_some(&goals))? else {
                 break;
             };
             now_s = sample.time_s;
             let followed = &mut self.followed;
             followed.tally.count(&sample);
+            progress(at);
+            if !on {
+                continue;
+            }
             let recorded = &motion.measured_rad[at];
             for ((joint, goal), recorded) in sample.joints.iter().zip(&goals).zip(recorded) {
                 if let Some(now) = joint.position_rad {
@@ -110,19 +128,18 @@ impl MotionFollower<'_> {
                     recorded.iter().for_each(|then| repeat.add(now - then));
                 }
             }
-            progress(at);
         }
         Ok(())
     }
 
     /// A sample with these goals; none, and why, if it must stop.
-    fn step(&mut self, goals: Option<&[f64]>) -> Result<Option<RobotSample>> {
+    fn step(&mut self, goals: Option<&Vec<f64>>) -> Result<Option<RobotSample>> {
         for _ in 0..5 {
             if !(self.goes_on)() {
                 self.followed.stopped = Some(MotionStop::Interrupted);
                 return Ok(None);
             }
-            if let Some(sample) = self.source.sample(goals)? {
+            if let Some(sample) = self.source.sample(goals.map(Vec::as_slice))? {
                 if let Some(recorder) = &mut self.recorder {
                     recorder.write(&sample)?;
                 }

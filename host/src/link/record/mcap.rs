@@ -18,7 +18,7 @@ const STATES: &str = "/joint_states";
 const GOALS: &str = "/joint_goals";
 const IMU: &str = "/imu";
 const HEALTH: &str = "/servo_health";
-const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]}}}"#;
+const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]},"torque_on":{"type":["boolean","null"]}}}"#;
 
 /// Health of all servos, as JSON.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -30,6 +30,8 @@ struct Health {
     gyro_code: Option<f64>,
     #[serde(default)]
     gyro_zero: Option<f64>,
+    #[serde(default)]
+    torque_on: Option<bool>,
 }
 
 /// Writes chunks of about half a second, each with its own check.
@@ -159,6 +161,7 @@ impl Writer for McapWriter {
         let health = Health {
             gyro_code: sample.gyro.map(|gyro| gyro.code),
             gyro_zero: sample.gyro.and_then(|gyro| gyro.zero),
+            torque_on: sample.torque_on,
             supply_v: sample.joints.iter().map(|joint| joint.supply_v).collect(),
             temperature_celsius: sample
                 .joints
@@ -255,6 +258,7 @@ fn add_health(health: &Health, samples: &mut [RobotSample]) {
         let rate_rad_s = sample.gyro.and_then(|gyro| gyro.rate_rad_s);
         let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
         sample.gyro = GyroSample::of(values);
+        sample.torque_on = health.torque_on;
     }
     for (at, joint) in newest(samples).iter_mut().enumerate() {
         joint.supply_v = health.supply_v.get(at).copied().flatten();
@@ -286,5 +290,6 @@ fn sample(state: &JointStateMessage, time_s: f64) -> RobotSample {
         time_s,
         joints: joints.collect(),
         gyro: None,
+        torque_on: None,
     }
 }

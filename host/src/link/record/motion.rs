@@ -13,11 +13,13 @@ pub struct GoalMotion {
     pub goals_rad: Vec<Vec<f64>>,
     /// Positions recorded at each time, rad.
     pub measured_rad: Vec<Vec<Option<f64>>>,
+    /// Whether torque is on from each time to the next.
+    pub torque_on: Vec<bool>,
 }
 
 impl GoalMotion {
-    /// The motion of a recording: its goals, or its positions where it has no goals; `file` names
-    /// it in errors.
+    /// The motion of a recording: its goals, with torque as it was, or its positions where it has no
+    /// goals; `file` names it in errors.
     ///
     /// # Errors
     /// Fewer than two samples, times that do not grow, or a servo without goal and position.
@@ -38,6 +40,7 @@ impl GoalMotion {
             time_s: Vec::new(),
             goals_rad: Vec::new(),
             measured_rad: Vec::new(),
+            torque_on: Vec::new(),
         };
         for sample in &recording.samples {
             for (last, joint) in pose.iter_mut().zip(&sample.joints) {
@@ -62,6 +65,9 @@ impl GoalMotion {
             }
             motion.time_s.push(sample.time_s);
             motion.goals_rad.push(goals);
+            // A motion that was shown by hand had no torque.
+            let on = !commanded || sample.torque_on.unwrap_or(true);
+            motion.torque_on.push(on);
             motion.measured_rad.push(
                 sample
                     .joints

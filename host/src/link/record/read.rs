@@ -17,12 +17,17 @@ pub struct Recording {
     pub torn: bool,
 }
 
-/// Reads a CSV or MCAP recording.
+/// Reads a CSV or MCAP recording; `-` is CSV from the standard input.
 ///
 /// # Errors
 /// [`Error::File`] if it cannot be read, [`Error::Data`] at the place where it is no recording.
 pub fn read(path: &Path) -> Result<Recording> {
     let refused = |error| Error::file(path, "read", error);
+    if path == Path::new("-") {
+        let text = std::io::read_to_string(std::io::stdin()).map_err(refused)?;
+        let (ids, samples, torn) = csv::read(&text, path)?;
+        return Ok(Recording { ids, samples, torn });
+    }
     let (ids, samples, torn) = match FileFormat::of(path)? {
         FileFormat::Csv => csv::read(&std::fs::read_to_string(path).map_err(refused)?, path)?,
         FileFormat::Mcap => mcap::read(&std::fs::read(path).map_err(refused)?, path)?,

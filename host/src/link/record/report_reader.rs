@@ -1,7 +1,7 @@
 //! Samples from a CM-5's stream reports.
 
 use super::sample::{GyroSample, RobotSample, ServoSample};
-use handstand_shared::message::{Attitude, StreamReport, Telemetry};
+use handstand_shared::message::{Attitude, Condition, StreamReport, Telemetry};
 use handstand_shared::raw::Position;
 use std::time::Duration;
 
@@ -64,6 +64,16 @@ impl ReportReader {
                 zero: self.gyro.map(|(zero, _)| f64::from(zero)),
                 rate_rad_s: self.gyro.map(rate),
             }),
+            torque_on: torque(report.condition),
         }
+    }
+}
+
+/// Whether torque is on in this condition; none where it is not known.
+fn torque(condition: Condition) -> Option<bool> {
+    match condition {
+        Condition::StreamArmed | Condition::BalanceArmed | Condition::Soft => Some(true),
+        Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
+        Condition::Bridge => None,
     }
 }

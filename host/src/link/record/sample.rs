@@ -139,4 +139,6 @@ pub struct RobotSample {
     pub joints: Vec<ServoSample>,
     /// The gyro, where the source has one.
     pub gyro: Option<GyroSample>,
+    /// Whether torque is on, where the source knows.
+    pub torque_on: Option<bool>,
 }

@@ -31,6 +31,7 @@ fn same(a: &RobotSample, b: &RobotSample) -> bool {
     };
     let gyro = |sample: &RobotSample| sample.gyro.map_or([None; 3], |gyro| gyro.values());
     (a.time_s - b.time_s).abs() < 1e-6
+        && a.torque_on == b.torque_on
         && (gyro(a).into_iter().zip(gyro(b))).all(|(a, b)| near(a, b))
         && (a.joints.iter().zip(&b.joints)).all(|(a, b)| {
             a.values()
@@ -132,6 +133,7 @@ fn the_gyro_is_recorded_in_both_formats() {
                         zero: scale.map(|_| 512.0),
                         rate_rad_s: scale.map(|scale| scale * f64::from(at - 12)),
                     }),
+                    torque_on: scale.map(|_| at > 20),
                 })
                 .collect();
             let mut recorder = RobotRecorder::create(&path, &[1], false).unwrap();
@@ -152,9 +154,9 @@ fn the_gyro_is_recorded_in_both_formats() {
         csv.lines()
             .next()
             .unwrap()
-            .ends_with(",error1,gyro_code,gyro_zero,gyro_rad_s")
+            .ends_with(",error1,gyro_code,gyro_zero,gyro_rad_s,torque_on")
     );
-    assert!(csv.lines().nth(1).unwrap().ends_with(",500,512,-0.24"));
+    assert!(csv.lines().nth(1).unwrap().ends_with(",500,512,-0.24,0"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::extremes::Extremes;
 use super::finding::Findings;
 use crate::error::Place;
 use crate::log::row::LogRow;
-use crate::model::Model;
+use crate::model::{ColumnMean, JointColumns, Model};
 
 /// Least swing that counts as a reversal where the encoder is fine, rad.
 const SWING_RAD: f64 = 0.02;
@@ -49,10 +49,10 @@ impl Excitation {
             motions: 0,
             joints: joints
                 .map(|(columns, joint)| JointExcitation {
-                    position_name: columns.position.name.clone(),
-                    input_name: columns.input.as_ref().map(|column| column.name.clone()),
+                    position_name: name(&columns.position),
+                    input_name: columns.input.as_ref().map(ColumnMean::name),
                     driven: joint.drive.is_driven(),
-                    swing_rad: SWING_RAD.max(4.0 * columns.position.resolution.unwrap_or(0.0)),
+                    swing_rad: SWING_RAD.max(4.0 * resolution_rad(columns)),
                     position_rad: Extremes::NONE,
                     input: Extremes::NONE,
                     reversals: 0,
@@ -74,7 +74,9 @@ impl Excitation {
             if let Some(input) = row.input[i].filter(|_| energised) {
                 joint.input.take(input);
             }
-            joint.take(row.time_s, row.position_rad[i]);
+            if row.position_rad[i].is_finite() {
+                joint.take(row.time_s, row.position_rad[i]);
+            }
         }
     }
 
@@ -166,6 +168,17 @@ impl JointExcitation {
             findings.warn(kind, place.cloned(), (what, remedy));
         }
     }
+}
+
+/// Names of the columns of a quantity; empty where it is not logged.
+pub(super) fn name(columns: &Option<ColumnMean>) -> String {
+    columns.as_ref().map(ColumnMean::name).unwrap_or_default()
+}
+
+/// Resolution of a joint's angle, rad; 0 where it is not known.
+fn resolution_rad(columns: &JointColumns) -> f64 {
+    let position = columns.position.as_ref();
+    position.and_then(ColumnMean::resolution).unwrap_or(0.0)
 }
 
 /// "1 hold", "no reversals".

@@ -19,7 +19,11 @@ impl Extremes {
         count: 0,
     };
 
+    /// Takes a value; what is not a number was not measured.
     pub fn take(&mut self, value: f64) {
+        if value.is_nan() {
+            return;
+        }
         self.count += 1;
         let (below, above) = (value < self.low.0, value > self.high.0);
         for (extreme, beyond) in [(&mut self.low, below), (&mut self.high, above)] {

@@ -1,11 +1,13 @@
 //! One joint's columns by themselves: range, end stops, steps, standing still.
 
+use super::excitation::name;
 use super::extremes::Extremes;
 use super::finding::Findings;
 use crate::error::Place;
 use crate::log::LogReason;
 use crate::log::row::LogRow;
-use crate::model::{Drive, JointColumns};
+use crate::model::{ColumnMean, Drive, JointColumns, MeasuredSignal};
+use crate::output::number::percent;
 use std::f64::consts::{PI, TAU};
 
 /// Standing still for longer than this while the input changes is stuck, s.
@@ -61,17 +63,19 @@ struct Series {
 }
 
 impl Series {
-    fn new(name: &str) -> Self {
+    fn new(name: String) -> Self {
         Series {
-            name: name.to_string(),
+            name,
             extremes: Extremes::NONE,
             steps: StepSizes::default(),
         }
     }
 
     fn take(&mut self, value: f64) {
-        self.extremes.take(value);
-        self.steps.take(value);
+        if value.is_finite() {
+            self.extremes.take(value);
+            self.steps.take(value);
+        }
     }
 
     /// Extremes at which many samples sit, with their share, of a column that moves at all.
@@ -83,8 +87,13 @@ impl Series {
 
 /// Running judgement of one joint in one file.
 pub(super) struct JointCheck {
+    signal: MeasuredSignal,
     position: Series,
+    /// The rate, where there is no angle.
+    rate: Series,
     input: Series,
+    /// Rows seen.
+    rows: usize,
     /// Declared resolution of the position, rad.
     declared_rad: Option<f64>,
     still: Option<Still>,
@@ -93,18 +102,30 @@ pub(super) struct JointCheck {
 
 impl JointCheck {
     pub fn new(columns: &JointColumns) -> Self {
-        let input = columns.input.as_ref().map_or("", |column| &column.name);
+        let declared = columns.position.as_ref().and_then(ColumnMean::resolution);
         JointCheck {
-            position: Series::new(&columns.position.name),
-            input: Series::new(input),
-            declared_rad: columns.position.resolution,
+            signal: columns.signal(),
+            position: Series::new(name(&columns.position)),
+            rate: Series::new(name(&columns.velocity)),
+            input: Series::new(name(&columns.input)),
+            rows: 0,
+            declared_rad: declared,
             still: None,
             stuck: Vec::new(),
         }
     }
 
     pub fn take(&mut self, row: &LogRow, joint: usize, fresh: bool, findings: &mut Findings) {
+        self.rows += 1;
+        let energised = row.torque_on != Some(false);
+        let input = row.input[joint].filter(|input| energised && input.is_finite());
         let angle = row.position_rad[joint];
+        if !angle.is_finite() {
+            self.rate
+                .take(row.velocity_rad_s[joint].unwrap_or(f64::NAN));
+            input.into_iter().for_each(|input| self.input.take(input));
+            return;
+        }
         let place = row.place(row.fields.position[joint]);
         if fresh {
             self.position.steps.previous = None;
@@ -119,8 +140,6 @@ impl JointCheck {
             self.end_still();
         }
         self.position.take(angle);
-        let energised = row.torque_on != Some(false);
-        let input = row.input[joint].filter(|_| energised);
         let still = self.still.get_or_insert(Still {
             begin: place,
             from_s: row.time_s,
@@ -151,14 +170,35 @@ impl JointCheck {
 
     pub fn judge(&mut self, place: &Place, drive: &Drive, findings: &mut Findings) {
         self.end_still();
+        self.judge_missing(place, findings);
         self.judge_stuck(findings);
         self.judge_extremes(place, drive, findings);
         self.judge_steps(place, findings);
-        let (name, range) = (&self.position.name, self.position.extremes.range());
+        let (column, range) = (&self.position.name, self.position.extremes.range());
         if matches!(drive, Drive::Position { .. }) && range > 4.0 * PI {
-            let what = format!("{name} ranges over {range:.0} rad: degrees declared as rad?");
+            let what = format!("{column} ranges over {range:.0} rad: degrees declared as rad?");
             let remedy = "check the column's unit in the model's [log]";
             findings.warn("unit", place.clone(), (what, remedy));
+        }
+    }
+
+    /// How many of the samples are gaps.
+    fn judge_missing(&self, place: &Place, findings: &mut Findings) {
+        let series = match self.signal {
+            MeasuredSignal::Angle => &self.position,
+            MeasuredSignal::Rate => &self.rate,
+            MeasuredSignal::Nothing => return,
+        };
+        let (column, found) = (series.name.clone(), series.extremes.count);
+        if found == 0 {
+            let motion = "the log".to_string();
+            let reason = LogReason::EmptyColumn { column, motion };
+            findings.refuse("missing", place.clone(), &reason);
+        } else if found < self.rows {
+            let share = percent((self.rows - found) as f64 / self.rows as f64);
+            let what = format!("{column} is missing in {share} of the rows");
+            let remedy = "the model runs on through gaps; many show a bad line";
+            findings.note("missing", place.clone(), (what, remedy));
         }
     }
 

@@ -16,7 +16,7 @@ mod stretch;
 #[cfg(test)]
 mod tests;
 
-pub use finding::{LogFinding, Severity};
+pub use finding::{LogFinding, Proof, Severity};
 
 use super::reason::LogReason;
 use super::request::LogRequest;
@@ -180,6 +180,11 @@ impl<'a> FileCheck<'a> {
 
     fn finish(mut self, rows: usize) {
         let place = Place::file(&self.request.path);
+        for sentence in self.model.log.unobserved() {
+            let remedy = "what the log cannot show cannot be diagnosed";
+            self.findings
+                .note("unobserved", place.clone(), (sentence, remedy));
+        }
         if let Some(reason) = self.request.beyond(rows) {
             self.findings.refuse("range", place.clone(), &reason);
         }

@@ -1,5 +1,6 @@
 //! Columns against each other: a wrong sign, scale or zero shows in how one follows the other.
 
+use super::excitation::name;
 use super::extremes::Extremes;
 use super::finding::Findings;
 use super::fit::{LineFit, Regression};
@@ -91,10 +92,16 @@ impl Relations {
             };
             let Some(measured) = measured else { continue };
             for (line, lag) in self.follow[joint].iter_mut().zip(LAGS) {
-                if let Some(goal) = self.recent.get(lag).and_then(|inputs| inputs[joint]) {
+                let goal = self.recent.get(lag).and_then(|inputs| inputs[joint]);
+                if let Some(goal) = goal.filter(|goal| (goal - measured).is_finite()) {
                     line.add(goal, measured);
                 }
             }
+        }
+        // A stretch takes whole rows.
+        if !is_whole(row) {
+            self.stretches.reset();
+            return;
         }
         if let Some(stretch) = self.stretches.take(row) {
             self.take_stretch(&stretch, row);
@@ -125,7 +132,7 @@ impl Relations {
         }
         x.push(1.0);
         for i in 0..n {
-            if row.velocity_rad_s[i].is_some() {
+            if row.velocity_rad_s[i].is_some() && stretch.logged_speed_rad_s[i].is_finite() {
                 self.speed[i].add(stretch.speed_rad_s[i], stretch.logged_speed_rad_s[i]);
             }
             if relative(&stretch.speed_rad_s, i).abs() > MOVING_RAD_S {
@@ -137,17 +144,17 @@ impl Relations {
     pub fn judge(&mut self, place: &Place, model: &Model, findings: &mut Findings) {
         for joint in 0..self.drives.len() {
             let columns = &model.log.joints[joint];
+            let (speed, angle) = (name(&columns.velocity), name(&columns.position));
             let measured = match (self.drives[joint], &columns.velocity) {
-                (InputKind::Speed, Some(speed)) => &speed.name,
-                _ => &columns.position.name,
+                (InputKind::Speed, Some(_)) => &speed,
+                _ => &angle,
             };
             if let Some(input) = &columns.input {
-                self.judge_follow(joint, &input.name, measured, place, findings);
-                self.judge_push(joint, &input.name, place, findings);
+                self.judge_follow(joint, &input.name(), measured, place, findings);
+                self.judge_push(joint, &input.name(), place, findings);
             }
-            if let Some(speed) = &columns.velocity {
-                let names = (&*speed.name, &*columns.position.name);
-                judge_speed(&self.speed[joint], names, place, findings);
+            if columns.velocity.is_some() && columns.position.is_some() {
+                judge_speed(&self.speed[joint], (&speed, &angle), place, findings);
             }
             let nominal = model.joints[joint]
                 .drive
@@ -238,7 +245,7 @@ impl Relations {
         let (sine, cosine) = (all[1], all[2]);
         let tilt = cosine.value.atan2(-sine.value);
         if tilt.abs() > 0.35 && sine.t.hypot(cosine.t) > 3.0 * SURE {
-            let name = &model.log.joints[0].position.name;
+            let name = name(&model.log.joints[0].position);
             let what = format!(
                 "gravity pulls {tilt:.2} rad beside where {name} has it hang: a wrong angle_zero, \
                  sign or unit, or a tilted rig"
@@ -260,6 +267,13 @@ impl Relations {
             findings.warn("supply", place.clone(), (what, remedy));
         }
     }
+}
+
+/// Whether a row says all that a stretch needs: every angle and every input.
+fn is_whole(row: &LogRow) -> bool {
+    let inputs = row.input.iter().flatten();
+    let mut all = row.position_rad.iter().chain(inputs);
+    all.all(|value| value.is_finite())
 }
 
 fn judge_speed(

@@ -11,7 +11,13 @@ pub fn column(name: &str, unit: &str) -> Column {
         offset: 0.0,
         reversed: false,
         resolution: None,
+        shift_s: 0.0,
     }
+}
+
+/// The first column of a quantity.
+pub fn first(columns: &mut Option<ColumnMean>) -> &mut Column {
+    &mut columns.as_mut().unwrap().columns_mut()[0]
 }
 
 /// `t_s, q, u` of one joint.
@@ -25,9 +31,9 @@ pub fn columns() -> LogColumns {
         payload_at_m: 0.0,
         turned: None,
         joints: vec![JointColumns {
-            position: column("q", "rad"),
+            position: Some(column("q", "rad").into()),
             velocity: None,
-            input: Some(column("u", "rad")),
+            input: Some(column("u", "rad").into()),
         }],
         split_at_gap_s: None,
     }
@@ -72,6 +78,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         links: vec![link; log.joints.len()],
         joints: vec![Joint { drive }; log.joints.len()],
         effects: Vec::new(),
+        laws: Vec::new(),
         free: Vec::new(),
         log,
     }

@@ -1,6 +1,6 @@
 //! Dialects, refusals, the round trip, hostile bytes, and the real logs.
 
-use self::fixture::{column, columns, model, motion, position_drive};
+use self::fixture::{column, columns, first, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
 use crate::model::{Column, LogColumns};
@@ -9,6 +9,7 @@ use proptest::prelude::*;
 mod bam;
 mod dialects;
 pub mod fixture;
+mod gaps;
 mod motions;
 mod real;
 mod refusals;

@@ -3,7 +3,7 @@
 //!
 //! The folder is named by `HANDSTAND_DATA`; without it these tests say so and pass.
 
-use super::fixture::{column, columns};
+use super::fixture::{column, columns, first};
 use super::*;
 use crate::model::{JointColumns, LogColumns};
 use std::path::PathBuf;
@@ -24,9 +24,9 @@ type JointNames<'a> = (&'a str, Option<&'a str>, Option<(&'a str, &'a str)>);
 fn free(time: &str, joints: &[JointNames]) -> LogColumns {
     let joint =
         |(position, speed, input): &(&str, Option<&str>, Option<(&str, &str)>)| JointColumns {
-            position: column(position, "rad"),
-            velocity: speed.map(|name| column(name, "rad/s")),
-            input: input.map(|(name, unit)| column(name, unit)),
+            position: Some(column(position, "rad").into()),
+            velocity: speed.map(|name| column(name, "rad/s").into()),
+            input: input.map(|(name, unit)| column(name, unit).into()),
         };
     LogColumns {
         time: column(time, "s"),
@@ -49,7 +49,7 @@ fn reads_the_real_logs() {
     assert_eq!(count("multiarm/single_id.csv", &single), (4, 18336));
     let mut triple = free("t", &["1", "2", "3"].map(|_| ("theta1", None, None)));
     for (joint, name) in triple.joints.iter_mut().zip(["theta1", "theta2", "theta3"]) {
-        joint.position = column(name, "rad");
+        joint.position = Some(column(name, "rad").into());
     }
     triple.segment = Some("segment".into());
     assert_eq!(count("multiarm/triple_id.csv", &triple), (22, 16940));
@@ -95,7 +95,7 @@ fn faults_in_real_logs_are_found() {
             let mut reversed = model.clone();
             let columns = &mut reversed.log.joints[joint];
             if let Some(input) = &mut columns.input {
-                input.reversed = true;
+                input.columns_mut()[0].reversed = true;
                 // Where feedback makes the input follow the motion, the sign need not show.
                 let open = files[0].contains("fft") || files[0].contains("design_C") && joint == 1;
                 match model.joints[joint].drive {
@@ -108,11 +108,11 @@ fn faults_in_real_logs_are_found() {
             }
             let mut reversed = model.clone();
             if let Some(speed) = &mut reversed.log.joints[joint].velocity {
-                speed.reversed = true;
-                let name = speed.name.clone();
+                speed.columns_mut()[0].reversed = true;
+                let name = speed.name();
                 warned(&files, &reversed, "runs against the change");
                 let mut minutes = model.clone();
-                minutes.log.joints[joint].velocity = Some(column(&name, "rpm"));
+                minutes.log.joints[joint].velocity = Some(column(&name, "rpm").into());
                 warned(&files, &minutes, "times the change");
             }
         }
@@ -137,7 +137,7 @@ fn real(data: &std::path::Path) -> Vec<(Vec<String>, crate::model::Model)> {
     };
     let mut drop = model(Drive::Passive, free("t_s", &[("pos_rad", None, None)]));
     drop.angle_zero = AngleZero::Horizontal;
-    drop.log.joints[0].position.resolution = Some(0.001534);
+    first(&mut drop.log.joints[0].position).resolution = Some(0.001534);
     let mut servo = model(
         position_drive(),
         free("t_s", &[("position_rad", None, Some(("goal_rad", "rad")))]),

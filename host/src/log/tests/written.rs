@@ -10,7 +10,7 @@ fn what_is_written_reads_back() {
     columns.segment = Some("segment".into());
     columns.torque_on = Some("on".into());
     columns.supply = Some(column("supply", "mV"));
-    columns.joints[0].position = Column {
+    *first(&mut columns.joints[0].position) = Column {
         offset: 0.25,
         reversed: true,
         ..column("q_ticks", "ticks")

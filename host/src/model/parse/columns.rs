@@ -3,12 +3,17 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Column, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
+use super::super::{Column, ColumnMean, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
 
 /// Counts per turn; more than 2^32 is no encoder.
 const TICKS: Limits = Limits::within(1.0, 4_294_967_296.0);
+
+/// Columns whose samples may have been taken at another time than the row's.
+const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
+/// Further apart, two columns are no one row.
+const SHIFT_S: Limits = Limits::within(-10.0, 10.0);
 
 pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
     let log = root.required_table("log")?;
@@ -53,13 +58,18 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
         }));
     }
     let pairs = tables.iter().zip(joints);
-    pairs.map(|(table, joint)| of_joint(table, joint)).collect()
+    let columns = pairs.map(|(table, joint)| of_joint(table, joint));
+    let columns: Vec<JointColumns> = columns.collect::<Result<_>>()?;
+    match columns.iter().any(|joint| joint.measured().is_some()) {
+        true => Ok(columns),
+        false => Err(log.bad_table(ModelReason::NothingMeasured)),
+    }
 }
 
 fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
-    let position = table.required_table("position")?;
-    let velocity = optional(table, "velocity", Dimension::Speed)?;
+    let position = mean(table, "position", Dimension::Angle)?;
+    let velocity = mean(table, "velocity", Dimension::Speed)?;
     let wanted = match joint.drive {
         Drive::Passive => None,
         Drive::Torque => Some(Dimension::Torque),
@@ -69,9 +79,8 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     };
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
-        (Some(wanted), true) => optional(table, "input", wanted)?,
+        (Some(wanted), true) => mean(table, "input", wanted)?,
         (None, true) => {
-            table.table("input")?;
             return Err(table.bad_key("input", ModelReason::PassiveInput));
         }
         (Some(wanted), false) => {
@@ -83,10 +92,23 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
         }
     };
     Ok(JointColumns {
-        position: column(&position, "position", Dimension::Angle)?,
+        position,
         velocity,
         input,
     })
+}
+
+/// The columns under `key`, if there are any: a table, or a list of tables whose mean counts.
+fn mean(table: &Table, key: &'static str, dimension: Dimension) -> Result<Option<ColumnMean>> {
+    let tables = match table.is_list(key) {
+        true => table.tables(key)?,
+        false => table.table(key)?.into_iter().collect(),
+    };
+    if table.has(key) && tables.is_empty() {
+        return Err(table.bad(key, ModelReason::NoColumns { quantity: key }));
+    }
+    let columns = tables.iter().map(|found| column(found, key, dimension));
+    Ok(ColumnMean::of(columns.collect::<Result<_>>()?))
 }
 
 /// The column under `key`, if there is one.
@@ -104,6 +126,9 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     if dimension != Dimension::Time {
         known.push("reversed");
     }
+    if MOVABLE.contains(&quantity) {
+        known.push("shift_s");
+    }
     if table.text("unit")? == Some("ticks") {
         known.push("ticks_per_turn");
     }
@@ -114,12 +139,14 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     let unit = unit(table, quantity, dimension)?;
     let one_tick = (unit.name == "ticks").then_some(unit.si);
     let offset = table.number(&offset, Limits::within(-1e9, 1e9))?;
+    let shift_s = table.number("shift_s", SHIFT_S)?;
     Ok(Column {
         name: table.required_text("column")?.to_string(),
         unit,
         offset: offset.unwrap_or(0.0),
         reversed: table.flag("reversed")?,
         resolution: table.number(&resolution, NOT_NEGATIVE)?.or(one_tick),
+        shift_s: shift_s.unwrap_or(0.0),
     })
 }
 

@@ -42,12 +42,16 @@ fn everything_is_read() {
     assert_eq!(log.payload.as_ref().map(|c| c.to_si(20.0)), Some(0.02));
     assert_eq!((log.payload_at_m, log.split_at_gap_s), (0.12, Some(0.5)));
     let tick = std::f64::consts::TAU / 4096.0;
-    let position = &log.joints[0].position;
+    let position = &log.joints[0].position.as_ref().unwrap().columns()[0];
     assert!((position.to_si(1024.0) - (0.1 - std::f64::consts::FRAC_PI_2)).abs() < 1e-12);
     assert_eq!(position.resolution, Some(tick), "one tick");
-    assert_eq!(log.joints[1].position.resolution, Some(0.005));
+    let second = log.joints[1].position.as_ref().unwrap();
+    assert_eq!(second.resolution(), Some(0.005));
     assert_eq!(
-        log.joints[0].velocity.as_ref().map(|c| c.unit.name),
+        log.joints[0]
+            .velocity
+            .as_ref()
+            .map(|c| c.columns()[0].unit.name),
         Some("deg/s")
     );
 }

@@ -2,7 +2,7 @@
 
 use crate::compare::Comparison;
 use crate::log::Motion;
-use crate::model::{Angles, Drive, Model};
+use crate::model::{Angles, Drive, MeasuredSignal, Model};
 use serde::Serialize;
 
 /// Most samples of a track; longer motions are thinned evenly.
@@ -115,10 +115,11 @@ impl Scene {
                 .iter()
                 .filter(|trace| trace.motion == motion.name);
             let traces: Vec<_> = own.collect();
-            if traces.len() != model.link_count() {
+            let angles = traces.iter().all(|t| t.quantity == MeasuredSignal::Angle);
+            if traces.len() != model.link_count() || !angles {
                 continue;
             }
-            let joint_rad: Vec<_> = traces.iter().map(|t| t.predicted_rad.as_slice()).collect();
+            let joint_rad: Vec<_> = traces.iter().map(|t| t.predicted.as_slice()).collect();
             let (name, time_s) = (&comparison.model, &traces[0].time_s);
             motion
                 .tracks
@@ -155,6 +156,19 @@ fn thinned(values: &[f64]) -> Vec<f64> {
     values.iter().copied().step_by(stride).collect()
 }
 
+/// A joint stands where it was last seen while nothing is measured.
+fn held(angles: &[f64]) -> Vec<f64> {
+    let first = angles.iter().copied().find(|angle| angle.is_finite());
+    let mut last = first.unwrap_or(0.0);
+    let seen = |angle: &f64| {
+        if angle.is_finite() {
+            last = *angle;
+        }
+        last
+    };
+    angles.iter().map(seen).collect()
+}
+
 /// To five decimals, finer than can be seen.
 fn rounded(values: &[f64]) -> Vec<f64> {
     values
@@ -164,7 +178,8 @@ fn rounded(values: &[f64]) -> Vec<f64> {
 }
 
 fn measured(model: &Model, motion: &Motion, name: &str, kind: TrackKind) -> Track {
-    let joint_rad: Vec<Vec<f64>> = motion.position_rad.iter().map(|q| thinned(q)).collect();
+    let joint_rad = motion.position_rad.iter();
+    let joint_rad: Vec<Vec<f64>> = joint_rad.map(|q| thinned(&held(q))).collect();
     let joint_rad: Vec<&[f64]> = joint_rad.iter().map(Vec::as_slice).collect();
     track(model, name, kind, &thinned(&motion.time_s), &joint_rad)
 }

@@ -213,8 +213,8 @@ fn spoil(report: &mut Report, values: &[f64], times: Vec<f64>, angles: Vec<f64>)
     let mut next = |place: &mut f64| *place = values.next().unwrap_or_default();
     for comparison in &mut report.comparisons {
         for signal in &mut comparison.signals {
-            next(&mut signal.rms_rad);
-            next(&mut signal.floor_rad);
+            next(&mut signal.rms);
+            next(&mut signal.floor);
             next(&mut signal.fit_percent);
         }
         for failure in &mut comparison.failures {
@@ -223,8 +223,8 @@ fn spoil(report: &mut Report, values: &[f64], times: Vec<f64>, angles: Vec<f64>)
         }
         for trace in &mut comparison.traces {
             trace.time_s.clone_from(&times);
-            trace.measured_rad.clone_from(&angles);
-            trace.predicted_rad = angles.iter().rev().copied().collect();
+            trace.measured.clone_from(&angles);
+            trace.predicted = angles.iter().rev().copied().collect();
         }
     }
     let diagnosis = report.diagnosis.as_mut().unwrap();

@@ -9,6 +9,7 @@ use crate::diagnose::{
     ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
+use crate::model::MeasuredSignal;
 use crate::report::{LogFile, ModelFile, Report, ReportProvenance};
 
 pub(in crate::report) fn report() -> Report {
@@ -44,11 +45,13 @@ pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison 
         model: model.into(),
         horizon_s: None,
         windows: Vec::new(),
+        unobserved: Vec::new(),
         signals: vec![signal(error_mrad)],
         horizons: [(Some(0.1), 0.3), (Some(0.5), 0.6), (None, 1.0)]
             .map(|(horizon_s, share)| HorizonError {
                 horizon_s,
-                rms_rad: share * 1e-3 * error_mrad,
+                quantity: MeasuredSignal::Angle,
+                rms: share * 1e-3 * error_mrad,
             })
             .into(),
         failures: failures(error_mrad),
@@ -82,10 +85,11 @@ pub(in crate::report) fn closed_loop(error_mrad: f64) -> ClosedLoopComparison {
 fn signal(error_mrad: f64) -> SignalError {
     SignalError {
         joint: 1,
-        rms_rad: 1e-3 * error_mrad,
-        largest_rad: 3e-3 * error_mrad,
+        quantity: MeasuredSignal::Angle,
+        rms: 1e-3 * error_mrad,
+        largest: 3e-3 * error_mrad,
         fit_percent: 100.0 - error_mrad / 3.0,
-        floor_rad: 5.1e-3,
+        floor: 5.1e-3,
         share_above_floor: 0.9,
         tests: vec![
             ResidualTest {
@@ -149,9 +153,10 @@ fn trace(motion: &str, error_mrad: f64) -> Trace {
     Trace {
         motion: motion.into(),
         joint: 1,
-        rms_rad: 1e-3 * error_mrad,
-        measured_rad: time_s.iter().map(|t| reading(*t)).collect(),
-        predicted_rad: time_s.iter().map(|t| wrong(*t)).collect(),
+        quantity: MeasuredSignal::Angle,
+        rms: 1e-3 * error_mrad,
+        measured: time_s.iter().map(|t| reading(*t)).collect(),
+        predicted: time_s.iter().map(|t| wrong(*t)).collect(),
         time_s,
     }
 }

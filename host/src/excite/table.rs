@@ -1,0 +1,321 @@
+//! The motions one after the other, as goals of servos over time.
+
+use super::limits::{ExciteError, JointLimits};
+use super::multisine::multisine;
+use super::path::{PosePath, samples_between};
+use super::{ExcitationKind, ExcitePlan};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Rest between two kinds, s, at the middle of the ranges.
+const REST_S: f64 = 0.5;
+/// Share of the speed limit at which a kind is slow.
+const SLOW: f64 = 0.15;
+/// How long a pose and a level are held, s.
+const HOLD_S: f64 = 1.5;
+const LEVEL_S: f64 = 0.7;
+/// Speed at which a drop is prepared and poses are changed, as a share of the limit.
+const GENTLE: f64 = 0.5;
+/// Least time to fall, s.
+const FALL_S: f64 = 2.0;
+
+/// Goals over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Excitation {
+    /// Times, s.
+    pub time_s: Vec<f64>,
+    /// Per sample, per joint, rad.
+    pub angle_rad: Vec<Vec<f64>>,
+    /// Per sample: whether torque is on.
+    pub torque_on: Vec<bool>,
+    /// Which motion lies where.
+    pub motions: Vec<ExcitedMotion>,
+    joints: Vec<JointLimits>,
+}
+
+/// One motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExcitedMotion {
+    /// What it is.
+    pub kind: ExcitationKind,
+    /// When it begins, s.
+    pub begin_s: f64,
+    /// When it ends, s.
+    pub end_s: f64,
+}
+
+/// How far and fast a joint is asked to move.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointExtent {
+    /// Its servos.
+    pub servos: Vec<u8>,
+    /// Lowest goal, rad.
+    pub lowest_rad: f64,
+    /// Highest goal, rad.
+    pub highest_rad: f64,
+    /// Fastest change of the goal, rad/s.
+    pub fastest_rad_s: f64,
+}
+
+/// Goals of the motions that the plan asks for; equal plans give equal goals.
+///
+/// # Errors
+/// Limits that cannot be held, and too little time.
+pub fn excite(plan: &ExcitePlan) -> Result<Excitation, ExciteError> {
+    check(plan)?;
+    let middle: Vec<f64> = plan.joints.iter().map(JointLimits::middle_rad).collect();
+    let samples = |seconds: f64| (seconds * plan.hz).round() as usize;
+    let mut path = PosePath::default();
+    let mut motions = Vec::new();
+    let mut falls_at = None;
+    path.hold(&middle, samples(REST_S));
+    for &kind in &plan.kinds {
+        let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
+        random.set_stream(kind as u64);
+        let begin = path.rows.len();
+        let end = begin + samples(plan.each_s);
+        match kind {
+            ExcitationKind::Multisine => sines(plan, end - begin, &mut random, &mut path),
+            ExcitationKind::Steps => steps(plan, end, &mut random, &mut path),
+            ExcitationKind::Triangles => triangles(plan, end, &mut path),
+            ExcitationKind::Holds => holds(plan, end, &mut random, &mut path),
+            ExcitationKind::Drop => falls_at = Some(raised(plan, end, &mut path)),
+        }
+        motions.push(ExcitedMotion {
+            kind,
+            begin_s: begin as f64 / plan.hz,
+            end_s: path.rows.len() as f64 / plan.hz,
+        });
+        if kind != ExcitationKind::Drop {
+            path.hold(&middle, samples(REST_S));
+        }
+    }
+    let count = path.rows.len();
+    Ok(Excitation {
+        time_s: (0..count).map(|k| k as f64 / plan.hz).collect(),
+        angle_rad: path.rows,
+        torque_on: (0..count)
+            .map(|k| falls_at.is_none_or(|at| k < at))
+            .collect(),
+        motions,
+        joints: plan.joints.clone(),
+    })
+}
+
+fn check(plan: &ExcitePlan) -> Result<(), ExciteError> {
+    if plan.joints.is_empty() {
+        return Err(ExciteError::NoServo);
+    }
+    plan.joints.iter().try_for_each(JointLimits::check)?;
+    let mut seen = Vec::new();
+    for &servo in plan.joints.iter().flat_map(|joint| &joint.servos) {
+        if seen.contains(&servo) {
+            return Err(ExciteError::ServoTwice(servo));
+        }
+        seen.push(servo);
+    }
+    let sorted = plan.kinds.windows(2).all(|pair| pair[0] < pair[1]);
+    if plan.kinds.is_empty() || !sorted {
+        return Err(ExciteError::Kinds);
+    }
+    if !(10.0..=1000.0).contains(&plan.hz) {
+        return Err(ExciteError::Rate(plan.hz));
+    }
+    let (low_hz, high_hz) = plan.band_hz;
+    if !(low_hz > 0.0 && low_hz < high_hz && 10.0 * high_hz <= plan.hz) {
+        let hz = plan.hz;
+        return Err(ExciteError::Band {
+            low_hz,
+            high_hz,
+            hz,
+        });
+    }
+    for &kind in &plan.kinds {
+        let (given_s, needed_s) = (plan.each_s, needed_s(plan, kind));
+        if !(given_s >= needed_s && given_s.is_finite()) {
+            let kind = kind.name();
+            return Err(ExciteError::Short {
+                kind,
+                given_s,
+                needed_s,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Seconds that a kind needs at least to say anything.
+fn needed_s(plan: &ExcitePlan, kind: ExcitationKind) -> f64 {
+    let joints = plan.joints.iter();
+    let across = joints.map(|joint| 2.0 * joint.half_rad() / joint.speed_rad_s);
+    let across_s = across.fold(0.0, f64::max);
+    match kind {
+        ExcitationKind::Multisine => 2.0 / plan.band_hz.0 + 2.0,
+        ExcitationKind::Steps => 4.0 * (across_s + LEVEL_S),
+        ExcitationKind::Triangles => 4.0 * across_s,
+        ExcitationKind::Holds => 2.0 * (across_s / GENTLE + HOLD_S),
+        ExcitationKind::Drop => across_s / GENTLE + REST_S + FALL_S,
+    }
+}
+
+fn sines(plan: &ExcitePlan, samples: usize, random: &mut ChaCha8Rng, path: &mut PosePath) {
+    let count = plan.joints.len();
+    let joints = plan.joints.iter().enumerate();
+    let each: Vec<Vec<f64>> = joints
+        .map(|(at, joint)| multisine(joint, (at, count), (samples, plan.hz), plan.band_hz, random))
+        .collect();
+    let row = |k: usize| each.iter().map(|values| values[k]).collect();
+    path.rows.extend((0..samples).map(row));
+}
+
+fn middle(plan: &ExcitePlan) -> Vec<f64> {
+    plan.joints.iter().map(JointLimits::middle_rad).collect()
+}
+
+/// A pose within the ranges.
+fn drawn(plan: &ExcitePlan, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let joints = plan.joints.iter();
+    joints
+        .map(|joint| random.random_range(joint.low_rad..=joint.high_rad))
+        .collect()
+}
+
+/// Poses one after the other, each held, as long as there is time to come back to the middle.
+fn visit(
+    plan: &ExcitePlan,
+    end: usize,
+    (share, hold_s): (f64, f64),
+    path: &mut PosePath,
+    mut next: impl FnMut() -> Vec<f64>,
+) {
+    let centre = middle(plan);
+    let between =
+        |from: &[f64], to: &[f64]| samples_between(&plan.joints, (from, to), share, plan.hz);
+    let hold = (hold_s * plan.hz).round() as usize;
+    loop {
+        let (from, to) = (path.last_or(&centre).to_vec(), next());
+        let there = between(&from, &to);
+        if path.rows.len() + there + hold + between(&to, &centre) > end {
+            path.go(&from, &centre, between(&from, &centre));
+            let left = end.saturating_sub(path.rows.len());
+            path.hold(&centre, left);
+            return;
+        }
+        path.go(&from, &to, there);
+        path.hold(&to, hold);
+    }
+}
+
+fn steps(plan: &ExcitePlan, end: usize, random: &mut ChaCha8Rng, path: &mut PosePath) {
+    visit(plan, end, (1.0, LEVEL_S), path, || drawn(plan, random));
+}
+
+fn holds(plan: &ExcitePlan, end: usize, random: &mut ChaCha8Rng, path: &mut PosePath) {
+    visit(plan, end, (GENTLE, HOLD_S), path, || drawn(plan, random));
+}
+
+/// As slow as the time allows up to 15 % of the speed limit; the second joint turns when the first
+/// is at its middle, so that not all turn at once.
+fn triangles(plan: &ExcitePlan, end: usize, path: &mut PosePath) {
+    let samples = end - path.rows.len();
+    let duration_s = samples as f64 / plan.hz;
+    let joints = plan.joints.iter();
+    // Once to and fro is four half ranges.
+    let slow = joints.map(|j| 4.0 * j.half_rad() / (SLOW * j.speed_rad_s));
+    let period_s = slow.fold(0.0, f64::max).clamp(1.0, duration_s);
+    let cycles = (duration_s / period_s).floor().max(1.0);
+    let row = |k: usize| {
+        let phase = cycles * k as f64 / samples as f64;
+        let joints = plan.joints.iter().enumerate();
+        joints
+            .map(|(at, joint)| {
+                let shifted = match at % 2 {
+                    0 => triangle(phase),
+                    // Begins and ends at its middle too, and turns at other times.
+                    _ => triangle(2.0 * phase),
+                };
+                joint.middle_rad() + joint.half_rad() * shifted
+            })
+            .collect()
+    };
+    path.rows.extend((1..=samples).map(row));
+}
+
+/// A triangle of period 1 and amplitude 1 that begins at 0.
+fn triangle(phase: f64) -> f64 {
+    let phase = (phase + 0.25).rem_euclid(1.0);
+    match phase < 0.5 {
+        true => 4.0 * phase - 1.0,
+        false => 3.0 - 4.0 * phase,
+    }
+}
+
+/// To the highest angles, and from then on let go: the sample at which torque goes off.
+fn raised(plan: &ExcitePlan, end: usize, path: &mut PosePath) -> usize {
+    let centre = middle(plan);
+    let high: Vec<f64> = plan.joints.iter().map(|joint| joint.high_rad).collect();
+    let from = path.last_or(&centre).to_vec();
+    let samples = samples_between(&plan.joints, (&from, &high), GENTLE, plan.hz);
+    path.go(&from, &high, samples);
+    path.hold(&high, (REST_S * plan.hz).round() as usize);
+    let falls_at = path.rows.len();
+    path.hold(&high, end.saturating_sub(falls_at));
+    falls_at
+}
+
+impl Excitation {
+    /// Whole duration, s.
+    pub fn seconds(&self) -> f64 {
+        self.time_s.last().copied().unwrap_or(0.0)
+    }
+
+    /// Whether torque goes off somewhere.
+    pub fn drops(&self) -> bool {
+        self.torque_on.contains(&false)
+    }
+
+    /// How far and fast each joint is asked to move.
+    pub fn extents(&self) -> Vec<JointExtent> {
+        let extent = |(at, joint): (usize, &JointLimits)| {
+            let angles = || self.angle_rad.iter().map(|row| row[at]);
+            let times = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+            let moves = angles().zip(angles().skip(1)).zip(times);
+            JointExtent {
+                servos: joint.servos.clone(),
+                lowest_rad: angles().fold(f64::INFINITY, f64::min),
+                highest_rad: angles().fold(f64::NEG_INFINITY, f64::max),
+                fastest_rad_s: moves
+                    .map(|((a, b), step_s)| (b - a).abs() / step_s)
+                    .fold(0.0, f64::max),
+            }
+        };
+        self.joints.iter().enumerate().map(extent).collect()
+    }
+
+    /// As `handstand replay` plays it: `time_s`, `goal1_rad` for each servo, `torque_on` where torque
+    /// goes off.
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("time_s");
+        // Writing to a string does not fail.
+        for servo in self.joints.iter().flat_map(|joint| &joint.servos) {
+            let _ = write!(text, ",goal{servo}_rad");
+        }
+        text += if self.drops() { ",torque_on\n" } else { "\n" };
+        for (k, row) in self.angle_rad.iter().enumerate() {
+            let _ = write!(text, "{:.4}", self.time_s[k]);
+            for (joint, angle) in self.joints.iter().zip(row) {
+                for place in 0..joint.servos.len() {
+                    let sign = if place == 0 { 1.0 } else { -1.0 };
+                    let _ = write!(text, ",{:.5}", sign * angle + 0.0);
+                }
+            }
+            if self.drops() {
+                let _ = write!(text, ",{}", u8::from(self.torque_on[k]));
+            }
+            text.push('\n');
+        }
+        text
+    }
+}

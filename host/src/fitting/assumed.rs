@@ -1,0 +1,217 @@
+//! States of joints whose angle no column holds, guessed so that a fit can begin near them.
+//!
+//! A rate is integrated from the angle at which the model explains the log best; a joint of which
+//! nothing is measured moves as the model does that begins hanging at rest. Each window's start
+//! state is then fitted within wide limits around the guess.
+
+use super::data::Window;
+use super::node::Node;
+use super::residual::{weighted, worst};
+use crate::log::Motion;
+use crate::model::{MeasuredSignal, Model, hanging};
+use crate::sim::{Plant, SensorState, predict};
+use std::f64::consts::TAU;
+
+/// Angles tried in a turn for the one at which a rate begins.
+const TRIED: usize = 16;
+/// Windows in which they are tried, s: short enough that a wrong one does not run away.
+const WINDOW_S: f64 = 0.4;
+/// Standard deviation of a guessed angle, rad, and of a guessed speed, rad/s.
+const ANGLE_DEVIATION_RAD: f64 = 0.3;
+const SPEED_DEVIATION_RAD_S: f64 = 2.0;
+
+/// One joint's guess along a motion, in the log's convention.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AssumedJoint {
+    /// Per sample, rad.
+    pub angle_rad: Vec<f64>,
+    /// Per sample, rad/s; a measured rate where there is one, its gaps filled.
+    pub speed_rad_s: Vec<f64>,
+    /// Standard deviation of the angle, rad.
+    pub angle_deviation_rad: f64,
+    /// Standard deviation of the speed, rad/s; none where it is measured.
+    pub speed_deviation_rad_s: Option<f64>,
+}
+
+/// Per joint; none where its angle is measured.
+pub(super) type AssumedStates = Vec<Option<AssumedJoint>>;
+
+/// Guesses for one motion. `signals` and `sigma` as in [`super::FitData`].
+pub(super) fn assumed(
+    model: &Model,
+    signals: &[MeasuredSignal],
+    sigma: &[f64],
+    motion: &Motion,
+) -> AssumedStates {
+    let rest = hanging(model);
+    let joint = |(joint, signal): (usize, &MeasuredSignal)| match signal {
+        MeasuredSignal::Angle => None,
+        MeasuredSignal::Rate => Some(integrated(motion, joint, rest[joint])),
+        MeasuredSignal::Nothing => Some(AssumedJoint {
+            angle_rad: vec![rest[joint]; motion.len()],
+            speed_rad_s: vec![0.0; motion.len()],
+            angle_deviation_rad: ANGLE_DEVIATION_RAD,
+            speed_deviation_rad_s: Some(SPEED_DEVIATION_RAD_S),
+        }),
+    };
+    let mut states: AssumedStates = signals.iter().enumerate().map(joint).collect();
+    if signals.contains(&MeasuredSignal::Nothing) {
+        let whole = Window {
+            motion: 0,
+            samples: 0..motion.len(),
+        };
+        run_free(model, sigma, motion, &whole, &mut states);
+    }
+    for joint in (0..signals.len()).filter(|j| signals[*j] == MeasuredSignal::Rate) {
+        let cost = |turn: usize| {
+            let moved = turned(&states, joint, turn as f64 / TRIED as f64 * TAU);
+            (cost(model, signals, sigma, motion, &moved), turn)
+        };
+        let best = (0..TRIED).map(cost).min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, turn)) = best {
+            states = turned(&states, joint, turn as f64 / TRIED as f64 * TAU);
+        }
+    }
+    states
+}
+
+/// A rate integrated from `begin_rad`, between samples by the trapezoid rule.
+fn integrated(motion: &Motion, joint: usize, begin_rad: f64) -> AssumedJoint {
+    let speed_rad_s = match &motion.velocity_rad_s[joint] {
+        Some(rate) => joined(&motion.time_s, rate),
+        None => vec![0.0; motion.len()],
+    };
+    let mut angle = begin_rad;
+    let angle_rad = (0..motion.len()).map(|k| {
+        if k > 0 {
+            let step_s = motion.time_s[k] - motion.time_s[k - 1];
+            angle += 0.5 * (speed_rad_s[k] + speed_rad_s[k - 1]) * step_s;
+        }
+        angle
+    });
+    AssumedJoint {
+        angle_rad: angle_rad.collect(),
+        speed_rad_s,
+        angle_deviation_rad: ANGLE_DEVIATION_RAD,
+        speed_deviation_rad_s: None,
+    }
+}
+
+/// The series with its gaps joined by lines; at the ends by the nearest value.
+fn joined(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let known: Vec<usize> = (0..values.len())
+        .filter(|k| values[*k].is_finite())
+        .collect();
+    let between = |k: usize| {
+        let next = known.partition_point(|at| *at < k);
+        match (next.checked_sub(1).map(|i| known[i]), known.get(next)) {
+            (_, Some(&b)) if b == k => values[k],
+            (Some(a), Some(&b)) => {
+                let share = (time_s[k] - time_s[a]) / (time_s[b] - time_s[a]);
+                values[a] + share * (values[b] - values[a])
+            }
+            (Some(a), None) => values[a],
+            (None, Some(&b)) => values[b],
+            (None, None) => 0.0,
+        }
+    };
+    (0..values.len()).map(between).collect()
+}
+
+/// The states with one joint turned on by an angle.
+fn turned(states: &AssumedStates, joint: usize, by_rad: f64) -> AssumedStates {
+    let mut states = states.clone();
+    if let Some(own) = &mut states[joint] {
+        own.angle_rad.iter_mut().for_each(|angle| *angle += by_rad);
+    }
+    states
+}
+
+/// Squared weighted errors of the model in short windows that begin at these states.
+fn cost(
+    model: &Model,
+    signals: &[MeasuredSignal],
+    sigma: &[f64],
+    motion: &Motion,
+    states: &AssumedStates,
+) -> f64 {
+    let plant = Plant::new(model, motion);
+    let pieces = (motion.duration_s() / WINDOW_S).round().max(1.0) as usize;
+    let pieces = pieces.min((motion.len() / 5).max(1));
+    let edge = |piece: usize| piece * motion.len() / pieces;
+    let mut sum = 0.0;
+    for piece in 0..pieces {
+        let window = Window {
+            motion: 0,
+            samples: edge(piece)..edge(piece + 1),
+        };
+        let samples = window.samples.clone();
+        let mut values = vec![0.0; samples.len() * plant.len()];
+        let start = Node::guess(motion, sigma, states, &window).start(&plant);
+        let mut memory = SensorState::default();
+        predict(
+            &plant,
+            motion,
+            samples.clone(),
+            &start,
+            &mut memory,
+            &mut values,
+        );
+        for (joint, part) in values.chunks(samples.len()).enumerate() {
+            let measured = &motion.measured(joint, signals[joint])[samples.clone()];
+            for (value, measured) in part.iter().zip(measured) {
+                // A few windows that run away decide nothing.
+                let most = 0.1 * worst(signals[joint], sigma[joint]);
+                sum += weighted(*measured, *value, sigma[joint], most).powi(2);
+            }
+        }
+    }
+    sum
+}
+
+/// Puts the motion of the model itself, which begins at rest, in place of what was not measured.
+fn run_free(
+    model: &Model,
+    sigma: &[f64],
+    motion: &Motion,
+    whole: &Window,
+    states: &mut AssumedStates,
+) {
+    let plant = Plant::new(model, motion);
+    let mut start = Node::guess(motion, sigma, states, whole).start(&plant);
+    let mut memory = SensorState::default();
+    let mut readings = vec![0.0; plant.len()];
+    for k in 0..motion.len() {
+        for (joint, state) in states.iter_mut().enumerate() {
+            let unknown = state.as_mut().filter(|s| s.speed_deviation_rad_s.is_some());
+            if let Some(state) = unknown {
+                let (angle, speed) = plant.reading(joint, &start);
+                if !(angle.is_finite() && speed.is_finite()) {
+                    return;
+                }
+                (state.angle_rad[k], state.speed_rad_s[k]) = (angle, speed);
+            }
+        }
+        if k + 1 < motion.len() {
+            let stretch = k..k + 2;
+            readings.resize(2 * plant.len(), 0.0);
+            start = predict(&plant, motion, stretch, &start, &mut memory, &mut readings);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::joined;
+
+    #[test]
+    fn gaps_are_joined_by_lines() {
+        let nan = f64::NAN;
+        let time = [0.0, 1.0, 2.0, 4.0, 5.0];
+        assert_eq!(
+            joined(&time, &[nan, 1.0, nan, 4.0, nan]),
+            [1.0, 1.0, 2.0, 4.0, 4.0]
+        );
+        assert_eq!(joined(&time[..2], &[nan, nan]), [0.0, 0.0]);
+    }
+}

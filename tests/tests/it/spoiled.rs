@@ -1,0 +1,62 @@
+//! A sample of `cargo xtask spoiled`: the right remedy on spoiled logs, silence on good ones.
+
+use handstand::challenge::Motions;
+use handstand::conventions::Quantity;
+use handstand_tests::spoiled::{Answer, Spoiling, bundled, judge, simulated, unspoiled};
+
+#[test]
+fn spoiled_logs_of_a_driven_arm_get_the_right_remedy() {
+    let rig = simulated(Motions::Arm, "coulomb", 1).unwrap();
+    for spoiling in [
+        Spoiling::PositionSign(0),
+        Spoiling::InputSign(0),
+        Spoiling::Zero(0),
+        Spoiling::AngleZero,
+        Spoiling::Degrees(0),
+        Spoiling::CountsPerTurn(0),
+        Spoiling::Milliseconds,
+        Spoiling::Shift(Quantity::Input(0), -0.1),
+        Spoiling::Stalled,
+    ] {
+        let outcome = judge(&rig, spoiling);
+        assert_eq!(outcome.answer, Answer::Right, "{outcome:#?}");
+    }
+}
+
+#[test]
+fn spoiled_joints_of_a_chain_are_told_apart() {
+    let rig = simulated(Motions::Hanging, "viscous", 2).unwrap();
+    for spoiling in [
+        Spoiling::PositionSign(1),
+        Spoiling::Angles,
+        Spoiling::Radians(2),
+    ] {
+        let outcome = judge(&rig, spoiling);
+        assert_eq!(outcome.answer, Answer::Right, "{outcome:#?}");
+    }
+}
+
+#[test]
+fn logs_as_they_are_raise_no_alarm() {
+    let arms = [
+        "delay",
+        "base_tilt",
+        "encoder_zero",
+        "torque_scale",
+        "backlash",
+    ];
+    let rigs = arms
+        .into_iter()
+        .zip(1..)
+        .filter_map(|(kind, seed)| simulated(Motions::Arm, kind, seed));
+    for rig in rigs.chain([bundled().unwrap()]) {
+        let outcome = unspoiled(&rig);
+        assert_eq!(outcome.answer, Answer::Right, "{outcome:#?}");
+    }
+}
+
+#[test]
+fn a_free_pendulum_mirrored_cannot_be_told_and_is_not_accused() {
+    let outcome = judge(&bundled().unwrap(), Spoiling::PositionSign(0));
+    assert_eq!(outcome.answer, Answer::Unseen, "{outcome:#?}");
+}
