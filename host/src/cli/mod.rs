@@ -17,6 +17,7 @@ mod demo;
 mod deploy;
 mod diagnose;
 mod doctor;
+mod drift;
 mod effects;
 mod excite;
 mod fit;
@@ -99,6 +100,8 @@ pub enum Command {
     Log(log::LogCommand),
     /// Fit a model's free parameters to logs
     Fit(fit::FitArgs),
+    /// Test whether a model's values differ between sessions or servos
+    Drift(drift::DriftArgs),
     /// Add an effect to a model, its parameters fitted to logs
     Add(add::AddArgs),
     /// Synthesise LQR gains that balance a model, and export them for firmware
@@ -168,6 +171,7 @@ impl Command {
             Command::Effects(args) => effects::run(args, talk),
             Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
+            Command::Drift(args) => drift::run(args, talk),
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),

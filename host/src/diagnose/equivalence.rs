@@ -7,11 +7,10 @@
 //! the explanation predicts the motions, the other is fitted to that prediction, and what it leaves
 //! is weighed against the noise.
 
-use super::budget::EVALUATE;
+use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::ProjectedResidual;
 use super::replacement::{Other, Part};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
@@ -48,9 +47,7 @@ impl Evaluator<'_> {
             // The derivatives where the part is missing and all else is as it was.
             let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
             let rest = fit(&model, &free, &self.search, nodes, options);
-            let made = rest.residuals.less(&chosen.search.residuals);
-            let target = ProjectedResidual::of(&rest, &made);
-            let mut others = self.others(chosen, part, &rest, &target);
+            let mut others = self.others(chosen, part, &rest);
             others.truncate(SIMULATED);
             let same = others.into_par_iter().filter(|other| predicted.fits(other));
             same.map(|other| self.evaluated_other(other, tried))
@@ -147,7 +144,8 @@ impl Predicted {
     /// Whether another explanation, fitted to these predictions, leaves less than the noise can
     /// show.
     fn fits(&self, other: &Other) -> bool {
-        let options = FitOptions::iterations(EVALUATE).rough();
+        // A first small step must not end it: what is left decides.
+        let options = FitOptions::iterations(FINISH);
         let nodes = Some(&self.nodes[..]);
         let found = fit(&other.model, &other.free, &self.data, nodes, options);
         is_below_noise(found.residuals.cost(), self.effective_share)

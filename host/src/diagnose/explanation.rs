@@ -113,7 +113,16 @@ impl<'a> Evidence<'a> {
     /// Whether rivals leave the verdict open. The values that the file frees are what its owner
     /// does not know: where they explain all, an effect that would too is only mentioned.
     fn is_open(&self, rivals: &[&Hypothesis]) -> bool {
-        !rivals.is_empty() && !matches!(self.explanation, Explanation::Refit(_))
+        let free = &self.evaluator.base.search.free;
+        let is_freed = match self.explanation {
+            Explanation::Refit(_) => true,
+            Explanation::Value(value) => value.values.iter().all(|path| free.contains(path)),
+            _ => false,
+        };
+        match is_freed {
+            true => !self.as_good().is_empty(),
+            false => !rivals.is_empty(),
+        }
     }
 
     /// Explanations that are significantly no worse.

@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{PredictionChange, ProjectedResidual};
 use super::values::{kinds_of_values, values_of};
-use crate::fitting::{Candidate, Fit, residuals};
+use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -13,6 +13,8 @@ use rayon::prelude::*;
 const LEAST_SHARE: f64 = 0.8;
 /// A value's change for its derivative, as a share of it.
 const MOVED: f64 = 1e-3;
+/// Share of a part that is taken out for its derivative.
+const LITTLE: f64 = 0.01;
 
 /// A part of an explanation that may be replaced.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,15 +47,15 @@ impl Part {
 }
 
 impl Evaluator<'_> {
-    /// What may stand in for a part, the best first; `rest` is the explanation without it, `target`
-    /// what it changes. Nothing that brings more values, unless all of them are of one kind.
-    pub fn others(
-        &self,
-        chosen: &Hypothesis,
-        part: &Part,
-        rest: &Fit,
-        target: &ProjectedResidual,
-    ) -> Vec<Other> {
+    /// What may stand in for a part, the best first; `rest` is the explanation without it, with its
+    /// derivatives. Nothing that brings more values, unless all of them are of one kind.
+    pub fn others(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Vec<Other> {
+        let made = rest.residuals.less(&chosen.search.residuals);
+        let target = ProjectedResidual::of(rest, &made);
+        let local = self.little_of(chosen, part, rest);
+        let little = ProjectedResidual::of(&local.fit, &local.made);
+        // So many times a little of the part is all of it.
+        let all = (target.size() / little.size()).sqrt();
         let mut set = chosen.set.clone();
         set.retain(|effect| Part::Effect(*effect) != *part);
         let fits = |change: &&Vec<PredictionChange>| {
@@ -91,7 +93,13 @@ impl Evaluator<'_> {
             !paths.iter().any(is_free) && Part::Values(paths.clone()) != *part
         });
         let by_values = values.into_par_iter().filter_map(|paths| {
-            let (model, share) = self.moved_values(&paths, rest, target)?;
+            let (moves, share) = self.moves(&paths, &local.fit, &little)?;
+            let mut model = rest.model.clone();
+            for (path, step) in paths.iter().zip(moves) {
+                let (low, high) = path.bounds(&model);
+                let to = path.get(&model)? + all * step;
+                path.set(&mut model, to.clamp(low, high)).then_some(())?;
+            }
             let added = set
                 .iter()
                 .map(|effect| effect.parameters().len())
@@ -112,32 +120,75 @@ impl Evaluator<'_> {
         others
     }
 
-    /// The rest with these values moved so that they make most of the target, and the share they
-    /// make.
-    fn moved_values(
+    /// A small share of a part taken out where the explanation stands: there the derivatives of what
+    /// is equal to the logs agree, however far the part has gone.
+    fn little_of(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Little {
+        let (model, nodes) = (&chosen.search.model, Some(&chosen.search.nodes[..]));
+        let fit = fit(
+            model,
+            &rest.free,
+            &self.search,
+            nodes,
+            FitOptions::iterations(0),
+        );
+        let mut model = fit.model.clone();
+        match part {
+            Part::Effect(effect) => {
+                for instance in model.effects.iter_mut().filter(|e| effect.is(e)) {
+                    let values = instance.values.iter_mut().zip(effect.parameters());
+                    for (value, parameter) in values {
+                        match parameter.off {
+                            Some(off) if off.is_finite() => *value += LITTLE * (off - *value),
+                            Some(_) => *value *= 1.0 + LITTLE,
+                            None => {}
+                        }
+                    }
+                }
+            }
+            Part::Values(paths) => {
+                for path in paths {
+                    let (from, to) = (path.get(&model), path.get(&self.start));
+                    let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(0.0));
+                    let known = path.set(&mut model, from + LITTLE * (to - from));
+                    debug_assert!(known, "a wrong value is one of the model's");
+                }
+            }
+        }
+        let made = residuals(&model, &self.search, &fit.nodes).less(&fit.residuals);
+        Little { fit, made }
+    }
+
+    /// How far to move each value so that together they make most of the target, and the share
+    /// they make.
+    fn moves(
         &self,
         paths: &[ParameterPath],
-        rest: &Fit,
+        at: &Fit,
         target: &ProjectedResidual,
-    ) -> Option<(Model, f64)> {
-        let steps: Option<Vec<f64>> = paths
+    ) -> Option<(Vec<f64>, f64)> {
+        let steps = paths
             .iter()
-            .map(|path| Some(MOVED * path.get(&rest.model)?.abs().max(MOVED)))
-            .collect();
-        let steps = steps?;
+            .map(|path| Some(MOVED * path.get(&at.model)?.abs().max(MOVED)));
+        let steps = steps.collect::<Option<Vec<f64>>>()?;
         let columns = paths.iter().zip(&steps).map(|(path, step)| {
-            let mut model = rest.model.clone();
-            let known = path.set(&mut model, path.get(&rest.model)? + step);
-            let moved = residuals(&model, &self.search, &rest.nodes);
-            known.then(|| rest.residuals.less(&moved))
+            let mut model = at.model.clone();
+            let known = path.set(&mut model, path.get(&at.model)? + step);
+            let moved = residuals(&model, &self.search, &at.nodes);
+            known.then(|| at.residuals.less(&moved))
         });
         let (weights, share) = target.span(&columns.collect::<Option<Vec<_>>>()?)?;
-        let mut model = rest.model.clone();
-        for ((path, step), weight) in paths.iter().zip(&steps).zip(weights) {
-            let (low, high) = path.bounds(&model);
-            let to = path.get(&model)? + weight * step;
-            path.set(&mut model, to.clamp(low, high)).then_some(())?;
-        }
-        Some((model, share))
+        let moves = weights
+            .iter()
+            .zip(&steps)
+            .map(|(weight, step)| weight * step);
+        Some((moves.collect(), share))
     }
+}
+
+/// A small share of a part taken out of an explanation.
+struct Little {
+    /// The explanation where it stands, with the derivatives of the rest.
+    fit: Fit,
+    /// What the share changes in the prediction.
+    made: Vec<Vec<f64>>,
 }

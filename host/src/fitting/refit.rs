@@ -198,7 +198,7 @@ fn finish(
 }
 
 /// The free parameters whose change leaves every prediction as it was.
-fn blind(found: &Fit, data: &FitData) -> Vec<String> {
+pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<String> {
     let base = residuals(&found.model, data, &found.nodes);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);

@@ -99,7 +99,13 @@ fn log(truth: &Model, seed: f64) -> String {
 
 /// The arm diagnosed from logs of the arm with something hidden.
 fn diagnosed(hidden: &str, options: &DiagnoseOptions) -> Diagnosis {
-    let (model, truth) = (model(ARM), model(&format!("{ARM}\n{hidden}")));
+    believed("", hidden, options)
+}
+
+/// The same of an arm that its owner believes to have an effect too.
+fn believed(given: &str, hidden: &str, options: &DiagnoseOptions) -> Diagnosis {
+    let with = |effect: &str| model(&format!("{ARM}\n{effect}"));
+    let (model, truth) = (with(given), with(hidden));
     let dir = tempfile::tempdir().unwrap();
     let motions = |seeds: &[f64]| -> Vec<Motion> {
         let files = seeds.iter().map(|seed| {
@@ -183,6 +189,37 @@ fn weaker_drives_and_heavier_links_are_not_told_apart() {
     }
     assert!(
         found.summary[1].contains("weigh link 1"),
+        "{:?}",
+        found.summary
+    );
+}
+
+#[test]
+fn a_value_that_the_file_frees_goes_before_an_effect_that_does_as_well() {
+    let friction = |coefficient: f64| {
+        format!("[[effect]]\nkind = \"viscous\"\njoint = 1\ncoefficient_nm_s_rad = {coefficient}\n")
+    };
+    let options = DiagnoseOptions {
+        most_effects: 1,
+        ..DiagnoseOptions::default()
+    };
+    let found = believed(&friction(0.01), &friction(0.03), &options);
+    assert_eq!(found.verdict, Verdict::WrongValue, "{:?}", found.summary);
+    assert_eq!(
+        found.wrong_values[0].fitted.path,
+        "viscous@1.coefficient_nm_s_rad"
+    );
+    let others: Vec<Vec<String>> = found
+        .alternatives
+        .iter()
+        .map(|other| addresses(&other.effects))
+        .collect();
+    assert!(
+        others.contains(&vec!["speed_limit@1".to_string()]),
+        "{others:?}"
+    );
+    assert!(
+        found.summary[1].starts_with("These logs cannot tell this from"),
         "{:?}",
         found.summary
     );

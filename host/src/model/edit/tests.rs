@@ -166,8 +166,8 @@ fn the_origin_of_old_values_is_renewed_in_its_place() {
 fn an_effect_of_all_driven_joints_is_written_as_such() {
     let mut added = effect("delay", 0, 0.02);
     added.joint = None;
-    let model = MODEL.replace("kind = \"delay\"", "kind = \"torque_scale\"");
-    let model = model.replace("delay_s = ", "factor = ");
+    let model = MODEL.replace("kind = \"delay\"", "kind = \"sensor_lag\"");
+    let model = model.replace("delay_s = ", "time_constant_s = ");
     let text = add_effect(&model, path(), &added, None).unwrap();
     assert!(
         text.contains("kind = \"delay\"\njoint = \"all\"\ndelay_s = 0.02\n"),

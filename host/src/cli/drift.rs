@@ -1,0 +1,103 @@
+//! `handstand drift MODEL LOG... [--free PATH]...`: do a model's values differ from log to log?
+//!
+//! Each log is one session, or one servo on the same bench. The values that the model frees, or
+//! those that `--free` names, are fitted to each log by itself; a test of homogeneity says which
+//! differ by more than chance, and which log stands out. Values of one effect at several joints are
+//! compared with each other too: which servo is worn?
+//!
+//! ```console
+//! $ handstand drift arm.toml monday.csv friday.csv --free coulomb@1.torque_nm
+//! ```
+//!
+//! Exit code 1 when fewer than two logs determine the values. `--json` prints `sessions` and `joints`
+//! (`path`, `unit`, `values`: `of`, `path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`,
+//! `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
+
+use super::{ExitStatus, Talk, input, show};
+use handstand::fitting::{Drift, DriftReport, OneValue, Session, drift, free_parameters};
+use handstand::log::{LogRequest, read};
+use handstand::output::number::exact;
+use handstand::output::table::TableColumn;
+use handstand::{Model, Result};
+use std::path::PathBuf;
+
+/// Test whether a model's values differ between sessions or servos.
+#[derive(Debug, clap::Args)]
+pub struct DriftArgs {
+    /// Model file
+    model: PathBuf,
+    /// Logs, each a session or a servo
+    #[arg(required = true, num_args = 2.., value_name = "LOG", value_parser = input::log)]
+    logs: Vec<LogRequest>,
+    /// Value to compare instead of those the model frees: `link1.com_m`, `coulomb@1.torque_nm`
+    #[arg(long, value_name = "PATH")]
+    free: Vec<String>,
+    #[command(flatten)]
+    run: input::RunLength,
+}
+
+/// Fits each log, compares, prints.
+pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
+    let model = Model::load(&args.model)?;
+    let free = free_parameters(&model, &args.free)?;
+    let sessions = args.logs.iter().map(|log| {
+        Ok(Session {
+            name: log.to_string(),
+            motions: read(std::slice::from_ref(log), &model.log)?,
+        })
+    });
+    let sessions: Vec<Session> = sessions.collect::<Result<_>>()?;
+    let found = drift(&model, &free, &sessions, args.run.horizon);
+    talk.result(&serde_json::to_value(&found).unwrap_or_default(), || {
+        said(&found)
+    })?;
+    Ok(ExitStatus::answer(sessions.len() - found.refused.len() > 1))
+}
+
+fn said(found: &DriftReport) -> String {
+    let mut parts: Vec<String> = found
+        .sessions
+        .iter()
+        .map(|drift| of(drift, "Log"))
+        .collect();
+    parts.extend(found.joints.iter().map(|drift| of(drift, "Joint")));
+    let refused = found.refused.iter();
+    parts.extend(refused.map(|(name, why)| format!("refused: {name}: {why}")));
+    parts.join("\n\n")
+}
+
+/// A value's table, and what its test says.
+fn of(drift: &Drift, heading: &str) -> String {
+    let note = |out: bool| if out { "stands out" } else { "" };
+    let columns: &[TableColumn<OneValue>] = &[
+        (heading, &|value| value.of.clone()),
+        (&drift.path, &|value| exact(value.fitted.value)),
+        ("95 % interval", &|value| {
+            format!(
+                "{} to {}",
+                exact(value.fitted.low),
+                exact(value.fitted.high)
+            )
+        }),
+        ("Unit", &|value| value.fitted.unit.clone()),
+        ("", &|value| note(value.stands_out).to_string()),
+    ];
+    let table = show::table_of(&drift.values, columns);
+    let verdict = match (drift.differ, drift.probability) {
+        (true, Some(p)) => format!(
+            "They differ: chance alone scatters as much in {}.",
+            cases(p)
+        ),
+        (false, Some(p)) => format!("They agree: chance scatters as much in {}.", cases(p)),
+        (_, None) => "There is nothing to compare it with.".to_string(),
+    };
+    format!("{table}\n{verdict}")
+}
+
+/// "3.4 % of cases".
+fn cases(probability: f64) -> String {
+    match probability < 1e-6 {
+        true => "less than one of a million cases".to_string(),
+        false => format!("{} % of cases", exact(100.0 * probability)),
+    }
+}

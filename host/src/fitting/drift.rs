@@ -1,0 +1,324 @@
+//! Whether values differ from session to session, or from servo to servo: each log fitted by itself,
+//! then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
+
+use super::data::{FitData, Horizon};
+use super::fitted_value::{FittedValue, fitted_values};
+use super::refit::{Undetermined, blind};
+use super::staged::fit_staged;
+use crate::log::Motion;
+use crate::model::{Model, ParameterPath};
+use rayon::prelude::*;
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+
+/// Chance of a false alarm among all values.
+const LEVEL: f64 = 0.05;
+/// Half the width of a 95 % interval, in standard errors.
+const HALF_WIDTH: f64 = 1.96;
+
+/// A log and its motions: a session, or a servo on the bench.
+#[derive(Debug, Clone)]
+pub struct Session {
+    /// Its name.
+    pub name: String,
+    /// Its motions.
+    pub motions: Vec<Motion>,
+}
+
+/// A value as one session or one servo has it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OneValue {
+    /// The session's name, or the joint's (`joint2`).
+    pub of: String,
+    /// Its value with the 95 % interval.
+    #[serde(flatten)]
+    pub fitted: FittedValue,
+    /// Whether it differs from the mean of all others by more than chance.
+    pub stands_out: bool,
+}
+
+/// A value of several sessions or servos.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Drift {
+    /// The value's address; between servos the effect and key alone: `coulomb.torque_nm`.
+    pub path: String,
+    /// Unit for people.
+    pub unit: String,
+    /// Each session's or servo's.
+    pub values: Vec<OneValue>,
+    /// Their mean, weighted by their certainty.
+    pub mean: f64,
+    /// Probability that values which are all the same scatter as much; absent of a single one.
+    pub probability: Option<f64>,
+    /// Whether they differ: the probability is below 5 % over the number of values tested (Holm
+    /// 1979).
+    pub differ: bool,
+}
+
+/// What became of the sessions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DriftReport {
+    /// Per value: how it differs between sessions.
+    pub sessions: Vec<Drift>,
+    /// Per effect that several joints have: how its values differ between them, all sessions
+    /// together.
+    pub joints: Vec<Drift>,
+    /// Sessions that do not determine the values, and why.
+    pub refused: Vec<(String, String)>,
+}
+
+/// Fits `free` to each session by itself, and compares.
+pub fn drift(
+    model: &Model,
+    free: &[ParameterPath],
+    sessions: &[Session],
+    horizon: Option<Horizon>,
+) -> DriftReport {
+    let horizon = horizon.unwrap_or(Horizon::Whole);
+    let fitted = sessions.par_iter().map(|session| {
+        let data = FitData::new(model, session.motions.clone(), horizon);
+        let found = fit_staged(model, free, &data);
+        match fitted_values(&found, &data) {
+            (values, Some(_)) => Ok(values),
+            _ => Err(Undetermined {
+                blind: blind(&found, &data),
+            }),
+        }
+    });
+    let fitted: Vec<Result<Vec<FittedValue>, Undetermined>> = fitted.collect();
+    let (mut refused, mut known) = (Vec::new(), Vec::new());
+    for (session, values) in sessions.iter().zip(fitted) {
+        match values {
+            Ok(values) => known.push((session.name.clone(), values)),
+            Err(why) => refused.push((session.name.clone(), why.to_string())),
+        }
+    }
+    let between_sessions = (0..free.len()).map(|index| {
+        let of = known.iter().map(|(name, values)| one(name, &values[index]));
+        (free[index].to_string(), of.collect())
+    });
+    let sessions = tested(between_sessions.collect());
+    DriftReport {
+        joints: tested(between_joints(free, &sessions)),
+        sessions,
+        refused,
+    }
+}
+
+fn one(of: &str, fitted: &FittedValue) -> OneValue {
+    OneValue {
+        of: of.to_string(),
+        fitted: fitted.clone(),
+        stands_out: false,
+    }
+}
+
+/// Per effect and key that several joints have: the mean of each joint.
+fn between_joints(free: &[ParameterPath], sessions: &[Drift]) -> Vec<(String, Vec<OneValue>)> {
+    let mut groups: Vec<(String, Vec<OneValue>)> = Vec::new();
+    for (path, drift) in free.iter().zip(sessions) {
+        let ParameterPath::Effect {
+            id,
+            joint: Some(joint),
+            ..
+        } = path
+        else {
+            continue;
+        };
+        let (Some(mean), Some(first)) = (weighted(&drift.values), drift.values.first()) else {
+            continue;
+        };
+        let reach = HALF_WIDTH * mean.error;
+        let fitted = FittedValue {
+            value: mean.value,
+            low: mean.value - reach,
+            high: mean.value + reach,
+            on_bound: drift.values.iter().all(|value| value.fitted.on_bound),
+            ..first.fitted.clone()
+        };
+        let name = format!("{id}.{}", path.key());
+        let value = one(&format!("joint{}", joint + 1), &fitted);
+        match groups.iter_mut().find(|(group, _)| *group == name) {
+            Some((_, values)) => values.push(value),
+            None => groups.push((name, vec![value])),
+        }
+    }
+    groups.retain(|(_, values)| values.len() > 1);
+    groups
+}
+
+/// A mean and its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Mean {
+    value: f64,
+    error: f64,
+}
+
+/// Standard error of a value by the longer side of its interval.
+fn error(fitted: &FittedValue) -> f64 {
+    (fitted.value - fitted.low).max(fitted.high - fitted.value) / HALF_WIDTH
+}
+
+/// Mean weighted by inverse variance; none of no values.
+fn weighted<'a>(values: impl IntoIterator<Item = &'a OneValue>) -> Option<Mean> {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for value in values {
+        let weight = error(&value.fitted).max(1e-300).powi(-2);
+        sum += weight * value.fitted.value;
+        weights += weight;
+    }
+    (weights > 0.0).then(|| Mean {
+        value: sum / weights,
+        error: weights.powf(-0.5),
+    })
+}
+
+/// The groups with their tests; the level is shared out among all of them.
+fn tested(groups: Vec<(String, Vec<OneValue>)>) -> Vec<Drift> {
+    let count = groups.len();
+    let mut drifts: Vec<Drift> = groups
+        .into_iter()
+        .map(|group| homogeneity(group, count))
+        .collect();
+    let mut order: Vec<usize> = (0..count).collect();
+    let probability = |drift: &Drift| drift.probability.unwrap_or(1.0);
+    order.sort_by(|a, b| probability(&drifts[*a]).total_cmp(&probability(&drifts[*b])));
+    for (rank, index) in order.into_iter().enumerate() {
+        // Once one is left to chance, so are all less certain ones.
+        if probability(&drifts[index]) >= LEVEL / (count - rank) as f64 {
+            break;
+        }
+        drifts[index].differ = true;
+    }
+    drifts
+}
+
+/// Cochran's Q of one group, and which of its values stand out from the mean of the others.
+fn homogeneity((path, mut values): (String, Vec<OneValue>), groups: usize) -> Drift {
+    let mean = weighted(&values);
+    let probability = mean.filter(|_| values.len() > 1).and_then(|mean| {
+        let squares = values.iter().map(|value| {
+            ((value.fitted.value - mean.value) / error(&value.fitted).max(1e-300)).powi(2)
+        });
+        let q: f64 = squares.sum();
+        let freedom = (values.len() - 1) as f64;
+        Some(ChiSquared::new(freedom).ok()?.sf(q))
+    });
+    let level = LEVEL / (groups * values.len()).max(1) as f64;
+    let most = Normal::standard().inverse_cdf(1.0 - level / 2.0);
+    let stands_out = |index: usize| {
+        let others = values
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index);
+        let others = weighted(others.map(|(_, value)| value));
+        let own = &values[index].fitted;
+        others.is_some_and(|others| {
+            (own.value - others.value).abs() > most * error(own).hypot(others.error)
+        })
+    };
+    let out: Vec<bool> = (0..values.len()).map(stands_out).collect();
+    for (value, out) in values.iter_mut().zip(out) {
+        value.stands_out = out;
+    }
+    Drift {
+        unit: values
+            .first()
+            .map_or(String::new(), |value| value.fitted.unit.clone()),
+        path,
+        mean: mean.map_or(f64::NAN, |mean| mean.value),
+        values,
+        probability,
+        differ: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(of: &str, value: f64, error: f64) -> OneValue {
+        OneValue {
+            of: of.to_string(),
+            fitted: FittedValue {
+                path: "coulomb@1.torque_nm".to_string(),
+                key: "torque_nm".to_string(),
+                unit: "N m".to_string(),
+                value,
+                low: value - HALF_WIDTH * error,
+                high: value + HALF_WIDTH * error,
+                on_bound: false,
+            },
+            stands_out: false,
+        }
+    }
+
+    fn group(values: &[f64], error: f64) -> (String, Vec<OneValue>) {
+        let values = values.iter().enumerate();
+        let values = values.map(|(k, v)| value(&format!("log{k}"), *v, error));
+        ("coulomb@1.torque_nm".to_string(), values.collect())
+    }
+
+    #[test]
+    fn the_statistic_is_cochrans() {
+        // Mean 3, deviations -1, 0, 1 of standard error 0.5: Q = 8 with 2 degrees of freedom.
+        let drift = homogeneity(group(&[2.0, 3.0, 4.0], 0.5), 1);
+        assert!((drift.mean - 3.0).abs() < 1e-12);
+        let expected = (-4.0_f64).exp();
+        assert!(
+            (drift.probability.unwrap() - expected).abs() < 1e-9,
+            "{drift:?}"
+        );
+    }
+
+    #[test]
+    fn one_worn_servo_stands_out_and_the_others_do_not() {
+        let mut values = vec![0.030, 0.031, 0.029, 0.0305, 0.0298, 0.060];
+        let drifts = tested(vec![group(&values, 0.001)]);
+        assert!(drifts[0].differ);
+        let out: Vec<bool> = drifts[0]
+            .values
+            .iter()
+            .map(|value| value.stands_out)
+            .collect();
+        assert!(out[5]);
+        // Without it all agree.
+        values.pop();
+        let agreeing = tested(vec![group(&values, 0.001)]);
+        assert!(!agreeing[0].differ);
+        assert!(agreeing[0].values.iter().all(|value| !value.stands_out));
+    }
+
+    #[test]
+    fn more_values_ask_for_more_proof() {
+        // Q = 4.5 with one degree of freedom: 3.4 %.
+        let apart = || group(&[0.0, 3.0], 1.0);
+        assert!(tested(vec![apart()])[0].differ);
+        let same = || group(&[1.0, 1.0], 1.0);
+        let among = tested(vec![apart(), same(), same()]);
+        assert!(among.iter().all(|drift| !drift.differ), "{among:?}");
+    }
+
+    #[test]
+    fn joints_are_compared_by_effect_and_key() {
+        let paths: Vec<ParameterPath> = [
+            "coulomb@1.torque_nm",
+            "coulomb@2.torque_nm",
+            "link1.com_m",
+            "delay@2.delay_s",
+        ]
+        .map(|path| path.parse().unwrap())
+        .to_vec();
+        let sessions: Vec<Drift> = [0.03, 0.09, 0.1, 0.01]
+            .map(|v| homogeneity(group(&[v, v], 0.001), 4))
+            .to_vec();
+        let groups = between_joints(&paths, &sessions);
+        assert_eq!(groups.len(), 1);
+        assert_eq!(groups[0].0, "coulomb.torque_nm");
+        let joints: Vec<&str> = groups[0].1.iter().map(|value| value.of.as_str()).collect();
+        assert_eq!(joints, ["joint1", "joint2"]);
+        let (first, error) = (&groups[0].1[0].fitted, 0.001 / 2.0_f64.sqrt());
+        assert!((first.high - first.value - HALF_WIDTH * error).abs() < 1e-12);
+        assert!(tested(groups)[0].differ);
+    }
+}
