@@ -36,7 +36,7 @@ impl FitRecord {
         let mut intervals = InlineTable::new();
         for (path, low, high) in &self.intervals {
             let ends = [number(*low), number(*high)].into_iter().collect();
-            intervals.insert(&key(*path), Value::Array(ends));
+            intervals.insert(key(*path), Value::Array(ends));
         }
         let mut logs = Array::new();
         for (name, sha256) in &self.logs {
