@@ -8,3 +8,4 @@ pub mod hidden;
 pub mod kills;
 pub mod measured;
 pub mod peers;
+pub mod spoiled;

@@ -3,9 +3,11 @@
 use super::{App, Goal, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
+use crate::bus;
 use crate::design::{CALM_TICKS, LOW_SUPPLY};
 use crate::plan_store::MAX_TABLE;
 use crate::servos::Servos;
+use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{
     Answer, ArmLimits, Cause, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report,
     ServoList, Subject, Telemetry, VERSION,
@@ -234,8 +236,10 @@ impl App {
         self.limits = limits;
         self.begins = is_balance;
         self.servos.tripped = None;
-        if !is_balance {
-            self.servos.arm(board, limits);
+        match is_balance {
+            // A servo that missed torque off has these limits from now on, too.
+            true => bus::write_all(board, TORQUE_LIMIT, limits.torque.0),
+            false => self.servos.arm(board, limits),
         }
         self.state = match is_balance {
             true => State::Balance(Torque::On),

@@ -69,7 +69,7 @@ fn standing() -> Standing {
         inner: SimLink(Cm5Port::new(bus)),
         is_cut: is_cut.clone(),
     };
-    let source = AttitudeSource::Simulated(Box::new(move || ask()));
+    let source = AttitudeSource::Simulated(Box::new(ask));
     let ids: Vec<u8> = (1..=18).collect();
     let mut balancer = Balancer::new(link, &ids, source).unwrap();
     let board = Board {

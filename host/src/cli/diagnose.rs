@@ -76,7 +76,7 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     }
     let model = Model::load(&args.model)?;
     let plan = args.plan.load(&model)?;
-    let findings = handstand::log::check(&args.all_logs(), &model)?;
+    let findings = log::findings(&args.all_logs(), &args.model)?;
     if log::refused(&findings) {
         let diagnosis = Diagnosis::unfit(&findings);
         print(&diagnosis, &[], talk)?;

@@ -1,7 +1,10 @@
 //! `handstand log check MODEL LOG...`: checks logs before a model is fitted to them.
 //!
-//! Reads every row; the model says how columns are named and in which units. What is broken is
-//! refused, what looks wrong is warned of, each with file, line, column and remedy.
+//! Simulates the given model along the logs: where another sign, zero, unit, angle convention,
+//! drive or time lowers its error clearly, the lines of the model file to change are printed, with
+//! the errors before and after. Then reads every row; the model says how columns are named and in
+//! which units. What is broken is refused, what looks wrong is warned of, each with file, line,
+//! column and remedy.
 //!
 //! ```console
 //! $ handstand log check arm.toml swing.csv drop.csv:26-139
@@ -9,15 +12,16 @@
 //!
 //! Exit code 1 when a log is refused, 0 otherwise, warnings or not. `--json` prints `verdict`
 //! (`clean`, `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`,
-//! `what`, `remedy`).
+//! `what`, `remedy`, `proof`).
 
 use super::ExitStatus;
 use super::Talk;
 use super::input;
+use handstand::conventions::{self, ModelFile};
 use handstand::log::{LogFinding, LogRequest, Severity};
 use handstand::{Model, Result};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What can be done with logs.
 #[derive(Debug, clap::Subcommand)]
@@ -38,8 +42,7 @@ pub struct LogCheckArgs {
 
 /// Prints the findings.
 pub fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
-    let model = Model::load(&args.model)?;
-    let findings = handstand::log::check(&args.logs, &model)?;
+    let findings = findings(&args.logs, &args.model)?;
     let (verdict, sentence) = match findings.iter().map(|finding| finding.severity).max() {
         Some(Severity::Refuse) => (
             "refused",
@@ -58,6 +61,23 @@ pub fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
     Ok(ExitStatus::answer(!refused(&findings)))
 }
 
+/// Everything found in the logs: what a simulation of the model shows first, then what the logs
+/// show by themselves.
+///
+/// # Errors
+/// A model file that is refused, and what the system refuses.
+pub fn findings(logs: &[LogRequest], file: &Path) -> Result<Vec<LogFinding>> {
+    let model = Model::load(file)?;
+    let text = input::text(file)?;
+    let file = ModelFile {
+        path: file,
+        text: &text,
+    };
+    let mut findings = conventions::check(logs, &model, file)?;
+    findings.extend(handstand::log::check(logs, &model)?);
+    Ok(findings)
+}
+
 /// Whether any finding makes the logs useless.
 pub fn refused(findings: &[LogFinding]) -> bool {
     let mut severities = findings.iter().map(|finding| finding.severity);
@@ -74,5 +94,11 @@ fn finding(finding: &LogFinding) -> Value {
         "column": place.and_then(|place| place.column),
         "what": finding.what,
         "remedy": finding.remedy,
+        "proof": finding.proof.map(|proof| json!({
+            "before_rad": proof.before_rad,
+            "after_rad": proof.after_rad,
+            "before_share": proof.before_share,
+            "after_share": proof.after_share,
+        })),
     })
 }

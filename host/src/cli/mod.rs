@@ -31,6 +31,7 @@ mod latency;
 mod log;
 mod man;
 mod map;
+mod model;
 mod page;
 mod paper;
 mod port;
@@ -108,6 +109,9 @@ pub enum Command {
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Export a model for other simulators
+    #[command(subcommand)]
+    Model(model::ModelCommand),
     /// Identify a servo's discrete-time black-box model by prediction error
     Identify(identify::IdentifyArgs),
     /// Estimate a servo's static maps: dead zone, saturation, supply
@@ -171,6 +175,7 @@ impl Command {
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),
+            Command::Model(model::ModelCommand::Export(args)) => model::export(args, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),
             Command::View(args) => view::run(args, talk),

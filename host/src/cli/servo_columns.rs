@@ -164,6 +164,7 @@ fn column(text: &str) -> Result<Column, String> {
             offset: 0.0,
             reversed: false,
             resolution: (unit.name == "ticks").then_some(unit.si),
+            shift_s: 0.0,
         }),
         Some(_) if !name.is_empty() => Err("say how many make a turn: ticks/1228.8".to_string()),
         _ => Err(format!(

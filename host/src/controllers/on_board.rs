@@ -184,8 +184,14 @@ fn lagging(known: &DesignModel, timing: &BoardTiming) -> Continuous {
     if timing.lag_s > 0.0 {
         a.columns_mut(TORQUES, INPUTS).copy_from(&b);
         b.fill(0.0);
-        for drive in TORQUES..ESTIMATED {
-            a[(drive, drive)] = -1.0 / timing.lag_s;
+    }
+    for drive in TORQUES..ESTIMATED {
+        // Torques that follow at once are of no effect, and fade.
+        a[(drive, drive)] = match timing.lag_s > 0.0 {
+            true => -1.0 / timing.lag_s,
+            false => -1.0 / known.period_s,
+        };
+        if timing.lag_s > 0.0 {
             b[(drive, drive - TORQUES)] = 1.0 / timing.lag_s;
         }
     }

@@ -5,6 +5,7 @@
 //! firmware's law with wide integers.
 
 mod board;
+mod limits;
 mod observer;
 mod replay;
 mod rust_file;
@@ -12,6 +13,7 @@ mod state;
 mod transfer;
 
 pub use board::{Board, ServoPair};
+pub use limits::{ModeLimit, mode_limits};
 pub use observer::{reading_steps, state_steps};
 pub use replay::replay;
 pub use rust_file::{plan_file, plan_of_file};
@@ -39,12 +41,16 @@ pub enum BoardLaw<'a> {
 /// # Errors
 /// Absolute angles; as [`OnBoard::new`].
 pub fn observer_design(model: &Model, board: &Board, timing: &BoardTiming) -> Result<OnBoard> {
+    OnBoard::new(&observer_known(model, board)?, timing)
+}
+
+/// What the observer-based law is designed from.
+fn observer_known(model: &Model, board: &Board) -> Result<DesignModel> {
     state::relative(model)?;
-    let known = DesignModel {
+    Ok(DesignModel {
         limit_nm: board.most_nm,
         ..DesignModel::new(model, &upright(model), board.period_s)?
-    };
-    OnBoard::new(&known, timing)
+    })
 }
 
 /// The plan that makes the CM-5 execute a design.

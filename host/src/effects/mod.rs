@@ -18,6 +18,7 @@ mod delay;
 mod direction_asymmetry;
 mod encoder_scale;
 mod encoder_zero;
+pub mod expression;
 mod info;
 mod load_friction;
 mod mass;
@@ -86,13 +87,14 @@ pub const CONTROLS: &[&dyn Effect] = &[
 /// Relative step of a finite difference in the values of a smooth law.
 pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 
-/// The effect (or control) of this id.
+/// The effect (or control) of this id, or what a model file last defined by this name.
 pub fn named(id: &str) -> Option<&'static dyn Effect> {
     EFFECTS
         .iter()
         .chain(CONTROLS)
         .copied()
         .find(|effect| effect.info().id == id)
+        .or_else(|| expression::named(id))
 }
 
 /// What follows the id of an effect that acts on no single joint, in addresses: nothing for one of
@@ -111,6 +113,11 @@ pub fn at_all(id: &str) -> &'static str {
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
     fn info(&self) -> &'static EffectInfo;
+
+    /// Whether a model file defines it: see [`expression`].
+    fn is_users(&self) -> bool {
+        false
+    }
 
     /// Relative step of a finite difference in its values: large where the law jumps, so that a
     /// difference sees the jumps pass.

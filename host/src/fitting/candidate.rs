@@ -1,6 +1,7 @@
 //! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
 //! its name, its addresses, its start values.
 
+use crate::effects::expression::defined;
 use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope, at_all};
 use crate::error::Error;
 use crate::model::{EffectInstance, Model, ParameterPath};
@@ -214,14 +215,12 @@ impl From<CandidateError> for Error {
 /// # Errors
 /// [`CandidateError::UnknownEffect`] with the nearest name.
 pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
-    let ids = || EFFECTS.iter().map(|effect| effect.info().id);
-    let effect = EFFECTS
-        .iter()
-        .copied()
-        .zip(ids())
-        .find(|(_, id)| *id == name);
-    effect.map(|(effect, _)| effect).ok_or_else(|| {
-        let likeness = ids().map(|id| (strsim::jaro_winkler(name, id), id));
+    let defined = defined();
+    let all = || EFFECTS.iter().chain(&defined).copied();
+    let effect = all().find(|effect| effect.info().id == name);
+    effect.ok_or_else(|| {
+        let ids = all().map(|effect| effect.info().id);
+        let likeness = ids.map(|id| (strsim::jaro_winkler(name, id), id));
         let near = likeness.filter(|(likeness, _)| *likeness > 0.7);
         CandidateError::UnknownEffect {
             name: name.to_string(),

@@ -57,6 +57,11 @@ pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
     fit(model, &[], data, None, FitOptions::iterations(8))
 }
 
+/// The start states that the samples around each window's start suggest.
+pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
+    guesses(data).into_iter().map(|guess| guess.node).collect()
+}
+
 fn guesses(data: &FitData) -> Vec<Guess> {
     data.windows.iter().map(|w| data.guess(w)).collect()
 }

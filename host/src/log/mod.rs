@@ -12,12 +12,13 @@ mod reason;
 mod request;
 mod row;
 mod row_reader;
+mod shift;
 mod write;
 
 #[cfg(test)]
 mod tests;
 
-pub use check::{LogFinding, Severity, check};
+pub use check::{LogFinding, Proof, Severity, check};
 pub use csv::{FileFacts, visit};
 pub use holdout::{Split, split};
 pub use motion::{Motion, MotionSource};

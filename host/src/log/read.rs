@@ -54,7 +54,22 @@ fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
     if let Some(reason) = request.beyond(facts.rows) {
         return Err(Error::refused(Place::file(&request.path), reason));
     }
-    cutter.finish(&facts.sha256)
+    let motions = cutter.finish(&facts.sha256)?.into_iter();
+    motions.map(|motion| moved(motion, columns)).collect()
+}
+
+/// The motion with its columns moved in time, refused where too little is left of it.
+fn moved(motion: Motion, columns: &LogColumns) -> Result<Motion> {
+    let motion = motion.shifted(columns);
+    if motion.len() >= LEAST_ROWS {
+        return Ok(motion);
+    }
+    let place = Place {
+        line: Some(motion.source.lines.0),
+        ..Place::file(&motion.source.path)
+    };
+    let rows = motion.len();
+    Err(Error::refused(place, LogReason::TooShort { rows }))
 }
 
 struct Piece {

@@ -35,7 +35,11 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
         Some((id, joint)) => (id, Some(joint)),
         None => (owner, None),
     };
-    let infos = effects::EFFECTS.iter().map(|effect| effect.info());
+    let defined = effects::expression::defined();
+    let infos = effects::EFFECTS
+        .iter()
+        .chain(&defined)
+        .map(|effect| effect.info());
     let info: &'static EffectInfo = choose(text, id, infos.map(|info| (info.id, info)))?;
     let keys = info.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
     Ok(ParameterPath::Effect {

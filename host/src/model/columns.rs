@@ -15,6 +15,9 @@ pub struct Column {
     pub reversed: bool,
     /// Smallest step of the value in SI, if the sensor's resolution is known.
     pub resolution: Option<f64>,
+    /// Added to the time of this column's samples, s: above 0 where they were taken later than the
+    /// time column says.
+    pub shift_s: f64,
 }
 
 impl Column {
@@ -137,6 +140,15 @@ impl JointColumns {
     /// The columns of [`JointColumns::signal`].
     pub fn measured(&self) -> Option<&ColumnMean> {
         self.position.as_ref().or(self.velocity.as_ref())
+    }
+}
+
+impl JointColumns {
+    /// By how much position, velocity and input are moved in time, s; of several columns for one
+    /// quantity the first says so for all.
+    pub fn shifts_s(&self) -> [f64; 3] {
+        let of = |mean: &Option<ColumnMean>| mean.as_ref().map_or(0.0, |m| m.columns[0].shift_s);
+        [of(&self.position), of(&self.velocity), of(&self.input)]
     }
 }
 

@@ -1,4 +1,8 @@
-//! Writes effects and values into a model file's text; comments and layout stay.
+//! Writes effects, values and how logs are read into a model file's text; comments and layout stay.
+
+mod reading;
+
+pub use reading::{changed_lines, set_reading};
 
 mod provenance;
 

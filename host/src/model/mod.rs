@@ -51,6 +51,8 @@ pub struct Model {
     pub joints: Vec<Joint>,
     /// Physical effects beyond the rigid chain and its ideal drives.
     pub effects: Vec<EffectInstance>,
+    /// Effects that the file defines by an expression, whether they act or are candidates.
+    pub laws: Vec<&'static dyn Effect>,
     /// Base parameters to refit along with every candidate effect.
     pub free: Vec<ParameterPath>,
     /// How this rig's logs name and scale their columns.

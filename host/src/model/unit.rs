@@ -38,7 +38,7 @@ impl fmt::Display for Dimension {
 
 impl Dimension {
     /// What a key for this quantity ends in: the suffix of the SI unit, as `_rad`.
-    pub(super) fn suffix(self) -> &'static str {
+    pub(in crate::model) fn suffix(self) -> &'static str {
         match self {
             Dimension::Time => "_s",
             Dimension::Angle => "_rad",

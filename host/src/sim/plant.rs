@@ -85,6 +85,13 @@ impl Plant {
                 }
             }
         }
+        for instance in model.effects.iter().filter(|e| e.effect.is_users()) {
+            for (index, joint) in joints.iter_mut().enumerate() {
+                if instance.acts_on(index, &model.joints[index]) {
+                    joint.add(instance.effect, &instance.values);
+                }
+            }
+        }
         for joint in &mut joints {
             joint.follows_input = joint.torque_is_held();
         }

@@ -52,6 +52,8 @@ impl<'a> JointAt<'a> {
         for effect in EFFECTS.iter().chain(CONTROLS) {
             effects.extend(model.effects_at(joint).filter(|e| e.effect == *effect));
         }
+        let users = |e: &&EffectInstance| e.effect.is_users() && e.joint == Some(joint);
+        effects.extend(model.effects.iter().filter(users));
         effects
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         let zero = match joint {

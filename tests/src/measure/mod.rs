@@ -8,6 +8,7 @@ mod page;
 mod peers;
 mod real;
 mod scatter;
+mod spoiled;
 #[cfg(unix)]
 mod virtual_cm5;
 
@@ -30,6 +31,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Spoil logs in every way, and measure what the check finds
+    Spoiled(spoiled::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
     /// Kill recorders, and read what is left of their files
@@ -47,6 +50,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             #[cfg(unix)]
             Chore::BenchRecord(args) => bench_record::run(args),

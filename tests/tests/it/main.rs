@@ -11,3 +11,4 @@ mod hidden;
 mod intervals;
 #[cfg(unix)]
 mod kills;
+mod mjcf;

@@ -24,19 +24,22 @@
 //! ```
 //!
 //! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null),
-//! `fingerprint`, `bytes`, `uploaded`, `states_replayed`.
+//! `fingerprint`, `bytes`, `uploaded`, `states_replayed`, `limits` (of each unstable mode `pole_per_s`,
+//! `answer_s`, `growth`, `degree_share`, `half_step_share`; empty with `--law state`).
 
 pub mod board;
 mod build;
 
 use super::flash::{Loader, write};
 use super::port::Port;
+use super::show::table_of;
 use super::{ExitStatus, Talk, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
-use handstand::deploy::{self, BoardLaw, plan_file};
+use handstand::deploy::{self, BoardLaw, ModeLimit, plan_file};
 use handstand::link::Session;
 use handstand::link::boot_loader::Image;
+use handstand::output::table::TableColumn;
 use handstand::output::write_new;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
@@ -129,8 +132,9 @@ impl DeploySteps<'_> {
     }
 }
 
-/// The plan; the files of a design are written.
-fn planned(args: &DeployArgs, talk: &Talk) -> Result<Plan> {
+/// The plan, and the limits of its unstable modes where an observer knows when its torques act; the
+/// files of a design are written.
+fn planned(args: &DeployArgs, talk: &Talk) -> Result<(Plan, Vec<ModeLimit>)> {
     let model = Model::load(args.gains.model())?;
     let board = args.board.board()?;
     if args.law == LawKind::Observer {
@@ -140,15 +144,17 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Plan> {
             );
             return Err(Error::usage(what, "leave it out, or say --law state"));
         }
-        let machine = deploy::observer_design(&model, &board, &args.board.timing()?)?;
-        return deploy::plan(&model, BoardLaw::Observer(&machine), &board);
+        let timing = args.board.timing()?;
+        let machine = deploy::observer_design(&model, &board, &timing)?;
+        let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board)?;
+        return Ok((plan, deploy::mode_limits(&model, &board, &timing)?));
     }
     let (reduced, request, made) = gains::requested(&args.gains, talk)?;
     let design = deploy::state_design(&reduced, request, &board)?;
     let plan = deploy::plan(&model, BoardLaw::State(&design), &board)?;
     let data = handstand::synth::export::json(&design, &made);
     gains::write(&args.gains, &design, &made, &data, talk)?;
-    Ok(plan)
+    Ok((plan, Vec::new()))
 }
 
 /// Designs, brings over, reads back, replays.
@@ -157,7 +163,7 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         done: Vec::new(),
         talk,
     };
-    let plan = planned(args, talk)?;
+    let (plan, limits) = planned(args, talk)?;
     let fingerprint = plan.fingerprint();
     let mut bytes = Vec::new();
     plan.bytes(|byte| bytes.push(byte));
@@ -201,9 +207,14 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         "bytes": bytes,
         "uploaded": way.is_some(),
         "states_replayed": args.states,
+        "limits": limits,
     });
     talk.result(&data, || {
-        format!("fingerprint {fingerprint}, {bytes} bytes")
+        let whole = format!("fingerprint {fingerprint}, {bytes} bytes");
+        match limits.is_empty() {
+            true => whole,
+            false => format!("{}\n{whole}", limits_table(&limits)),
+        }
     })?;
     match way {
         _ if talk.json => {}
@@ -211,6 +222,24 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         Some(_) => talk.say("the CM-5 has these gains; torque is off"),
     }
     Ok(ExitStatus::Done)
+}
+
+/// What the torque limit allows.
+fn limits_table(limits: &[ModeLimit]) -> String {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let columns: &[TableColumn<ModeLimit>] = &[
+        ("Unstable mode", &|l| format!("{:.1} /s", l.pole_per_s)),
+        ("Grows until an answer acts", &|l| {
+            format!("x {:.2} in {:.1} ms", l.growth, 1e3 * l.answer_s)
+        }),
+        ("1 deg, of what is recoverable", &|l| {
+            percent(l.degree_share)
+        }),
+        ("Half a sensor step, when answered", &|l| {
+            percent(l.half_step_share)
+        }),
+    ];
+    table_of(limits, columns).to_string()
 }
 
 fn upload(

@@ -16,7 +16,7 @@ mod stretch;
 #[cfg(test)]
 mod tests;
 
-pub use finding::{LogFinding, Severity};
+pub use finding::{LogFinding, Proof, Severity};
 
 use super::reason::LogReason;
 use super::request::LogRequest;

@@ -11,6 +11,7 @@ pub fn column(name: &str, unit: &str) -> Column {
         offset: 0.0,
         reversed: false,
         resolution: None,
+        shift_s: 0.0,
     }
 }
 
@@ -77,6 +78,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         links: vec![link; log.joints.len()],
         joints: vec![Joint { drive }; log.joints.len()],
         effects: Vec::new(),
+        laws: Vec::new(),
         free: Vec::new(),
         log,
     }

@@ -10,6 +10,11 @@ use crate::error::Result;
 /// Counts per turn; more than 2^32 is no encoder.
 const TICKS: Limits = Limits::within(1.0, 4_294_967_296.0);
 
+/// Columns whose samples may have been taken at another time than the row's.
+const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
+/// Further apart, two columns are no one row.
+const SHIFT_S: Limits = Limits::within(-10.0, 10.0);
+
 pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
     let log = root.required_table("log")?;
     log.only(&[
@@ -121,6 +126,9 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     if dimension != Dimension::Time {
         known.push("reversed");
     }
+    if MOVABLE.contains(&quantity) {
+        known.push("shift_s");
+    }
     if table.text("unit")? == Some("ticks") {
         known.push("ticks_per_turn");
     }
@@ -131,12 +139,14 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     let unit = unit(table, quantity, dimension)?;
     let one_tick = (unit.name == "ticks").then_some(unit.si);
     let offset = table.number(&offset, Limits::within(-1e9, 1e9))?;
+    let shift_s = table.number("shift_s", SHIFT_S)?;
     Ok(Column {
         name: table.required_text("column")?.to_string(),
         unit,
         offset: offset.unwrap_or(0.0),
         reversed: table.flag("reversed")?,
         resolution: table.number(&resolution, NOT_NEGATIVE)?.or(one_tick),
+        shift_s: shift_s.unwrap_or(0.0),
     })
 }
 

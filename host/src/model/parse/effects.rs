@@ -7,10 +7,14 @@ use super::super::{EffectInstance, Joint};
 use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
 
-pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>> {
+pub(super) fn read(
+    root: &Table,
+    joints: &[Joint],
+    laws: &[&'static dyn Effect],
+) -> Result<Vec<EffectInstance>> {
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
-        let effect = effect(&table, joints)?;
+        let effect = effect(&table, joints, laws)?;
         let id = effect.effect.info().id;
         let meets = |other: &EffectInstance| other.meets(id, effect.joint, joints);
         if effects.iter().any(meets) {
@@ -21,8 +25,11 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<Vec<EffectInstance>
     Ok(effects)
 }
 
-fn effect(table: &Table, joints: &[Joint]) -> Result<EffectInstance> {
-    let kinds = EFFECTS.iter().map(|effect| (effect.info().id, *effect));
+fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Result<EffectInstance> {
+    let kinds = EFFECTS
+        .iter()
+        .chain(laws)
+        .map(|effect| (effect.info().id, *effect));
     let kinds: Vec<(&str, &'static dyn Effect)> = kinds.collect();
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
     let info = effect.info();

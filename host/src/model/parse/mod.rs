@@ -2,6 +2,7 @@
 
 mod columns;
 mod effects;
+mod expressions;
 #[cfg(test)]
 mod tests;
 
@@ -31,13 +32,14 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
-    root.only(&["rig", "link", "joint", "effect", "fit", "log"])?;
+    root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
 
     let rig = root.required_table("rig")?;
     rig.only(&["name", "angle_zero", "angles", "gravity_m_s2", "step_s"])?;
     let links = links(&root)?;
     let joints = joints(&root, links.len())?;
-    let effects = effects::read(&root, &joints)?;
+    let laws = expressions::read(&root)?;
+    let effects = effects::read(&root, &joints, &laws)?;
     let log = columns::read(&root, &joints)?;
     let mut model = Model {
         name: rig.required_text("name")?.to_string(),
@@ -48,6 +50,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         links,
         joints,
         effects,
+        laws,
         free: Vec::new(),
         log,
     };

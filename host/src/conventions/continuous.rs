@@ -1,0 +1,98 @@
+//! Remedies with a free number: a zero that lies elsewhere, a column that is shifted in time.
+
+use super::remedy::{Quantity, Remedy};
+use super::trial::{Bench, Effort, Trial};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Zeros tried around a turn.
+const ZEROS: usize = 24;
+/// A zero this near to the given one is a matter of calibration, which the diagnosis finds, rad.
+pub(super) const LEAST_ZERO_RAD: f64 = 0.1;
+/// Shifts tried, in steps of a sample or of this, s, on each side.
+const SHIFT_STEPS: i32 = 6;
+const LEAST_STEP_S: f64 = 0.02;
+/// Steps of a refinement, each of which leaves 0.62 of the interval.
+const REFINEMENTS: usize = 7;
+
+/// The best zero of each joint's angle, and the best shift of each column against the others.
+pub(super) fn continuous(bench: &Bench) -> Vec<Remedy> {
+    let model = &bench.model;
+    let mut found = Vec::new();
+    for joint in 0..model.link_count() {
+        found.extend(zero(bench, joint));
+    }
+    let joints = 0..model.link_count();
+    let inputs = joints.clone().map(Quantity::Input);
+    let several = model.link_count() > 1;
+    let positions = joints.filter(|_| several).map(Quantity::Position);
+    let columns = inputs
+        .chain(positions)
+        .filter(|column| bench.varies(*column));
+    found.extend(columns.filter_map(|column| shift(bench, column)));
+    found
+}
+
+fn zero(bench: &Bench, joint: usize) -> Option<Remedy> {
+    let quantity = Quantity::Position(joint);
+    let given = quantity.column(&bench.model)?.offset;
+    let step = TAU / ZEROS as f64;
+    let offsets =
+        (1..ZEROS).map(|i| given + step * i as f64 - if 2 * i > ZEROS { TAU } else { 0.0 });
+    let best = best(bench, offsets.collect(), step, |offset| {
+        Remedy::Offset(quantity, offset)
+    })?;
+    let Remedy::Offset(_, offset) = best.remedy else {
+        return None;
+    };
+    let off = (offset - given + PI).rem_euclid(TAU) - PI;
+    (off.abs() > LEAST_ZERO_RAD).then_some(best.remedy)
+}
+
+fn shift(bench: &Bench, quantity: Quantity) -> Option<Remedy> {
+    let given = quantity.column(&bench.model)?.shift_s;
+    let samples: usize = bench.motions.iter().map(|m| m.len()).sum();
+    let seconds: f64 = bench.motions.iter().map(|m| m.duration_s()).sum();
+    let step = LEAST_STEP_S.max(seconds / samples.max(1) as f64);
+    let steps = (-SHIFT_STEPS..=SHIFT_STEPS).filter(|i| *i != 0);
+    let shifts = steps.map(|i| given + step * f64::from(i)).collect();
+    let best = best(bench, shifts, step, |shift_s| {
+        Remedy::Shift(quantity, shift_s)
+    })?;
+    Some(best.remedy)
+}
+
+/// The best of some values, refined within a step of it by golden section.
+fn best(
+    bench: &Bench,
+    values: Vec<f64>,
+    step: f64,
+    remedy: impl Fn(f64) -> Remedy + Sync,
+) -> Option<Trial> {
+    let tried = |value: f64| bench.tried(remedy(value), Effort::Guess);
+    let by_ratio = |a: &(f64, Trial), b: &(f64, Trial)| a.1.ratio().total_cmp(&b.1.ratio());
+    let trials = values
+        .into_par_iter()
+        .filter_map(|value| Some((value, tried(value)?)));
+    let (middle, mut found) = trials.min_by(by_ratio)?;
+    if found.ratio() >= 1.0 {
+        return None;
+    }
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = (middle - step, middle + step);
+    for _ in 0..REFINEMENTS {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        let (first, second) = rayon::join(|| tried(a), || tried(b));
+        let (first, second) = (first?, second?);
+        match first.ratio() < second.ratio() {
+            true => high = b,
+            false => low = a,
+        }
+        for trial in [first, second] {
+            if trial.ratio() < found.ratio() {
+                found = trial;
+            }
+        }
+    }
+    Some(found)
+}

@@ -1,0 +1,279 @@
+//! Faults as findings of a log check: what was found, the remedy, and the proof.
+
+use super::leave_out::{LeaveOut, Unusable};
+use super::remedy::{Quantity, Remedy};
+use super::search::Found;
+use super::trial::Trial;
+use crate::error::{Place, Result};
+use crate::log::{LogFinding, Motion, Proof, Severity};
+use crate::model::edit::{changed_lines, set_reading};
+use crate::model::{AngleZero, Angles, Model};
+use std::path::Path;
+
+/// A model's file: its path, for messages, and its text.
+#[derive(Debug, Clone, Copy)]
+pub struct ModelFile<'a> {
+    /// Where it lies.
+    pub path: &'a Path,
+    /// What it holds.
+    pub text: &'a str,
+}
+
+/// A fault of the model file, mended before the next one was looked for; `model` is what it was
+/// found in.
+pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<LogFinding> {
+    let trial = &found.trial;
+    let mut remedies = vec![lines(&trial.remedy, model, file)?];
+    for rival in &found.rivals {
+        remedies.push(lines(&rival.remedy, model, file)?);
+    }
+    Ok(LogFinding {
+        kind: kind(&trial.remedy),
+        severity: severity(&trial.remedy),
+        place: Some(Place::file(file.path)),
+        what: format!("{}; {}", what(&trial.remedy, model), proof(trial)),
+        remedy: remedies.join("; or, which lowers the error as far, "),
+        proof: Some(Proof {
+            before_rad: trial.before_rad,
+            after_rad: trial.after_rad,
+            before_share: trial.before,
+            after_share: trial.after,
+        }),
+    })
+}
+
+/// A sign, a unit or a drive is wrong or right; a zero or a shift may be the rig's own.
+fn severity(remedy: &Remedy) -> Severity {
+    match remedy.is_continuous() {
+        true => Severity::Warn,
+        false => Severity::Refuse,
+    }
+}
+
+fn kind(remedy: &Remedy) -> &'static str {
+    match remedy {
+        Remedy::Reverse(_) => "sign",
+        Remedy::AngleZero(_) | Remedy::Offset(..) => "zero",
+        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == Quantity::Time) => "time_unit",
+        Remedy::Unit(_) => "unit",
+        Remedy::Angles(_) => "angles",
+        Remedy::Drive(..) => "drive",
+        Remedy::Shift(..) => "time_shift",
+    }
+}
+
+fn name(quantity: Quantity, model: &Model) -> String {
+    let names: Vec<&str> = quantity
+        .columns(model)
+        .iter()
+        .map(|c| c.name.as_str())
+        .collect();
+    names.join(" and ")
+}
+
+fn what(remedy: &Remedy, model: &Model) -> String {
+    match remedy {
+        Remedy::Reverse(columns) => {
+            let names: Vec<String> = columns.iter().map(|q| name(*q, model)).collect();
+            let (count, s) = if names.len() > 1 {
+                ("count", "")
+            } else {
+                ("counts", "")
+            };
+            format!("{} {count}{s} the other way round", names.join(" and "))
+        }
+        Remedy::AngleZero(zero) => {
+            let place = match zero {
+                AngleZero::Hanging => "hanging",
+                AngleZero::Upright => "upright",
+                AngleZero::Horizontal => "horizontal",
+            };
+            format!("the angles are zero where the first link is {place}")
+        }
+        Remedy::Offset(quantity, offset) => {
+            let given = quantity.column(model).map_or(0.0, |column| column.offset);
+            format!(
+                "{} is {:.3} rad off",
+                name(*quantity, model),
+                given - offset
+            )
+        }
+        Remedy::Unit(columns) => {
+            let each = columns.iter().map(|(quantity, unit)| {
+                let declared = quantity
+                    .column(model)
+                    .map_or("?", |column| column.unit.name);
+                let ticks = match unit.name {
+                    "ticks" => format!(" of {:.0} a turn", std::f64::consts::TAU / unit.si),
+                    _ => String::new(),
+                };
+                let name = name(*quantity, model);
+                format!(
+                    "{name} is written in {}{ticks}, not in {declared}",
+                    unit.name
+                )
+            });
+            each.collect::<Vec<_>>().join(", ")
+        }
+        Remedy::Angles(angles) => {
+            let from = match angles {
+                Angles::Relative => "the link before",
+                Angles::Absolute => "the world",
+            };
+            format!("each angle is measured from {from}")
+        }
+        Remedy::Drive(joint, drive, unit) => {
+            let input = name(Quantity::Input(*joint), model);
+            let meaning = match drive.name() {
+                "torque" => "a torque",
+                "duty" => "a share of the full voltage",
+                "position" => "a goal angle",
+                _ => "a goal speed",
+            };
+            let joint = joint + 1;
+            format!(
+                "{input} is {meaning} in {}, so joint {joint} is another drive",
+                unit.name
+            )
+        }
+        Remedy::Shift(quantity, shift_s) => {
+            let when = if *shift_s > 0.0 { "later" } else { "earlier" };
+            let ms = 1e3 * shift_s.abs();
+            format!(
+                "{} was taken {ms:.0} ms {when} than its rows say",
+                name(*quantity, model)
+            )
+        }
+    }
+}
+
+/// "as given the model leaves 83 % of the motion unexplained, 512 mrad; so read, 4 %, 21 mrad".
+fn proof(trial: &Trial) -> String {
+    format!(
+        "as given the model leaves {} of the motion unexplained ({} mrad), with the remedy {} ({} \
+         mrad)",
+        percent(trial.before),
+        mrad(trial.before_rad),
+        percent(trial.after),
+        mrad(trial.after_rad),
+    )
+}
+
+fn percent(share: f64) -> String {
+    match share >= 0.095 {
+        true => format!("{:.0} %", 100.0 * share),
+        false => format!("{:.1} %", 100.0 * share),
+    }
+}
+
+fn mrad(rad: f64) -> String {
+    crate::output::number::mrad_in_column(rad)
+}
+
+/// The lines of the model file that the remedy changes: `arm.toml:13: position = { .. }`.
+fn lines(remedy: &Remedy, model: &Model, file: ModelFile) -> Result<String> {
+    let old = Model::parse(file.text, file.path)?;
+    // What was mended before is in `model`, and so in the lines.
+    let text = set_reading(file.text, file.path, &old, &remedy.applied(model))?;
+    let changed = changed_lines(file.text, &text)
+        .into_iter()
+        .map(|(number, line)| {
+            let place = Place {
+                line: number,
+                ..Place::file(file.path)
+            };
+            format!("write in {place}: {line}")
+        });
+    Ok(changed.collect::<Vec<_>>().join(", "))
+}
+
+/// A motion with the log it came from, and its first data row there.
+pub(super) struct Origin {
+    pub log: String,
+    pub first_row: usize,
+}
+
+/// Most rows ranges that a remedy names.
+const MOST_RANGES: usize = 5;
+
+/// What cannot be used, with the rows that can.
+pub(super) fn unusable(
+    left_out: &LeaveOut,
+    model: &Model,
+    motions: &[Motion],
+    origins: &[Origin],
+) -> LogFinding {
+    let name = name(left_out.column, model);
+    let motion = left_out.runs.first().map_or(0, |(motion, _)| *motion);
+    let (longest_s, count) = (left_out.longest_s, left_out.runs.len());
+    let lower = left_out.after < left_out.before;
+    let what = match left_out.why {
+        Unusable::Stalled => format!("{name} does not change for {longest_s:.1} s"),
+        Unusable::Clipped => {
+            format!("{name} sits at a limit {count} times, up to {longest_s:.2} s")
+        }
+    };
+    let proof = format!(
+        "with those rows the model leaves {} of the motion unexplained ({} mrad), without {} ({} \
+         mrad)",
+        percent(left_out.before),
+        mrad(left_out.before_rad),
+        percent(left_out.after),
+        mrad(left_out.after_rad),
+    );
+    let kept = kept(left_out, motions, origins);
+    LogFinding {
+        kind: match left_out.why {
+            Unusable::Stalled => "stalled",
+            Unusable::Clipped => "clipped",
+        },
+        severity: Severity::Warn,
+        place: motions
+            .get(motion)
+            .map(|motion| Place::file(&motion.source.path)),
+        what: match lower {
+            true => format!("{what}; {proof}"),
+            false => format!("{what}; the model is at rest there too, so they teach nothing"),
+        },
+        remedy: match kept.as_slice() {
+            [] => "record again: no rows are left".to_string(),
+            kept => format!("leave the rows out: name the log as {}", kept.join(" ")),
+        },
+        proof: lower.then_some(Proof {
+            before_rad: left_out.before_rad,
+            after_rad: left_out.after_rad,
+            before_share: left_out.before,
+            after_share: left_out.after,
+        }),
+    }
+}
+
+/// The longest ranges of rows without the samples to be left out, as log arguments.
+fn kept(left_out: &LeaveOut, motions: &[Motion], origins: &[Origin]) -> Vec<String> {
+    let mut ranges: Vec<(usize, usize, usize)> = Vec::new();
+    for (index, (motion, origin)) in motions.iter().zip(origins).enumerate() {
+        let mut runs = left_out.runs.iter().filter(|(m, _)| *m == index).peekable();
+        if runs.peek().is_none() {
+            continue;
+        }
+        let mut from = 0;
+        let ends = [(index, motion.len()..motion.len())];
+        for (_, run) in runs.chain(&ends) {
+            if run.start >= from + crate::log::LEAST_ROWS {
+                ranges.push((
+                    index,
+                    origin.first_row + from,
+                    origin.first_row + run.start - 1,
+                ));
+            }
+            from = run.end;
+        }
+    }
+    ranges.sort_by_key(|(_, from, to)| std::cmp::Reverse(to - from));
+    ranges.truncate(MOST_RANGES);
+    ranges.sort();
+    let named = ranges
+        .into_iter()
+        .map(|(index, from, to)| format!("{}:{from}-{to}", origins[index].log));
+    named.collect()
+}

@@ -1,0 +1,98 @@
+//! Do signs, zeros, units, angles, drives and times of a model file agree with its logs?
+//!
+//! Each doubt is a [`Remedy`], a change of the model file. The given model is simulated along the
+//! logs as it reads them, and as it would read them with the remedy; a remedy counts only if it
+//! lowers the error clearly, and the errors are its proof. Samples that no remedy mends, of a
+//! joint that stands still or an input cut off at a limit, are named as rows to leave out.
+
+mod continuous;
+mod drives;
+mod excerpts;
+mod findings;
+mod leave_out;
+mod rating;
+mod remedy;
+mod reread;
+mod search;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+pub use findings::ModelFile;
+pub use leave_out::{LeaveOut, Unusable, leave_out};
+pub use remedy::{Quantity, Remedy};
+pub use search::{Found, search};
+pub use trial::Trial;
+
+use crate::error::Result;
+use crate::log::{LogFinding, LogRequest, Motion, read};
+use crate::model::{Model, Unit};
+use findings::Origin;
+use reread::reread;
+
+/// What of the model file and its logs does not agree, with remedies and their proofs: lines of
+/// the file to change, rows to leave out. JSON logs state their own units and are not judged.
+///
+/// # Errors
+/// Only what the system refuses; logs that cannot be read are for [`crate::log::check()`] to judge.
+pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<Vec<LogFinding>> {
+    let (mut motions, mut origins) = (Vec::new(), Vec::new());
+    for request in requests.iter().filter(|request| !request.is_json()) {
+        let mut first_row = request.rows.map_or(0, |(first, _)| first);
+        for motion in readable(request, model) {
+            origins.push(Origin {
+                log: request.path.display().to_string(),
+                first_row,
+            });
+            first_row += motion.len();
+            motions.push(motion);
+        }
+    }
+    if motions.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut all = Vec::new();
+    let mut mended = model.clone();
+    for found in search(model, &motions) {
+        all.push(findings::finding(&found, &mended, file)?);
+        mended = found.trial.remedy.applied(&mended);
+    }
+    let read: Vec<Motion> = motions
+        .iter()
+        .map(|motion| reread(motion, &model.log, &mended.log))
+        .collect();
+    let left_out = leave_out(&mended, &read);
+    all.extend(
+        left_out
+            .iter()
+            .map(|l| findings::unusable(l, &mended, &motions, &origins)),
+    );
+    Ok(all)
+}
+
+/// The motions of a log, also where times far apart, of milliseconds declared as seconds, would
+/// have it refused; none where nothing helps.
+fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
+    let requests = std::slice::from_ref(request);
+    if let Ok(motions) = read(requests, &model.log) {
+        return motions;
+    }
+    let Some(milliseconds) = Unit::named("ms", None).filter(|_| model.log.time.unit.name == "s")
+    else {
+        return Vec::new();
+    };
+    let mended = Remedy::Unit(vec![(Quantity::Time, milliseconds)]).applied(model);
+    let motions = read(requests, &mended.log).unwrap_or_default();
+    let back = motions
+        .iter()
+        .map(|motion| reread(motion, &mended.log, &model.log));
+    back.collect()
+}
+
+/// Share of the motion that the model leaves unexplained, from fitted start states: 0 nothing, 1 as
+/// much as going on at constant speed does; none where no joint moves.
+pub fn unexplained(model: &Model, motions: &[Motion]) -> Option<f64> {
+    let few = excerpts::excerpts(motions, search::SAMPLES);
+    let reading = rating::Reading::new(model.clone(), few);
+    reading.rated(trial::Effort::Starts).share()
+}

@@ -1,0 +1,174 @@
+//! How much of the motion a model leaves unexplained, on a scale that knows no unit.
+//!
+//! An error in rad cannot rank two readings of one log: read in degrees, every angle and every
+//! error is 57 times smaller. The error is therefore divided by that of the plainest prediction,
+//! each joint going on at the speed it starts a window with.
+
+use super::trial::Effort;
+use crate::fitting::{
+    FitData, FitOptions, Horizon, Node, Window, fit, free_parameters, guessed_nodes, predicted,
+};
+use crate::log::Motion;
+use crate::model::{MeasuredSignal, Model};
+
+/// Longest window, s, and least samples of one where samples are rare.
+const WINDOW_S: f64 = 1.0;
+const WINDOW_SAMPLES: f64 = 12.0;
+/// Iterations of a fit; it is compared, not used.
+const ITERATIONS: usize = 8;
+/// An error counts as at most this many times the plain prediction's.
+const MOST: f64 = 2.0;
+/// A joint whose movement beyond the plain prediction is less than this many times its noise says
+/// nothing.
+const LEAST_MOVEMENT: f64 = 5.0;
+
+/// A model with the motions as it reads them.
+pub(super) struct Reading {
+    pub model: Model,
+    pub data: FitData,
+}
+
+impl Reading {
+    /// Cut into windows of a second, or shorter where start errors grow fast.
+    pub fn new(model: Model, motions: Vec<Motion>) -> Reading {
+        let samples: usize = motions.iter().map(Motion::len).sum();
+        let seconds: f64 = motions.iter().map(Motion::duration_s).sum();
+        let samples_s = WINDOW_SAMPLES * seconds / samples.max(1) as f64;
+        Reading::cut(model, motions, WINDOW_S.max(samples_s))
+    }
+
+    /// Cut into windows of so many seconds, or shorter where start errors grow fast.
+    pub fn cut(model: Model, motions: Vec<Motion>, horizon_s: f64) -> Reading {
+        Reading {
+            data: FitData::new(&model, motions, Horizon::Seconds(horizon_s)),
+            model,
+        }
+    }
+
+    /// The same model and motions, cut as other data of as many samples are.
+    pub fn cut_as(&self, windows: &[Window]) -> Reading {
+        let mut data = self.data.clone();
+        data.windows = windows.to_vec();
+        Reading {
+            model: self.model.clone(),
+            data,
+        }
+    }
+
+    /// The windows of whichever reading has shorter ones, motion by motion.
+    pub fn common_windows(&self, other: &Reading) -> Vec<Window> {
+        let motions = 0..self.data.motions.len();
+        let shorter = |motion: usize| {
+            let pieces = |data: &FitData| data.windows_of(motion).count();
+            let data = match pieces(&self.data) >= pieces(&other.data) {
+                true => &self.data,
+                false => &other.data,
+            };
+            data.windows_of(motion)
+                .map(|(_, window)| window.clone())
+                .collect::<Vec<_>>()
+        };
+        motions.flat_map(shorter).collect()
+    }
+
+    /// Another model that reads the same samples in its own way, cut into the same windows.
+    pub fn read_as(&self, model: &Model, motions: Vec<Motion>) -> Reading {
+        let mut data = self.data.clone();
+        data.motions = motions;
+        Reading {
+            model: model.clone(),
+            data,
+        }
+    }
+
+    /// Rated with what the effort fits.
+    pub fn rated(&self, effort: Effort) -> Rating {
+        let free = match effort {
+            Effort::Guess => {
+                let nodes = guessed_nodes(&self.data);
+                return Rating::of(&self.model, &self.data, &nodes);
+            }
+            Effort::Starts => Vec::new(),
+            Effort::Values => free_parameters(&self.model, &[]).unwrap_or_default(),
+        };
+        let options = FitOptions::iterations(ITERATIONS).rough();
+        let fitted = fit(&self.model, &free, &self.data, None, options);
+        Rating::of(&fitted.model, &self.data, &fitted.nodes)
+    }
+}
+
+/// Error of a model, window by window.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Rating {
+    /// Per window, per joint that says something: error over the joint's plain prediction's, at
+    /// most 2.
+    pub shares: Vec<Vec<f64>>,
+    /// Root-mean-square error, rad, over all joints.
+    pub rms_rad: f64,
+}
+
+impl Rating {
+    fn of(model: &Model, data: &FitData, nodes: &[Node]) -> Rating {
+        let joints = data.joints();
+        let mut squares = vec![vec![0.0; joints]; data.windows.len()];
+        let mut plain = vec![0.0; joints];
+        let guesses = guessed_nodes(data);
+        let (mut sum, mut count) = (0.0, 0usize);
+        for motion in 0..data.motions.len() {
+            let predicted = predicted(model, data, nodes, motion);
+            let windows = data.windows_of(motion);
+            for ((index, window), predicted) in windows.zip(predicted) {
+                let log = &data.motions[motion];
+                let start_s = log.time_s[window.samples.start];
+                let samples = window.samples.len();
+                for joint in 0..joints {
+                    let guess = &guesses[index].unknowns;
+                    let rate = data.signals[joint] == MeasuredSignal::Rate;
+                    for (k, sample) in window.samples.clone().enumerate() {
+                        let measured = data.measured(motion, joint)[sample];
+                        if !measured.is_finite() {
+                            continue;
+                        }
+                        let seconds = log.time_s[sample] - start_s;
+                        let straight = match rate {
+                            true => guess[joints + joint],
+                            false => guess[joint] + guess[joints + joint] * seconds,
+                        };
+                        let error = measured - predicted[joint * samples + k];
+                        let error = if error.is_finite() {
+                            error.clamp(-1e3, 1e3)
+                        } else {
+                            1e3
+                        };
+                        plain[joint] += (measured - straight).powi(2);
+                        squares[index][joint] += error * error / samples as f64;
+                        sum += error * error;
+                        count += 1;
+                    }
+                }
+            }
+        }
+        let all = data.samples().max(1) as f64;
+        let plain: Vec<f64> = plain.iter().map(|sum| (sum / all).sqrt()).collect();
+        let says = |joint: &usize| plain[*joint] > LEAST_MOVEMENT * data.sigma[*joint];
+        let share = |squares: &Vec<f64>| {
+            let joints = (0..joints).filter(says);
+            joints
+                .map(|joint| (squares[joint].sqrt() / plain[joint]).min(MOST))
+                .collect()
+        };
+        Rating {
+            shares: squares.iter().map(share).collect(),
+            rms_rad: (sum / count.max(1) as f64).sqrt(),
+        }
+    }
+
+    /// Root mean square of all shares: 0 where all is explained, 1 where the model does as badly as
+    /// going on at constant speed; none where no joint says anything.
+    pub fn share(&self) -> Option<f64> {
+        let shares = || self.shares.iter().flatten();
+        let count = shares().count();
+        let squares: f64 = shares().map(|share| share * share).sum();
+        (count > 0).then(|| (squares / count as f64).sqrt())
+    }
+}

@@ -1,0 +1,278 @@
+//! What may be wrong between a model file and its logs, each as the change that mends it.
+
+use super::reread::reread;
+use crate::log::Motion;
+use crate::model::{
+    AngleZero, Angles, Column, ColumnMean, Dimension, Drive, Model, ParameterPath, Unit,
+};
+use std::f64::consts::PI;
+
+/// A column of the logs, or of one joint of them (index from 0).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// The time of the samples.
+    Time,
+    /// A joint's angle.
+    Position(usize),
+    /// A joint's speed.
+    Velocity(usize),
+    /// A joint's input.
+    Input(usize),
+}
+
+impl Quantity {
+    /// Its columns, if the logs have it: one, or those of several servos.
+    pub fn columns(self, model: &Model) -> &[Column] {
+        let joint = |joint: usize| model.log.joints.get(joint);
+        let mean = match self {
+            Quantity::Time => return std::slice::from_ref(&model.log.time),
+            Quantity::Position(j) => joint(j).and_then(|columns| columns.position.as_ref()),
+            Quantity::Velocity(j) => joint(j).and_then(|columns| columns.velocity.as_ref()),
+            Quantity::Input(j) => joint(j).and_then(|columns| columns.input.as_ref()),
+        };
+        mean.map_or(&[], ColumnMean::columns)
+    }
+
+    /// Its first column, which states the unit, if the logs have it.
+    pub fn column(self, model: &Model) -> Option<&Column> {
+        self.columns(model).first()
+    }
+
+    fn columns_mut(self, model: &mut Model) -> &mut [Column] {
+        let joints = &mut model.log.joints;
+        let mean = match self {
+            Quantity::Time => return std::slice::from_mut(&mut model.log.time),
+            Quantity::Position(j) => joints.get_mut(j).and_then(|c| c.position.as_mut()),
+            Quantity::Velocity(j) => joints.get_mut(j).and_then(|c| c.velocity.as_mut()),
+            Quantity::Input(j) => joints.get_mut(j).and_then(|c| c.input.as_mut()),
+        };
+        mean.map_or(&mut [], ColumnMean::columns_mut)
+    }
+}
+
+/// A change of the model file that may mend how it reads its logs.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Remedy {
+    /// These columns count the other way round.
+    Reverse(Vec<Quantity>),
+    /// The angles are zero elsewhere.
+    AngleZero(AngleZero),
+    /// A column's zero lies elsewhere: its new offset, in SI.
+    Offset(Quantity, f64),
+    /// These columns are written in other units.
+    Unit(Vec<(Quantity, Unit)>),
+    /// The angles are measured from something else.
+    Angles(Angles),
+    /// Another drive moves the joint (index from 0), and its input is written in this unit.
+    Drive(usize, Drive, Unit),
+    /// A column's samples were taken this much later than the log says, s; earlier below 0.
+    Shift(Quantity, f64),
+}
+
+impl Remedy {
+    /// The model that reads its logs so.
+    pub fn applied(&self, model: &Model) -> Model {
+        let mut new = model.clone();
+        match self {
+            Remedy::Reverse(columns) => {
+                for quantity in columns {
+                    for column in quantity.columns_mut(&mut new) {
+                        column.reversed = !column.reversed;
+                    }
+                }
+            }
+            Remedy::AngleZero(zero) => new.angle_zero = *zero,
+            Remedy::Offset(quantity, offset) => {
+                for column in quantity.columns_mut(&mut new) {
+                    column.offset = *offset;
+                }
+            }
+            Remedy::Unit(columns) => {
+                for (quantity, unit) in columns {
+                    for column in quantity.columns_mut(&mut new) {
+                        // A step of one tick goes with its unit.
+                        let is_tick = column.resolution == Some(column.unit.si);
+                        let declared = column.resolution.filter(|_| !is_tick);
+                        let tick = (unit.name == "ticks").then_some(unit.si);
+                        column.resolution = declared.or(tick);
+                        column.unit = *unit;
+                    }
+                }
+            }
+            Remedy::Angles(angles) => new.angles = *angles,
+            Remedy::Drive(joint, drive, unit) => {
+                new.joints[*joint].drive = drive.clone();
+                // Another kind of drive has other values.
+                let has = |path: &ParameterPath| path.get(&new).is_some_and(f64::is_finite);
+                new.free = model.free.iter().copied().filter(has).collect();
+                for column in Quantity::Input(*joint).columns_mut(&mut new) {
+                    column.unit = *unit;
+                }
+            }
+            Remedy::Shift(quantity, shift_s) => {
+                for column in quantity.columns_mut(&mut new) {
+                    column.shift_s = *shift_s;
+                }
+            }
+        }
+        new
+    }
+
+    /// The motions as the mended model reads them.
+    pub fn reread(&self, model: &Model, motions: &[Motion]) -> Vec<Motion> {
+        let new = self.applied(model);
+        motions
+            .iter()
+            .map(|motion| reread(motion, &model.log, &new.log))
+            .collect()
+    }
+
+    /// Whether it changes a number that could have any value, not one of a few alternatives.
+    pub fn is_continuous(&self) -> bool {
+        matches!(self, Remedy::Offset(..) | Remedy::Shift(..))
+    }
+}
+
+/// Counts per turn of common encoders; 1228.8 is the AX-12's 1024 over 300 degrees.
+const TICKS_PER_TURN: [f64; 8] = [
+    1000.0, 1024.0, 1228.8, 2048.0, 4000.0, 4096.0, 8192.0, 16384.0,
+];
+/// Travel of a joint that a unit may make plausible, rad.
+const PLAUSIBLE_RAD: std::ops::Range<f64> = 0.01..60.0;
+
+/// Every alternative to how the model reads its logs that has no free number: signs, zeros, units,
+/// what angles are measured from.
+pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
+    let mut all = Vec::new();
+    let zeros = [
+        AngleZero::Hanging,
+        AngleZero::Upright,
+        AngleZero::Horizontal,
+    ];
+    let others = zeros.into_iter().filter(|zero| *zero != model.angle_zero);
+    all.extend(others.map(Remedy::AngleZero));
+    if model.link_count() > 1 {
+        all.push(Remedy::Angles(match model.angles {
+            Angles::Relative => Angles::Absolute,
+            Angles::Absolute => Angles::Relative,
+        }));
+    }
+    for joint in 0..model.link_count() {
+        all.extend(of_motion(model, motions, joint));
+        if model.joints[joint].drive.is_driven() {
+            let input = Quantity::Input(joint);
+            all.push(Remedy::Reverse(vec![input]));
+            let units = other_units(model, input).into_iter();
+            all.extend(units.map(|unit| Remedy::Unit(vec![(input, unit)])));
+        }
+    }
+    all
+}
+
+/// Other signs, units and half turns of what is measured of a joint: its angle, or its rate where
+/// that alone is.
+fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
+    let (position, velocity) = (Quantity::Position(joint), Quantity::Velocity(joint));
+    let Some(column) = position.column(model) else {
+        let Some(_) = velocity.column(model) else {
+            return Vec::new();
+        };
+        let units = other_units(model, velocity).into_iter();
+        let units = units.map(|unit| Remedy::Unit(vec![(velocity, unit)]));
+        return units.chain([Remedy::Reverse(vec![velocity])]).collect();
+    };
+    let slope = speed_slope(motions, joint);
+    let along = slope.filter(|slope| *slope > 0.0).map(|_| velocity);
+    let mut all = vec![Remedy::Reverse(
+        [position].into_iter().chain(along).collect(),
+    )];
+    let travel_rad = travel_rad(motions, joint);
+    let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
+    let units = other_units(model, position).into_iter().filter(plausible);
+    all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
+    if joint > 0 {
+        all.push(Remedy::Offset(position, column.offset + PI));
+    }
+    all
+}
+
+/// The position in another unit; a speed that agreed with it goes along.
+fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Remedy {
+    let mut columns = vec![(Quantity::Position(joint), unit)];
+    let velocity = Quantity::Velocity(joint);
+    let agreed = slope.is_some_and(|slope| (0.8..1.25).contains(&slope));
+    let name = match unit.name {
+        "deg" => Some("deg/s"),
+        "rad" => Some("rad/s"),
+        _ => None,
+    };
+    let other = name.and_then(|name| Unit::named(name, None));
+    if let (true, Some(unit), Some(column)) = (agreed, other, velocity.column(model))
+        && column.unit.name != unit.name
+    {
+        columns.push((velocity, unit));
+    }
+    Remedy::Unit(columns)
+}
+
+/// How far the joint moves over all motions, rad.
+fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
+    let angles = || {
+        let angles = motions
+            .iter()
+            .flat_map(|motion| &motion.position_rad[joint]);
+        angles.copied().filter(|angle| angle.is_finite())
+    };
+    angles().fold(f64::NEG_INFINITY, f64::max) - angles().fold(f64::INFINITY, f64::min)
+}
+
+/// The logged speed per speed of the angle, by least squares; none where no speed is logged.
+fn speed_slope(motions: &[Motion], joint: usize) -> Option<f64> {
+    let (mut product, mut square) = (0.0, 0.0);
+    for motion in motions {
+        let logged = motion.velocity_rad_s[joint].as_ref()?;
+        let angle = &motion.position_rad[joint];
+        let (time_s, last) = (&motion.time_s, motion.len().saturating_sub(1));
+        for k in 3..last.saturating_sub(3) {
+            let speed = (angle[k + 3] - angle[k - 3]) / (time_s[k + 3] - time_s[k - 3]);
+            if speed.is_finite() && logged[k].is_finite() {
+                product += speed * logged[k];
+                square += speed * speed;
+            }
+        }
+    }
+    (square > 0.0).then(|| product / square)
+}
+
+/// The other units of the column's dimension.
+fn other_units(model: &Model, quantity: Quantity) -> Vec<Unit> {
+    let Some(column) = quantity.column(model) else {
+        return Vec::new();
+    };
+    let dimension = column.unit.dimension;
+    let plain = dimension.unit_names().filter(|name| *name != "ticks");
+    let mut units: Vec<Unit> = plain.filter_map(|name| Unit::named(name, None)).collect();
+    if dimension == Dimension::Angle {
+        let ticks = TICKS_PER_TURN.into_iter();
+        units.extend(ticks.filter_map(|ticks| Unit::named("ticks", Some(ticks))));
+    }
+    units.retain(|unit| (unit.si / column.unit.si - 1.0).abs() > 0.01);
+    units
+}
+
+/// The other units of time in which the samples would lie between 0.5 ms and 0.5 s apart, where
+/// they do not as declared.
+pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
+    let plausible = 0.5e-3..0.5;
+    if plausible.contains(&spacing_s) {
+        return Vec::new();
+    }
+    let declared = model.log.time.unit;
+    Dimension::Time
+        .unit_names()
+        .filter_map(|name| Unit::named(name, None))
+        .filter(|unit| unit.name != declared.name)
+        .filter(|unit| plausible.contains(&(spacing_s / declared.si * unit.si)))
+        .map(|unit| Remedy::Unit(vec![(Quantity::Time, unit)]))
+        .collect()
+}

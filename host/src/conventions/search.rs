@@ -1,0 +1,173 @@
+//! Looks for the remedies that clearly lower the error, one after another.
+
+use super::continuous::{LEAST_ZERO_RAD, continuous};
+use super::drives::drives;
+use super::excerpts::excerpts;
+use super::remedy::{Quantity, Remedy, alternatives, time_units};
+use super::trial::{Bench, Effort, Trial};
+use crate::log::Motion;
+use crate::model::Model;
+use rayon::prelude::*;
+
+/// Samples looked at with each remedy, and with each of the many values of a continuous one.
+pub(super) const SAMPLES: usize = 6000;
+const SAMPLES_CONTINUOUS: usize = 2000;
+/// Remedies that are judged with fitted start states.
+const JUDGED: usize = 6;
+/// An error ratio this high, from guessed start states, is not looked at again.
+const HOPELESS: f64 = 1.05;
+/// Faults that one log may have at once.
+const ROUNDS: usize = 3;
+
+/// A fault with its remedy, and others that do as well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The best remedy.
+    pub trial: Trial,
+    /// Remedies that lower the error as far.
+    pub rivals: Vec<Trial>,
+}
+
+/// The faults found, each with those before it mended.
+pub fn search(model: &Model, motions: &[Motion]) -> Vec<Found> {
+    let mut found = Vec::new();
+    let (mut model, mut motions) = (model.clone(), motions.to_vec());
+    for _ in 0..ROUNDS {
+        let Some(fault) = fault(&model, &motions) else {
+            break;
+        };
+        let remedy = &fault.trial.remedy;
+        motions = remedy.reread(&model, &motions);
+        model = remedy.applied(&model);
+        found.push(fault);
+    }
+    found
+}
+
+/// The remedy that lowers the error most, if it does so clearly.
+fn fault(model: &Model, motions: &[Motion]) -> Option<Found> {
+    let doubtful = time_units(model, spacing_s(motions));
+    let mut clear = if doubtful.is_empty() {
+        plausible_time(model, motions)
+    } else {
+        // Few samples: as declared, each may last a thousand integration steps.
+        let few = excerpts(motions, SAMPLES_CONTINUOUS);
+        let bench = Bench::of_doubtful_time(model, few);
+        let doubtful = doubtful.into_iter();
+        let trials = doubtful.filter_map(|remedy| bench.tried(remedy, Effort::Guess));
+        trials.filter(|trial| trial.ratio() < 1.0).collect()
+    };
+    // Where a free number gains but little more, one of a few alternatives is likelier.
+    let merit = |trial: &Trial| match trial.remedy.is_continuous() {
+        true => trial.after / FREE_NUMBER,
+        false => trial.after,
+    };
+    clear.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
+    let mut clear = clear.into_iter();
+    let trial = clear.next()?;
+    let rivals = clear.filter(|rival| merit(rival) < AS_GOOD * merit(&trial));
+    Some(Found {
+        rivals: rivals.collect(),
+        trial,
+    })
+}
+
+/// How much less error a free number must leave than an alternative without one.
+const FREE_NUMBER: f64 = 0.7;
+/// Errors that differ by less are the same.
+const AS_GOOD: f64 = 1.15;
+
+fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
+    let bench = Bench::new(model, excerpts(motions, SAMPLES));
+    let few = Bench::new(model, excerpts(motions, SAMPLES_CONTINUOUS));
+    let mut remedies = alternatives(model, motions);
+    remedies.extend(drives(&few));
+    remedies.extend(continuous(&few));
+    judged(&bench, remedies)
+}
+
+/// Those of the remedies that clearly lower the error.
+fn judged(bench: &Bench, remedies: Vec<Remedy>) -> Vec<Trial> {
+    let screened = remedies.into_par_iter();
+    let mut screened: Vec<Trial> = screened
+        .filter_map(|remedy| bench.tried(remedy, Effort::Guess))
+        .filter(|trial| trial.ratio() < HOPELESS)
+        .collect();
+    screened.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+    screened.truncate(JUDGED);
+    let judged = screened.into_par_iter().filter_map(|trial| {
+        // The file's free values are a start: each reading is judged with those that suit it.
+        let refitted = bench.tried(trial.remedy.clone(), Effort::Values)?;
+        if !least(bench, &refitted.remedy).allows(&refitted) {
+            return None;
+        }
+        let given = bench.tried(trial.remedy, Effort::Starts)?;
+        (given.ratio() < 1.0).then_some(refitted)
+    });
+    judged.collect()
+}
+
+/// What a remedy must do to be believed.
+struct Least {
+    ratio: f64,
+    better: f64,
+}
+
+impl Least {
+    fn allows(&self, trial: &Trial) -> bool {
+        trial.ratio() < self.ratio && trial.better >= self.better && trial.after < 1.0
+    }
+}
+
+/// What this remedy must do: alternatives without a free number less than zeros and shifts, which
+/// effects of the rig (a tilt, a delay) look like.
+fn least(bench: &Bench, remedy: &Remedy) -> Least {
+    let strict = Least {
+        ratio: 0.6,
+        better: 0.75,
+    };
+    let never = Least {
+        ratio: 0.0,
+        better: 1.0,
+    };
+    match remedy {
+        Remedy::Offset(quantity, offset) => {
+            let given = quantity
+                .column(&bench.model)
+                .map_or(0.0, |column| column.offset);
+            match (offset - given).abs() > LEAST_ZERO_RAD {
+                true => strict,
+                false => never,
+            }
+        }
+        // A drive that acts late is an effect of the library.
+        Remedy::Shift(Quantity::Input(_), shift_s) if *shift_s > 0.0 => match *shift_s > 0.06 {
+            true => strict,
+            false => never,
+        },
+        Remedy::Shift(_, shift_s) => match shift_s.abs() > 0.008 {
+            true => strict,
+            false => never,
+        },
+        _ => Least {
+            ratio: 0.8,
+            better: 0.7,
+        },
+    }
+}
+
+/// Whether samples lie so far apart, or so close, that the unit of time must be wrong.
+pub(super) fn is_doubtful_time(model: &Model, motions: &[Motion]) -> bool {
+    !time_units(model, spacing_s(motions)).is_empty()
+}
+
+/// Median time from sample to sample, s.
+fn spacing_s(motions: &[Motion]) -> f64 {
+    let steps = motions.iter().flat_map(|motion| motion.time_s.windows(2));
+    let mut steps: Vec<f64> = steps.map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}

@@ -1,0 +1,85 @@
+//! A spoiled log is found with its remedy, and a good one is left alone.
+
+use super::*;
+use crate::challenge::{Motions, bench};
+use crate::model::AngleZero;
+use std::path::{Path, PathBuf};
+
+/// A virtual arm whose model lacks nothing but an effect, with the first of its logs.
+fn arm(kind: &'static str) -> (tempfile::TempDir, PathBuf, PathBuf) {
+    let bench = bench(Motions::Arm, 5, &[kind]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (model, log) = (folder.path().join("arm.toml"), folder.path().join("a.csv"));
+    std::fs::write(&model, &bench.model_toml).unwrap();
+    std::fs::write(&log, &bench.logs[0].csv).unwrap();
+    (folder, model, log)
+}
+
+fn found(model: &Path, log: &Path, change: impl Fn(&mut Model)) -> Vec<LogFinding> {
+    let text = std::fs::read_to_string(model).unwrap();
+    let old = Model::parse(&text, model).unwrap();
+    let mut new = old.clone();
+    change(&mut new);
+    let text = crate::model::edit::set_reading(&text, model, &old, &new).unwrap();
+    let file = ModelFile {
+        path: model,
+        text: &text,
+    };
+    check(&[LogRequest::whole(log)], &new, file).unwrap()
+}
+
+#[test]
+fn a_log_that_agrees_is_left_alone() {
+    let (_folder, model, log) = arm("coulomb");
+    assert_eq!(found(&model, &log, |_| ()), []);
+}
+
+#[test]
+fn a_reversed_position_is_refused_with_the_line_that_mends_it() {
+    let (_folder, model, log) = arm("coulomb");
+    let findings = found(&model, &log, |m| {
+        m.log.joints[0].position.as_mut().unwrap().columns_mut()[0].reversed = true
+    });
+    let first = &findings[0];
+    assert_eq!(
+        (first.kind, first.severity),
+        ("sign", crate::log::Severity::Refuse)
+    );
+    assert!(first.remedy.contains("position = {"), "{}", first.remedy);
+    assert!(
+        !first.remedy.contains("reversed = true"),
+        "{}",
+        first.remedy
+    );
+    let proof = first.proof.unwrap();
+    assert!(proof.after_share < 0.5 * proof.before_share, "{proof:?}");
+}
+
+#[test]
+fn a_wrong_angle_zero_is_found() {
+    let (_folder, model, log) = arm("viscous");
+    let right = Model::load(&model).unwrap().angle_zero;
+    let wrong = match right {
+        AngleZero::Upright => AngleZero::Hanging,
+        _ => AngleZero::Upright,
+    };
+    let findings = found(&model, &log, |m| m.angle_zero = wrong);
+    assert_eq!(findings[0].kind, "zero", "{findings:#?}");
+}
+
+#[test]
+fn milliseconds_declared_as_seconds_are_found() {
+    let (_folder, model, log) = arm("coulomb");
+    let text = std::fs::read_to_string(&log).unwrap();
+    let milliseconds = text.lines().map(|line| {
+        let (time, rest) = line.split_once(',').unwrap_or((line, ""));
+        match time.parse::<f64>() {
+            Ok(seconds) => format!("{},{rest}\n", 1e3 * seconds),
+            Err(_) => format!("{line}\n"),
+        }
+    });
+    std::fs::write(&log, milliseconds.collect::<String>()).unwrap();
+    let findings = found(&model, &log, |_| ());
+    assert_eq!(findings[0].kind, "time_unit", "{findings:#?}");
+    assert!(findings[0].remedy.contains("\"ms\""), "{findings:#?}");
+}

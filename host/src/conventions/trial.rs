@@ -1,0 +1,133 @@
+//! A remedy tried: the error with it and without.
+
+use super::rating::{Rating, Reading};
+use super::remedy::{Quantity, Remedy};
+use crate::log::Motion;
+use crate::model::Model;
+
+/// A remedy with its proof: the errors before and after it, on the same windows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// The change.
+    pub remedy: Remedy,
+    /// Share of the motion that the model leaves unexplained as it is: 0 nothing, 1 as much as
+    /// going on at constant speed does.
+    pub before: f64,
+    /// The same with the remedy.
+    pub after: f64,
+    /// Root-mean-square error as it is, rad.
+    pub before_rad: f64,
+    /// The same with the remedy, rad.
+    pub after_rad: f64,
+    /// Share of the windows that the remedy makes better, of those it changes.
+    pub better: f64,
+}
+
+impl Trial {
+    /// Error after over error before.
+    pub fn ratio(&self) -> f64 {
+        self.after / self.before.max(1e-12)
+    }
+
+    fn new(remedy: Remedy, before: &Rating, after: &Rating) -> Option<Trial> {
+        let (mut better, mut changed) = (0.0, 0.0);
+        for (before, after) in before.shares.iter().zip(&after.shares) {
+            let square = |shares: &[f64]| shares.iter().map(|s| s * s).sum::<f64>();
+            let (before, after) = (square(before), square(after));
+            if (before - after).abs() > 0.1 * before.max(after) {
+                changed += 1.0;
+                better += f64::from(after < before);
+            }
+        }
+        Some(Trial {
+            remedy,
+            before: before.share()?,
+            after: after.share()?,
+            before_rad: before.rms_rad,
+            after_rad: after.rms_rad,
+            better: better / f64::max(changed, 1.0),
+        })
+    }
+}
+
+/// Which values the trials fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Effort {
+    /// None: start states as the samples suggest them.
+    Guess,
+    /// Start states.
+    Starts,
+    /// Start states and the model's free values.
+    Values,
+}
+
+/// Tries remedies on a model and its motions.
+pub(super) struct Bench {
+    pub model: Model,
+    pub motions: Vec<Motion>,
+    reading: Option<Reading>,
+}
+
+impl Bench {
+    pub fn new(model: &Model, motions: Vec<Motion>) -> Bench {
+        Bench {
+            model: model.clone(),
+            reading: Some(Reading::new(model.clone(), motions.clone())),
+            motions,
+        }
+    }
+
+    /// For times so far apart that the model cannot be run over them for long: as it reads them,
+    /// it is rated on the windows of the remedy.
+    pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> Bench {
+        Bench {
+            model: model.clone(),
+            reading: None,
+            motions,
+        }
+    }
+
+    /// The remedy's effect, on windows in which start errors grow in neither reading.
+    pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
+        let motions = remedy.reread(&self.model, &self.motions);
+        let after = Reading::new(remedy.applied(&self.model), motions);
+        let Some(reading) = &self.reading else {
+            let before = after.read_as(&self.model, self.motions.clone());
+            return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
+        };
+        // A shift shortens the motions; nothing else does.
+        let shortened = match remedy {
+            Remedy::Shift(..) => Some(self.shortened_as(&after.data.motions)),
+            _ => None,
+        };
+        let before = shortened.as_ref().unwrap_or(reading);
+        let windows = before.common_windows(&after);
+        let rated = |reading: &Reading| reading.cut_as(&windows).rated(effort);
+        Trial::new(remedy, &rated(before), &rated(&after))
+    }
+
+    /// The motions without the ends that others lack.
+    fn shortened_as(&self, others: &[Motion]) -> Reading {
+        let motions = self.motions.iter().zip(others);
+        let motions = motions.map(|(motion, other)| {
+            let first_s = other.time_s.first().copied().unwrap_or(f64::INFINITY);
+            let begin = motion.time_s.partition_point(|t| *t < first_s);
+            motion.part(begin..begin + other.len())
+        });
+        Reading::new(self.model.clone(), motions.collect())
+    }
+
+    /// Whether the column is there and not the same all the time.
+    pub fn varies(&self, quantity: Quantity) -> bool {
+        let values = |motion: &Motion| -> Option<Vec<f64>> {
+            match quantity {
+                Quantity::Time => Some(motion.time_s.clone()),
+                Quantity::Position(joint) => Some(motion.position_rad[joint].clone()),
+                Quantity::Velocity(joint) => motion.velocity_rad_s[joint].clone(),
+                Quantity::Input(joint) => motion.input[joint].clone(),
+            }
+        };
+        let varies = |values: Vec<f64>| values.windows(2).any(|pair| pair[0] != pair[1]);
+        self.motions.iter().filter_map(values).any(varies)
+    }
+}

@@ -1,0 +1,37 @@
+//! What of a model another format holds, and what it does not.
+
+use crate::model::{EffectInstance, Model};
+use serde::Serialize;
+
+/// A part of a model that an export leaves out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NotCarried {
+    /// The effect, or the drive's kind: `backlash`, `position`.
+    pub part: String,
+    /// Joint, counted from 1; none where the whole rig is meant.
+    pub joint: Option<usize>,
+    /// Why.
+    pub why: &'static str,
+}
+
+/// Effects that change the chain itself: mass, centre of mass, armature, tilt.
+pub(super) const OF_CHAIN: [&str; 4] = ["armature", "base_tilt", "com_angle", "mass"];
+
+/// The value of a joint's effect, if the model has it there.
+pub(super) fn value(model: &Model, id: &str, joint: usize, index: usize) -> Option<f64> {
+    let here = |e: &&EffectInstance| e.joint == Some(joint) && e.effect.info().id == id;
+    let instance = model.effects.iter().find(here)?;
+    instance.values.get(index).copied()
+}
+
+/// Every effect but those that the format holds.
+pub(super) fn not_carried(model: &Model, held: &[&str], why: &'static str) -> Vec<NotCarried> {
+    let missing = |e: &&EffectInstance| !held.contains(&e.effect.info().id);
+    let missing = model.effects.iter().filter(missing);
+    let said = |e: &EffectInstance| NotCarried {
+        part: e.effect.info().id.to_string(),
+        joint: e.joint.map(|joint| joint + 1),
+        why,
+    };
+    missing.map(said).collect()
+}

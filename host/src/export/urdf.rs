@@ -1,0 +1,102 @@
+//! URDF: the chain with its joints' damping and friction.
+
+use super::Exported;
+use super::carried::{NotCarried, OF_CHAIN, not_carried, value};
+use super::xml::{comment, escaped, number, numbers};
+use crate::effects::Rig;
+use crate::model::{Drive, Model};
+use std::fmt::Write as _;
+
+/// A moment of inertia of zero is refused by most readers, kg m^2.
+const LEAST_INERTIA: f64 = 1e-9;
+
+/// Effects that URDF's `dynamics` holds beside those of the chain.
+const HELD: [&str; 2] = ["coulomb", "viscous"];
+
+/// The model as URDF.
+///
+/// Joints turn about -y, counter-clockwise as seen with x to the right and z up; coordinates are
+/// relative angles, the first from hanging. Gravity, drives and armatures are the reader's: URDF
+/// has no place for them, so they are listed.
+pub fn urdf(model: &Model) -> Exported {
+    let rig = model.rig(false);
+    let zero = number(model.angle_zero.from_hanging_rad());
+    let zero = comment(&format!(
+        "The model's first angle is the first joint's less {zero} rad."
+    ));
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <!-- {zero} -->\n  \
+         <link name=\"base\"/>\n",
+        escaped(&model.name)
+    );
+    links(&mut text, &rig);
+    joints(&mut text, model, &rig);
+    text.push_str("</robot>\n");
+    Exported {
+        text,
+        not_carried: left_out(model, &rig),
+    }
+}
+
+fn links(text: &mut String, rig: &Rig) {
+    for (index, link) in rig.chain.links.iter().enumerate() {
+        let (sin, cos) = link.com_angle_rad.sin_cos();
+        let inertia = number(link.inertia_kg_m2.max(LEAST_INERTIA));
+        let _ = write!(
+            text,
+            "  <link name=\"link{}\">\n    <inertial>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n      \
+             <mass value=\"{}\"/>\n      <inertia ixx=\"{inertia}\" ixy=\"0\" ixz=\"0\" \
+             iyy=\"{inertia}\" iyz=\"0\" izz=\"{inertia}\"/>\n    </inertial>\n  </link>\n",
+            index + 1,
+            numbers(&[link.com_m * sin, 0.0, -link.com_m * cos]),
+            number(link.mass_kg),
+        );
+    }
+}
+
+fn joints(text: &mut String, model: &Model, rig: &Rig) {
+    let mut above_m = 0.0;
+    for (joint, link) in rig.chain.links.iter().enumerate() {
+        let parent = match joint {
+            0 => "base".to_string(),
+            joint => format!("link{joint}"),
+        };
+        let of = |id| value(model, id, joint, 0).unwrap_or(0.0);
+        let _ = write!(
+            text,
+            "  <joint name=\"joint{0}\" type=\"continuous\">\n    <parent link=\"{parent}\"/>\n    \
+             <child link=\"link{0}\"/>\n    <origin xyz=\"{1}\" rpy=\"0 0 0\"/>\n    \
+             <axis xyz=\"0 -1 0\"/>\n    <dynamics damping=\"{2}\" friction=\"{3}\"/>\n  </joint>\n",
+            joint + 1,
+            numbers(&[0.0, 0.0, -above_m]),
+            number(of("viscous")),
+            number(of("coulomb")),
+        );
+        above_m = link.length_m;
+    }
+}
+
+fn left_out(model: &Model, rig: &Rig) -> Vec<NotCarried> {
+    let held = [&["com_angle", "mass"], &HELD[..]].concat();
+    debug_assert!(OF_CHAIN.contains(&"mass"));
+    let mut missing = not_carried(model, &held, "URDF has no place for it");
+    missing.push(NotCarried {
+        part: "gravity_m_s2".to_string(),
+        joint: None,
+        why: "gravity is the simulator's",
+    });
+    if rig.chain.gravity_m_s2 == 0.0 {
+        missing.pop();
+    }
+    let drives = model.joints.iter().map(|joint| &joint.drive).enumerate();
+    missing.extend(
+        drives
+            .filter(|(_, drive)| **drive != Drive::Passive)
+            .map(|(joint, drive)| NotCarried {
+                part: drive.name().to_string(),
+                joint: Some(joint + 1),
+                why: "URDF has no drives",
+            }),
+    );
+    missing
+}

@@ -1,0 +1,10 @@
+//! The benchmark of spoiled logs: is a wrong sign, zero, unit, drive or time told from physics, and
+//! is the right remedy given?
+
+mod outcome;
+mod rig;
+mod spoiling;
+
+pub use outcome::{Answer, Outcome, judge, unspoiled};
+pub use rig::{Rig, bundled, public, simulated};
+pub use spoiling::{Spoiled, Spoiling, spoilings};

@@ -1,0 +1,362 @@
+//! Ways to spoil a log, or the model file's account of it, and what mends each.
+
+use super::rig::Rig;
+use handstand::Model;
+use handstand::conventions::{Quantity, Remedy};
+use handstand::log::Motion;
+use handstand::model::{AngleZero, Angles, Drive, Motor, Unit};
+use std::f64::consts::{PI, TAU};
+
+/// A way to spoil a log; joints count from 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spoiling {
+    /// The joint's angle and speed count the other way round.
+    PositionSign(usize),
+    /// The joint's input counts the other way round.
+    InputSign(usize),
+    /// The joint's angle is 0.5 rad off.
+    Zero(usize),
+    /// The angles are said to be zero where they are not: hanging, upright.
+    AngleZero,
+    /// Degrees are declared as radians.
+    Degrees(usize),
+    /// Radians are declared as degrees.
+    Radians(usize),
+    /// Counts of 4096 per turn are declared as radians.
+    Counts(usize),
+    /// Counts of 4096 per turn are declared as of 1024.
+    CountsPerTurn(usize),
+    /// The input is in another unit than declared.
+    InputUnit(usize),
+    /// Relative angles are declared as absolute, or the other way round.
+    Angles,
+    /// The model names another kind of drive.
+    Drive(usize, &'static str),
+    /// Milliseconds are declared as seconds.
+    Milliseconds,
+    /// A column was taken so much later than the others, s.
+    Shift(Quantity, f64),
+    /// All joints stand still for the last 25 s.
+    Stalled,
+    /// The input is cut off at half its most.
+    Clipped(usize),
+}
+
+/// A rig with a spoiled log.
+#[derive(Debug, Clone)]
+pub struct Spoiled {
+    /// The model, whose file may be what is wrong.
+    pub model: Model,
+    /// The motions as that model reads them.
+    pub motions: Vec<Motion>,
+}
+
+/// Offset of a wrong zero, rad.
+const OFFSET_RAD: f64 = 0.5;
+/// Shift of a column, s, or this many samples where they are rare.
+const SHIFT_S: f64 = 0.1;
+const SHIFT_SAMPLES: f64 = 3.0;
+/// Time for which a joint stands still, s.
+const STILL_S: f64 = 25.0;
+
+/// Every way to spoil this rig's log.
+pub fn spoilings(rig: &Rig) -> Vec<Spoiling> {
+    use Spoiling as S;
+    let joints = rig.model.link_count();
+    let samples: usize = rig.motions.iter().map(Motion::len).sum();
+    let seconds: f64 = rig.motions.iter().map(Motion::duration_s).sum();
+    let shift_s = SHIFT_S.max(SHIFT_SAMPLES * seconds / samples.max(1) as f64);
+    let mut all = vec![S::AngleZero, S::Milliseconds, S::Stalled];
+    for joint in 0..joints {
+        all.extend([S::PositionSign, S::Zero, S::Degrees, S::Radians, S::Counts].map(|s| s(joint)));
+        all.push(S::CountsPerTurn(joint));
+        let drive = &rig.model.joints[joint].drive;
+        if drive.is_driven() {
+            all.extend([S::InputSign, S::InputUnit, S::Clipped].map(|s| s(joint)));
+            let others = ["torque", "duty", "position", "speed"].into_iter();
+            let others = others.filter(|name| *name != drive.name());
+            all.extend(others.map(|name| S::Drive(joint, name)));
+            let shift = |sign: f64| S::Shift(Quantity::Input(joint), sign * shift_s);
+            all.extend([1.0, -1.0].map(shift));
+        }
+        if joint > 0 {
+            all.push(S::Shift(Quantity::Position(joint), shift_s));
+        }
+    }
+    if joints > 1 {
+        all.push(S::Angles);
+    }
+    all
+}
+
+impl Spoiling {
+    /// Its kind, as the rows of the table name it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Spoiling::PositionSign(_) => "position reversed",
+            Spoiling::InputSign(_) => "input reversed",
+            Spoiling::Zero(_) => "zero 0.5 rad off",
+            Spoiling::AngleZero => "hanging and upright confused",
+            Spoiling::Degrees(_) => "degrees declared as rad",
+            Spoiling::Radians(_) => "rad declared as degrees",
+            Spoiling::Counts(_) => "counts declared as rad",
+            Spoiling::CountsPerTurn(_) => "wrong counts per turn",
+            Spoiling::InputUnit(_) => "input in another unit",
+            Spoiling::Angles => "relative and absolute angles confused",
+            Spoiling::Drive(..) => "another kind of drive",
+            Spoiling::Milliseconds => "milliseconds declared as s",
+            Spoiling::Shift(..) => "column shifted in time",
+            Spoiling::Stalled => "stalled run",
+            Spoiling::Clipped(_) => "clipped input",
+        }
+    }
+
+    /// The rig with its log spoiled.
+    pub fn applied(&self, rig: &Rig) -> Spoiled {
+        let mut spoiled = Spoiled {
+            model: rig.model.clone(),
+            motions: rig.motions.clone(),
+        };
+        let (model, motions) = (&mut spoiled.model, &mut spoiled.motions);
+        match *self {
+            Spoiling::PositionSign(joint) => scale_position(motions, joint, -1.0),
+            Spoiling::InputSign(joint) => scale_input(motions, joint, -1.0),
+            Spoiling::Zero(joint) => {
+                for motion in motions {
+                    motion.position_rad[joint]
+                        .iter_mut()
+                        .for_each(|q| *q += OFFSET_RAD);
+                }
+            }
+            Spoiling::AngleZero => model.angle_zero = other_zero(model.angle_zero),
+            Spoiling::Degrees(joint) => scale_position(motions, joint, 180.0 / PI),
+            Spoiling::Radians(joint) => {
+                declare(model, joint, "deg", None);
+                scale_position(motions, joint, PI / 180.0);
+            }
+            Spoiling::Counts(joint) => {
+                // Whatever the file declared, counts are what the log now holds.
+                scale_position(motions, joint, 4096.0 / TAU);
+                declare(model, joint, "rad", None);
+            }
+            Spoiling::CountsPerTurn(joint) => {
+                declare(model, joint, "ticks", Some(1024.0));
+                scale_position(motions, joint, 4.0);
+            }
+            Spoiling::InputUnit(joint) => scale_input(motions, joint, input_factor(model, joint)),
+            Spoiling::Angles => {
+                model.angles = match model.angles {
+                    Angles::Relative => Angles::Absolute,
+                    Angles::Absolute => Angles::Relative,
+                }
+            }
+            Spoiling::Drive(joint, name) => another_drive(model, motions, joint, name),
+            Spoiling::Milliseconds => {
+                for motion in motions {
+                    motion.time_s.iter_mut().for_each(|t| *t *= 1e3);
+                }
+            }
+            Spoiling::Shift(column, shift_s) => {
+                // What was taken later is written too early: the remedy moves it back.
+                let moved = Remedy::Shift(column, -shift_s);
+                *motions = moved.reread(model, motions);
+            }
+            Spoiling::Stalled => motions.iter_mut().take(1).for_each(stall),
+            Spoiling::Clipped(joint) => clip(motions, joint),
+        }
+        spoiled
+    }
+
+    /// Whether this remedy mends it.
+    pub fn mended_by(&self, remedy: &Remedy, rig: &Rig, spoiled: &Spoiled) -> bool {
+        let near = |value: f64, wanted: f64, by: f64| (value - wanted).abs() <= by;
+        let factor = |quantity: Quantity, unit: &Unit| {
+            quantity
+                .column(&spoiled.model)
+                .map_or(0.0, |column| unit.si / column.unit.si)
+        };
+        let scaled = |quantity: Quantity, wanted: f64| match remedy {
+            Remedy::Unit(columns) => {
+                let mut columns = columns.iter();
+                columns.any(|(q, unit)| {
+                    *q == quantity && near(factor(quantity, unit) / wanted, 1.0, 0.03)
+                })
+            }
+            _ => false,
+        };
+        let offset = |joint: usize| match remedy {
+            Remedy::Offset(Quantity::Position(j), offset) if *j == joint => {
+                let column = Quantity::Position(joint).column(&spoiled.model)?;
+                Some(offset - column.offset)
+            }
+            _ => None,
+        };
+        match *self {
+            Spoiling::PositionSign(joint) => reverses(remedy, Quantity::Position(joint)),
+            Spoiling::InputSign(joint) => reverses(remedy, Quantity::Input(joint)),
+            Spoiling::Zero(joint) => offset(joint).is_some_and(|o| near(o, -OFFSET_RAD, 0.15)),
+            Spoiling::AngleZero => {
+                let (is, was) = (spoiled.model.angle_zero, rig.model.angle_zero);
+                let wanted = was.from_hanging_rad() - is.from_hanging_rad();
+                let turned = |o: f64| near((o - wanted + PI).rem_euclid(TAU), PI, 0.15);
+                *remedy == Remedy::AngleZero(was) || offset(0).is_some_and(turned)
+            }
+            Spoiling::Degrees(joint) => scaled(Quantity::Position(joint), PI / 180.0),
+            Spoiling::Radians(joint) => scaled(Quantity::Position(joint), 180.0 / PI),
+            Spoiling::Counts(joint) => scaled(Quantity::Position(joint), TAU / 4096.0),
+            Spoiling::CountsPerTurn(joint) => scaled(Quantity::Position(joint), 0.25),
+            Spoiling::InputUnit(joint) => scaled(
+                Quantity::Input(joint),
+                1.0 / input_factor(&rig.model, joint),
+            ),
+            Spoiling::Angles => matches!(remedy, Remedy::Angles(_)),
+            Spoiling::Drive(joint, _) => match remedy {
+                Remedy::Drive(j, drive, _) => {
+                    *j == joint && drive.name() == rig.model.joints[joint].drive.name()
+                }
+                _ => false,
+            },
+            Spoiling::Milliseconds => scaled(Quantity::Time, 1e-3),
+            Spoiling::Shift(column, shift_s) => match remedy {
+                Remedy::Shift(c, s) => *c == column && near(*s / shift_s, 1.0, 0.5),
+                _ => false,
+            },
+            Spoiling::Stalled | Spoiling::Clipped(_) => false,
+        }
+    }
+}
+
+fn reverses(remedy: &Remedy, quantity: Quantity) -> bool {
+    matches!(remedy, Remedy::Reverse(columns) if columns.contains(&quantity))
+}
+
+fn other_zero(zero: AngleZero) -> AngleZero {
+    match zero {
+        AngleZero::Hanging => AngleZero::Upright,
+        AngleZero::Upright | AngleZero::Horizontal => AngleZero::Hanging,
+    }
+}
+
+/// Torques are written in mN m, goals in degrees, shares in percent.
+fn input_factor(model: &Model, joint: usize) -> f64 {
+    match model.joints[joint].drive {
+        Drive::Torque | Drive::Passive => 1e3,
+        Drive::Duty(_) => 100.0,
+        Drive::Position { .. } | Drive::Speed { .. } => 180.0 / PI,
+    }
+}
+
+fn declare(model: &mut Model, joint: usize, unit: &str, ticks: Option<f64>) {
+    let position = model.log.joints[joint].position.as_mut();
+    if let (Some(position), Some(unit)) = (position, Unit::named(unit, ticks)) {
+        position.columns_mut()[0].unit = unit;
+    }
+}
+
+fn scale_position(motions: &mut [Motion], joint: usize, factor: f64) {
+    for motion in motions {
+        motion.position_rad[joint]
+            .iter_mut()
+            .for_each(|q| *q *= factor);
+        let speeds = motion.velocity_rad_s[joint].iter_mut().flatten();
+        speeds.for_each(|v| *v *= factor);
+    }
+}
+
+fn scale_input(motions: &mut [Motion], joint: usize, factor: f64) {
+    let inputs = motions
+        .iter_mut()
+        .filter_map(|motion| motion.input[joint].as_mut());
+    inputs.flatten().for_each(|u| *u *= factor);
+}
+
+/// The last sample of the motion again and again, while time and inputs go on.
+fn stall(motion: &mut Motion) {
+    let count = motion.len();
+    let period_s = motion.duration_s() / (count - 1).max(1) as f64;
+    let more = (STILL_S / period_s).ceil() as usize;
+    let last_s = motion.time_s[count - 1];
+    let again = |values: &mut Vec<f64>| {
+        let cycle = values.clone();
+        values.extend((0..more).map(|k| cycle[k % count]));
+    };
+    motion
+        .time_s
+        .extend((1..=more).map(|k| last_s + k as f64 * period_s));
+    // Half way up or down its travel: no joint rests there by itself.
+    let stopped = count / 2;
+    for angle in &mut motion.position_rad {
+        let still = angle[stopped];
+        angle[stopped..].fill(still);
+        angle.extend(std::iter::repeat_n(still, more));
+    }
+    for speed in motion.velocity_rad_s.iter_mut().flatten() {
+        speed[stopped..].fill(0.0);
+        speed.extend(std::iter::repeat_n(0.0, more));
+    }
+    motion.input.iter_mut().flatten().for_each(again);
+    motion.supply_v.iter_mut().for_each(again);
+    if let Some(on) = &mut motion.torque_on {
+        let cycle = on.clone();
+        on.extend((0..more).map(|k| cycle[k % count]));
+    }
+}
+
+fn clip(motions: &mut [Motion], joint: usize) {
+    let inputs = || {
+        motions
+            .iter()
+            .filter_map(|motion| motion.input[joint].as_ref())
+    };
+    let most = inputs()
+        .flatten()
+        .fold(0.0_f64, |most, u| most.max(u.abs()));
+    let limit = 0.5 * most;
+    let inputs = motions
+        .iter_mut()
+        .filter_map(|motion| motion.input[joint].as_mut());
+    inputs.flatten().for_each(|u| *u = u.clamp(-limit, limit));
+}
+
+/// The model with another drive at the joint, and the column as declared in that drive's unit.
+fn another_drive(model: &mut Model, motions: &mut [Motion], joint: usize, name: &str) {
+    let motor = model.joints[joint].drive.motor().cloned().unwrap_or(Motor {
+        stall_torque_nm: 5.0,
+        no_load_speed_rad_s: f64::INFINITY,
+        nominal_supply_v: None,
+    });
+    let (drive, unit) = match name {
+        "torque" => (Drive::Torque, "N m"),
+        "duty" => (Drive::Duty(motor), "1"),
+        "position" => (
+            Drive::Position {
+                gain_per_rad: 10.0,
+                motor,
+            },
+            "rad",
+        ),
+        _ => (
+            Drive::Speed {
+                gain_s_per_rad: 1.0,
+                motor,
+            },
+            "rad/s",
+        ),
+    };
+    model.joints[joint].drive = drive;
+    // A file of this drive has no values of another.
+    let free = std::mem::take(&mut model.free);
+    model.free = free
+        .into_iter()
+        .filter(|path| path.get(model).is_some())
+        .collect();
+    if let (Some(column), Some(unit)) =
+        (&mut model.log.joints[joint].input, Unit::named(unit, None))
+    {
+        let column = &mut column.columns_mut()[0];
+        // The written numbers stay what they are.
+        let written = 1.0 / column.unit.si;
+        column.unit = unit;
+        scale_input(motions, joint, written * unit.si);
+    }
+}

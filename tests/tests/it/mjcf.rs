@@ -1,0 +1,164 @@
+//! Exported models move in MuJoCo as they do here.
+
+use handstand::Model;
+use handstand::challenge::{KINDS, Motions, bench};
+use handstand::export::mjcf;
+use handstand::log::Motion;
+use handstand::sim::{Plant, SensorState, Start, predict};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const PERIOD_S: f64 = 0.01;
+const PERIODS: usize = 200;
+
+/// The environment that `cargo xtask hidden --truth mujoco` and `cargo xtask peers` install.
+fn python() -> Option<PathBuf> {
+    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/peers/venv/bin/python");
+    let works = Command::new(&python).args(["-c", "import mujoco"]).output();
+    works
+        .is_ok_and(|output| output.status.success())
+        .then_some(python)
+}
+
+/// A true model of the benchmark, in the units of its drives' motors and without a sensor's rounding.
+fn model(motions: Motions, kind: &'static str, seed: u64) -> Model {
+    let bench = bench(motions, seed, &[kind]).unwrap();
+    let mut model = Model::parse(&bench.true_model_toml, Path::new("true.toml")).unwrap();
+    // MuJoCo's step; the benchmark's logs are of another.
+    model.step_s = 5e-4;
+    model
+}
+
+/// Two seconds from a start off the rest, each drive driven by a sine.
+fn motion(model: &Model) -> Motion {
+    let time_s: Vec<f64> = (0..=PERIODS).map(|k| k as f64 * PERIOD_S).collect();
+    let wave = |joint: usize| -> Vec<f64> {
+        let rate = 3.0 + joint as f64;
+        time_s.iter().map(|t| 0.1 * (rate * t).sin()).collect()
+    };
+    let joints = model.joints.iter().enumerate();
+    Motion {
+        position_rad: vec![vec![0.0; time_s.len()]; model.link_count()],
+        velocity_rad_s: vec![None; model.link_count()],
+        input: joints
+            .map(|(j, joint)| joint.drive.is_driven().then(|| wave(j)))
+            .collect(),
+        time_s,
+        ..Motion::default()
+    }
+}
+
+fn start(model: &Model) -> Start {
+    let joints = model.link_count();
+    Start {
+        angle_rad: (0..joints).map(|joint| 0.6 - 0.3 * joint as f64).collect(),
+        speed_rad_s: vec![0.0; joints],
+        reading_rad_s: None,
+    }
+}
+
+/// Per sample, the joints' relative angles, rad.
+fn ours(model: &Model, motion: &Motion, start: &Start) -> Vec<Vec<f64>> {
+    let plant = Plant::new(model, motion);
+    let samples = motion.len();
+    let mut readings = vec![0.0; samples * plant.len()];
+    let mut sensors = SensorState::default();
+    predict(
+        &plant,
+        motion,
+        0..samples,
+        start,
+        &mut sensors,
+        &mut readings,
+    );
+    let row = |k: usize| -> Vec<f64> {
+        let read: Vec<f64> = (0..plant.len())
+            .map(|joint| readings[joint * samples + k])
+            .collect();
+        plant.decode_rad(&read)
+    };
+    (1..samples).map(row).collect()
+}
+
+#[test]
+fn exported_models_move_in_mujoco_as_here() {
+    let Some(python) = python() else {
+        println!("MuJoCo is not installed in target/peers/venv: nothing compared");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (mut cases, mut expected) = (Vec::new(), Vec::new());
+    let mut listed = 0;
+    for seed in 0..2 * KINDS.len() as u64 {
+        let kind = KINDS[seed as usize % KINDS.len()];
+        let motions = if seed % 3 == 2 {
+            Motions::Hanging
+        } else {
+            Motions::Arm
+        };
+        let model = model(motions, kind, seed);
+        let exported = mjcf(&model);
+        if !exported.not_carried.is_empty() {
+            let parts = exported.not_carried.iter();
+            listed += usize::from(parts.clone().any(|missing| missing.part == kind));
+            continue;
+        }
+        let file = folder.path().join(format!("{seed}.xml"));
+        std::fs::write(&file, &exported.text).unwrap();
+        let (motion, start) = (motion(&model), start(&model));
+        let inputs: Vec<Vec<f64>> = (0..PERIODS)
+            .map(|k| {
+                motion
+                    .input
+                    .iter()
+                    .flatten()
+                    .map(|input| input[k])
+                    .collect()
+            })
+            .collect();
+        cases.push(json!({
+            "file": file, "start_rad": start.angle_rad, "period_s": PERIOD_S, "inputs": inputs,
+        }));
+        expected.push((format!("{kind} {seed}"), ours(&model, &motion, &start)));
+    }
+    let path = folder.path().join("cases.json");
+    std::fs::write(&path, serde_json::to_string(&cases).unwrap()).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/mjcf_trajectories.py");
+    let output = Command::new(python)
+        .arg(script)
+        .arg(&path)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let theirs: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for ((name, ours), theirs) in expected.iter().zip(theirs.as_array().unwrap()) {
+        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs.clone()).unwrap();
+        for joint in 0..ours[0].len() {
+            let column = || ours.iter().map(|row| row[joint]);
+            let low = column().fold(f64::INFINITY, f64::min);
+            let high = column().fold(f64::NEG_INFINITY, f64::max);
+            let off = ours
+                .iter()
+                .zip(&theirs)
+                .map(|(a, b)| (a[joint] - b[joint]).abs());
+            let off = off.fold(0.0, f64::max) / (high - low);
+            println!("{name}, joint {}: {:.2} %", joint + 1, 100.0 * off);
+            assert!(
+                off < 0.01,
+                "{name}, joint {}: {off} of {}",
+                joint + 1,
+                high - low
+            );
+        }
+    }
+    println!(
+        "{} compared, {listed} with an effect listed as not carried",
+        expected.len()
+    );
+    assert!(expected.len() >= 20, "{}", expected.len());
+}
