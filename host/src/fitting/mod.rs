@@ -21,6 +21,8 @@ mod free;
 mod growth;
 mod jacobian;
 mod levenberg_marquardt;
+#[cfg(test)]
+mod log_tests;
 mod node;
 mod noise;
 mod normal;
