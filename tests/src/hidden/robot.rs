@@ -28,7 +28,7 @@ pub const ROBOT_KINDS: [&str; 6] = [
 /// Servos of shoulder and hip.
 const SERVOS: [[u8; 2]; 2] = [[1, 2], [11, 12]];
 /// A bus on which an answer is lost now and then.
-const BUS: &str = "ids=1-2+11-12,delay=0,drop=0.003";
+const BUS: &str = "ids=1-2+11-12,delay=0,drop=0.1";
 /// Friction in the files, and by how much its owner's guess may be off.
 const FRICTION: [(&str, f64); 3] = [
     ("viscous@1.coefficient_nm_s_rad", 0.010),
