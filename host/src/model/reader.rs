@@ -258,20 +258,8 @@ impl<'a> Table<'a> {
 
     /// Refuses a character of the text under `key`, counted from 0.
     pub fn bad_character(&self, key: &str, at: usize, reason: impl Reason) -> Error {
-        let Some(value) = self.items.get(key).and_then(Item::span) else {
-            return self.bad(key, reason);
-        };
-        let written = self.source.text.get(value.clone()).unwrap_or_default();
-        let quotes = ["\"\"\"", "'''"]
-            .into_iter()
-            .find(|q| written.starts_with(q));
-        let begin = value.start + quotes.map_or(1, str::len);
-        let inside = self.source.text.get(begin..value.end).unwrap_or_default();
-        let offset = inside
-            .char_indices()
-            .nth(at)
-            .map_or(inside.len(), |(offset, _)| offset);
-        self.refused(Some(begin + offset..begin + offset + 1), reason)
+        let value = self.items.get(key).and_then(Item::span);
+        self.refused(value.map(|value| self.source.character(value, at)), reason)
     }
 
     /// Refuses the key itself.

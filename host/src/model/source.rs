@@ -24,6 +24,19 @@ impl TomlSource<'_> {
         })
     }
 
+    /// Where a character, counted from 0, of the quoted text at `value` stands.
+    pub fn character(&self, value: Range<usize>, at: usize) -> Range<usize> {
+        let written = self.text.get(value.clone()).unwrap_or_default();
+        let long = ["\"\"\"", "'''"]
+            .into_iter()
+            .find(|quotes| written.starts_with(quotes));
+        let begin = value.start + long.map_or(1, str::len);
+        let inside = self.text.get(begin..value.end).unwrap_or_default();
+        let offset = inside.char_indices().nth(at);
+        let start = begin + offset.map_or(inside.len(), |(offset, _)| offset);
+        start..start + 1
+    }
+
     /// Line and column at which `span` starts; the file's start without a span.
     pub fn place(&self, span: Option<Range<usize>>) -> Place {
         let mut start = span.map_or(0, |span| span.start).min(self.text.len());

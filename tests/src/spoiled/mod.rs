@@ -1,6 +1,7 @@
 //! The benchmark of spoiled logs: is a wrong sign, zero, unit, drive or time told from physics, and
 //! is the right remedy given?
 
+mod edits;
 mod outcome;
 mod rig;
 mod spoiling;
