@@ -65,7 +65,7 @@ mod tests {
         let request = Request::standard(&model);
         let design = Design::of(&model, &request).unwrap();
         let lean = [0.02, 0.0, 0.0];
-        let response = response(&model, &design, &request, &lean, 3.0).unwrap();
+        let response = response(&model, &design, &request, &lean, 6.0).unwrap();
         assert_eq!(response.angle_rad.len(), 3);
         assert_eq!(response.command.len(), 2);
         assert!((response.angle_rad[0][0] - 0.02).abs() < 1e-12);
@@ -74,6 +74,6 @@ mod tests {
             .iter()
             .map(|angles| angles.last().unwrap().abs());
         assert!(last.fold(0.0, f64::max) < 1e-3);
-        assert!((response.time_s.last().unwrap() - 3.0).abs() < 0.02);
+        assert!((response.time_s.last().unwrap() - 6.0).abs() < 0.02);
     }
 }
