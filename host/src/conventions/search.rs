@@ -140,11 +140,8 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
                 false => never,
             }
         }
-        // A drive that acts late is an effect of the library.
-        Remedy::Shift(Quantity::Input(_), shift_s) if *shift_s > 0.0 => match *shift_s > 0.06 {
-            true => strict,
-            false => never,
-        },
+        // A drive that acts late, whatever delays it, is an effect of the library.
+        Remedy::Shift(Quantity::Input(_), shift_s) if *shift_s > 0.0 => never,
         Remedy::Shift(_, shift_s) => match shift_s.abs() > 0.008 {
             true => strict,
             false => never,

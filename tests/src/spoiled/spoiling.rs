@@ -77,8 +77,8 @@ pub fn spoilings(rig: &Rig) -> Vec<Spoiling> {
             let others = ["torque", "duty", "position", "speed"].into_iter();
             let others = others.filter(|name| *name != drive.name());
             all.extend(others.map(|name| S::Drive(joint, name)));
-            let shift = |sign: f64| S::Shift(Quantity::Input(joint), sign * shift_s);
-            all.extend([1.0, -1.0].map(shift));
+            // Later instead of earlier is what a delay of the drive does: no fault of the log.
+            all.push(S::Shift(Quantity::Input(joint), -shift_s));
         }
         if joint > 0 {
             all.push(S::Shift(Quantity::Position(joint), shift_s));
