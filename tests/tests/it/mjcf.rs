@@ -92,7 +92,7 @@ fn exported_models_move_in_mujoco_as_here() {
     let folder = tempfile::tempdir().unwrap();
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     let mut listed = 0;
-    for seed in 0..2 * KINDS.len() as u64 {
+    for seed in 0..4 * KINDS.len() as u64 {
         let kind = KINDS[seed as usize % KINDS.len()];
         let motions = if seed % 3 == 2 {
             Motions::Hanging
