@@ -208,6 +208,8 @@ impl Browser {
 
     /// Gives files to an input for files, as a choice of them does.
     pub fn choose_files(&mut self, selector: &str, files: &[&Path]) {
+        // Before its script runs, a page does not notice what is chosen.
+        self.until("document.readyState === 'complete'");
         let document = self.call("DOM.getDocument", json!({}));
         let root = &document["root"]["nodeId"];
         let found = self.call(
