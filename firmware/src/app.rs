@@ -13,6 +13,7 @@ use crate::{boot_counter, bus};
 use handstand_shared::message::{ArmLimits, Attitude, Cause, Condition, ServoList, Statistics};
 use handstand_shared::packed::{Positions, Speeds};
 
+mod arming;
 mod buttons;
 mod command;
 mod modes;

@@ -4,12 +4,15 @@ use crate::servos::Servos;
 use handstand_shared::crc::extend32;
 use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
-use handstand_shared::message::Attitude;
 use handstand_shared::observer::{self, FINE, READINGS};
-use handstand_shared::plan::{AppliedInput, Gyro, Joint, Law, Moment, Plan};
-use handstand_shared::raw::{Position, Signed};
+use handstand_shared::plan::{AppliedInput, Joint, Law, Plan};
+use handstand_shared::raw::Signed;
 use handstand_shared::velocity;
-use micromath::F32Ext;
+
+mod attitude;
+mod compensation;
+
+use compensation::{coarse, compensation};
 
 /// Ticks a joint's servo may miss before it counts as lost.
 const LOST_AFTER: u8 = 3;
@@ -20,16 +23,6 @@ const POSE_CODES: u16 = 34;
 /// Of a reading there was none before. Zero, as all of [`Balance::NONE`]: another value would take a
 /// constant of its whole size from the AVR's RAM.
 const NEVER_HEARD: u8 = 0;
-
-/// Binary places of the gyro's mean code.
-const ZERO_PLACES: u8 = 16;
-
-/// The mean forgets with a time constant of 2^5 ticks, 0.32 s.
-const REST_SHIFT: u8 = 5;
-
-/// Binary places of the gyro's code that the rate is computed with: times any scale it stays within
-/// 32 bits.
-const CODE_PLACES: u8 = 4;
 
 /// What balancing remembers from tick to tick.
 #[derive(Debug, Clone)]
@@ -92,15 +85,8 @@ impl Balance {
         let is_sound = self.plan.fill(&mut bytes);
         drop(bytes);
         self.fingerprint = is_sound.then_some(!crc);
-        self.zero = i32::from(self.plan.gyro.zero) << ZERO_PLACES;
+        self.zero = i32::from(self.plan.gyro.zero) << attitude::ZERO_PLACES;
         is_sound
-    }
-
-    /// Torque is off: the gyro's code goes into the mean of those at rest.
-    pub fn rest(&mut self, gyro: u16) {
-        // Both below 2^26.
-        let off = (i32::from(gyro as i16) << ZERO_PLACES).wrapping_sub(self.zero);
-        self.zero = self.zero.wrapping_add(off >> REST_SHIFT);
     }
 
     /// CRC-32 of the plan; none if there is none that can be used.
@@ -119,23 +105,6 @@ impl Balance {
         self.compensation = compensation(&self.plan.moments);
         let [angle, ..] = self.point();
         self.angle = i32::from(angle) * 10;
-    }
-
-    /// Takes the first link's attitude: the host's, if the plan wants it, or the gyro's rate and
-    /// its sum.
-    pub fn sense(&mut self, host: Attitude, gyro: u16) {
-        if self.plan.gyro.from_host {
-            self.rate = host.rate;
-            self.angle = i32::from(host.angle) * 10;
-            return;
-        }
-        let code = i32::from(gyro as i16) << CODE_PLACES;
-        let code = code.wrapping_sub(self.zero >> (ZERO_PLACES - CODE_PLACES));
-        let rate = code.wrapping_mul(i32::from(self.plan.gyro.scale)) >> (4 + CODE_PLACES);
-        self.rate = rate.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
-        // 1e-3 rad/s for 10 ms are 1e-5 rad: 1/10 of the angle's step.
-        let angle = self.angle.saturating_add(i32::from(self.rate));
-        self.angle = angle.clamp(-320_000, 320_000);
     }
 
     /// The first link's angle, both joints' in position codes, the first link's rate.
@@ -179,23 +148,6 @@ impl Balance {
         let [q2, q3] = joints;
         self.is_heard = [true, first.present, second.present, true];
         Ok([angle, q2, q3, self.rate])
-    }
-
-    /// Whether the host must say the first link's attitude.
-    pub fn needs_attitude(&self) -> bool {
-        self.plan.gyro.from_host
-    }
-
-    /// The gyro as the plan has it, its zero as measured since; zero and scale are 0 without a
-    /// plan.
-    pub fn gyro(&self) -> Gyro {
-        match self.fingerprint {
-            Some(_) => Gyro {
-                zero: ((self.zero + (1 << (ZERO_PLACES - 1))) >> ZERO_PLACES) as u16,
-                ..self.plan.gyro
-            },
-            None => Plan::ZERO.gyro,
-        }
     }
 
     /// The servos that measure the driven joints; none without a plan.
@@ -331,70 +283,4 @@ fn fine(readings: &[i16; READINGS]) -> [i16; READINGS] {
     let [angle, q2, q3, rate] = *readings;
     let fine = |q| saturate(i32::from(q) << FINE, i16::MIN, i16::MAX);
     [angle, fine(q2), fine(q3), rate]
-}
-
-/// Angles with the joints' in whole codes.
-fn coarse([e1, e2, e3]: [i16; 3]) -> [i16; 3] {
-    let whole = |e: i16| e.saturating_add(1 << (FINE - 1)) >> FINE;
-    [e1, whole(e2), whole(e3)]
-}
-
-/// The angles at which the links' masses balance, beside upright: every link's resultant centre of
-/// mass above its joint.
-///
-/// The paper, section IV.D: "finding and compensating the system with the angle of the resultant
-/// center of gravity". Gravity's torques vanish where the moments p_j e^{i t_j} of all links point
-/// up, so at absolute angles t_j = -arg p_j. micromath's arc is off by up to 0.003 rad; an observer
-/// finds the rest.
-#[inline(never)]
-fn compensation(moments: &[Moment; 3]) -> [i16; 3] {
-    const STEPS: [f32; 3] = [
-        (1.0 / Attitude::ANGLE_LSB_RAD) as f32,
-        ((1 << FINE) as f64 / Position::LSB_RAD) as f32,
-        ((1 << FINE) as f64 / Position::LSB_RAD) as f32,
-    ];
-    let mut angles = [0; 3];
-    let mut before = 0.0;
-    for ((angle, moment), steps) in angles.iter_mut().zip(moments).zip(STEPS) {
-        let absolute = match moment.aside {
-            // Exactly, not nearly, straight.
-            0 => 0.0,
-            aside => -F32Ext::atan2(f32::from(aside), f32::from(moment.along)),
-        };
-        *angle = ((absolute - before) * steps) as i16;
-        before = absolute;
-    }
-    angles
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A millimetre aside at 30: 33 mrad; a straight link between tilted ones turns both its
-    /// joints.
-    #[test]
-    fn resultant_masses_come_to_lie_above_their_joints() {
-        let tilted = Moment {
-            along: 3000,
-            aside: 100,
-        };
-        let straight = Moment {
-            along: 3000,
-            aside: 0,
-        };
-        let found = compensation(&[tilted, straight, tilted]);
-        let rad = (100f64 / 3000.0).atan();
-        let fine = f64::from(1 << FINE) / Position::LSB_RAD;
-        let exact = [-rad * 1e4, rad * fine, -rad * fine];
-        for (i, exact) in exact.into_iter().enumerate() {
-            let step = if i == 0 { 1e4 } else { fine };
-            assert!(
-                (f64::from(found[i]) - exact).abs() <= 3e-3 * step + 1.0,
-                "{found:?}"
-            );
-        }
-        assert_eq!(compensation(&[Moment::ZERO; 3]), [0; 3]);
-        assert_eq!(coarse([7, 48, -48]), [7, 2, -1]);
-    }
 }

@@ -20,6 +20,7 @@ pub mod error;
 pub mod excite;
 pub mod export;
 pub mod fitting;
+pub mod lab;
 pub mod link;
 pub mod log;
 pub mod model;

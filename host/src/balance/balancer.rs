@@ -3,13 +3,11 @@
 use super::attitude::AttitudeSource;
 use super::outcome::{BalanceEnd, BalanceOutcome};
 use super::status::BalanceStatus;
-use super::wheel_mode::WheelChange;
-use crate::deploy;
 use crate::error::{Error, Result};
 use crate::link::record::{EmergencyOff, ReportReader, RobotSample, emergency_off};
-use crate::link::{SerialLink, Servos, Session, SessionError, is_let_down};
+use crate::link::{SerialLink, Session, SessionError, is_let_down};
 use handstand_shared::message::{
-    Answer, ArmLimits, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
+    Answer, ArmLimits, Command, Condition, Mode, Report, Subject, Telemetry,
 };
 use handstand_shared::packed::SERVOS;
 use handstand_shared::plan::Plan;
@@ -21,17 +19,13 @@ const SILENT: Duration = Duration::from_millis(500);
 const LET_DOWN: Duration = Duration::from_millis(1000);
 /// Longest from asking for torque to the answer, behind the reports.
 const ARMED: Duration = Duration::from_millis(500);
-/// Reports before which not every servo's supply and mode are known.
-const ROUND: usize = 45;
-/// For so long the CM-5 repeats that torque is off after a mode was chosen.
-const INSISTS: Duration = Duration::from_millis(250);
 
 /// Balances a robot through the CM-5's firmware.
 pub struct Balancer<L: SerialLink> {
-    session: Session<L>,
+    pub(super) session: Session<L>,
     attitude: AttitudeSource,
-    ids: Vec<u8>,
-    reader: ReportReader,
+    pub(super) ids: Vec<u8>,
+    pub(super) reader: ReportReader,
     /// What is known of the robot.
     pub status: BalanceStatus,
     armed_at: Option<Duration>,
@@ -61,100 +55,6 @@ impl<L: SerialLink> Balancer<L> {
             ids: ids.to_vec(),
             armed_at: None,
         })
-    }
-
-    /// The plan that the CM-5 has.
-    ///
-    /// # Errors
-    /// It has none, or one of another version.
-    pub fn stored_plan(&mut self) -> Result<Plan> {
-        let bytes = deploy::read_back(&mut self.session)?;
-        Plan::from_bytes(&bytes)
-            .filter(|_| self.session.hello.plan != 0)
-            .ok_or_else(|| {
-                Error::device(
-                    "the CM-5 has no plan to balance with",
-                    "name a model, handstand balance MODEL.toml, or deploy one: handstand deploy",
-                )
-            })
-    }
-
-    /// Makes the CM-5 have this plan; whether it had to be uploaded. `progress` gets the bytes sent.
-    ///
-    /// # Errors
-    /// The CM-5 does not answer, refuses, or keeps another one.
-    pub fn deploy(&mut self, plan: &Plan, progress: impl FnMut(u64)) -> Result<bool> {
-        if self.session.hello.plan == plan.fingerprint() {
-            return Ok(false);
-        }
-        let mut bytes = Vec::new();
-        plan.bytes(|byte| bytes.push(byte));
-        deploy::upload(&mut self.session, &bytes, progress)?;
-        deploy::verify(&mut self.session, &bytes, plan.fingerprint())?;
-        Ok(true)
-    }
-
-    /// What must be changed in the servos.
-    ///
-    /// # Errors
-    /// One that the plan drives is not in the list of servos, or does not answer.
-    pub fn wheel_changes(&mut self, plan: &Plan) -> Result<Vec<WheelChange>> {
-        let driven = driven(plan);
-        if let Some(id) = driven.iter().find(|id| !self.ids.contains(id)) {
-            return Err(Error::usage(
-                format!("the plan drives servo {id}, which is not among --ids"),
-                "name all servos that hold the robot",
-            ));
-        }
-        let ids = self.ids.clone();
-        let mut servos = self.adapter()?;
-        Ok(WheelChange::needed(&mut servos, &ids, &driven)?)
-    }
-
-    /// Makes these changes, and reads them back.
-    ///
-    /// # Errors
-    /// A servo does not answer or keeps another code.
-    pub fn set_up(&mut self, changes: &[WheelChange]) -> Result<()> {
-        let mut servos = self.adapter()?;
-        for change in changes {
-            change.make(&mut servos)?;
-        }
-        Ok(())
-    }
-
-    fn adapter(&mut self) -> Result<Servos<&mut L>> {
-        self.session
-            .obey(&Command::Mode(Mode::Bridge), "pass bytes on")?;
-        let link = self.session.link();
-        link.pause(INSISTS);
-        link.clear()?;
-        Ok(Servos::new(link))
-    }
-
-    /// Names the servos, and hears them until all have told their supply and mode.
-    ///
-    /// # Errors
-    /// The CM-5 refuses or falls silent.
-    pub fn make_ready(&mut self, plan: &Plan) -> Result<()> {
-        self.status = BalanceStatus::new(plan, &self.ids);
-        let mut list = ServoList {
-            count: self.ids.len() as u8,
-            ids: [0; SERVOS],
-        };
-        list.ids[..self.ids.len()].copy_from_slice(&self.ids);
-        self.session.greet()?;
-        self.session
-            .obey(&Command::ServoList(list), "take the list of servos")?;
-        self.session
-            .obey(&Command::Mode(Mode::Balance), "prepare to balance")?;
-        let account = telemetry(&mut self.session)?;
-        let begun = self.session.link().now();
-        self.reader = ReportReader::new(self.ids.len(), begun, &account);
-        for _ in 0..ROUND {
-            self.step()?;
-        }
-        Ok(())
     }
 
     /// Torque on: it balances from now on.
@@ -302,20 +202,13 @@ impl<L: SerialLink> Balancer<L> {
     }
 }
 
-fn telemetry<L: SerialLink>(session: &mut Session<L>) -> Result<Telemetry, SessionError> {
+pub(super) fn telemetry<L: SerialLink>(
+    session: &mut Session<L>,
+) -> Result<Telemetry, SessionError> {
     session.fetch(&Command::Ask(Subject::Telemetry), |report| match report {
         Report::Telemetry(telemetry) => Some(*telemetry),
         _ => None,
     })
-}
-
-/// Servos that the plan drives.
-fn driven(plan: &Plan) -> Vec<u8> {
-    let both = plan
-        .joints
-        .iter()
-        .flat_map(|joint| [joint.id, joint.mirror]);
-    both.filter(|id| *id < 254).collect()
 }
 
 impl<L: SerialLink> Drop for Balancer<L> {

@@ -6,6 +6,7 @@
 mod attitude;
 mod balancer;
 mod outcome;
+mod set_up;
 mod status;
 mod wheel_mode;
 

@@ -16,10 +16,8 @@
 //! `["delay@1"]`.
 
 use super::{ExitStatus, Talk, fit, input};
-use handstand::fitting::{Candidate, CandidateError, Refitted, refit_with};
+use handstand::fitting::{Addition, Refitted, add_effects, candidates_named, not_reduced};
 use handstand::log::LogRequest;
-use handstand::model::edit;
-use handstand::output::number::mrad;
 use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -44,55 +42,32 @@ pub struct AddArgs {
 pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for name in &args.effects {
-        let candidate = Candidate::named(name, &model)?;
-        if candidates.contains(&candidate) {
-            return Err(CandidateError::InModel(candidate).into());
-        }
-        candidates.push(candidate);
-    }
+    let candidates = candidates_named(&args.effects, &model)?;
     let split = args.fit.motions(&model, &args.logs)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
     let bar = talk
         .bar(0)
         .with_message(format!("starts of {}", names.join(", ")));
-    let refitted = refit_with(&model, &candidates, &split, horizon, &|done, all| {
+    let progress = |done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-    });
-    drop(bar);
-    let refitted = match refitted {
-        Ok(refitted) => refitted,
-        Err(why) => return fit::refuse(&why, talk),
     };
-    if refitted.error.after_rad >= refitted.error.before_rad {
-        return refuse(&refitted, &names, talk);
+    let added = add_effects(&text, &args.model, &candidates, &split, horizon, &progress)?;
+    drop(bar);
+    match added {
+        Addition::Added { text, refitted } => {
+            let before = "for the model refitted without";
+            fit::write(&refitted, &text, &names, before, &args.fit, talk)
+        }
+        Addition::NotReduced(refitted) => refuse(&refitted, &names, talk),
+        Addition::Undetermined(why) => fit::refuse(&why, talk),
     }
-    let mut text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
-    let logs = input::files(&split.training);
-    let old = refitted
-        .record(logs.clone())
-        .about(|path| path.get(&model).is_some());
-    text = edit::renew_provenance(&text, &args.model, &old)?;
-    for candidate in candidates {
-        let (effect, fitted) = refitted.added(candidate, logs.clone());
-        text = edit::add_effect(&text, &args.model, &effect, Some(&fitted))?;
-    }
-    let before = "for the model refitted without";
-    fit::write(&refitted, &text, &names, before, &args.fit, talk)
 }
 
 /// Says that the effects do not help, and writes nothing.
 fn refuse(refitted: &Refitted, names: &[String], talk: &Talk) -> Result<ExitStatus> {
-    let error = &refitted.error;
-    let motions = if error.held_out { "held-out" } else { "fitted" };
-    let [before, after] = [error.before_rad, error.after_rad].map(mrad);
-    let why = format!(
-        "with {} the error on {motions} motions goes from {before} to {after} mrad",
-        names.join(", ")
-    );
+    let (error, why) = (&refitted.error, not_reduced(refitted, names));
     if talk.json {
         talk.data(&json!({ "refused": why, "error": error }))?;
     } else {

@@ -18,12 +18,14 @@
 //! `docs/json.md`.
 
 use super::page::{self, PageFile};
-use super::{ExitStatus, Talk, input, log};
+use super::{ExitStatus, Talk, input};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
-use handstand::diagnose::words::{HELD_OUT, LOGS, MODEL};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::conventions::ModelFile;
+use handstand::diagnose::{
+    DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
+};
 use handstand::fitting::{Horizon, effect_named};
-use handstand::log::{LogFinding, LogRequest, Motion, Severity, Split, read, split};
+use handstand::log::{LogRequest, LogSet, Motion, read};
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};
@@ -60,9 +62,9 @@ pub struct DiagnoseArgs {
 }
 
 impl DiagnoseArgs {
-    /// The logs to learn from, then those to judge by.
-    fn all_logs(&self) -> Vec<LogRequest> {
-        [self.logs.as_slice(), &self.judging.holdout].concat()
+    /// The logs to learn from, and those to judge by.
+    fn log_set(&self) -> LogSet {
+        input::log_set(&self.logs, &self.judging.holdout)
     }
 }
 
@@ -80,28 +82,10 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     }
     let model = Model::load(&args.model)?;
     let plan = args.plan.load(&model)?;
-    let mut findings = log::findings(&args.all_logs(), &args.model)?;
-    if args.trust_log {
-        // What a simulation proves becomes a warning; what cannot be read stays refused.
-        let proven = findings
-            .iter_mut()
-            .filter(|finding| finding.proof.is_some());
-        proven.for_each(|finding| finding.severity = Severity::Warn);
-    }
-    if log::refused(&findings) {
-        let diagnosis = Diagnosis::unfit(&findings);
+    let LogDiagnosis { diagnosis, split } = try_all(&model, args, talk)?;
+    if diagnosis.verdict == Verdict::Unfit {
         print(&diagnosis, &[], talk)?;
         return Ok(diagnosis);
-    }
-    let named = input::motions(&model.log, &args.logs, &args.judging.holdout)?;
-    let split = split(named.training, named.held_out);
-    let mut diagnosis = try_all(&model, &split, args, talk);
-    let warned = findings
-        .iter()
-        .filter(|finding| finding.severity == Severity::Warn);
-    diagnosis.warnings.extend(warned.map(LogFinding::statement));
-    for line in &mut diagnosis.next {
-        *line = with_names(line, args);
     }
     let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
     print(&diagnosis, &compared.named_loops(), talk)?;
@@ -117,44 +101,24 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     Ok(diagnosis)
 }
 
-/// A command line to be copied: the files' names in place of what stands for them.
-fn with_names(line: &str, args: &DiagnoseArgs) -> String {
-    let words = |logs: &[LogRequest]| {
-        let words: Vec<String> = logs.iter().map(|log| quoted(&log.to_string())).collect();
-        words.join(" ")
-    };
-    // Without logs of its own to judge by, the whole is all there is.
-    let line = match args.judging.holdout.as_slice() {
-        [] => line
-            .replace(&format!(" --holdout {HELD_OUT}"), "")
-            .replace(HELD_OUT, LOGS),
-        held_out => line.replace(HELD_OUT, &words(held_out)),
-    };
-    line.replace(LOGS, &words(&args.logs))
-        .replace(MODEL, &quoted(&args.model.to_string_lossy()))
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./:@+=,\\".contains(c);
-    match word.chars().all(plain) {
-        true => word.to_string(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
-
-fn try_all(model: &Model, split: &Split, args: &DiagnoseArgs, talk: &Talk) -> Diagnosis {
+fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnosis> {
     let defaults = DiagnoseOptions::default();
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         horizon: args.judging.run.horizon,
+        trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
     };
     let bar = talk.bar(0);
-    let (training, held_out) = (split.training.clone(), split.held_out.clone());
-    diagnose(model, training, held_out, &options, &|progress| {
+    let logs = args.log_set();
+    let text = input::text(&args.model)?;
+    let file = ModelFile {
+        path: &args.model,
+        text: &text,
+    };
+    diagnose_logs(model, file, &logs, &options, &|progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.what);
@@ -192,7 +156,7 @@ impl Compared {
         plan: Option<&StateFeedbackPlan>,
         args: &DiagnoseArgs,
     ) -> Result<Compared> {
-        let motions = read(&args.all_logs(), &model.log)?;
+        let motions = read(&args.log_set().all(), &model.log)?;
         let mut named = vec![("the model as it is".to_string(), model.clone())];
         if !diagnosis.effects.is_empty() {
             let effects = diagnosis.effects.iter().map(FittedEffect::address);

@@ -13,9 +13,9 @@
 //! `refused` and `blind`.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::fitting::{Refitted, Undetermined, free_parameters, refit};
+use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
-use handstand::{Model, Result, model::edit, output};
+use handstand::{Model, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -44,9 +44,7 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
         Ok(refitted) => refitted,
         Err(why) => return refuse(&why, talk),
     };
-    let text = edit::set_values(&text, &args.model, &refitted.values_of(&model))?;
-    let record = refitted.record(input::files(&split.training));
-    let text = edit::renew_provenance(&text, &args.model, &record)?;
+    let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
     write(&refitted, &text, &[], before, &args.fit, talk)
 }

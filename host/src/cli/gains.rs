@@ -25,7 +25,7 @@ use super::{ExitStatus, Talk, page};
 use handstand::model::Model;
 use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, Format, Request, Sensors, Time, Weight, balanced, upright};
+use handstand::synth::{Design, Format, Request, Sensors, Time, balanced, upright};
 use handstand::{Error, Result, output};
 use handstand_shared::raw::Position;
 use std::path::{Path, PathBuf};
@@ -251,7 +251,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         list.transpose()
     };
     let read = |given: &Option<WeightArg>| given.as_ref().map(WeightArg::read).transpose();
-    let ranges = Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat());
+    let standard = Request::standard(model);
     let sensors = Sensors {
         position_step_rad: args.position_step.unwrap_or(Position::LSB_RAD),
         gyro_step_rad_s: args
@@ -261,16 +261,16 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
     };
     let request = Request {
         pose_rad,
-        q: read(&args.q)?.unwrap_or(Weight::Scalar(100.0)),
-        r: read(&args.r)?.unwrap_or(Weight::Scalar(1.0)),
+        q: read(&args.q)?.unwrap_or(standard.q),
+        r: read(&args.r)?.unwrap_or(standard.r),
         time,
         sensors: args.lqg.then_some(sensors),
-        state_range: read(&args.range)?.unwrap_or(ranges),
+        state_range: read(&args.range)?.unwrap_or(standard.state_range),
         input_range: read(&args.limit)?,
         format: Format {
-            bits: 16,
             state_step: list(&args.state_step, "--state-step", 2 * joints)?,
             input_step: list(&args.input_step, "--input-step", inputs)?,
+            ..standard.format
         },
     };
     Ok((request, moved))

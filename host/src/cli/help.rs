@@ -8,8 +8,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Measure",
         &[
-            "excite", "log", "compare", "diagnose", "add", "fit", "effects", "model", "view",
-            "identify", "map",
+            "excite", "log", "compare", "diagnose", "add", "fit", "drift", "effects", "model",
+            "view", "identify", "map",
         ],
     ),
     (
@@ -22,7 +22,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "bus", "record", "replay", "balance", "latency", "flash", "deploy", "virtual",
         ],
     ),
-    ("Learn", &["demo", "challenge"]),
+    ("Learn", &["lab", "demo", "challenge"]),
     ("Help", &["doctor", "completions", "man"]),
 ];
 

@@ -97,7 +97,7 @@ fn data(args: &IdentifyArgs) -> Result<Data> {
         ));
     }
     let chosen = args.columns.chosen()?;
-    let split = input::motions(&chosen.columns, &args.logs, &args.validate)?;
+    let split = input::log_set(&args.logs, &args.validate).read(&chosen.columns)?;
     let all: Vec<Motion> = split
         .training
         .iter()

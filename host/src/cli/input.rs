@@ -1,10 +1,8 @@
 //! Arguments that several commands take.
 
-use super::page::file_name;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::fitting::Horizon;
-use handstand::log::{LogRequest, Motion, Split, read};
-use handstand::model::LogColumns;
+use handstand::log::{LogRequest, LogSet, Motion, Split};
 use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
@@ -81,10 +79,10 @@ impl RefitArgs {
     /// work.
     ///
     /// # Errors
-    /// As [`vacant`] and [`motions`].
+    /// As [`vacant`] and [`LogSet::read`].
     pub fn motions(&self, model: &Model, logs: &[LogRequest]) -> Result<Split> {
         vacant(&self.output, self.force)?;
-        motions(&model.log, logs, &self.judging.holdout)
+        log_set(logs, &self.judging.holdout).read(&model.log)
     }
 }
 
@@ -118,51 +116,12 @@ pub fn said(error: Error) -> String {
     }
 }
 
-/// Motions to learn from and motions to be judged by; none in `held_out` means that all are learned
-/// from.
-///
-/// # Errors
-/// Logs that cannot be read, or rows in both.
-pub fn motions(
-    columns: &LogColumns,
-    logs: &[LogRequest],
-    held_out: &[LogRequest],
-) -> Result<Split> {
-    told_apart(logs, held_out)?;
-    Ok(Split {
-        training: read(logs, columns)?,
-        held_out: read(held_out, columns)?,
-    })
-}
-
-/// Refuses rows that are both learned from and judged by.
-fn told_apart(logs: &[LogRequest], held_out: &[LogRequest]) -> Result<()> {
-    for held in held_out {
-        if let Some(fitted) = logs.iter().find(|log| log.overlaps(held)) {
-            let message = match fitted == held {
-                true => format!("{held} is fitted and held out"),
-                false => {
-                    format!("{held} is held out, and shares rows with {fitted}, which is fitted")
-                }
-            };
-            let remedy = "name each row once, a range includes its end: what was learned from \
-                          proves nothing";
-            return Err(Error::usage(message, remedy));
-        }
+/// The logs to learn from, and those to judge by.
+pub fn log_set(logs: &[LogRequest], held_out: &[LogRequest]) -> LogSet {
+    LogSet {
+        training: logs.to_vec(),
+        held_out: held_out.to_vec(),
     }
-    Ok(())
-}
-
-/// Name and SHA-256 of every file the motions came from, each once.
-pub fn files(motions: &[Motion]) -> Vec<(String, String)> {
-    let mut files: Vec<(String, String)> = Vec::new();
-    for source in motions.iter().map(|motion| &motion.source) {
-        let file = (file_name(&source.path), source.sha256.clone());
-        if !files.contains(&file) {
-            files.push(file);
-        }
-    }
-    files
 }
 
 /// The text of a file.

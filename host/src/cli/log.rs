@@ -73,9 +73,7 @@ pub fn findings(logs: &[LogRequest], file: &Path) -> Result<Vec<LogFinding>> {
         path: file,
         text: &text,
     };
-    let mut findings = conventions::check(logs, &model, file)?;
-    findings.extend(handstand::log::check(logs, &model)?);
-    Ok(findings)
+    conventions::findings(logs, &model, file)
 }
 
 /// Whether any finding makes the logs useless.

@@ -27,6 +27,7 @@ mod help;
 mod identify;
 mod input;
 mod interrupt;
+mod lab;
 mod latency;
 mod log;
 mod man;
@@ -132,6 +133,8 @@ pub enum Command {
     Robust(robust::RobustArgs),
     /// Demonstrate compare, diagnose and add on a virtual bench
     Demo(demo::DemoArgs),
+    /// Compare, diagnose and improve a model in a browser
+    Lab(lab::LabArgs),
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
     Bus(bus::BusCommand),
@@ -185,6 +188,7 @@ impl Command {
             Command::Delays(args) => delays::run(args, talk),
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
+            Command::Lab(args) => lab::run(args, talk),
             Command::Bus(command) => bus::run(command, talk),
             Command::Excite(args) => excite::run(args, talk),
             Command::Record(args) => record::run(args, talk),

@@ -1,7 +1,8 @@
-//! `handstand replay MOTION.csv|MOTION.mcap`: the servos do again what a recording says.
+//! `handstand replay MOTION.csv|MOTION.mcap`: the servos do again what a recording says, or what any
+//! CSV with `time_s` and `goal1_rad` asks for.
 //!
-//! The recording's goals are followed, or its positions where it has no goals (a motion shown by
-//! hand). Torque goes on, the servos go to the first pose at 0.5 rad/s, then the motion runs at its
+//! The goals are followed, or the positions of a recording without goals (a motion shown by hand).
+//! Where a motion's `torque_on` is 0 the servos are let go. `-` is CSV from the standard input. Torque goes on, the servos go to the first pose at 0.5 rad/s, then the motion runs at its
 //! own speed, and torque goes off; also after Ctrl-C and any error. It is stopped, with exit code
 //! 5, if a servo reports overload, overheating or a wrong supply, or if the CM-5 lets the robot
 //! down. It asks before it moves anything, unless `--yes`.
@@ -31,7 +32,7 @@ use std::path::PathBuf;
 /// Let the servos repeat a recording.
 #[derive(Debug, clap::Args)]
 pub struct ReplayArgs {
-    /// Recording to follow
+    /// Recording or goals to follow; `-` for the standard input
     motion: PathBuf,
     #[command(flatten)]
     robot: RobotArgs,

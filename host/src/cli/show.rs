@@ -78,6 +78,7 @@ fn warnings(refitted: &Refitted) -> Vec<String> {
     if !refitted.converged {
         warnings.push("the fit had not come to rest when its iterations ran out".to_string());
     }
+    warnings.extend(refitted.unobserved.iter().cloned());
     warnings
 }
 

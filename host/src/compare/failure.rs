@@ -18,17 +18,26 @@ const SAME: f64 = 0.8;
 /// Share of the error above the floor from which a joint is asked about at all.
 const LEAST_ABOVE_FLOOR: f64 = 0.1;
 
+/// A condition under which a model fails, and the samples that meet it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailingSamples {
+    /// The condition and its shares.
+    pub failure: Failure,
+    /// Whether each sample meets it, the motions end to end.
+    pub holds: Vec<bool>,
+}
+
 /// Conditions of all joints, those that hold most of the error beyond their share first.
 ///
 /// It says where the error shows. In a long run an error shows after its cause, where angles move
 /// fast or late in the motion; the shorter the horizon, the nearer the two are. `residuals` is
 /// `[joint][motion][sample]`, rad or rad/s.
-pub(super) fn failures(
+pub(super) fn failing(
     model: &Model,
     motions: &[Motion],
     residuals: &[Vec<Vec<f64>>],
     signals: &[SignalError],
-) -> Vec<Failure> {
+) -> Vec<FailingSamples> {
     let mut all = Vec::new();
     for signal in signals {
         let joint = signal.joint - 1;
@@ -43,7 +52,7 @@ pub(super) fn failures(
             );
         }
     }
-    all.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
+    all.sort_by(|a, b| excess(&b.failure).total_cmp(&excess(&a.failure)));
     all.truncate(MOST);
     all
 }
@@ -62,14 +71,14 @@ pub(super) struct Ranked {
 }
 
 impl Ranked {
-    fn told(self, joint: usize, several: bool) -> Failure {
+    fn told(self, joint: usize, several: bool) -> FailingSamples {
         let (error, samples) = (percent(self.error_share), percent(self.sample_share));
         let of_joint = if several {
             format!(" of joint {}", joint + 1)
         } else {
             String::new()
         };
-        Failure {
+        let failure = Failure {
             joint: joint + 1,
             sentence: format!(
                 "{error} of the error{of_joint} falls in {samples} of the samples: {}",
@@ -78,6 +87,10 @@ impl Ranked {
             condition: self.words,
             error_share: self.error_share,
             sample_share: self.sample_share,
+        };
+        FailingSamples {
+            failure,
+            holds: self.holds,
         }
     }
 }

@@ -3,9 +3,11 @@
 mod closed_loop;
 mod conditions;
 mod failure;
+mod model_run;
 mod order;
 mod predicted;
 mod residual_tests;
+mod residual_variables;
 mod result;
 mod run;
 mod sample_features;
@@ -18,7 +20,10 @@ pub use closed_loop::{
     ClosedLoopComparison, LoopMotion, LoopSignal, closed_loop_text, compare_closed_loop,
 };
 pub(crate) use closed_loop::{LEGEND as CLOSED_LOOP_LEGEND, closed_loop_rows};
+pub use failure::FailingSamples;
+pub use model_run::ModelRun;
 pub(crate) use residual_tests::{independence, whiteness};
+pub use residual_variables::{ResidualVariable, residual_variables};
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 pub use run::compare;
 pub(crate) use run::fit_percent;

@@ -1,6 +1,7 @@
 //! Comparing one model with motions: nothing is fitted but where each run starts.
 
-use super::failure::failures;
+use super::failure::{FailingSamples, failing};
+use super::model_run::ModelRun;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
@@ -28,26 +29,55 @@ pub fn compare(
 ) -> Comparison {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, motions.to_vec(), horizon);
-    let settled = fit_start_states(model, &data);
-    let predicted = predicted(model, &data, &settled.nodes);
-    let joints = 0..model.link_count();
-    let residuals: Vec<Vec<Vec<f64>>> = joints.map(|j| residual(&data, &predicted, j)).collect();
-    let signals: Vec<SignalError> = residuals
-        .iter()
-        .enumerate()
-        .filter(|(joint, _)| data.signals[*joint] != MeasuredSignal::Nothing)
-        .map(|(joint, residual)| signal(&data, joint, residual))
-        .collect();
-    Comparison {
-        model: name.to_string(),
-        horizon_s: horizon.seconds(),
-        windows: data.motion_windows(horizon),
-        unobserved: model.log.unobserved(),
-        horizons: horizons(model, &data, horizon, pooled(&data, &residuals)),
-        failures: failures(model, &data.motions, &residuals, &signals),
-        traces: traces(&data, &predicted),
-        closed_loop: None,
-        signals,
+    ModelRun::new(model.clone(), data, horizon).comparison(name)
+}
+
+impl ModelRun {
+    /// What the run says of the model; `name` stands for it in reports.
+    pub fn comparison(&self, name: &str) -> Comparison {
+        let ModelRun {
+            model,
+            data,
+            horizon,
+            ..
+        } = self;
+        let residuals = self.residuals();
+        let signals = self.signals(&residuals);
+        Comparison {
+            model: name.to_string(),
+            horizon_s: horizon.seconds(),
+            windows: data.motion_windows(*horizon),
+            unobserved: model.log.unobserved(),
+            horizons: horizons(model, data, *horizon, pooled(data, &residuals)),
+            failures: failing(model, &data.motions, &residuals, &signals)
+                .into_iter()
+                .map(|failing| failing.failure)
+                .collect(),
+            traces: traces(data, &self.predicted),
+            closed_loop: None,
+            signals,
+        }
+    }
+
+    /// Conditions under which the model fails, worst first, with the samples that meet them.
+    pub fn failing(&self) -> Vec<FailingSamples> {
+        let residuals = self.residuals();
+        let signals = self.signals(&residuals);
+        failing(&self.model, &self.data.motions, &residuals, &signals)
+    }
+
+    /// Root-mean-square error of each joint, all motions together, rad or rad/s.
+    pub fn joint_rms(&self) -> Vec<f64> {
+        let residuals = self.residuals();
+        residuals.iter().map(|joint| rms(joint.iter())).collect()
+    }
+
+    fn signals(&self, residuals: &[Vec<Vec<f64>>]) -> Vec<SignalError> {
+        let signals = residuals.iter().enumerate();
+        signals
+            .filter(|(joint, _)| self.data.signals[*joint] != MeasuredSignal::Nothing)
+            .map(|(joint, residual)| signal(&self.data, joint, residual))
+            .collect()
     }
 }
 

@@ -151,7 +151,7 @@ fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
 }
 
 /// The torque a joint is told, or duty in its place; gravity's where it is told neither.
-fn load_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
+pub(super) fn load_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
     match (&model.joints[joint].drive, &motion.input[joint]) {
         (Drive::Torque | Drive::Duty(_), Some(input)) => input.clone(),
         _ => gravity_nm(model, motion, joint),

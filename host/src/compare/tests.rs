@@ -1,7 +1,7 @@
 //! Tests on residuals made by hand and on a pendulum integrated here, not by the library.
 
 use super::conditions::{CONDITIONS, Met, met};
-use super::failure::{failures, ranked};
+use super::failure::{failing, ranked};
 use super::residual_tests::{independence, linearity, whiteness};
 use super::run::fit_percent;
 use super::sample_features::{features, speed_rad_s};
@@ -236,7 +236,7 @@ fn a_joint_at_its_floor_has_no_failures() {
         ..signal.clone()
     }];
     let error = vec![vec![noise(1, 300, 0.0)]];
-    assert!(failures(&pendulum(), &motions, &error, &signals).is_empty());
+    assert!(failing(&pendulum(), &motions, &error, &signals).is_empty());
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! is one file and one line in [`DESIGNS`].
 
 mod best;
+mod board_timing;
 mod dead_zone;
 mod design_model;
 mod info;
@@ -23,12 +24,13 @@ mod robust;
 mod servo;
 mod sliding;
 
+pub use board_timing::BoardTiming;
 pub use design_model::DesignModel;
 pub use info::{ControllerDesign, ControllerInfo, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;
 pub use observed::ObservedDesign;
-pub use on_board::{BoardTiming, OnBoard};
+pub use on_board::OnBoard;
 pub use reason::ControllerReason;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, Through};

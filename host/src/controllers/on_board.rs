@@ -14,37 +14,16 @@
 //! ```
 
 use super::best::BEST;
+use super::board_timing::{BoardTiming, ROUNDED};
 use super::observed::{Options, process_noise, regulator};
 use super::plant::{continuous, with_offsets};
 use super::{ControllerReason, DesignModel};
 use crate::error::Result;
-use crate::sim::closed_loop::GYRO_STEP_RAD_S;
 use crate::synth::{Continuous, Discrete, kalman, zoh};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
-use handstand_shared::raw::Position;
 use nalgebra::{DMatrix, stack};
-
-/// When things happen in a period, and how well the readings tell.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BoardTiming {
-    /// From the law's moment until its inputs act, s.
-    pub effect_s: f64,
-    /// Time constant with which a servo's torque follows its input, s; 0: at once.
-    pub lag_s: f64,
-    /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
-    pub age_s: [f64; READINGS],
-    /// Standard deviation of each reading, in SI; infinite for one that there is not. Without the
-    /// first link's angle its rate is a gyro's, whose offset is estimated.
-    pub deviation: [f64; READINGS],
-}
-
-/// Deviation assumed of an exact angle, rad: that of its step and more, for the model is not exact.
-const EXACT_RAD: f64 = 1e-4;
-
-/// Standard deviation of what is rounded to a step of 1: 1 / sqrt(12).
-const ROUNDED: f64 = 0.288_675_134_594_812_9;
 
 /// Wander of a gyro's offset in a sample times the gyro's step, (rad/s)^2: the coarser the step,
 /// the longer its mean must be taken. Found on steps of 1 and 10 deg/s.
@@ -55,54 +34,6 @@ const GYRO_OFFSET: usize = 2 * JOINTS;
 
 /// Place of the first torque.
 const TORQUES: usize = 3 * JOINTS;
-
-impl BoardTiming {
-    /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the
-    /// last answer, which is the hip's after the shoulder's; measured by `cargo xtask bench-firmware
-    /// --only "age of readings"`. The host says the first link's attitude every period, as it hears
-    /// a report. Its rate counts no more than a gyro's of 10 deg/s: trusted more, what the linear
-    /// model makes of one so old fells the robot from 2 deg. The torque follows at once.
-    pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
-        effect_s: 0.8e-3,
-        lag_s: 0.0,
-        age_s: [8.7e-3, 0.5e-3, 0.3e-3, 8.7e-3],
-        deviation: [
-            EXACT_RAD,
-            Position::LSB_RAD * ROUNDED,
-            Position::LSB_RAD * ROUNDED,
-            GYRO_STEP_RAD_S * ROUNDED,
-        ],
-    };
-
-    /// Time constant of the paper's servo, s: that of the pole pair of its equation 2.
-    pub const SERVO_LAG_S: f64 = 0.034;
-
-    /// The same with a gyro of this step on the CM-5, rad/s per code, read at the law's moment;
-    /// nothing tells the first link's angle.
-    pub const fn gyro(step_rad_s: f64) -> BoardTiming {
-        let [_, shoulder_s, hip_s, _] = BoardTiming::HOST_ATTITUDE.age_s;
-        let [_, shoulder_rad, hip_rad, _] = BoardTiming::HOST_ATTITUDE.deviation;
-        BoardTiming {
-            age_s: [0.0, shoulder_s, hip_s, 0.1e-3],
-            deviation: [f64::INFINITY, shoulder_rad, hip_rad, step_rad_s * ROUNDED],
-            ..BoardTiming::HOST_ATTITUDE
-        }
-    }
-
-    /// The paper's gyro.
-    pub const GYRO: BoardTiming = BoardTiming::gyro(GYRO_STEP_RAD_S);
-
-    /// The same with servos of this lag, s.
-    #[must_use]
-    pub const fn with_lag(self, lag_s: f64) -> BoardTiming {
-        BoardTiming { lag_s, ..self }
-    }
-
-    /// Whether nothing measures the first link's angle.
-    fn is_gyro(&self) -> bool {
-        self.deviation[0].is_infinite()
-    }
-}
 
 /// The machine in SI, as [`handstand_shared::observer`] has it in fixed point.
 #[derive(Debug, Clone, PartialEq)]

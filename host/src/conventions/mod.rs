@@ -30,6 +30,21 @@ use crate::model::{Model, Unit};
 use findings::Origin;
 use reread::reread;
 
+/// Everything found in logs: what a simulation of the model shows first ([`check`]), then what the
+/// logs show by themselves ([`crate::log::check()`]).
+///
+/// # Errors
+/// What the system refuses.
+pub fn findings(
+    requests: &[LogRequest],
+    model: &Model,
+    file: ModelFile,
+) -> Result<Vec<LogFinding>> {
+    let mut findings = check(requests, model, file)?;
+    findings.extend(crate::log::check(requests, model)?);
+    Ok(findings)
+}
+
 /// What of the model file and its logs does not agree, with remedies and their proofs: lines of
 /// the file to change, rows to leave out. JSON logs state their own units and are not judged.
 ///

@@ -1,9 +1,9 @@
 //! Which effects could be missing, and where.
 
-use crate::effects::{EFFECTS, Needs, Scope};
+use crate::effects::{EFFECTS, Effect, Needs, Parameter, Scope, Site};
 use crate::fitting::Candidate;
 use crate::log::Motion;
-use crate::model::{Drive, Model};
+use crate::model::{Drive, MeasuredSignal, Model};
 
 /// Every effect of the library and of the model's file at every place where it can act on this
 /// model and be seen in these motions, except those the model holds and those named in `without`; what comes with a servo also at all driven
@@ -24,8 +24,11 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
                 .collect(),
         };
         let at = |joint| Candidate { effect, joint };
-        let can_act =
-            |joint| !at(joint).in_model(model) && visible(info.needs, model, motions, joint);
+        let can_act = |joint| {
+            !at(joint).in_model(model)
+                && visible(info.needs, model, motions, joint)
+                && joint.is_none_or(|joint| is_read(effect, model, joint))
+        };
         let twins = twins(model);
         let share = |joint: &usize| joints.contains(&Some(*joint)) && can_act(Some(*joint));
         let shared = effect.is_of_servo() && !twins.is_empty() && twins.iter().all(share);
@@ -39,6 +42,28 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
         found.extend(shared.then(|| at(None)));
     }
     found
+}
+
+/// Whether an encoder or sensor that this effect changes is read at a joint: by the log, or by the
+/// regulator of its drive. A rate shows what scales the reading.
+fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
+    let info = effect.info();
+    let regulated = matches!(model.joints[joint].drive, Drive::Position { .. });
+    let signal = model.log.joints[joint].signal();
+    match info.site {
+        Site::Encoder | Site::Sensor if regulated => true,
+        Site::Encoder => match signal {
+            MeasuredSignal::Angle => true,
+            MeasuredSignal::Rate => {
+                let start = |parameter: &Parameter| parameter.starts.first().copied();
+                let values: Vec<f64> = info.parameters.iter().filter_map(start).collect();
+                effect.encode(&values, 1.0) - effect.encode(&values, 0.0) != 1.0
+            }
+            MeasuredSignal::Nothing => false,
+        },
+        Site::Sensor => signal == MeasuredSignal::Angle,
+        _ => true,
+    }
 }
 
 /// All driven joints, if there are several and all of one servo type: of drives alike but for the

@@ -100,7 +100,8 @@ impl<'a> Evidence<'a> {
     /// The simplest come first.
     pub fn rivals(&self) -> Vec<&'a Hypothesis> {
         let mut rivals = self.as_good();
-        for other in self.equivalents {
+        let chosen = self.chosen();
+        for other in self.equivalents.iter().filter(|h| !h.extends(chosen)) {
             let is_same = |h: &&Hypothesis| h.values == other.values && h.adds(&other.set);
             if !rivals.iter().any(is_same) {
                 rivals.push(other);

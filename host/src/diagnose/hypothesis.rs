@@ -90,6 +90,12 @@ impl Hypothesis {
         self.set.len() == set.len() && set.iter().all(|c| self.set.contains(c))
     }
 
+    /// Whether this hypothesis is that one and more: no other explanation.
+    pub fn extends(&self, other: &Hypothesis) -> bool {
+        other.set.iter().all(|effect| self.set.contains(effect))
+            && other.values.iter().all(|path| self.values.contains(path))
+    }
+
     /// The set with one more effect.
     pub fn set_with(&self, candidate: Candidate) -> Vec<Candidate> {
         let mut set = self.set.clone();

@@ -15,6 +15,7 @@ mod horizon;
 mod hypothesis;
 mod initial_guess;
 mod inseparable;
+mod logs;
 mod multistart;
 mod options;
 mod progress;
@@ -35,6 +36,7 @@ pub use findings::{
     Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
     ResidualStructure, RuledOut, Verdict, WrongValue,
 };
+pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use options::DiagnoseOptions;
 pub use progress::Progress;
 pub use search::diagnose;

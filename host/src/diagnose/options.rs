@@ -13,6 +13,9 @@ pub struct DiagnoseOptions {
     pub horizon: Option<Horizon>,
     /// Most effects named together.
     pub most_effects: usize,
+    /// Whether to diagnose even where another sign, zero, unit or drive in the model file clearly
+    /// lowers the error.
+    pub trust_log: bool,
     /// Error that is good enough for the user, rad.
     pub tolerance_rad: Option<f64>,
 }
@@ -24,6 +27,7 @@ impl Default for DiagnoseOptions {
             without: Vec::new(),
             horizon: None,
             most_effects: 3,
+            trust_log: false,
             tolerance_rad: None,
         }
     }

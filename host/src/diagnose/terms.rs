@@ -4,7 +4,8 @@
 use crate::effects::ProbeVariable;
 use crate::fitting::Candidate;
 use crate::fitting::FitData;
-use crate::model::{Drive, Model};
+use crate::model::{Drive, MeasuredSignal, Model};
+use std::f64::consts::PI;
 
 /// A probe with the amplitude at which its effect is measured.
 #[derive(Debug, Clone, Copy)]
@@ -92,10 +93,16 @@ struct Range {
 
 impl Range {
     fn of(model: &Model, data: &FitData, joint: usize) -> Range {
-        let positions = || {
-            data.motions
-                .iter()
-                .flat_map(|m| m.position_rad[joint].iter().copied())
+        let measured = || {
+            let positions = data.motions.iter().flat_map(|m| &m.position_rad[joint]);
+            positions.copied().filter(|angle| angle.is_finite())
+        };
+        let rates = || {
+            let rate_alone = data.signals[joint] == MeasuredSignal::Rate;
+            let motions = data.motions.iter().filter(move |_| rate_alone);
+            motions
+                .filter_map(|m| m.velocity_rad_s[joint].as_ref())
+                .flatten()
         };
         let mut speeds: Vec<f64> = data
             .motions
@@ -106,6 +113,7 @@ impl Range {
                     ((position[k + 3] - position[k - 3]) / (time[k + 3] - time[k - 3])).abs()
                 })
             })
+            .chain(rates().map(|rate| rate.abs()))
             .filter(|w| w.is_finite())
             .collect();
         speeds.sort_by(f64::total_cmp);
@@ -129,9 +137,17 @@ impl Range {
             .iter()
             .map(|l| l.mass_kg * (l.com_m.abs() + 0.3 * l.length_m))
             .sum();
+        // An angle that is not measured may be anywhere.
+        let (low_rad, high_rad) = match measured().next() {
+            Some(_) => (
+                measured().fold(f64::INFINITY, f64::min),
+                measured().fold(f64::NEG_INFINITY, f64::max),
+            ),
+            None => (-PI, PI),
+        };
         Range {
-            low_rad: positions().fold(f64::INFINITY, f64::min),
-            high_rad: positions().fold(f64::NEG_INFINITY, f64::max),
+            low_rad,
+            high_rad,
             speed_rad_s: fast.max(1e-3),
             drive_nm: drive.max(1e-6),
             torque_nm: (outer * model.gravity_m_s2).max(1e-6),

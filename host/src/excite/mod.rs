@@ -5,13 +5,15 @@
 //! saturation, slow triangles friction and backlash, holds breakaway and sag, and a drop with torque
 //! off what friction there is without a drive.
 
+mod goals;
 mod limits;
 mod multisine;
 mod path;
 mod table;
 
+pub use goals::{Excitation, ExcitedMotion, JointExtent};
 pub use limits::{ExciteError, JointLimits};
-pub use table::{Excitation, ExcitedMotion, JointExtent, excite};
+pub use table::excite;
 
 use serde::Serialize;
 

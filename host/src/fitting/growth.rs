@@ -17,8 +17,9 @@ use nalgebra::DMatrix;
 const MOST_GROWTH: f64 = 30.0;
 /// From one state to the next, s.
 const STEP_S: f64 = 0.05;
-/// Step of the differences, rad and rad/s.
-const DIFFERENCE: f64 = 1e-6;
+/// Step of the differences, rad and rad/s: as large as start errors are. A smaller one takes the
+/// moment at which friction lets go, which integration steps round, for the motion.
+const DIFFERENCE: f64 = 1e-3;
 /// A window is no shorter than this, s, nor than so many samples.
 const LEAST_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 8;

@@ -6,6 +6,7 @@
 //! so that P + 3 n simulations make the whole Jacobian, and eliminating the start states leaves a
 //! system of P unknowns (`normal`).
 
+mod add;
 mod assumed;
 mod broyden;
 mod candidate;
@@ -20,6 +21,8 @@ mod free;
 mod growth;
 mod jacobian;
 mod levenberg_marquardt;
+#[cfg(test)]
+mod log_tests;
 mod node;
 mod noise;
 mod normal;
@@ -33,6 +36,7 @@ mod step;
 mod student;
 mod windows;
 
+pub use add::{Addition, add_effects, candidates_named, not_reduced, with_refitted};
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
 pub use data::{FitData, Horizon, Window};

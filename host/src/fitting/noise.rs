@@ -7,7 +7,9 @@ use crate::model::MeasuredSignal;
 ///
 /// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
 /// differences. Motion leaks into them where sampling is slow; then neighbours agree, while those
-/// of noise alternate (correlation -6/7), and the resolution alone counts.
+/// of noise alternate (correlation -6/7), and the resolution alone counts. Over uneven time stamps
+/// they are divided differences: stamps that are right let no motion through, and the error of
+/// stamps that are not is an error of the reading.
 pub fn noise(
     motions: &[Motion],
     joint: usize,
@@ -17,7 +19,8 @@ pub fn noise(
     let series: Vec<&[f64]> = motions.iter().map(|m| m.measured(joint, signal)).collect();
     let resolution = declared_resolution.or_else(|| estimated_resolution(&series));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
-    let differences = differences(&series, ORDER);
+    let times: Vec<&[f64]> = motions.iter().map(|m| m.time_s.as_slice()).collect();
+    let differences = differences(&times, &series);
     let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
     rounding.max(if counts { seen } else { 0.0 }).max(1e-6)
@@ -49,18 +52,60 @@ pub fn estimated_resolution(series: &[&[f64]]) -> Option<f64> {
     (counted >= 10 && off * 50 <= counted && smallest > 1e-5).then_some(smallest)
 }
 
-/// Differences of this order, motion by motion.
-fn differences(series: &[&[f64]], order: usize) -> Vec<Vec<f64>> {
-    series
-        .iter()
-        .map(|values| {
-            let mut row = values.to_vec();
-            for _ in 0..order {
-                row = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
+/// Sixth differences, motion by motion.
+fn differences(times: &[&[f64]], series: &[&[f64]]) -> Vec<Vec<f64>> {
+    let of_motion = |(time_s, values): (&&[f64], &&[f64])| {
+        let differences = match is_even(time_s) {
+            true => even(values),
+            false => divided(time_s, values),
+        };
+        differences.into_iter().filter(|x| x.is_finite()).collect()
+    };
+    times.iter().zip(series).map(of_motion).collect()
+}
+
+/// Largest share by which a step of even time stamps differs from the mean.
+const EVEN: f64 = 1e-3;
+
+fn is_even(time_s: &[f64]) -> bool {
+    let (Some(first), Some(last)) = (time_s.first(), time_s.last()) else {
+        return true;
+    };
+    let mean = (last - first) / (time_s.len().max(2) - 1) as f64;
+    let mut steps = time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    steps.all(|step| (step - mean).abs() <= EVEN * mean)
+}
+
+fn even(values: &[f64]) -> Vec<f64> {
+    let mut row = values.to_vec();
+    for _ in 0..ORDER {
+        row = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    }
+    row
+}
+
+/// Divided differences, scaled so that white noise has the variance it has in even ones.
+fn divided(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let windows = time_s.windows(ORDER + 1).zip(values.windows(ORDER + 1));
+    windows
+        .map(|(time, values)| {
+            let step = (time[ORDER] - time[0]) / ORDER as f64;
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for (i, value) in values.iter().enumerate() {
+                let others = (0..=ORDER).filter(|j| *j != i);
+                let weight = 1.0 / others.map(|j| (time[i] - time[j]) / step).product::<f64>();
+                sum += weight * value;
+                squares += weight * weight;
             }
-            row.into_iter().filter(|x| x.is_finite()).collect()
+            sum * (gain() / squares).sqrt()
         })
         .collect()
+}
+
+/// Variance of a sixth difference of white noise, per variance of the noise: the central binomial
+/// coefficient (2k over k).
+fn gain() -> f64 {
+    (1..=ORDER).map(|i| (ORDER + i) as f64 / i as f64).product()
 }
 
 /// Correlation of neighbouring differences.
@@ -83,8 +128,5 @@ fn difference_noise(differences: &[Vec<f64>]) -> f64 {
     }
     let middle = magnitudes.len() / 2;
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
-    // The variance of the order-k difference of white noise is the central binomial coefficient (2k
-    // over k).
-    let gain: f64 = (1..=ORDER).map(|i| (ORDER + i) as f64 / i as f64).product();
-    1.4826 * *median / gain.sqrt()
+    1.4826 * *median / gain().sqrt()
 }

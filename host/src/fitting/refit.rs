@@ -41,6 +41,8 @@ pub struct Refitted {
     pub horizon: Horizon,
     /// How long the windows of each motion are, those held out last.
     pub windows: Vec<MotionWindow>,
+    /// What the logs cannot observe of the joints' motion, a sentence each.
+    pub unobserved: Vec<String>,
     /// Whether the search met its tolerance before its iterations ran out.
     pub converged: bool,
 }
@@ -191,6 +193,7 @@ fn finish(
         },
         free: found.free,
         windows,
+        unobserved: before.log.unobserved(),
         converged: found.converged,
         model: found.model,
         horizon,

@@ -192,6 +192,15 @@ impl LogColumns {
                  and what acts on it shows only in how the other joints move."
             )),
         };
-        joints.filter_map(sentence).collect()
+        let mut sentences: Vec<String> = joints.filter_map(sentence).collect();
+        let is_angle = |columns: &JointColumns| columns.signal() == MeasuredSignal::Angle;
+        if !self.joints.iter().any(is_angle) {
+            sentences.push(
+                "No angle is measured at all: errors of all joints together are in rad/s, also \
+                 where they say rad."
+                    .to_string(),
+            );
+        }
+        sentences
     }
 }

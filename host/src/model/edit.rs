@@ -4,8 +4,12 @@ mod reading;
 
 pub use reading::{changed_lines, set_reading};
 
+mod columns;
 mod provenance;
+#[cfg(test)]
+mod tests;
 
+pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
 pub use provenance::{FitRecord, renew_provenance};
 
 use super::path::ParameterPath;
@@ -212,6 +216,3 @@ fn number(value: f64) -> Value {
         .parse()
         .unwrap_or_else(|_| rounded.into())
 }
-
-#[cfg(test)]
-mod tests;

@@ -8,6 +8,7 @@ mod columns;
 pub mod edit;
 mod field;
 mod limits;
+pub mod new_model;
 mod parse;
 mod path;
 mod pose;

@@ -50,6 +50,17 @@ impl Dimension {
         }
     }
 
+    /// What the input of a drive of this name measures; nothing for one that has no input.
+    pub fn of_input(drive: &str) -> Option<Dimension> {
+        match drive {
+            "torque" => Some(Dimension::Torque),
+            "duty" => Some(Dimension::Ratio),
+            "position" => Some(Dimension::Angle),
+            "speed" => Some(Dimension::Speed),
+            _ => None,
+        }
+    }
+
     /// Names of the units that measure this, for error messages.
     pub fn unit_names(self) -> impl Iterator<Item = &'static str> {
         UNITS

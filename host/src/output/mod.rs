@@ -13,6 +13,14 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Usage`] if the file exists and `force` is false; [`Error::File`] if the system refuses.
 pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
+    write_new_bytes(path, text.as_bytes(), force)
+}
+
+/// Writes bytes as [`write_new`] writes text.
+///
+/// # Errors
+/// As [`write_new`].
+pub fn write_new_bytes(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
     vacant(path, force)?;
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -20,7 +28,7 @@ pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
     };
     let refused = |source| Error::file(path, "write", source);
     let mut file = temporary(folder).map_err(refused)?;
-    file.write_all(text.as_bytes()).map_err(refused)?;
+    file.write_all(bytes).map_err(refused)?;
     file.as_file().sync_all().map_err(refused)?;
     let kept = match force {
         true => file.persist(path),

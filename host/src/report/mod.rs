@@ -21,6 +21,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
+pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};

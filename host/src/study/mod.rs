@@ -22,6 +22,7 @@ mod plot;
 mod quantities;
 mod quantity;
 mod region;
+mod response;
 mod shard;
 mod summary;
 mod sweep;
@@ -48,6 +49,7 @@ pub use quantity::{
 };
 pub(crate) use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
+pub use response::{LoopResponse, response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};

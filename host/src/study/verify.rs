@@ -151,16 +151,7 @@ impl Tested<'_> {
         let is = |e: &EffectInstance, one: &LeftOut| one.effect == e.effect && one.joint == e.joint;
         let stays = |e: &EffectInstance| !without.iter().any(|one| is(e, one));
         model.effects.retain(stays);
-        let period_s = match self.request.time {
-            Time::Continuous => continuous_period_s(&self.design.gains.poles),
-            Time::Sampled { ts_s, delay_s } => {
-                if let Some(delay_s) = delay_s {
-                    set_delay(&mut model, delay_s);
-                }
-                ts_s
-            }
-        };
-        ClosedLoop::new(&model, &self.request.pose_rad, Commands::Own, period_s)
+        closed_loop(model, self.design, self.request)
     }
 
     /// From random starts within a spread.
@@ -184,4 +175,22 @@ impl Tested<'_> {
             |spread_rad| Ok(self.figures(&closed, spread_rad).stabilised_share >= STABILISED_SHARE);
         Ok(largest(stabilises)?.spread_rad)
     }
+}
+
+/// The loop of `model` at the request's pose and period, with its delay.
+pub(super) fn closed_loop(
+    mut model: Model,
+    design: &Design,
+    request: &Request,
+) -> Result<ClosedLoop> {
+    let period_s = match request.time {
+        Time::Continuous => continuous_period_s(&design.gains.poles),
+        Time::Sampled { ts_s, delay_s } => {
+            if let Some(delay_s) = delay_s {
+                set_delay(&mut model, delay_s);
+            }
+            ts_s
+        }
+    };
+    ClosedLoop::new(&model, &request.pose_rad, Commands::Own, period_s)
 }

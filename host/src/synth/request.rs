@@ -2,6 +2,7 @@
 
 use super::quantise::Format;
 use super::weight::Weight;
+use crate::model::{Model, upright};
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -22,6 +23,31 @@ pub struct Request {
     pub input_range: Option<Weight>,
     /// Words of the fixed-point law.
     pub format: Format,
+}
+
+impl Request {
+    /// Upright; Q = 100 I, R = I; every 10 ms, the inputs as late as the model has them; departures
+    /// within 0.5 rad and 10 rad/s; words of 16 bits.
+    pub fn standard(model: &Model) -> Request {
+        let joints = model.link_count();
+        Request {
+            pose_rad: upright(model),
+            q: Weight::Scalar(100.0),
+            r: Weight::Scalar(1.0),
+            time: Time::Sampled {
+                ts_s: 0.01,
+                delay_s: None,
+            },
+            sensors: None,
+            state_range: Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
+            input_range: None,
+            format: Format {
+                bits: 16,
+                state_step: None,
+                input_step: None,
+            },
+        }
+    }
 }
 
 /// In which time the controller runs.

@@ -133,7 +133,10 @@ fn refusals() {
     );
     bench.put("unknown_key.toml", model.replacen("mass_kg", "mas_kg", 1));
     bench.put("missing_column.csv", log.replacen("angle_rad", "angle", 1));
-    bench.put("nan.csv", log.replacen("\n0.04,", "\n0.04,nan\n0.05,", 1));
+    bench.put(
+        "infinite.csv",
+        log.replacen("\n0.04,", "\n0.04,inf\n0.05,", 1),
+    );
     bench.put("backwards.csv", log.replacen("\n0.04,", "\n0.01,", 1));
     golden(
         &bench,
@@ -141,7 +144,7 @@ fn refusals() {
         &[
             "compare unknown_key.toml arm.csv",
             "compare arm.toml missing_column.csv",
-            "compare arm.toml nan.csv",
+            "compare arm.toml infinite.csv",
             "compare arm.toml backwards.csv",
             "compare arm.toml arm.csv:9-3",
             "effects colomb",

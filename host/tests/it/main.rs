@@ -17,6 +17,7 @@ mod flash;
 mod fuzz;
 mod gains;
 mod golden;
+mod lab;
 #[cfg(unix)]
 mod mcap;
 mod mixed_motions;

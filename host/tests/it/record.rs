@@ -299,3 +299,96 @@ mod killed {
         assert!(sent.success());
     }
 }
+
+/// The servos of the robot's shoulder and hip.
+const ROBOT_SERVOS: &str = "1+2/11+12";
+
+fn virtual_robot() -> String {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot.toml");
+    format!("sim-cm5:ids=1-2+11-12,delay=0,drop=0.1,robot={model}")
+}
+
+/// No encoder at the bar, two servos to a joint, answers that are lost now and then: what the robot
+/// records of itself is a log of its model all the same.
+#[test]
+fn the_robot_s_own_recording_is_a_log_of_its_model() {
+    let bench = Bench::new();
+    let written = bench.run(&format!(
+        "excite goals.csv --joints {ROBOT_SERVOS} --motions multisine --seconds 12 --json"
+    ));
+    assert_eq!(written.code, Some(0), "{written:?}");
+    assert_eq!(written.json()["joints"][1]["servos"][1], 12);
+    let port = virtual_robot();
+    let ran = bench.run(&format!(
+        "replay goals.csv --yes --record log.csv --port {port}"
+    ));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let log = bench.get("log.csv");
+    // Angles of the four servos.
+    let is_gap = |row: &&str| {
+        [1, 8, 15, 22]
+            .map(|at| row.split(',').nth(at))
+            .contains(&Some(""))
+    };
+    let gaps = log.lines().skip(1).filter(is_gap).count();
+    assert!(gaps > 0, "no answer was lost");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/robot_recording.toml");
+    let compared = bench.run(&format!("compare {model} log.csv --horizon 1 --json"));
+    assert_eq!(compared.code, Some(0), "{compared:?}");
+    let comparison = &compared.json()["comparisons"][0];
+    let said = comparison["unobserved"][0].as_str().unwrap();
+    assert!(said.contains("Joint 1 has no measured angle"), "{said}");
+    let signals = &comparison["signals"];
+    assert!(signals[0]["rms_rad"].is_null());
+    let near = |value: &serde_json::Value, most: f64| value.as_f64().unwrap() < most;
+    // The floors are 7.7 mrad/s and 1.5 mrad.
+    assert!(near(&signals[0]["rms_rad_s"], 0.02), "{signals}");
+    assert!(near(&signals[1]["rms_rad"], 0.003), "{signals}");
+    assert!(near(&signals[2]["rms_rad"], 0.003), "{signals}");
+}
+
+#[test]
+fn a_drop_lets_the_servos_go_and_any_goals_are_played() {
+    let bench = Bench::new();
+    let written = bench.run(&format!(
+        "excite drop.csv --joints {ROBOT_SERVOS} --motions drop --seconds 4"
+    ));
+    assert_eq!(written.code, Some(0), "{written:?}");
+    let port = virtual_robot();
+    let ran = bench.run(&format!(
+        "replay drop.csv --yes --record log.csv --port {port}"
+    ));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let log = bench.get("log.csv");
+    let torque: Vec<bool> = log.lines().skip(1).map(|row| row.ends_with(",1")).collect();
+    let off = torque.iter().position(|on| !on).unwrap();
+    assert!(
+        off > 100 && torque.len() - off > 150,
+        "{off} of {}",
+        torque.len()
+    );
+    assert!(torque[off..].iter().all(|on| !on));
+    let angle = |row: usize| -> f64 {
+        let row = log.lines().nth(1 + row).unwrap();
+        row.split(',').nth(1).unwrap().parse().unwrap_or(f64::NAN)
+    };
+    let before = (off - 5..off).map(angle).find(|q| q.is_finite()).unwrap();
+    let fell = (off..torque.len()).map(angle).filter(|q| q.is_finite());
+    let lowest = fell.fold(before, f64::min);
+    assert!(before > 0.3 && lowest < before - 0.3, "{before} {lowest}");
+
+    // Another program's goals, in an order of its own, with columns that mean nothing here.
+    bench.put(
+        "own.csv",
+        "note,goal2_rad,time_s,goal1_rad\n1,0,0,0\n2,0.1,0.5,-0.1\n3,0.1,1,-0.1\n",
+    );
+    let ran = bench.run("replay own.csv --yes --port sim-cm5:ids=1-2,delay=0 --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.json()["seconds"].as_f64().unwrap() > 0.9);
+    let refused = bench.run("excite x.csv --joints 1+2/2 --json");
+    assert_eq!(refused.code, Some(2), "{refused:?}");
+    assert!(
+        refused.stderr.contains("servo 2 is named twice"),
+        "{refused:?}"
+    );
+}

@@ -1,7 +1,10 @@
 //! Two joints of one servo type: what they share, and what one log cannot tell of them.
 
 use handstand::Model;
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::diagnose::{
+    DiagnoseOptions, Diagnosis, FittedEffect, Verdict, candidates, diagnose,
+};
+use handstand::fitting::Candidate;
 use handstand::log::{LogRequest, Motion, MotionSource, read};
 use handstand::sim::{Plant, SensorState, Start, predict};
 use std::fmt::Write as _;
@@ -106,17 +109,18 @@ fn diagnosed(hidden: &str, options: &DiagnoseOptions) -> Diagnosis {
 fn believed(given: &str, hidden: &str, options: &DiagnoseOptions) -> Diagnosis {
     let with = |effect: &str| model(&format!("{ARM}\n{effect}"));
     let (model, truth) = (with(given), with(hidden));
-    let dir = tempfile::tempdir().unwrap();
-    let motions = |seeds: &[f64]| -> Vec<Motion> {
-        let files = seeds.iter().map(|seed| {
-            let file = dir.path().join(format!("{seed}.csv"));
-            std::fs::write(&file, log(&truth, *seed)).unwrap();
-            LogRequest::whole(file)
-        });
-        read(&files.collect::<Vec<_>>(), &model.log).unwrap()
-    };
-    let (training, held_out) = (motions(&[1.0, 2.0]), motions(&[3.0]));
+    let (training, held_out) = (motions(&truth, &[1.0, 2.0]), motions(&truth, &[3.0]));
     diagnose(&model, training, held_out, options, &|_| {})
+}
+
+fn motions(truth: &Model, seeds: &[f64]) -> Vec<Motion> {
+    let dir = tempfile::tempdir().unwrap();
+    let files = seeds.iter().map(|seed| {
+        let file = dir.path().join(format!("{seed}.csv"));
+        std::fs::write(&file, log(truth, *seed)).unwrap();
+        LogRequest::whole(file)
+    });
+    read(&files.collect::<Vec<_>>(), &truth.log).unwrap()
 }
 
 fn addresses(effects: &[FittedEffect]) -> Vec<String> {
@@ -223,4 +227,93 @@ fn a_value_that_the_file_frees_goes_before_an_effect_that_does_as_well() {
         "{:?}",
         found.summary
     );
+}
+
+#[test]
+fn only_what_comes_with_servos_of_one_type_is_shared() {
+    let shared = |model: &Model| -> Vec<String> {
+        let tried = candidates(model, &motions(model, &[1.0]), &[]);
+        let names = tried.iter().map(Candidate::to_string);
+        names.filter(|name| name.ends_with("@all")).collect()
+    };
+    let alike = shared(&model(ARM));
+    for id in [
+        "delay",
+        "dead_zone",
+        "coulomb",
+        "viscous",
+        "armature",
+        "sensor_lag",
+    ] {
+        assert!(alike.contains(&format!("{id}@all")), "{id}: {alike:?}");
+    }
+    for id in [
+        "mass",
+        "com_angle",
+        "encoder_zero",
+        "cable_spring",
+        "bearing_friction",
+    ] {
+        assert!(!alike.contains(&format!("{id}@all")), "{id}");
+    }
+    let held = "[[effect]]\nkind = \"coulomb\"\njoint = 2\ntorque_nm = 0.01\n";
+    let with_one = shared(&model(&format!("{ARM}\n{held}")));
+    assert!(
+        !with_one.contains(&"coulomb@all".to_string()),
+        "{with_one:?}"
+    );
+    let (first, second) = ARM.rsplit_once("drive = \"torque\"").unwrap();
+    let other = "drive = \"duty\"\nstall_torque_nm = 1.5";
+    let second = second.replacen("unit = \"N m\"", "unit = \"1\"", 2);
+    let second = second.replacen("unit = \"1\"", "unit = \"N m\"", 1);
+    assert_eq!(
+        shared(&model(&format!("{first}{other}{second}"))),
+        Vec::<String>::new()
+    );
+}
+
+#[test]
+fn an_effect_of_all_meets_that_of_each_driven_joint() {
+    let named = |name: &str, model: &Model| Candidate::named(name, model).unwrap();
+    let driven = model(ARM);
+    let all = named("coulomb@all", &driven);
+    assert!(all.overlaps(named("coulomb@2", &driven), &driven));
+    assert!(named("coulomb@1", &driven).overlaps(all, &driven));
+    assert!(!all.overlaps(named("delay@2", &driven), &driven));
+    let text = ARM.replacen("drive = \"torque\"", "drive = \"passive\"", 1);
+    let bar = model(&text.replacen("input = { column = \"u1\", unit = \"N m\" }", "", 1));
+    assert!(!named("coulomb@all", &bar).overlaps(named("coulomb@1", &bar), &bar));
+    assert!(Candidate::named("bearing_friction@all", &bar).is_err());
+}
+
+#[test]
+fn the_error_budget_says_what_each_part_removes() {
+    let hidden = "[[effect]]\nkind = \"delay\"\njoint = \"all\"\ndelay_s = 0.01\n\
+                  [[effect]]\nkind = \"viscous\"\njoint = 1\ncoefficient_nm_s_rad = 0.02\n";
+    let options = DiagnoseOptions {
+        most_effects: 2,
+        ..DiagnoseOptions::default()
+    };
+    let found = diagnosed(hidden, &options);
+    let mut parts: Vec<&str> = found.budget.iter().map(|part| part.part.as_str()).collect();
+    parts.sort_unstable();
+    let mut effects = addresses(&found.effects);
+    effects.sort_unstable();
+    assert_eq!(parts, effects);
+    assert_eq!(parts.len(), 2, "{:?}", found.summary);
+    for part in &found.budget {
+        let (alone, beyond) = (&part.alone, &part.beyond_others);
+        assert!(alone.error_rad < found.error.before_rad, "{part:?}");
+        assert!(beyond.error_rad > 2.0 * found.error.after_rad, "{part:?}");
+        for share in [alone, beyond] {
+            assert!(
+                share.low <= share.share && share.share <= share.high,
+                "{part:?}"
+            );
+            assert!(share.low > 0.0 && share.high < 1.0, "{part:?}");
+        }
+        // One joint of two decides alike: the share follows from the errors.
+        let follows = 1.0 - (alone.error_rad / found.error.before_rad).powi(2);
+        assert!((alone.share - follows).abs() < 0.02, "{part:?} {follows}");
+    }
 }

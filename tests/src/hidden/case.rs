@@ -1,7 +1,7 @@
 //! A case: what is hidden in which rig at which seed, and the files of it.
 
 use super::family::Family;
-use super::mujoco;
+use super::{mujoco, robot};
 use handstand::challenge::{Bench, BenchEffect, Motions, bench};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -15,6 +15,8 @@ pub enum Truth {
     Own,
     /// MuJoCo, by tests/peers/hidden_mujoco.py
     Mujoco,
+    /// The virtual robot, recorded through the firmware's logic
+    Robot,
 }
 
 /// A rig to diagnose.
@@ -108,6 +110,7 @@ impl Case {
                 written(&bench, dir)
             }
             Truth::Mujoco => mujoco::write(self, dir),
+            Truth::Robot => robot::write(self, dir),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What is hidden in which rig: families of cases, each with its target.
 
 use super::case::{Case, Truth};
+use super::robot::ROBOT_KINDS;
 use handstand::challenge::{KINDS, Motions};
 
 /// A family of cases.
@@ -27,10 +28,14 @@ pub enum Family {
     NothingBalancing,
     /// One effect at the bench arm that the library lacks.
     Outside,
+    /// One effect at the virtual robot, hanging, recorded through the firmware's logic.
+    Robot,
+    /// That robot, which hides nothing.
+    NothingRobot,
 }
 
 /// All families, in the order of the tables.
-pub const FAMILIES: [Family; 9] = [
+pub const FAMILIES: [Family; 11] = [
     Family::Single,
     Family::Hanging,
     Family::Balancing,
@@ -40,6 +45,8 @@ pub const FAMILIES: [Family; 9] = [
     Family::NothingHanging,
     Family::NothingBalancing,
     Family::Outside,
+    Family::Robot,
+    Family::NothingRobot,
 ];
 
 /// Effects that MuJoCo simulates and the library does not know.
@@ -74,6 +81,8 @@ impl Family {
             Family::NothingHanging => "nothing-hanging",
             Family::NothingBalancing => "nothing-balancing",
             Family::Outside => "outside",
+            Family::Robot => "robot",
+            Family::NothingRobot => "nothing-robot",
         }
     }
 
@@ -95,8 +104,16 @@ impl Family {
     pub fn hides_nothing(self) -> bool {
         matches!(
             self,
-            Family::Nothing | Family::NothingHanging | Family::NothingBalancing
+            Family::Nothing
+                | Family::NothingHanging
+                | Family::NothingBalancing
+                | Family::NothingRobot
         )
+    }
+
+    /// Whether its logs are recordings of the virtual robot.
+    pub fn is_recorded(self) -> bool {
+        matches!(self, Family::Robot | Family::NothingRobot)
     }
 
     /// What must be reached.
@@ -107,9 +124,11 @@ impl Family {
                 ("named, or in an equivalent set", 0.9)
             }
             Family::Triples => ("named, or in an equivalent set", 0.75),
-            Family::Nothing | Family::NothingHanging | Family::NothingBalancing => {
-                ("nothing is said to be missing", 0.99)
-            }
+            Family::Robot => ("named, or in an equivalent set", 0.85),
+            Family::Nothing
+            | Family::NothingHanging
+            | Family::NothingBalancing
+            | Family::NothingRobot => ("nothing is said to be missing", 0.99),
             Family::Outside => ("unexplained", 0.95),
         };
         Target { name, share }
@@ -159,18 +178,23 @@ impl Plan {
                 .flat_map(|kind| seeds.clone().map(|seed| case(vec![kind], seed)))
                 .collect()
         };
+        if (self.truth == Truth::Robot) != family.is_recorded() {
+            return Vec::new();
+        }
         match family {
+            Family::Robot => each(&kinds(self.truth)),
             Family::Single | Family::Hanging | Family::Balancing => each(&kinds(self.truth)),
             Family::Outside => match self.truth {
                 Truth::Own => each(&kinds(self.truth)),
                 Truth::Mujoco => each(&OUTSIDE),
+                Truth::Robot => Vec::new(),
             },
             Family::Pairs => self.sets(2, &case),
             Family::Triples => self.sets(3, &case),
             Family::Nothing => (self.seed0..self.seed0 + self.nominal)
                 .map(|seed| case(Vec::new(), seed))
                 .collect(),
-            Family::NothingHanging | Family::NothingBalancing => {
+            Family::NothingHanging | Family::NothingBalancing | Family::NothingRobot => {
                 seeds.map(|seed| case(Vec::new(), seed)).collect()
             }
         }
@@ -195,6 +219,12 @@ impl Plan {
 
 /// Effects of the library that this truth can hide.
 pub fn kinds(truth: Truth) -> Vec<&'static str> {
-    let has = |kind: &&str| truth == Truth::Own || *kind != "load_friction";
-    KINDS.into_iter().filter(has).collect()
+    match truth {
+        Truth::Own => KINDS.to_vec(),
+        Truth::Mujoco => {
+            let has = |kind: &&str| *kind != "load_friction";
+            KINDS.into_iter().filter(has).collect()
+        }
+        Truth::Robot => ROBOT_KINDS.to_vec(),
+    }
 }

@@ -1,11 +1,13 @@
 //! The hidden-effect benchmark: is an effect that a virtual rig hides named, missed, or invented?
 //!
 //! Truth and library share no equation: [`handstand::challenge`] has its own, and MuJoCo knows
-//! nothing of either.
+//! nothing of either. The virtual robot has the library's plant; there the question is what the
+//! robot's own recordings tell.
 
 mod case;
 mod family;
 mod mujoco;
+mod robot;
 mod said;
 mod tally;
 mod text;
@@ -14,6 +16,7 @@ mod trial;
 pub use case::{Case, Truth};
 pub use family::{FAMILIES, Family, OUTSIDE, Plan, kinds};
 pub use mujoco::install as install_mujoco;
+pub use robot::ROBOT_KINDS;
 pub use tally::{EffectRow, FamilyRow, Share, Tally};
 pub use text::{line, misses, tables};
 pub use trial::{Answer, Outcome, Value, try_case};

@@ -2,8 +2,8 @@
 //!
 //! Families of cases: one effect at the bench arm, at the robot hanging, at the robot hanging and
 //! balancing; two and three effects; none; one that the library lacks. Every rig has motions to
-//! learn from and some held out. The truth is the library's own independent equations or, with
-//! `--truth mujoco`, MuJoCo's. A line goes to stderr as each diagnosis ends, whichever ends first;
+//! learn from and some held out. The truth is the library's own independent equations, with
+//! `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the firmware. A line goes to stderr as each diagnosis ends, whichever ends first;
 //! the tables go to stdout. Fails when a target is missed or a case cannot be made.
 //!
 //! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is not
@@ -134,6 +134,10 @@ fn measured(args: &Args) -> Result<bool, String> {
         Truth::Mujoco => (
             "hidden-mujoco",
             "Hidden effects named, missed and invented: MuJoCo's truth",
+        ),
+        Truth::Robot => (
+            "hidden-robot",
+            "Hidden effects named, missed and invented: the virtual robot's own recordings",
         ),
     };
     let written = args.page.show(json, &measured, name, title);

@@ -121,7 +121,7 @@ const RIGS: &[Rig] = &[
         why: Some(
             "held out, the second link goes over the top (9.0 rad, 22 rad/s; trained on 1.4 rad and 13 rad/s), so small \
              errors of inertia grow; with --horizon 0.5 Coulomb friction at joint 2 (0.16 N m) and a friction at joint 1 \
-             that differs by direction are named, 139 -> 31 mrad",
+             that differs by direction come closest, 139 -> 31 mrad",
         ),
     },
 ];

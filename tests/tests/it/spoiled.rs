@@ -4,7 +4,7 @@ use handstand::challenge::Motions;
 use handstand_tests::spoiled::{Answer, Spoiling, bundled, judge, simulated, unspoiled};
 
 #[test]
-fn spoiled_logs_of_a_driven_arm_get_the_right_remedy() {
+fn a_spoiled_arm_gets_the_right_remedy() {
     let rig = simulated(Motions::Arm, "coulomb", 1).unwrap();
     for spoiling in [Spoiling::PositionSign(0), Spoiling::Milliseconds] {
         let outcome = judge(&rig, spoiling);

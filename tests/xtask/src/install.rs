@@ -54,7 +54,7 @@ pub const NEEDS: &[Need] = &[
     },
     Need {
         name: "Chromium",
-        wanted_for: "the tests that render pages",
+        wanted_for: "the tests that render pages and use the lab",
         sign: Sign::Files(&["chromium", "chromium-browser", "google-chrome"]),
         packages: &["chromium"],
         for_builds: false,
@@ -113,6 +113,7 @@ pub fn run(args: &Args) {
     if !args.only_builds {
         each(|need| !need.for_builds);
         super::python::all();
+        super::npm::all();
     }
 }
 

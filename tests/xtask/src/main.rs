@@ -6,6 +6,7 @@ mod fuzz;
 mod image;
 mod install;
 mod lane;
+mod npm;
 mod python;
 mod test;
 

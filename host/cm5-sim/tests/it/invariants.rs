@@ -326,9 +326,11 @@ impl Judged {
         let is_armed = self.cm5.app.is_armed();
         if is_armed && !self.armed {
             let fresh = self.fresh;
-            let arms = self.arms.iter().rev();
-            let arm =
-                { arms }.find(|(_, token, limits)| Some(*token) == fresh && limits.is_sound());
+            let arms = self.arms.iter();
+            // Of two that came during one tick the first arms, or the second if the first was
+            // refused: which one is not known here.
+            let own = arms.filter(|(_, token, limits)| Some(*token) == fresh && limits.is_sound());
+            let arm = own.max_by_key(|(_, _, limits)| limits.torque.0);
             let Some((_, _, limits)) = arm.copied() else {
                 panic!(
                     "armed by none of {:?}, the token being {fresh:?}",

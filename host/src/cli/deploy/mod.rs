@@ -29,20 +29,20 @@
 
 pub mod board;
 mod build;
+mod limits;
 
 use super::flash::{Loader, write};
 use super::port::Port;
-use super::show::table_of;
 use super::{ExitStatus, Talk, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
 use handstand::deploy::{self, BoardLaw, ModeLimit, plan_file};
 use handstand::link::Session;
 use handstand::link::boot_loader::Image;
-use handstand::output::table::TableColumn;
 use handstand::output::write_new;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
+use limits::limits_table;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -222,24 +222,6 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         Some(_) => talk.say("the CM-5 has these gains; torque is off"),
     }
     Ok(ExitStatus::Done)
-}
-
-/// What the torque limit allows.
-fn limits_table(limits: &[ModeLimit]) -> String {
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let columns: &[TableColumn<ModeLimit>] = &[
-        ("Unstable mode", &|l| format!("{:.1} /s", l.pole_per_s)),
-        ("Grows until an answer acts", &|l| {
-            format!("x {:.2} in {:.1} ms", l.growth, 1e3 * l.answer_s)
-        }),
-        ("1 deg, of what is recoverable", &|l| {
-            percent(l.degree_share)
-        }),
-        ("Half a sensor step, when answered", &|l| {
-            percent(l.half_step_share)
-        }),
-    ];
-    table_of(limits, columns).to_string()
 }
 
 fn upload(

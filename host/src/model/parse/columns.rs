@@ -3,7 +3,7 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Column, ColumnMean, Dimension, Drive, Joint, JointColumns, LogColumns, Unit};
+use super::super::{Column, ColumnMean, Dimension, Joint, JointColumns, LogColumns, Unit};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
 
@@ -70,13 +70,7 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
     let position = mean(table, "position", Dimension::Angle)?;
     let velocity = mean(table, "velocity", Dimension::Speed)?;
-    let wanted = match joint.drive {
-        Drive::Passive => None,
-        Drive::Torque => Some(Dimension::Torque),
-        Drive::Duty(_) => Some(Dimension::Ratio),
-        Drive::Position { .. } => Some(Dimension::Angle),
-        Drive::Speed { .. } => Some(Dimension::Speed),
-    };
+    let wanted = Dimension::of_input(joint.drive.name());
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
         (Some(wanted), true) => mean(table, "input", wanted)?,

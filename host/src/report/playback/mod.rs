@@ -4,4 +4,5 @@ mod page;
 mod scene;
 
 pub use page::html;
+pub(crate) use page::stage;
 pub use scene::{DrawnLink, DrawnMotion, Input, Scene, Track, TrackKind};

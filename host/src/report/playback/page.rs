@@ -24,10 +24,24 @@ const KEYS: [(&[&str], &str); 8] = [
 /// # Errors
 /// A scene that JSON cannot hold; none is known.
 pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
-    // What could end the script element is written otherwise.
-    let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
     let style = markup! { (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) };
     let body = markup! {
+        (stage(scene)?)
+        p.note { code { (command) } }
+        noscript { p { "This page draws with a script of its own; allow it to run." } }
+        script { (PreEscaped(SCRIPT)) }
+    };
+    Ok(self_contained(&scene.title, &style, &body))
+}
+
+/// What the script draws on, and the scene as data.
+///
+/// # Errors
+/// As [`html`].
+pub(crate) fn stage(scene: &Scene) -> serde_json::Result<Markup> {
+    // What could end the script element is written otherwise.
+    let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
+    Ok(markup! {
         header {
             h1 { (scene.title) }
             select #motion aria-label="Motion" {}
@@ -35,22 +49,18 @@ pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
             button #theme title="Light or dark (D)" aria-label="Light or dark" { "◐" }
         }
         main {
-            canvas #stage aria-label="The robot" {}
+            canvas #stage role="img" aria-label="The robot" {}
             aside { div #drives {} table #angles {} (keys()) }
         }
-        canvas #chart aria-label="Angles over time" {}
+        canvas #chart role="img" aria-label="Angles over time" {}
         footer {
             button #play title="Play, pause (Space)" { "▶" }
             input #scrub type="range" min="0" max="1000" value="0" step="1" aria-label="Time";
             output #clock {}
             select #speed aria-label="Speed" {}
         }
-        p.note { code { (command) } }
-        noscript { p { "This page draws with a script of its own; allow it to run." } }
         script type="application/json" id="scene" { (PreEscaped(data)) }
-        script { (PreEscaped(SCRIPT)) }
-    };
-    Ok(self_contained(&scene.title, &style, &body))
+    })
 }
 
 fn keys() -> Markup {

@@ -295,9 +295,22 @@
       bar.setAttribute("width", Math.abs(100 * share));
     });
     const shown = motion().tracks.filter((_, i) => state.shown[i]);
-    const rows = first.joint_rad.map((_, joint) => `<tr><td>joint ${joint + 1}</td>` + shown.map((track) =>
-      `<td style="color:var(${toneOf(track)})">${number(between(track, [track.joint_rad[joint]], state.time)[0] * 180 / Math.PI, 2)}°</td>`).join("") + "</tr>");
-    $("angles").innerHTML = `<tr><th>Angle</th>${shown.map((t) => `<th>${t.kind === "measured" ? "measured" : t.kind === "model" ? "model" : "overlay"}</th>`).join("")}</tr>${rows.join("")}`;
+    const cells = (name, texts) => {
+      const row = document.createElement("tr");
+      row.append(...texts.map((text, i) => {
+        const cell = document.createElement(name);
+        cell.textContent = text;
+        // Set here: a page's policy may refuse styles that stand in markup.
+        if (i > 0 && name === "td") cell.style.color = `var(${toneOf(shown[i - 1])})`;
+        return cell;
+      }));
+      return row;
+    };
+    const kinds = { measured: "measured", model: "model", overlay: "overlay" };
+    $("angles").replaceChildren(
+      cells("th", ["Angle", ...shown.map((track) => kinds[track.kind])]),
+      ...first.joint_rad.map((_, joint) => cells("td", [`joint ${joint + 1}`, ...shown.map((track) =>
+        `${number(between(track, [track.joint_rad[joint]], state.time)[0] * 180 / Math.PI, 2)}°`)])));
     $("clock").textContent = `${state.time.toFixed(2)} / ${end().toFixed(2)} s`;
     scrub.value = Math.round(1000 * state.time / end());
     $("play").textContent = state.playing ? "❚❚" : "▶";

@@ -31,26 +31,24 @@
 //! (registers set: `id`, `register`, `before`), `longest_report_s`, `longest_attitude_s`,
 //! `longest_silence_ms`, `tripped` (`id`, `error_flags`), `supply_v`, `samples`, `record`.
 
+mod report;
+mod source;
+
 use super::deploy::board::BoardArgs;
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
-use super::show::{or_dash, table};
 use super::{ExitStatus, Talk};
-use handstand::balance::{
-    AttitudeLines, AttitudeSource, BalanceEnd, BalanceOutcome, BalanceStatus, Balancer, WheelChange,
-};
-use handstand::deploy::{self, BoardLaw, plan_of_file};
-use handstand::link::condition_words;
+use handstand::balance::{BalanceEnd, BalanceOutcome, Balancer};
 use handstand::link::record::RobotRecorder;
-use handstand::{Error, Model, Result, output};
-use handstand_shared::dynamixel::ErrorBits;
+use handstand::{Error, Result, output};
 use handstand_shared::message::ArmLimits;
 use handstand_shared::plan::Plan;
-use handstand_shared::raw::{Supply, TorqueLimit};
+use handstand_shared::raw::TorqueLimit;
 use indicatif::ProgressBar;
-use serde_json::json;
-use std::path::{Path, PathBuf};
+use report::{BalanceReport, live_table};
+use source::{attitude, plan, wrong_attitude};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Samples between two drawings of the table: ten a second.
@@ -150,7 +148,7 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
         report.samples = recorder.samples;
         recorder.finish()?;
     }
-    report.print(&outcome?, &balancer.status, args, talk)
+    report.print(&outcome?, &balancer.status, args.record.as_deref(), talk)
 }
 
 /// The limits that torque comes on with.
@@ -179,59 +177,6 @@ fn checked(args: &BalanceArgs) -> Result<ArmLimits> {
         torque: TorqueLimit((share * 1023.0).round() as u16),
         ..ArmLimits::FULL
     })
-}
-
-/// The plan of a file: read, or designed for a model.
-fn plan(args: &BalanceArgs, file: &Path) -> Result<Plan> {
-    if file.extension().is_some_and(|ending| ending == "rs") {
-        let text = std::fs::read_to_string(file);
-        let text = text.map_err(|error| Error::file(file, "read", error))?;
-        return plan_of_file(&text, file);
-    }
-    let (model, board) = (Model::load(file)?, args.board.board()?);
-    let machine = deploy::observer_design(&model, &board, &args.board.timing()?)?;
-    deploy::plan(&model, BoardLaw::Observer(&machine), &board)
-}
-
-/// Where the attitude comes from, and whether that is the gyro.
-fn attitude(
-    args: &BalanceArgs,
-    plan: Option<&Plan>,
-    robot: Option<AttitudeSource>,
-) -> Result<(AttitudeSource, bool)> {
-    let wants_gyro = plan.is_some_and(|plan| !plan.gyro.from_host);
-    let kind = match args.attitude {
-        Some(kind) => kind,
-        None if wants_gyro || robot.is_none() => AttitudeKind::Gyro,
-        None => AttitudeKind::Robot,
-    };
-    let source = match kind {
-        AttitudeKind::Gyro => AttitudeSource::Gyro,
-        AttitudeKind::Lines => {
-            let lines = std::io::BufReader::new(std::io::stdin());
-            AttitudeSource::Lines(AttitudeLines::read(lines, "stdin"))
-        }
-        AttitudeKind::Robot => robot.ok_or_else(|| {
-            Error::usage(
-                "there is no simulated robot behind this port",
-                "--port sim-cm5:robot=MODEL.toml,start=held has one; else --attitude lines",
-            )
-        })?,
-    };
-    Ok((source, kind == AttitudeKind::Gyro))
-}
-
-fn wrong_attitude(plan_wants_host: bool) -> Error {
-    match plan_wants_host {
-        true => Error::usage(
-            "the plan wants the first link's attitude from the PC, and none is given",
-            "--attitude lines takes it from standard input; or deploy with --gyro-per-code",
-        ),
-        false => Error::usage(
-            "the plan takes the first link's rate from the CM-5's gyro",
-            "leave --attitude out, or deploy without --gyro-per-code",
-        ),
-    }
 }
 
 /// The plan onto the CM-5, the servos into wheel mode.
@@ -299,7 +244,7 @@ fn balance(
         let left_s = armed_at.saturating_sub(balancer.link().now()).as_secs_f64();
         live.set_message(format!(
             "torque in {left_s:.0} s\n{}",
-            text(&balancer.status)
+            live_table(&balancer.status)
         ));
     }
     balancer.arm(limits)?;
@@ -321,92 +266,7 @@ fn balance(
         }
         count += 1;
         if count % DRAW_EVERY == 0 {
-            live.set_message(text(&balancer.status));
-        }
-    }
-}
-
-/// The live table.
-fn text(status: &BalanceStatus) -> String {
-    let degrees = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} deg", rad.to_degrees()));
-    let mut joints = table(["", "Angle", "Output or rate"]);
-    let lean = degrees(status.lean_rad);
-    let rate = or_dash(status.rate_rad_s, |rate| {
-        format!("{:.1} deg/s", rate.to_degrees())
-    });
-    joints.add_row(["first link", &lean, &rate]);
-    for (name, joint) in [("shoulder", 0), ("hip", 1)] {
-        let output = or_dash(status.output[joint], |share| {
-            format!("{:.0} %", 100.0 * share)
-        });
-        joints.add_row([name, &degrees(status.joint_rad[joint]), &output]);
-    }
-    format!(
-        "{}, {:.1} s\n{joints}\nsupply {}, hottest servo {}, reports every {:.0} ms (longest {:.0})",
-        condition_words(status.condition),
-        status.balanced_s,
-        or_dash(status.supply_v(), |supply| format!("{supply:.1} V")),
-        or_dash(status.hottest_celsius(), |heat| format!("{heat:.0} C")),
-        1e3 * status.report_s,
-        1e3 * status.longest_report_s,
-    )
-}
-
-/// What was done, for the summary.
-#[derive(Default)]
-struct BalanceReport {
-    fingerprint: u32,
-    uploaded: bool,
-    changes: Vec<WheelChange>,
-    samples: u64,
-}
-
-impl BalanceReport {
-    fn print(
-        &self,
-        outcome: &BalanceOutcome,
-        status: &BalanceStatus,
-        args: &BalanceArgs,
-        talk: &Talk,
-    ) -> Result<ExitStatus> {
-        let account = outcome.account.as_ref();
-        let tripped = account.and_then(|account| account.tripped);
-        let data = json!({
-            "ended": outcome.id(),
-            "cause": outcome.is_safety_stop().then(|| outcome.words()),
-            "balanced_s": outcome.balanced_s,
-            "lean_rms_rad": status.lean_rms_rad(),
-            "fingerprint": format!("{:08X}", self.fingerprint),
-            "uploaded": self.uploaded,
-            "changes": self.changes,
-            "longest_report_s": status.longest_report_s,
-            "longest_attitude_s": status.lean_rad.map(|_| status.longest_attitude_s),
-            "longest_silence_ms": account.map(|account| account.longest_silence_ms),
-            "tripped": tripped.map(|tripped| json!({
-                "id": tripped.id,
-                "error_flags": ErrorBits(tripped.error).names().collect::<Vec<_>>(),
-            })),
-            "supply_v": account.map(|account| Supply(account.supply).to_v()),
-            "samples": args.record.as_ref().map(|_| self.samples),
-            "record": args.record.as_ref().map(|file| file.display().to_string()),
-        });
-        let rms = or_dash(status.lean_rms_rad(), |rad| {
-            format!(", {:.1} mrad rms from upright", 1e3 * rad)
-        });
-        let rms = if status.lean_rad.is_some() {
-            rms
-        } else {
-            String::new()
-        };
-        let text = format!(
-            "balanced for {:.1} s{rms}; {}",
-            outcome.balanced_s,
-            outcome.words()
-        );
-        talk.result(&data, || text)?;
-        match outcome.is_safety_stop() {
-            true => Ok(ExitStatus::Stopped),
-            false => Ok(ExitStatus::Done),
+            live.set_message(live_table(&balancer.status));
         }
     }
 }

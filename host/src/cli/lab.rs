@@ -1,0 +1,114 @@
+//! `handstand lab [MODEL] [LOG...]`: the measuring loop in a browser.
+//!
+//! Serves pages to this machine alone and prints the address to open, which carries a token.
+//! Compare, see where the model fails, diagnose, add an effect, watch the error fall, undo; sliders
+//! for every value and effect; challenges; gains. Every number is the one that `compare`,
+//! `diagnose`, `add` and `gains` print.
+//!
+//! ```console
+//! $ handstand lab arm.toml a.csv b.csv
+//! http://127.0.0.1:40123/enter?token=...
+//! ```
+//!
+//! What is done is kept in `--session DIR`, whole after each step; the same folder opened again
+//! goes on from there. `--json` prints `address` and `session`. Ctrl-C ends it.
+
+use super::{ExitStatus, Talk, input};
+use handstand::lab::{Given, Lab, LabOptions};
+use handstand::log::LogRequest;
+use handstand::{Error, Result};
+use serde_json::json;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// Measure, compare, diagnose and improve a model in a browser.
+#[derive(Debug, clap::Args)]
+pub struct LabArgs {
+    /// Model file to begin with
+    model: Option<PathBuf>,
+    /// Logs to begin with
+    #[arg(value_name = "LOG", value_parser = input::log)]
+    logs: Vec<LogRequest>,
+    /// Folder that keeps the sessions [default: a folder of the user's state]
+    #[arg(long, value_name = "DIR")]
+    session: Option<PathBuf>,
+    /// Port of this machine's loopback interface [default: a free one]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    port: u16,
+    /// Open the address in the browser
+    #[arg(long)]
+    open: bool,
+}
+
+/// Serves until it is ended.
+pub fn run(args: &LabArgs, talk: &Talk) -> Result<ExitStatus> {
+    let folder = match &args.session {
+        Some(folder) => folder.clone(),
+        None => state_folder()?,
+    };
+    let lab = Lab::bind(LabOptions {
+        given: Given {
+            model: args.model.clone(),
+            logs: args.logs.clone(),
+        },
+        folder,
+        port: args.port,
+    })?;
+    let address = lab.address();
+    let data = json!({ "address": address, "session": lab.folder().to_string_lossy() });
+    talk.result(&data, || address.clone())?;
+    talk.say(&format!(
+        "sessions are kept in {}; Ctrl-C ends the lab",
+        lab.folder().display()
+    ));
+    if args.open {
+        open(&address, talk);
+    }
+    lab.serve()?;
+    Ok(ExitStatus::Done)
+}
+
+/// Where programs keep the state of a user.
+fn state_folder() -> Result<PathBuf> {
+    let variable = |name| std::env::var_os(name).map(PathBuf::from);
+    let absolute = |path: &PathBuf| path.is_absolute();
+    let state = variable("XDG_STATE_HOME")
+        .filter(absolute)
+        .or_else(|| Some(variable("HOME")?.join(".local/state")))
+        .or_else(|| variable("LOCALAPPDATA"));
+    let state = state.ok_or_else(|| {
+        Error::usage(
+            "there is no home folder to keep sessions in",
+            "name one: --session DIR",
+        )
+    })?;
+    Ok(state.join("handstand").join("lab"))
+}
+
+/// Asks the system to show the address. Where it cannot, the address stands on stdout.
+fn open(address: &str, talk: &Talk) {
+    let program = if cfg!(target_os = "macos") {
+        "open"
+    } else {
+        "xdg-open"
+    };
+    let mut command = match cfg!(windows) {
+        true => {
+            let mut command = Command::new("cmd");
+            command.args(["/c", "start", ""]);
+            command
+        }
+        false => Command::new(program),
+    };
+    let begun = command
+        .arg(address)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    if let Err(why) = begun {
+        talk.say(&format!(
+            "no browser was opened ({why}): open the address yourself"
+        ));
+    }
+}

@@ -1,0 +1,48 @@
+//! A model run along measured motions: every sample it predicts, and what it leaves.
+
+use super::predicted::{predicted, residual};
+use crate::fitting::{FitData, Horizon, Node, fit_start_states};
+use crate::model::Model;
+
+/// A model run along motions, its start states fitted; a comparison is made of it.
+#[derive(Debug, Clone)]
+pub struct ModelRun {
+    /// The model.
+    pub model: Model,
+    /// The motions, cut into windows.
+    pub data: FitData,
+    /// Longest windows asked for.
+    pub horizon: Horizon,
+    /// Where each window starts.
+    pub nodes: Vec<Node>,
+    /// Predicted angles, rad, or rates where no angle is measured, rad/s,
+    /// `[motion][joint][sample]`.
+    pub predicted: Vec<Vec<Vec<f64>>>,
+}
+
+impl ModelRun {
+    /// Fits the start states and predicts; `data` is cut at `horizon`.
+    pub fn new(model: Model, data: FitData, horizon: Horizon) -> ModelRun {
+        let nodes = fit_start_states(&model, &data).nodes;
+        ModelRun::from_nodes(model, data, horizon, nodes)
+    }
+
+    /// Predicts from these start states, one for each window of `data`.
+    pub fn from_nodes(model: Model, data: FitData, horizon: Horizon, nodes: Vec<Node>) -> ModelRun {
+        ModelRun {
+            predicted: predicted(&model, &data, &nodes),
+            model,
+            data,
+            horizon,
+            nodes,
+        }
+    }
+
+    /// Measured minus predicted, rad or rad/s, `[joint][motion][sample]`; not a number where nothing was
+    /// measured.
+    pub fn residuals(&self) -> Vec<Vec<Vec<f64>>> {
+        let joints = 0..self.model.link_count();
+        let residual = |joint| residual(&self.data, &self.predicted, joint);
+        joints.map(residual).collect()
+    }
+}

@@ -1,0 +1,113 @@
+// Sliders for every value of the model and every effect of the library.
+import { ChartGroup } from "./chart.js";
+import { arrays, element } from "./curves.js";
+import { go, milli, panelsOf, say, send } from "./lab.js";
+
+const base = `/s/${document.body.dataset.session}`;
+const root = document.getElementById("curves"), motion = document.getElementById("motion");
+const group = new ChartGroup(root);
+const library = JSON.parse(document.getElementById("library").textContent);
+const values = new Map(), added = [];
+let plain = null, wanted = null, busy = false;
+
+const draw = (changed) => {
+  const data = { ...plain.data, ...(changed?.data ?? {}) };
+  group.show(data.time, panelsOf({ meta: plain.meta, data }, ["as it is", "what if", "grey",
+    "blue"]), { marks: plain.meta.restarts_s });
+  document.getElementById("error-was").textContent = milli(plain.meta.rms, plain.meta.unit);
+  document.getElementById("error-if").textContent = milli(changed?.meta.rms ?? plain.meta.rms,
+    plain.meta.unit);
+};
+const tried = (moving = false) => ({
+  motion: Number(motion.value), moving,
+  effects: added.map((effect) => effect.name), values: [...values],
+});
+const run = (moving) => arrays(`${base}/what-if`, {
+  method: "POST", headers: { "content-type": "application/json" },
+  body: JSON.stringify(tried(moving)),
+});
+// One request at a time: while it runs only the last wish is kept. While a slider moves, windows
+// start where they do for the model as it is; when it rests, their starts are fitted anew.
+const ask = async (moving = false) => {
+  wanted = { moving };
+  if (busy) return;
+  busy = true;
+  while (wanted) {
+    const next = wanted;
+    wanted = null;
+    const begun = performance.now();
+    try {
+      draw(values.size || added.length ? await run(next.moving) : null);
+      document.getElementById("error-about").textContent = next.moving ? "about " : "";
+      say("");
+    } catch (error) { say(error.message); }
+    root.dataset.answered = String(Math.round(performance.now() - begun));
+  }
+  busy = false;
+};
+const load = async () => {
+  plain = await arrays(`${base}/curves?motion=${motion.value}`);
+  await ask();
+};
+
+// The slider runs from `low` to `high`, by the logarithm where both are above 0 and far apart.
+const slider = ({ path, unit, low, high, value, meaning }) => {
+  const logarithmic = low > 0 && high / low >= 8;
+  const to = (v) => (logarithmic ? Math.log(v / low) / Math.log(high / low) :
+    (v - low) / (high - low));
+  const from = (s) => (logarithmic ? low * (high / low) ** s : low + s * (high - low));
+  const id = `value-${path.replaceAll(/[^a-z0-9]/gi, "-")}`;
+  const range = element("input", { type: "range", min: 0, max: 1000, step: 1, id, value:
+    Math.round(1000 * to(value)) });
+  const number = element("input", { type: "number", step: "any", value:
+    Number(value.toPrecision(5)) });
+  number.setAttribute("aria-label", `${path}, ${unit}`);
+  range.dataset.path = path;
+  const set = (v, moving) => { values.set(path, v); ask(moving); };
+  range.addEventListener("input", () => {
+    const v = Number(from(range.value / 1000).toPrecision(4));
+    number.value = v;
+    set(v, true);
+  });
+  range.addEventListener("change", () => ask(false));
+  number.addEventListener("change", () => {
+    const v = Number(number.value);
+    if (!Number.isFinite(v)) return;
+    range.value = Math.round(1000 * to(v));
+    set(v, false);
+  });
+  const name = element("label", { htmlFor: id, title: meaning ?? "" }, path);
+  return element("div", { className: "slider" }, name, number, element("span", {
+    className: "unit", textContent: unit }), range);
+};
+const box = document.getElementById("sliders");
+for (const given of library.values) box.append(slider(given));
+const picker = document.getElementById("effect");
+document.getElementById("add-effect").addEventListener("click", () => {
+  const effect = library.effects.find((each) => each.name === picker.value);
+  if (!effect || added.includes(effect)) return;
+  added.push(effect);
+  const fields = effect.values.map((value) => { values.set(value.path, value.value);
+    return slider(value); });
+  const drop = element("button", { type: "button", textContent: "Take out" });
+  drop.setAttribute("aria-label", `Take ${effect.name} out`);
+  const set = element("fieldset", {}, element("legend", {
+    textContent: `${effect.title} (${effect.name})` }),
+    element("p", { className: "note" }, element("code", {
+      textContent: effect.law })), ...fields, drop);
+  drop.addEventListener("click", () => {
+    added.splice(added.indexOf(effect), 1);
+    for (const value of effect.values) values.delete(value.path);
+    set.remove();
+    ask();
+  });
+  box.prepend(set);
+  set.querySelector("input")?.focus();
+  ask();
+});
+document.getElementById("keep").addEventListener("click", async () => {
+  try { go(await send("keep", tried())); } catch (error) { say(error.message); }
+});
+document.getElementById("reset").addEventListener("click", () => location.reload());
+motion.addEventListener("change", () => load().catch((error) => say(error.message)));
+load().catch((error) => say(error.message));

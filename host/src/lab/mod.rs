@@ -1,0 +1,18 @@
+//! The lab: the measuring loop in a browser, served from this machine to this machine.
+//!
+//! It holds no mathematics of its own: every number comes from the functions that the command line
+//! calls, on the same files. `server` listens on the loopback interface, `guard` refuses whoever
+//! does not know the token or comes from another page, `session` keeps what a person did (whole on
+//! disk after every step), `routes` answer requests, `pages` draw them. Pages are made here; the
+//! scripts under `assets` draw curves and move sliders.
+
+mod assets;
+mod guard;
+mod pages;
+mod reply;
+mod routes;
+mod server;
+mod session;
+
+pub use server::{Lab, LabOptions};
+pub use session::Given;

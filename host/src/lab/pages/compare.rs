@@ -1,0 +1,186 @@
+//! Measured against model, and where it fails.
+
+use super::{frame, in_milli, lacking, refused, seen};
+use crate::compare::{Failure, SignalError};
+use crate::lab::reply::LabError;
+use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
+use crate::output::number::{mrad, percent, short};
+use crate::plot::{Bar, Tone};
+use maud::{Markup, html};
+
+/// The page.
+pub fn page(session: &Session) -> Result<Markup, LabError> {
+    let saved = session.saved();
+    let (evaluation, body) = match seen(session, &saved)? {
+        Ok(Some(evaluation)) => {
+            let body = shown(&saved, &evaluation);
+            (Some(evaluation), body)
+        }
+        Ok(None) => (None, lacking(session.number, &saved)),
+        Err(why) => (None, refused(session.number, &why)),
+    };
+    Ok(frame::page(
+        session,
+        &saved,
+        "compare",
+        evaluation.as_deref(),
+        "lab.js",
+        &body,
+    ))
+}
+
+fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
+    let comparison = evaluation.comparison();
+    html! {
+        section {
+            h1 { "Measured against model" }
+            p.lead { "Above, what was measured and what the model predicts for the same input. \
+                      Below, the residual: measured minus predicted. A good model's residual \
+                      stays inside the shaded noise floor. Drag across a chart to zoom, Shift and \
+                      drag to move." }
+            (controls(saved, evaluation))
+            div #curves data-name=(format!("model {}", saved.current)) {}
+        }
+        section {
+            h2 { "Where it fails" }
+            p.lead { "Conditions that hold more of the error than their share of the samples. \
+                      Press one to shade its samples in every chart." }
+            (failures(&comparison.failures))
+        }
+        section {
+            h2 { "The residual over what" }
+            div.row {
+                label for="scatter-joint" { "Joint" }
+                select #scatter-joint {
+                    @for joint in 0..evaluation.run.model.link_count() { option value=(joint) {
+                        (joint + 1) } }
+                }
+            }
+            div.scatters #scatters {}
+        }
+        section {
+            h2 { "Figures" }
+            (signals(&comparison.signals))
+            h3 { "The error over ever longer runs" }
+            (horizons(evaluation))
+            h3 { "The same on the command line" }
+            (command(&saved.compare_command()))
+        }
+    }
+}
+
+/// A command line that can be copied.
+pub fn command(line: &str) -> Markup {
+    html! {
+        pre.commands #command tabindex="0" { (line) }
+        button.small data-copy="#command" { "Copy" }
+    }
+}
+
+/// The motions to choose from.
+pub fn motions(evaluation: &Evaluation) -> Markup {
+    html! {
+        label for="motion" { "Motion" }
+        select #motion {
+            @for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
+                option value=(index) {
+                    (motion.name) @if evaluation.is_held_out(index) { " (held out)" } @else {
+                        " (fitted)" }
+                }
+            }
+        }
+    }
+}
+
+fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
+    let longest = evaluation.run.data.longest_s().max(0.2);
+    // A step beyond the longest motion stands for whole motions.
+    let (low, high) = (-1.3, longest.log10() + 0.1);
+    let seconds = saved.horizon().seconds();
+    let at = seconds.map_or(high, |seconds| seconds.log10().clamp(low, high));
+    html! {
+        div.row {
+            (motions(evaluation))
+            @if saved.steps.len() > 1 {
+                label for="other" { "with" }
+                select #other {
+                    option value="" { "no other model" }
+                    @for (index, step) in saved.steps.iter().enumerate().filter(|(i, _)| *i !=
+                        saved.current) {
+                        option value=(index) { "model " (index) ": " (step.title) }
+                    }
+                }
+            }
+        }
+        div.row {
+            label for="window" { "Longest window" }
+            input #window type="range" min=(low) max=(high) step="0.01" value=(at);
+            output #window-shown for="window" {}
+            @if saved.window != ChosenWindow::Automatic {
+                button.small #window-automatic type="button" { "As the diagnosis has it" }
+            }
+        }
+        @for line in &evaluation.comparison().unobserved { p.note { (line) } }
+        p.facts {
+            span { "Error " b #shown-error { (in_milli(evaluation.rms(), evaluation)) } }
+            span { "This motion is " b #shown-role {} }
+            span { "The model runs uncorrected for " b #shown-window {} }
+        }
+    }
+}
+
+fn failures(failures: &[Failure]) -> Markup {
+    html! {
+        @if failures.is_empty() { p { "No condition holds more than its share of the error." } }
+        ul.plain.failure-list { @for (index, failure) in failures.iter().enumerate() {
+            li { button type="button" data-condition=(index) aria-pressed="false" {
+                span { (failure.sentence) }
+                (Bar { mark: Some(failure.sample_share), ..Bar::new(failure.error_share, 1.0,
+                    Tone::Orange) }.draw())
+            } }
+        } }
+        @if !failures.is_empty() { p.note {
+            "Bars: share of the error; the thin line: share of the samples." } }
+    }
+}
+
+fn signals(signals: &[SignalError]) -> Markup {
+    html! {
+        div.scroll tabindex="0" { table {
+            thead { tr {
+                th { "Joint" } th.number { "RMS" } th.number { "Largest" } th.number { "Fit" }
+                th.number { "Floor" } th.number { "Squared error above floor" } th {
+                    "Tests of the residual" }
+            } }
+            tbody { @for signal in signals { tr {
+                td { (signal.joint) }
+                td.number { (mrad(signal.rms)) " " (signal.quantity.milli()) }
+                td.number { (mrad(signal.largest)) " " (signal.quantity.milli()) }
+                td.number { (short(signal.fit_percent)) " %" }
+                td.number { (mrad(signal.floor)) " " (signal.quantity.milli()) }
+                td.number { (percent(signal.share_above_floor)) }
+                td { @for test in &signal.tests {
+                    span class=(if test.passed { "good" } else { "bad" }) title=(test.meaning) {
+                        (test.name) @if test.passed { " passed" } @else { " not passed" } ". "
+                    }
+                } }
+            } } }
+        } }
+    }
+}
+
+fn horizons(evaluation: &Evaluation) -> Markup {
+    html! {
+        p.facts {
+            @for horizon in &evaluation.comparison().horizons {
+                span {
+                    @match horizon.horizon_s {
+                        Some(seconds) => { (short(seconds)) " s " }
+                        None => { "whole motions " }
+                    }
+                    b { (in_milli(horizon.rms, evaluation)) }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What stands around every page: where one is, the model in force, its error.
+
+use super::in_milli;
+use crate::lab::session::{Evaluation, SavedSession, Session};
+use maud::{DOCTYPE, Markup, html};
+
+/// Pages of a session: address and name.
+const PAGES: [(&str, &str); 7] = [
+    ("data", "Data"),
+    ("compare", "Compare"),
+    ("learn", "Learn"),
+    ("what-if", "What if"),
+    ("robot", "Robot"),
+    ("gains", "Gains"),
+    ("challenge", "Challenge"),
+];
+
+fn head(title: &str) -> Markup {
+    html! {
+        meta charset="utf-8";
+        meta name="viewport" content="width=device-width, initial-scale=1";
+        meta name="color-scheme" content="light dark";
+        title { (title) }
+        link rel="stylesheet" href="/assets/lab.css";
+        link rel="icon" href="data:,";
+    }
+}
+
+/// A page outside any session.
+pub fn bare(title: &str, body: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" { head { (head(title)) } body { (body) } }
+    }
+}
+
+/// The page that goes on by itself.
+pub fn entrance() -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head { (head("handstand lab")) meta http-equiv="refresh" content="0;url=/"; }
+            body { main { p { a href="/" { "To the lab" } } } }
+        }
+    }
+}
+
+/// A page of a session; `script` is the one that it needs.
+pub fn page(
+    session: &Session,
+    saved: &SavedSession,
+    here: &str,
+    evaluation: Option<&Evaluation>,
+    script: &str,
+    body: &Markup,
+) -> Markup {
+    let number = session.number;
+    let name = PAGES
+        .iter()
+        .find(|page| page.0 == here)
+        .map_or(here, |page| page.1);
+    let running = session.job.state().is_running();
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                (head(&format!("{name} - handstand lab")))
+                script type="module" src={ "/assets/" (script) } {}
+            }
+            body data-session=(number) data-running[running] {
+                (top(number, here))
+                (status(saved, evaluation))
+                div #message role="alert" {}
+                main { (body) }
+                noscript { p { "The lab draws with scripts of its own; allow them to run." } }
+            }
+        }
+    }
+}
+
+fn top(number: u32, here: &str) -> Markup {
+    html! {
+        div.bar-top role="banner" {
+            a.brand href={ "/s/" (number) "/data" } { "handstand lab" }
+            nav aria-label="Pages" {
+                @for (address, name) in PAGES {
+                    @let current = (address == here).then_some("page");
+                    a href={ "/s/" (number) "/" (address) } aria-current=[current] { (name) }
+                }
+            }
+            a.session href="/sessions" { "Session " (number) }
+        }
+    }
+}
+
+fn status(saved: &SavedSession, evaluation: Option<&Evaluation>) -> Markup {
+    let Some(step) = saved.step() else {
+        return html! { div.status role="status" { span { "No model yet" } } };
+    };
+    html! {
+        div.status role="status" {
+            span { "Model " b { (saved.current) } ": " (step.title) }
+            @if let Some(evaluation) = evaluation { (error(evaluation)) }
+            // The page does not wait for it; its script asks.
+            @else if !saved.logs.is_empty() { span #error-wanted { "Error …" } }
+        }
+    }
+}
+
+/// The error in force and the floor below it.
+pub fn error(evaluation: &Evaluation) -> Markup {
+    html! {
+        span { "Error " b #error-now data-error=(evaluation.rms()) {
+            (in_milli(evaluation.rms(), evaluation))
+        } }
+        span { "Noise floor " b { (in_milli(evaluation.floor(), evaluation)) } }
+    }
+}

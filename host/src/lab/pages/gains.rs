@@ -1,0 +1,73 @@
+//! Gains: weights, sampling time and delay as sliders.
+
+use super::{frame, lacking};
+use crate::lab::reply::LabError;
+use crate::lab::session::Session;
+use maud::{Markup, html};
+
+/// A slider: name, title, lowest, highest and first place; powers of ten but for the delay.
+const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
+    ("q", "Q, weight of the states", -1.0, 5.0, 2.0),
+    ("r", "R, weight of the inputs", -3.0, 4.0, 0.0),
+    ("ts_s", "Sampling time, s", -3.0, -1.0, -2.0),
+    ("delay_s", "Delay of the inputs, s", 0.0, 0.06, 0.0),
+];
+
+/// The page.
+pub fn page(session: &Session) -> Result<Markup, LabError> {
+    let saved = session.saved();
+    let evaluation = session.known_evaluation(&saved);
+    let (script, body) = match saved.step() {
+        Some(_) => ("gains.js", shown()),
+        None => ("lab.js", lacking(session.number, &saved)),
+    };
+    Ok(frame::page(
+        session,
+        &saved,
+        "gains",
+        evaluation.as_deref(),
+        script,
+        &body,
+    ))
+}
+
+fn shown() -> Markup {
+    html! {
+        section {
+            h1 { "Gains that hold it upright" }
+            p.lead { "The linear-quadratic regulator of the model in force. The response is \
+                      simulated with every effect that the model has learned, from a lean of 20 \
+                      mrad." }
+            @for (name, title, low, high, at) in SLIDERS {
+                div.wide-slider {
+                    label for=(name) { (title) }
+                    input id=(name) type="range" min=(low) max=(high) step=(if name == "delay_s" {
+                        "0.0005" } else { "0.01" })
+                        value=(at) disabled[name == "delay_s"];
+                    output id={ (name) "-shown" } for=(name) {}
+                }
+            }
+            div.row {
+                label { input #own-delay type="checkbox" checked; "the model's own delay" }
+                button #find-region type="button" { "Find the region of attraction" }
+            }
+            div.two {
+                div { h2 { "Poles" } canvas #poles role="img"
+                    aria-label="Poles of the closed loop and the unit circle" {} }
+                div { h2 { "Figures" } div #figures aria-live="polite" {} }
+            }
+            h2 { "Response" }
+            div #response {}
+            h2 { "K" }
+            div.scroll #gain tabindex="0" {}
+            h2 { "Take along" }
+            div.row {
+                a data-file="gains.h" href="#" { "C header" }
+                a data-file="gains.rs" href="#" { "Rust file" }
+                a data-file="gains.csv" href="#" { "K as CSV" }
+            }
+            pre.commands #gains-command tabindex="0" {}
+            button.small data-copy="#gains-command" { "Copy" }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The pages: each its sections, drawn on the server; scripts add curves and sliders.
+
+pub(super) mod challenge;
+pub(super) mod compare;
+pub(super) mod data;
+pub(super) mod data_model;
+pub(super) mod enter;
+pub(super) mod frame;
+pub(super) mod gains;
+pub(super) mod learn;
+pub(super) mod learn_card;
+pub(super) mod learn_steps;
+pub(super) mod robot;
+pub(super) mod what_if;
+
+use super::reply::LabError;
+use super::session::{Evaluation, SavedSession, Session};
+use crate::output::number::{NONE, mrad};
+use maud::{Markup, html};
+use std::sync::Arc;
+
+/// The error of an evaluation as people read it.
+fn in_milli(value: f64, evaluation: &Evaluation) -> String {
+    format!("{} {}", mrad(value), evaluation.quantity().milli())
+}
+
+/// An error of angles as people read it; a dash where it is not known.
+fn in_mrad(rad: Option<f64>) -> String {
+    rad.map_or(NONE.to_string(), |rad| format!("{} mrad", mrad(rad)))
+}
+
+/// What stands on a page that needs more than there is.
+fn lacking(number: u32, saved: &SavedSession) -> Markup {
+    let lacks = match (saved.steps.is_empty(), saved.logs.is_empty()) {
+        (true, true) => "a model and a log",
+        (true, false) => "a model",
+        _ => "a log",
+    };
+    html! {
+        section {
+            h1 { "First bring " (lacks) }
+            p { "This page needs " (lacks) ". " a href={ "/s/" (number) "/data" } { "Bring them" }
+                "." }
+        }
+    }
+}
+
+/// The present evaluation, or why there is none.
+type Seen = Result<Option<Arc<Evaluation>>, (String, String)>;
+
+/// Evaluates the model in force; what is wrong with the logs becomes words.
+fn seen(session: &Session, saved: &SavedSession) -> Result<Seen, LabError> {
+    Ok(session.evaluation(saved, saved.current).map_err(|error| {
+        let remedy = error.remedy().unwrap_or_default().into_owned();
+        (session.shortened(&error.to_string()), remedy)
+    }))
+}
+
+/// Says why there is nothing to show.
+fn refused(number: u32, (found, remedy): &(String, String)) -> Markup {
+    html! {
+        section {
+            h1 { "The logs cannot be read by this model" }
+            p.bad { (found) }
+            p { (remedy) }
+            p { a href={ "/s/" (number) "/data" } { "Mend it on the data page" } }
+        }
+    }
+}

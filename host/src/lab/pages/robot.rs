@@ -1,0 +1,66 @@
+//! The robot that moves as the log says, the model's prediction over it.
+
+use super::{frame, lacking, refused, seen};
+use crate::lab::reply::LabError;
+use crate::lab::session::Session;
+use crate::report::playback::{Scene, stage};
+use maud::{DOCTYPE, Markup, html};
+
+/// The page; a page of its own in a frame, so that its keys do not meet those of the lab.
+pub fn page(session: &Session) -> Result<Markup, LabError> {
+    let saved = session.saved();
+    let (evaluation, body) = match seen(session, &saved)? {
+        Ok(Some(evaluation)) => {
+            let body = shown(session.number);
+            (Some(evaluation), body)
+        }
+        Ok(None) => (None, lacking(session.number, &saved)),
+        Err(why) => (None, refused(session.number, &why)),
+    };
+    Ok(frame::page(
+        session,
+        &saved,
+        "robot",
+        evaluation.as_deref(),
+        "lab.js",
+        &body,
+    ))
+}
+
+fn shown(number: u32) -> Markup {
+    html! {
+        section {
+            h1 { "The robot" }
+            p.lead { "The measurement, and dashed over it what the model predicts. Drag in the \
+                      chart to move in time; Space plays." }
+            iframe.stage src={ "/s/" (number) "/stage" } title="The robot, moving as the log says"
+                {}
+        }
+    }
+}
+
+/// The document in the frame.
+pub fn stage_page(session: &Session) -> Result<Markup, LabError> {
+    let saved = session.saved();
+    let evaluation = session.evaluation(&saved, saved.current)?;
+    let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
+    let run = &evaluation.run;
+    let mut scene = Scene::measured(&run.model, &run.data.motions);
+    let mut comparison = evaluation.comparison().clone();
+    comparison.model = format!("model {}", saved.current);
+    scene.add_model(&run.model, &comparison);
+    let stage = stage(&scene).map_err(|why| LabError::Conflict(why.to_string()))?;
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (scene.title) }
+                link rel="stylesheet" href="/assets/view.css";
+                script src="/assets/view.js" defer {}
+            }
+            body { (stage) }
+        }
+    })
+}

@@ -1,0 +1,243 @@
+//! Measured against model: curves, where it fails, over what.
+
+use super::arrays::Arrays;
+use super::{act, blocking, session};
+use crate::compare::{FailingSamples, residual_variables};
+use crate::lab::pages::{compare as pages, frame};
+use crate::lab::reply::{Answer, LabError, page};
+use crate::lab::server::LabState;
+use crate::lab::session::{ChosenWindow, Evaluation};
+use crate::model::Drive;
+use axum::Json;
+use axum::extract::{Path, Query, State};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Shortest and longest windows that can be asked for, s.
+const WINDOWS_S: Range<f64> = 0.02..1e4;
+
+/// The page.
+pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || Ok(page(pages::page(&session)?))).await
+}
+
+/// The error in force, as the top of each page has it.
+pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let saved = session.saved();
+        let evaluation = session.evaluation(&saved, saved.current)?;
+        let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
+        Ok(page(frame::error(&evaluation)))
+    })
+    .await
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct CurvesAsked {
+    motion: usize,
+    /// The step to draw; the one in force without.
+    step: Option<usize>,
+    /// Another step to draw with it.
+    other: Option<usize>,
+    /// Windows to try, s; `whole` motions, or those of the session without.
+    horizon: Option<String>,
+}
+
+/// Measured and predicted angles of one motion.
+pub(super) async fn curves(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Query(asked): Query<CurvesAsked>,
+) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let mut saved = session.saved();
+        if let Some(horizon) = &asked.horizon {
+            let seconds = horizon.parse().ok().filter(|s| WINDOWS_S.contains(s));
+            saved.window = seconds.map_or(ChosenWindow::Whole, ChosenWindow::Seconds);
+        }
+        let step = asked.step.unwrap_or(saved.current);
+        let made = |step| {
+            session
+                .evaluation(&saved, step)?
+                .ok_or(LabError::NotFound("step"))
+        };
+        let evaluation: Arc<Evaluation> = made(step)?;
+        let other = asked.other.map(made).transpose()?;
+        let mut arrays = Arrays::default();
+        let meta = draw(&mut arrays, &evaluation, asked.motion)?;
+        if let Some(other) = &other {
+            let predicted = other.run.predicted.get(asked.motion);
+            for (joint, angles) in predicted.into_iter().flatten().enumerate() {
+                arrays.push(format!("other_{joint}"), angles.iter().copied());
+            }
+        }
+        let mut meta = meta;
+        meta["other_rms"] = json!(other.map(|other| other.rms()));
+        Ok(arrays.reply(&meta))
+    })
+    .await
+}
+
+/// Adds a motion's curves, and describes them.
+pub(super) fn draw(
+    arrays: &mut Arrays,
+    evaluation: &Evaluation,
+    index: usize,
+) -> Result<Value, LabError> {
+    let run = &evaluation.run;
+    let motion = run
+        .data
+        .motions
+        .get(index)
+        .ok_or(LabError::NotFound("motion"))?;
+    let first = motion.time_s.first().copied().unwrap_or(0.0);
+    arrays.push("time", motion.time_s.iter().map(|time| time - first));
+    let mut inputs = Vec::new();
+    for joint in 0..run.model.link_count() {
+        let measured = run.data.measured(index, joint).iter().copied();
+        arrays.push(format!("measured_{joint}"), measured);
+        let predicted = run.predicted[index][joint].iter().copied();
+        arrays.push(format!("predicted_{joint}"), predicted);
+        if let Some(input) = &motion.input[joint] {
+            arrays.push(format!("input_{joint}"), input.iter().copied());
+        }
+        inputs.push(motion.input[joint].as_ref().map(|_| {
+            let (name, unit) = input_of(&run.model.joints[joint].drive);
+            json!({ "name": name, "unit": unit })
+        }));
+    }
+    let windows = run.data.windows_of(index).skip(1);
+    let restarts: Vec<f64> = windows
+        .map(|(_, window)| motion.time_s[window.samples.start] - first)
+        .collect();
+    let window_s = run.data.motion_windows(run.horizon)[index].window_s;
+    Ok(json!({
+        "motion": motion.name,
+        "held_out": evaluation.is_held_out(index),
+        "joints": run.model.link_count(),
+        "inputs": inputs,
+        "units": run.data.signals.iter().map(|signal| signal.unit()).collect::<Vec<_>>(),
+        "floor": run.data.sigma,
+        "rms": evaluation.rms(),
+        "unit": evaluation.quantity().unit(),
+        "joint_rms": run.joint_rms(),
+        "restarts_s": restarts,
+        "window_s": window_s,
+        "shades": shades(evaluation, index),
+    }))
+}
+
+/// What a drive is told, and its unit.
+fn input_of(drive: &Drive) -> (&'static str, &'static str) {
+    match drive {
+        Drive::Passive => ("input", ""),
+        Drive::Torque => ("torque", "N m"),
+        Drive::Duty(_) => ("duty", "1"),
+        Drive::Position { .. } => ("goal", "rad"),
+        Drive::Speed { .. } => ("goal speed", "rad/s"),
+    }
+}
+
+/// For each condition, the stretches of this motion that meet it, s.
+fn shades(evaluation: &Evaluation, index: usize) -> Vec<Value> {
+    let motions = &evaluation.run.data.motions;
+    let begin: usize = motions[..index].iter().map(|motion| motion.len()).sum();
+    let time = &motions[index].time_s;
+    let stretches = |failing: &FailingSamples| {
+        let holds = &failing.holds[begin..begin + time.len()];
+        let mut from = 0;
+        let mut stretches = Vec::new();
+        for part in holds.chunk_by(|a, b| a == b) {
+            let to = from + part.len();
+            if part[0] {
+                // Each sample stands for the time until the next.
+                let end = time.get(to).or(time.last()).copied().unwrap_or(0.0);
+                stretches.push([time[from] - time[0], end - time[0]]);
+            }
+            from = to;
+        }
+        json!({ "joint": failing.failure.joint - 1, "stretches_s": stretches })
+    };
+    evaluation.failing().iter().map(stretches).collect()
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ScatterAsked {
+    /// Counted from 0.
+    joint: usize,
+}
+
+/// A joint's residual and what it can be drawn over, all motions end to end.
+pub(super) async fn scatter(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Query(asked): Query<ScatterAsked>,
+) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let saved = session.saved();
+        let evaluation = session.evaluation(&saved, saved.current)?;
+        let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
+        let run = &evaluation.run;
+        let mut residuals = run.residuals();
+        if asked.joint >= residuals.len() {
+            return Err(LabError::NotFound("joint"));
+        }
+        let mut arrays = Arrays::default();
+        let residual = residuals.swap_remove(asked.joint);
+        arrays.push("residual", residual.into_iter().flatten());
+        let variables = residual_variables(&run.model, &run.data.motions, asked.joint);
+        for variable in &variables {
+            arrays.push(variable.name, variable.values.iter().copied());
+        }
+        let names = variables
+            .iter()
+            .map(|v| json!({ "name": v.name, "unit": v.unit }));
+        let conditions = evaluation.failing().iter();
+        for (index, failing) in conditions.enumerate() {
+            let holds = failing.holds.iter().map(|holds| f64::from(*holds));
+            arrays.push(format!("holds_{index}"), holds);
+        }
+        Ok(arrays.reply(&json!({
+            "variables": names.collect::<Vec<_>>(),
+            "unit": run.data.signals[asked.joint].unit(),
+            "floor": run.data.sigma[asked.joint],
+        })))
+    })
+    .await
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct HorizonChosen {
+    window: ChosenWindow,
+}
+
+/// Keeps the length of the windows.
+pub(super) async fn horizon(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(chosen): Json<HorizonChosen>,
+) -> Answer {
+    act(lab, number, "compare", move |session, _| {
+        let wrong = match chosen.window {
+            ChosenWindow::Seconds(seconds) => !WINDOWS_S.contains(&seconds),
+            ChosenWindow::Automatic | ChosenWindow::Whole => false,
+        };
+        if wrong {
+            return Err(LabError::Conflict(
+                "windows last from 0.02 s to 10 000 s".into(),
+            ));
+        }
+        session.change(|saved| {
+            saved.window = chosen.window;
+            Ok(())
+        })?;
+        Ok(())
+    })
+    .await
+}

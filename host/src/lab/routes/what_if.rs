@@ -1,0 +1,146 @@
+//! What if a value were another one: curves and error while a slider moves.
+
+use super::arrays::Arrays;
+use super::{act, blocking, session};
+use crate::compare::ModelRun;
+use crate::error::{Error, Result};
+use crate::fitting::Candidate;
+use crate::lab::pages::what_if as pages;
+use crate::lab::reply::{Answer, LabError, page};
+use crate::lab::server::LabState;
+use crate::lab::session::{SavedStep, pooled_rms};
+use crate::model::{Model, ParameterPath, edit};
+use axum::Json;
+use axum::extract::{Path, State};
+use serde::Deserialize;
+use serde_json::json;
+use std::sync::Arc;
+
+/// The page.
+pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || Ok(page(pages::page(&session)?))).await
+}
+
+/// What is tried.
+#[derive(Debug, Clone, Deserialize)]
+pub(super) struct Tried {
+    /// The motion to draw.
+    #[serde(default)]
+    motion: usize,
+    /// Whether a slider moves still: windows then start where those of the model in force start,
+    /// which takes one simulation; else their starts are fitted anew.
+    #[serde(default)]
+    moving: bool,
+    /// Effects to add: `coulomb@1`, at their start values.
+    effects: Vec<String>,
+    /// Addresses and values.
+    values: Vec<(String, f64)>,
+}
+
+impl Tried {
+    /// The model with what is tried, and the effects that it adds.
+    fn applied_to(&self, model: &Model) -> Result<(Model, Vec<Candidate>)> {
+        let mut tried = model.clone();
+        let mut added = Vec::new();
+        for name in &self.effects {
+            let candidate = Candidate::named(name, &tried)?;
+            let first = candidate
+                .parameters()
+                .iter()
+                .map(|parameter| parameter.starts[0]);
+            tried
+                .effects
+                .push(candidate.instance(&first.collect::<Vec<_>>()));
+            added.push(candidate);
+        }
+        for (path, value) in self.paths()? {
+            let (low, high) = path.bounds(&tried);
+            let allowed = value.is_finite() && (low..=high).contains(&value);
+            if !(allowed && path.set(&mut tried, value)) {
+                return Err(Error::usage(
+                    format!("{path} cannot be {value} here"),
+                    format!("choose a value from {low} to {high} of the model"),
+                ));
+            }
+        }
+        Ok((tried, added))
+    }
+
+    fn paths(&self) -> Result<Vec<(ParameterPath, f64)>> {
+        let values = self.values.iter();
+        values
+            .map(|(path, value)| Ok((path.parse()?, *value)))
+            .collect()
+    }
+}
+
+/// Runs the tried model over the windows of the model in force.
+pub(super) async fn run(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(tried): Json<Tried>,
+) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let saved = session.saved();
+        let base = session.evaluation(&saved, saved.current)?;
+        let base = base.ok_or(LabError::NotFound("comparison"))?;
+        let (model, _) = tried.applied_to(&base.run.model)?;
+        let (data, horizon) = (base.run.data.clone(), base.run.horizon);
+        let run = match tried.moving {
+            true => ModelRun::from_nodes(model, data, horizon, base.run.nodes.clone()),
+            false => ModelRun::new(model, data, horizon),
+        };
+        let predicted = run.predicted.get(tried.motion);
+        let mut arrays = Arrays::default();
+        for (joint, angles) in predicted
+            .ok_or(LabError::NotFound("motion"))?
+            .iter()
+            .enumerate()
+        {
+            arrays.push(format!("other_{joint}"), angles.iter().copied());
+        }
+        Ok(arrays.reply(&json!({ "rms": pooled_rms(&run) })))
+    })
+    .await
+}
+
+/// Keeps what is tried as the next step.
+pub(super) async fn keep(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(tried): Json<Tried>,
+) -> Answer {
+    act(lab, number, "learn", move |session, saved| {
+        let file = std::path::Path::new("model.toml");
+        let step = saved.step().ok_or(LabError::NotFound("model"))?;
+        let model = Model::parse(&step.toml, file)?;
+        let (with, added) = tried.applied_to(&model)?;
+        let paths = tried.paths()?;
+        let of_model = paths
+            .into_iter()
+            .filter(|(path, _)| path.get(&model).is_some());
+        let mut toml = edit::set_values(&step.toml, file, &of_model.collect::<Vec<_>>())?;
+        for candidate in added {
+            let instance = with
+                .effects
+                .iter()
+                .find(|e| Candidate::from(*e) == candidate);
+            if let Some(instance) = instance {
+                toml = edit::add_effect(&toml, file, instance, None)?;
+            }
+        }
+        let names = tried
+            .values
+            .iter()
+            .map(|(path, value)| format!("{path} = {value}"));
+        Ok(session.push_step(SavedStep {
+            title: format!("by hand: {}", names.collect::<Vec<_>>().join(", ")),
+            toml,
+            command: None,
+            note: String::new(),
+        })?)
+    })
+    .await
+}

@@ -1,0 +1,144 @@
+//! The model of a step run along the session's motions, kept while it may be asked for again.
+
+use super::Session;
+use super::data::model_file;
+use super::saved::{SavedLog, SavedSession};
+use crate::compare::{Comparison, FailingSamples, ModelRun};
+use crate::error::Result;
+use crate::fitting::{FitData, Horizon};
+use crate::model::{MeasuredSignal, Model};
+use std::path::Path;
+use std::sync::{Arc, MutexGuard, OnceLock, PoisonError};
+
+/// How many are kept.
+const KEPT: usize = 6;
+
+/// A model run along all motions, as `handstand compare` runs it.
+#[derive(Debug)]
+pub struct Evaluation {
+    /// The run.
+    pub run: ModelRun,
+    /// Motions that are fitted; those after them are held out.
+    pub fitted: usize,
+    comparison: OnceLock<Comparison>,
+    failing: OnceLock<Vec<FailingSamples>>,
+    name: String,
+}
+
+impl Evaluation {
+    /// The comparison, made when it is first asked for.
+    pub fn comparison(&self) -> &Comparison {
+        self.comparison
+            .get_or_init(|| self.run.comparison(&self.name))
+    }
+
+    /// The conditions under which the model fails, with their samples.
+    pub fn failing(&self) -> &[FailingSamples] {
+        self.failing.get_or_init(|| self.run.failing())
+    }
+
+    /// Root-mean-square error, all joints and motions together, rad or rad/s.
+    pub fn rms(&self) -> f64 {
+        pooled_rms(&self.run)
+    }
+
+    /// What noise and resolution alone leave, rad or rad/s.
+    pub fn floor(&self) -> f64 {
+        self.run.data.floor()
+    }
+
+    /// What the errors are of.
+    pub fn quantity(&self) -> MeasuredSignal {
+        self.run.data.quantity()
+    }
+
+    /// Whether a motion is held out.
+    pub fn is_held_out(&self, motion: usize) -> bool {
+        motion >= self.fitted
+    }
+}
+
+/// Root-mean-square error over the joints whose errors count together, as the bars of a report
+/// have it.
+pub fn pooled_rms(run: &ModelRun) -> f64 {
+    let joints = run.joint_rms().into_iter().enumerate();
+    let counted = joints.filter(|(joint, _)| run.data.counts(*joint));
+    let squares: Vec<f64> = counted.map(|(_, rms)| rms * rms).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+/// What an evaluation depends on.
+#[derive(Debug, Clone, PartialEq)]
+struct Wanted {
+    toml: String,
+    logs: Vec<SavedLog>,
+    horizon: Horizon,
+}
+
+/// The last evaluations.
+#[derive(Debug, Default)]
+pub(super) struct Evaluations(Vec<(Wanted, Arc<Evaluation>)>);
+
+impl Session {
+    /// The step's model along the session's motions; nothing without model or logs.
+    ///
+    /// # Errors
+    /// Logs that cannot be read.
+    pub fn evaluation(&self, saved: &SavedSession, step: usize) -> Result<Option<Arc<Evaluation>>> {
+        let Some(wanted) = wanted(saved, step) else {
+            return Ok(None);
+        };
+        if let Some(found) = self.kept(&wanted) {
+            return Ok(Some(found));
+        }
+        let file = model_file(step);
+        let made = Arc::new(self.evaluate(saved, &wanted.toml, &file)?);
+        let mut known = self.known();
+        known.0.insert(0, (wanted, made.clone()));
+        known.0.truncate(KEPT);
+        Ok(Some(made))
+    }
+
+    /// The evaluation of the step in force, if it was made already: pages that only mention it
+    /// do not wait for it.
+    pub fn known_evaluation(&self, saved: &SavedSession) -> Option<Arc<Evaluation>> {
+        self.kept(&wanted(saved, saved.current)?)
+    }
+
+    fn kept(&self, wanted: &Wanted) -> Option<Arc<Evaluation>> {
+        let known = self.known();
+        let found = known.0.iter().find(|(key, _)| key == wanted);
+        found.map(|(_, evaluation)| evaluation.clone())
+    }
+
+    fn known(&self) -> MutexGuard<'_, Evaluations> {
+        self.evaluations
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<Evaluation> {
+        let model = Model::parse(toml, file)?;
+        let split = self.split(saved, &model)?;
+        let fitted = split.training.len();
+        let motions = [split.training, split.held_out].concat();
+        let horizon = saved.horizon();
+        let data = FitData::new(&model, motions, horizon);
+        Ok(Evaluation {
+            run: ModelRun::new(model, data, horizon),
+            fitted,
+            comparison: OnceLock::new(),
+            failing: OnceLock::new(),
+            name: file.display().to_string(),
+        })
+    }
+}
+
+fn wanted(saved: &SavedSession, step: usize) -> Option<Wanted> {
+    let step = saved.steps.get(step).filter(|_| !saved.logs.is_empty())?;
+    Some(Wanted {
+        toml: step.toml.clone(),
+        logs: saved.logs.clone(),
+        horizon: saved.horizon(),
+    })
+}

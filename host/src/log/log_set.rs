@@ -1,0 +1,53 @@
+//! Logs as named: those to learn from, and those to judge by.
+
+use super::holdout::Split;
+use super::read::read;
+use super::request::LogRequest;
+use crate::error::{Error, Result};
+use crate::model::LogColumns;
+
+/// Logs to learn from and logs to judge by, which share no row.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct LogSet {
+    /// To learn from.
+    pub training: Vec<LogRequest>,
+    /// To judge by.
+    pub held_out: Vec<LogRequest>,
+}
+
+impl LogSet {
+    /// The logs to learn from, then those to judge by.
+    pub fn all(&self) -> Vec<LogRequest> {
+        [self.training.as_slice(), &self.held_out].concat()
+    }
+
+    /// Their motions; none in `held_out` means that all are learned from.
+    ///
+    /// # Errors
+    /// Logs that cannot be read, or rows in both.
+    pub fn read(&self, columns: &LogColumns) -> Result<Split> {
+        self.told_apart()?;
+        Ok(Split {
+            training: read(&self.training, columns)?,
+            held_out: read(&self.held_out, columns)?,
+        })
+    }
+
+    /// Refuses rows that are both learned from and judged by.
+    fn told_apart(&self) -> Result<()> {
+        for held in &self.held_out {
+            if let Some(fitted) = self.training.iter().find(|log| log.overlaps(held)) {
+                let message = match fitted == held {
+                    true => format!("{held} is fitted and held out"),
+                    false => format!(
+                        "{held} is held out, and shares rows with {fitted}, which is fitted"
+                    ),
+                };
+                let remedy = "name each row once, a range includes its end: what was learned \
+                              from proves nothing";
+                return Err(Error::usage(message, remedy));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,103 @@
+//! A log's columns as they stand in the file, before a model says what they mean.
+
+use super::bam;
+use super::header::{LogHeader, fields, number};
+use super::lines::Lines;
+use super::request::LogRequest;
+use crate::error::Result;
+use std::path::Path;
+
+/// Columns of a log.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RawLog {
+    /// Names, in the file's order.
+    pub names: Vec<String>,
+    /// Values of each column; not a number where a cell is none.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl RawLog {
+    /// Reads a CSV file, or a JSON log of a BAM bench.
+    ///
+    /// # Errors
+    /// A file without a header, or that is no text.
+    pub fn read(path: &Path) -> Result<RawLog> {
+        let request = LogRequest::whole(path);
+        match request.is_json() {
+            true => Ok(of_bam(bam::read(&request)?)),
+            false => read_csv(path),
+        }
+    }
+
+    /// The first column that is called a time, else the first that only grows.
+    pub fn time(&self) -> Option<usize> {
+        let named = |name: &String| {
+            let name = name.to_lowercase();
+            name == "t" || name.starts_with("time") || name.starts_with("t_")
+        };
+        let grows =
+            |column: &Vec<f64>| column.len() > 1 && column.windows(2).all(|pair| pair[1] > pair[0]);
+        let named = self.names.iter().position(named);
+        named.or_else(|| self.columns.iter().position(grows))
+    }
+}
+
+fn read_csv(path: &Path) -> Result<RawLog> {
+    let mut lines = Lines::open(path)?;
+    let (header, first) = LogHeader::read(path, &mut lines, "")?;
+    let mut log = RawLog {
+        columns: vec![Vec::new(); header.names.len()],
+        names: header.names,
+    };
+    let mut take = |line: &str| {
+        let cells = fields(line, header.separator);
+        for (index, column) in log.columns.iter_mut().enumerate() {
+            let value = cells
+                .get(index)
+                .and_then(|cell| number(cell, header.separator));
+            column.push(value.unwrap_or(f64::NAN));
+        }
+    };
+    if let Some(line) = first {
+        take(&line);
+    }
+    while let Some(line) = lines.next()? {
+        if !line.trim().is_empty() && !line.trim_start().starts_with('#') {
+            take(line);
+        }
+    }
+    Ok(log)
+}
+
+fn of_bam(motion: super::Motion) -> RawLog {
+    let mut log = RawLog::default();
+    let mut push = |name: &str, column: Option<Vec<f64>>| {
+        if let Some(column) = column {
+            log.names.push(name.into());
+            log.columns.push(column);
+        }
+    };
+    push("timestamp", Some(motion.time_s));
+    push("position", motion.position_rad.into_iter().next());
+    push("goal_position", motion.input.into_iter().next().flatten());
+    push("speed", motion.velocity_rad_s.into_iter().next().flatten());
+    push("input_volts", motion.supply_v);
+    log
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_come_as_they_stand() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, "q;<b>;time_ms\n1,5;x;0\n\n# note\n2;3;10\n").unwrap();
+        let log = RawLog::read(&path).unwrap();
+        assert_eq!(log.names, ["q", "<b>", "time_ms"]);
+        assert_eq!(log.columns[0], [1.5, 2.0]);
+        assert!(log.columns[1][0].is_nan() && log.columns[1][1] == 3.0);
+        assert_eq!(log.time(), Some(2));
+    }
+}

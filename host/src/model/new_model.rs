@@ -1,0 +1,206 @@
+//! A model's file written from plain figures, with comments that say what to look at next.
+
+use super::{Dimension, Model};
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Most links of a model that is made from figures.
+const MOST_LINKS: usize = 32;
+
+/// The figures of a model.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct ModelPlan {
+    /// Name for reports.
+    pub name: String,
+    /// `hanging`, `upright` or `horizontal`.
+    pub angle_zero: String,
+    /// `relative` or `absolute`.
+    pub angles: String,
+    /// From the base outwards.
+    pub links: Vec<LinkPlan>,
+}
+
+/// A link and the joint before it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct LinkPlan {
+    /// Joint to next joint, m.
+    pub length_m: f64,
+    /// Joint to centre of mass, m.
+    pub com_m: f64,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// About the centre of mass, kg m^2; that of an even rod of this length without.
+    pub inertia_kg_m2: Option<f64>,
+    /// `passive`, `torque`, `duty`, `position` or `speed`.
+    pub drive: String,
+    /// Duty per rad, or per rad/s, of error.
+    pub gain: Option<f64>,
+    /// Torque at standstill, N m.
+    pub stall_torque_nm: Option<f64>,
+    /// Speed without load, rad/s.
+    pub no_load_speed_rad_s: Option<f64>,
+}
+
+/// The model file of a plan.
+///
+/// # Errors
+/// Figures that make no model.
+pub fn new_model_toml(plan: &ModelPlan) -> Result<String> {
+    if plan.links.is_empty() || plan.links.len() > MOST_LINKS {
+        return Err(Error::usage(
+            format!("a model has 1 to {MOST_LINKS} links here"),
+            "write a longer chain by hand",
+        ));
+    }
+    let quoted = |text: &str| toml_edit::Value::from(text).to_string();
+    let mut text = String::from(
+        "# Written from a form. `handstand compare` shows how far it is from a log, and where.\n\n\
+         [rig]\n",
+    );
+    let _ = writeln!(text, "name = {}", quoted(&plan.name));
+    let zero = quoted(&plan.angle_zero);
+    let _ = writeln!(
+        text,
+        "angle_zero = {zero} # where the log's angles are zero"
+    );
+    let _ = writeln!(text, "angles = {}", quoted(&plan.angles));
+    for (index, link) in plan.links.iter().enumerate() {
+        write_link(&mut text, index, link);
+    }
+    for (index, link) in plan.links.iter().enumerate() {
+        write_joint(&mut text, index, link);
+    }
+    write_log(&mut text, plan);
+    Model::parse(&text, Path::new("model.toml"))?;
+    Ok(text)
+}
+
+fn write_link(text: &mut String, index: usize, link: &LinkPlan) {
+    let even_rod = link.mass_kg * link.length_m * link.length_m / 12.0;
+    let (inertia, why) = match link.inertia_kg_m2 {
+        Some(inertia) => (inertia, "about the centre of mass"),
+        None => (even_rod, "of an even rod: a guess"),
+    };
+    let _ = write!(
+        text,
+        "\n[[link]] # {}\nlength_m = {}\ncom_m = {} # from its joint\nmass_kg = {}\n\
+         inertia_kg_m2 = {} # {why}\n",
+        index + 1,
+        number(link.length_m),
+        number(link.com_m),
+        number(link.mass_kg),
+        number(inertia)
+    );
+}
+
+fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
+    let drive = toml_edit::Value::from(link.drive.as_str());
+    let _ = write!(text, "\n[[joint]] # {}\ndrive = {drive}\n", index + 1);
+    let gain = match link.drive.as_str() {
+        "position" => Some("gain_per_rad"),
+        "speed" => Some("gain_s_per_rad"),
+        _ => None,
+    };
+    let has_motor = gain.is_some() || link.drive == "duty";
+    let figures = [
+        (gain, link.gain),
+        (has_motor.then_some("stall_torque_nm"), link.stall_torque_nm),
+        (
+            has_motor.then_some("no_load_speed_rad_s"),
+            link.no_load_speed_rad_s,
+        ),
+    ];
+    for (key, value) in figures {
+        if let (Some(key), Some(value)) = (key, value) {
+            let _ = writeln!(text, "{key} = {}", number(value));
+        }
+    }
+}
+
+/// Columns under names that can be picked anew.
+fn write_log(text: &mut String, plan: &ModelPlan) {
+    text.push_str("\n[log]\ntime = { column = \"time_s\", unit = \"s\" }\n");
+    for (index, link) in plan.links.iter().enumerate() {
+        let joint = index + 1;
+        let _ = write!(
+            text,
+            "\n[[log.joint]]\nposition = {{ column = \"q{joint}_rad\", unit = \"rad\" }}\n"
+        );
+        if let Some(unit) = Dimension::of_input(&link.drive).and_then(|d| d.unit_names().next()) {
+            let _ = writeln!(
+                text,
+                "input = {{ column = \"input{joint}\", unit = \"{unit}\" }}"
+            );
+        }
+    }
+}
+
+/// A number as TOML writes it.
+fn number(value: f64) -> String {
+    toml_edit::Value::from(value).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Drive;
+
+    fn link(drive: &str) -> LinkPlan {
+        LinkPlan {
+            length_m: 0.3,
+            com_m: 0.15,
+            mass_kg: 0.2,
+            inertia_kg_m2: None,
+            drive: drive.into(),
+            gain: Some(5.0),
+            stall_torque_nm: Some(1.5),
+            no_load_speed_rad_s: None,
+        }
+    }
+
+    #[test]
+    fn figures_of_every_drive_make_a_model() {
+        let drives = ["passive", "torque", "duty", "position", "speed"];
+        let plan = ModelPlan {
+            name: "five \"links\"\n[joint]".into(),
+            angle_zero: "upright".into(),
+            angles: "absolute".into(),
+            links: drives.map(link).to_vec(),
+        };
+        let text = new_model_toml(&plan).unwrap();
+        let model = Model::parse(&text, Path::new("m.toml")).unwrap();
+        assert_eq!(model.name, plan.name);
+        assert_eq!(
+            model
+                .joints
+                .iter()
+                .map(|j| j.drive.name())
+                .collect::<Vec<_>>(),
+            drives
+        );
+        assert!((model.links[0].inertia_kg_m2 - 0.0015).abs() < 1e-12);
+        assert!(
+            matches!(&model.joints[3].drive, Drive::Position { gain_per_rad, .. }
+                if *gain_per_rad == 5.0)
+        );
+    }
+
+    #[test]
+    fn figures_that_make_none_are_refused() {
+        let plan = |links| ModelPlan {
+            name: "x".into(),
+            angle_zero: "hanging".into(),
+            angles: "relative".into(),
+            links,
+        };
+        let wrong = LinkPlan {
+            mass_kg: f64::NAN,
+            ..link("passive")
+        };
+        assert!(new_model_toml(&plan(vec![wrong])).is_err());
+        assert!(new_model_toml(&plan(vec![link("steam")])).is_err());
+        assert!(new_model_toml(&plan(Vec::new())).is_err());
+    }
+}

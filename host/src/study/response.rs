@@ -1,0 +1,79 @@
+//! The response of a designed loop from a start at rest, with every effect of the model.
+
+use super::verify::closed_loop;
+use crate::error::Result;
+use crate::model::Model;
+use crate::sim::closed_loop::{InitialState, StateFeedback, stream};
+use crate::synth::{Design, Request, rows};
+
+/// Angles and commands over time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LoopResponse {
+    /// Times of the samples, s.
+    pub time_s: Vec<f64>,
+    /// Per joint: departure from the pose, rad.
+    pub angle_rad: Vec<Vec<f64>>,
+    /// Per input: the command, in its own SI unit.
+    pub command: Vec<Vec<f64>>,
+}
+
+/// Simulates the loop of a design for `seconds` from these departures from its pose, rad, at rest;
+/// it ends early where the robot falls.
+///
+/// # Errors
+/// Models that cannot be simulated.
+pub fn response(
+    model: &Model,
+    design: &Design,
+    request: &Request,
+    start_rad: &[f64],
+    seconds: f64,
+) -> Result<LoopResponse> {
+    let closed = closed_loop(model.clone(), design, request)?;
+    let joints = model.link_count();
+    let controller = StateFeedback::new(joints, rows(&design.gains.k)).feeding(&design.u0);
+    let start = InitialState {
+        command: design.u0.clone(),
+        ..InitialState::at(start_rad)
+    };
+    let mut response = LoopResponse {
+        angle_rad: vec![Vec::new(); joints],
+        command: vec![Vec::new(); design.u0.len()],
+        ..LoopResponse::default()
+    };
+    closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {
+        response.time_s.push(sample.time_s);
+        for (all, angle) in response.angle_rad.iter_mut().zip(sample.angle_rad) {
+            all.push(*angle);
+        }
+        for (all, command) in response.command.iter_mut().zip(sample.command) {
+            all.push(*command);
+        }
+    });
+    Ok(response)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn the_handstand_comes_back_from_a_lean() {
+        let text = include_str!("../../models/handstand.toml");
+        let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
+        let request = Request::standard(&model);
+        let design = Design::of(&model, &request).unwrap();
+        let lean = [0.02, 0.0, 0.0];
+        let response = response(&model, &design, &request, &lean, 6.0).unwrap();
+        assert_eq!(response.angle_rad.len(), 3);
+        assert_eq!(response.command.len(), 2);
+        assert!((response.angle_rad[0][0] - 0.02).abs() < 1e-12);
+        let last = response
+            .angle_rad
+            .iter()
+            .map(|angles| angles.last().unwrap().abs());
+        assert!(last.fold(0.0, f64::max) < 1e-3);
+        assert!((response.time_s.last().unwrap() - 6.0).abs() < 0.02);
+    }
+}

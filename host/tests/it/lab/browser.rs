@@ -1,0 +1,293 @@
+//! A headless Chromium, driven over its DevTools protocol: what is clicked, typed, seen.
+
+use base64::Engine as _;
+use serde_json::{Value, json};
+use std::io::{BufRead as _, BufReader};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+/// Longer than anything here takes on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// A browser with one page.
+pub struct Browser {
+    child: Child,
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    session: String,
+    calls: u64,
+    /// What scripts complained of, and what is wrong with pages.
+    pub complaints: Vec<String>,
+    _profile: TempDir,
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It may be over before it is ended.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Whether something is wrong with the page. A model that cannot be balanced is refused with 422,
+/// which the page shows; Chromium notes every refusal.
+fn is_complaint(entry: &Value) -> bool {
+    let text = entry["text"].as_str().unwrap_or_default();
+    entry["level"] == "error" && !(entry["source"] == "network" && text.contains("422"))
+}
+
+/// The program, if there is one.
+fn chromium() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let files = names
+        .iter()
+        .flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    files.into_iter().find(|file| file.is_file())
+}
+
+impl Browser {
+    /// Starts it; `None`, and a line that says so, where there is no Chromium.
+    pub fn start() -> Option<Browser> {
+        let Some(program) = chromium() else {
+            println!("skipped: there is no chromium on the path");
+            return None;
+        };
+        let profile = tempfile::tempdir().unwrap();
+        let mut child = Command::new(program)
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--no-first-run",
+            ])
+            .args([
+                "--disable-background-networking",
+                "--disable-component-update",
+            ])
+            .args([
+                "--disable-sync",
+                "--remote-debugging-port=0",
+                "--window-size=1280,900",
+            ])
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let address = lines.find_map(|line| {
+            let line = line.unwrap();
+            Some(line.strip_prefix("DevTools listening on ")?.to_string())
+        });
+        // It would stand still with a full pipe.
+        std::thread::spawn(move || lines.for_each(drop));
+        let (socket, _) = tungstenite::connect(address.expect("it listens")).unwrap();
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        }
+        let mut browser = Browser {
+            child,
+            socket,
+            session: String::new(),
+            calls: 0,
+            complaints: Vec::new(),
+            _profile: profile,
+        };
+        let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let asked = json!({ "targetId": target["targetId"], "flatten": true });
+        let attached = browser.call("Target.attachToTarget", asked);
+        browser.session = attached["sessionId"].as_str().unwrap().to_string();
+        for domain in ["Page", "Runtime", "Log", "DOM"] {
+            browser.call(&format!("{domain}.enable"), json!({}));
+        }
+        Some(browser)
+    }
+
+    /// A call of the protocol; complaints that come meanwhile are kept.
+    pub fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.calls += 1;
+        let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
+        if !self.session.is_empty() {
+            call["sessionId"] = json!(self.session);
+        }
+        self.socket.send(Message::text(call.to_string())).unwrap();
+        loop {
+            let Message::Text(text) = self.socket.read().unwrap() else {
+                continue;
+            };
+            let said: Value = serde_json::from_str(&text).unwrap();
+            match said["method"].as_str() {
+                Some("Runtime.exceptionThrown") => {
+                    self.complaints
+                        .push(said["params"]["exceptionDetails"].to_string());
+                }
+                Some("Log.entryAdded") if is_complaint(&said["params"]["entry"]) => {
+                    self.complaints.push(said["params"]["entry"].to_string());
+                }
+                _ => {}
+            }
+            if said["id"] == self.calls {
+                assert!(said["error"].is_null(), "{method}: {said}");
+                return said["result"].clone();
+            }
+        }
+    }
+
+    /// Opens an address, and waits for its end.
+    pub fn open(&mut self, address: &str) {
+        self.call("Page.navigate", json!({ "url": address }));
+        self.until("document.readyState === 'complete'");
+    }
+
+    /// The value of an expression of the page; a promise is waited for.
+    pub fn value(&mut self, expression: &str) -> Value {
+        let asked = json!({
+            "expression": expression, "returnByValue": true, "awaitPromise": true,
+        });
+        self.call("Runtime.evaluate", asked)["result"]["value"].clone()
+    }
+
+    /// Waits until an expression holds.
+    pub fn until(&mut self, expression: &str) {
+        let begun = Instant::now();
+        while self.value(&format!("Boolean({expression})")) != json!(true) {
+            if begun.elapsed() > PATIENCE {
+                let message = self.value("document.getElementById('message')?.textContent");
+                panic!("not in {PATIENCE:?}: {expression}; the page says {message}");
+            }
+            std::thread::sleep(Duration::from_millis(40));
+        }
+    }
+
+    /// Text of an element.
+    pub fn text(&mut self, selector: &str) -> String {
+        let text = self.value(&format!("document.querySelector('{selector}').textContent"));
+        text.as_str().unwrap_or_default().to_string()
+    }
+
+    /// Focuses an element, and presses a key there: the keyboard alone must suffice.
+    pub fn press_on(&mut self, selector: &str, key: &str) {
+        self.until(&format!(
+            "document.querySelector('{selector}')?.disabled === false \
+                             || document.querySelector('{selector}')?.disabled === undefined \
+                             && document.querySelector('{selector}')"
+        ));
+        self.value(&format!("document.querySelector('{selector}').focus()"));
+        let focused = self.value(&format!(
+            "document.activeElement === document.querySelector('{selector}')"
+        ));
+        assert_eq!(focused, json!(true), "{selector} takes the focus");
+        self.press(key);
+    }
+
+    /// Presses a key.
+    pub fn press(&mut self, key: &str) {
+        let (text, code) = match key {
+            "Enter" => ("\r", 13),
+            "ArrowRight" => ("", 39),
+            "ArrowLeft" => ("", 37),
+            "Tab" => ("", 9),
+            other => (other, 0),
+        };
+        for kind in ["keyDown", "keyUp"] {
+            let mut event = json!({
+                "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code,
+            });
+            if kind == "keyDown" && !text.is_empty() {
+                event["text"] = json!(text);
+            }
+            self.call("Input.dispatchKeyEvent", event);
+        }
+    }
+
+    /// Gives files to an input for files, as a choice of them does.
+    pub fn choose_files(&mut self, selector: &str, files: &[&Path]) {
+        let document = self.call("DOM.getDocument", json!({}));
+        let root = &document["root"]["nodeId"];
+        let found = self.call(
+            "DOM.querySelector",
+            json!({ "nodeId": root, "selector": selector }),
+        );
+        let asked = json!({ "nodeId": found["nodeId"], "files": files });
+        self.call("DOM.setFileInputFiles", asked);
+    }
+
+    /// What axe-core finds wrong with the page as it is: labels, contrast, roles. Nothing where
+    /// it is not installed, and a line that says so.
+    fn judged(&mut self) -> Vec<String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let folders = [
+            root.join("target"),
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join(".."),
+        ];
+        let place = "npm/node_modules/axe-core/axe.min.js";
+        let found = folders
+            .iter()
+            .find_map(|folder| std::fs::read_to_string(folder.join(place)).ok());
+        let Some(axe) = found else {
+            println!("left out: axe-core is not here, `cargo xtask install` brings it");
+            return Vec::new();
+        };
+        self.value(&axe);
+        let found = self.value(
+            "axe.run(document, { iframes: false }).then((found) => found.violations.flatMap((v) => \
+             v.nodes.map((node) => `${v.id}: ${node.html.slice(0, 160)} ${node.failureSummary}`)))",
+        );
+        let found = found.as_array().expect("axe ran").iter();
+        found
+            .map(|each| each.as_str().unwrap().to_string())
+            .collect()
+    }
+
+    /// The page at 1280 and 800 pixels, light and dark, as pictures in the target folder.
+    /// What axe-core finds wrong with it, and what sticks out, are complaints.
+    pub fn pictures(&mut self, name: &str) {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lab");
+        std::fs::create_dir_all(&folder).unwrap();
+        for width in [1280, 800] {
+            for scheme in ["light", "dark"] {
+                self.look(width, scheme);
+                let shot = json!({ "format": "png", "captureBeyondViewport": true });
+                let picture = self.call("Page.captureScreenshot", shot);
+                let png = base64::engine::general_purpose::STANDARD
+                    .decode(picture["data"].as_str().unwrap())
+                    .unwrap();
+                assert!(png.len() > 5000, "{name} is not blank");
+                std::fs::write(folder.join(format!("{name}-{width}-{scheme}.png")), png).unwrap();
+                let wrong = self.judged();
+                let place = |wrong| format!("{name} at {width} px, {scheme}: {wrong}");
+                self.complaints.extend(wrong.into_iter().map(place));
+                let wide = self.value("document.documentElement.scrollWidth - innerWidth");
+                if wide.as_f64().unwrap() > 0.0 {
+                    let wide = format!("{name} at {width} px is too wide by {wide} px");
+                    self.complaints.push(wide);
+                }
+            }
+        }
+        self.look(1280, "light");
+    }
+
+    fn look(&mut self, width: u32, scheme: &str) {
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        self.call(
+            "Emulation.setEmulatedMedia",
+            json!({ "features": features }),
+        );
+        let height = self.value("Math.max(600, Math.min(4000, document.body.scrollHeight + 40))");
+        let size = json!({
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false,
+        });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        // Charts are drawn anew with the next frame.
+        self.value(
+            "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => \
+             setTimeout(done, 60))))",
+        );
+    }
+}

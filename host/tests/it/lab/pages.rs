@@ -1,0 +1,121 @@
+//! A person with a log, from bringing it to a better model; keyboard alone.
+
+use super::browser::Browser;
+use super::server::Server;
+use crate::common::Bench;
+use serde_json::json;
+use std::path::PathBuf;
+
+/// The error in force, rad.
+fn error_now(browser: &mut Browser) -> f64 {
+    browser.until("document.getElementById('error-now')");
+    let rad = browser.value("Number(document.getElementById('error-now').dataset.error)");
+    rad.as_f64().unwrap()
+}
+
+#[test]
+fn from_a_log_to_a_better_model_and_back() {
+    let bench = Bench::new();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let server = Server::start_alone(&bench, "");
+    browser.open(&server.address);
+    browser.until("location.pathname === '/s/1/data' && document.getElementById('drop')");
+    browser.pictures("1-empty");
+
+    // The log is brought, and drawn before any model reads it.
+    let logs = ["a.csv", "b.csv"].map(|name| bench.path(name));
+    let paths: Vec<&std::path::Path> = logs.iter().map(PathBuf::as_path).collect();
+    browser.choose_files("#files", &paths);
+    browser.until("document.querySelector('#raw[data-drawn]')");
+    assert!(browser.text("#raw figcaption").contains("angle_rad"));
+    browser.pictures("2-log");
+    let model = json!(bench.get("model.toml")).to_string();
+    browser.value(&format!("document.getElementById('toml').value = {model}"));
+    browser.press_on("form[data-send=model] button", "Enter");
+    browser.until("document.getElementById('error-now')");
+    browser.until("document.getElementById('findings')");
+    assert!(browser.text("#findings").contains("note"));
+    browser.value(
+        "document.querySelectorAll('[data-submit]')[1].value = 'hold_out'; \
+                   document.querySelectorAll('[data-submit]')[1].form.requestSubmit()",
+    );
+    browser.until(
+        "document.querySelectorAll('[data-submit]')[1]?.value === 'hold_out' \
+                   && document.getElementById('error-now')",
+    );
+    browser.pictures("3-model");
+
+    // Compared, zoomed and shaded.
+    browser.open(&format!("http://127.0.0.1:{}/s/1/compare", server.port));
+    browser.until(
+        "document.querySelector('#curves[data-drawn]') \
+                   && document.querySelector('#scatters canvas')",
+    );
+    browser.press_on("canvas.plot", "+");
+    browser.press_on("[data-condition]", "Enter");
+    browser.until("document.querySelector('[aria-pressed=true]')");
+    browser.pictures("4-compare");
+    let before = error_now(&mut browser);
+
+    // Diagnosed; the effect added; the number falls.
+    browser.open(&format!("http://127.0.0.1:{}/s/1/learn", server.port));
+    browser.press_on("#diagnose", "Enter");
+    browser.until("document.getElementById('verdict')");
+    assert_eq!(
+        browser.value("document.getElementById('verdict').dataset.verdict"),
+        json!("named")
+    );
+    browser.pictures("5-diagnosed");
+    browser.press_on(".card.found button", "Enter");
+    browser.until("document.querySelector('[data-step-error=\"1\"]')");
+    let after = error_now(&mut browser);
+    assert!(after < 0.2 * before, "{before} -> {after}");
+    browser.pictures("6-added");
+
+    // Undone, done again, and there after the page is loaded again.
+    browser.press_on("#undo", "Enter");
+    browser.until("document.getElementById('redo')");
+    assert_eq!(error_now(&mut browser), before);
+    browser.press_on("#redo", "Enter");
+    browser.until("document.getElementById('undo')");
+    browser.call("Page.reload", json!({}));
+    browser.until("document.readyState === 'complete' && document.getElementById('undo')");
+    assert_eq!(error_now(&mut browser), after);
+
+    // A slider is moved, and the error answers.
+    browser.open(&format!("http://127.0.0.1:{}/s/1/what-if", server.port));
+    browser.until("document.querySelector('#curves[data-answered]')");
+    let shown = browser.text("#error-if");
+    browser.press_on("[data-path=\"link1.com_m\"]", "ArrowRight");
+    for _ in 0..30 {
+        browser.press("ArrowRight");
+    }
+    let moved = format!(
+        "document.getElementById('error-if').textContent !== {}",
+        json!(shown)
+    );
+    browser.until(&moved);
+    browser.press_on("#add-effect", "Enter");
+    browser.until("document.querySelector('#sliders fieldset')");
+    browser.pictures("7-what-if");
+
+    for page in ["robot", "gains", "challenge"] {
+        browser.open(&format!("http://127.0.0.1:{}/s/1/{page}", server.port));
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        browser.pictures(&format!("8-{page}"));
+    }
+    // A challenge is played.
+    browser.press_on("form[data-send=round] button", "Enter");
+    browser.until(
+        "location.pathname === '/s/2/compare' \
+                   && document.querySelector('#curves[data-drawn]')",
+    );
+    browser.pictures("9-round");
+    browser.open(&format!("http://127.0.0.1:{}/s/2/challenge", server.port));
+    browser.press_on("#hand-in", "Enter");
+    browser.until("document.getElementById('score')");
+    browser.pictures("9-score");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
