@@ -7,8 +7,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Zeros tried around a turn.
 const ZEROS: usize = 24;
-/// A zero this near to the given one is a matter of calibration, which the diagnosis finds, rad.
-pub(super) const LEAST_ZERO_RAD: f64 = 0.1;
+/// A zero this near to the given one may be a tilted base, a bent link or a calibration, which the
+/// diagnosis finds, rad.
+pub(super) const LEAST_ZERO_RAD: f64 = 0.25;
 /// Shifts tried, in steps of a sample or of this, s, on each side.
 const SHIFT_STEPS: i32 = 6;
 const LEAST_STEP_S: f64 = 0.02;

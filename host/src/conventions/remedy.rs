@@ -216,7 +216,7 @@ fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) ->
 }
 
 /// How far the joint moves over all motions, rad.
-fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
+pub(super) fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
     let angles = || {
         let angles = motions
             .iter()

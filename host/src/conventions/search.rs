@@ -3,10 +3,10 @@
 use super::continuous::{LEAST_ZERO_RAD, continuous};
 use super::drives::drives;
 use super::excerpts::excerpts;
-use super::remedy::{Quantity, Remedy, alternatives, time_units};
+use super::remedy::{Quantity, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Bench, Effort, Trial};
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{Model, Unit};
 use rayon::prelude::*;
 
 /// Samples looked at with each remedy, and with each of the many values of a continuous one.
@@ -146,11 +146,27 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
             true => strict,
             false => never,
         },
+        // Many turns of an arm are reason enough to doubt a unit.
+        Remedy::Unit(columns) if doubts_travel(bench, columns) => Least {
+            ratio: 0.97,
+            better: 0.5,
+        },
         _ => Least {
             ratio: 0.8,
             better: 0.7,
         },
     }
+}
+
+/// Joints that travel further than this are likelier read in a wrong unit, rad.
+const DOUBTFUL_RAD: f64 = 30.0;
+
+/// Whether one of the columns is an angle that travels too far as it is read.
+fn doubts_travel(bench: &Bench, columns: &[(Quantity, Unit)]) -> bool {
+    columns.iter().any(|(quantity, _)| match quantity {
+        Quantity::Position(joint) => travel_rad(&bench.motions, *joint) > DOUBTFUL_RAD,
+        _ => false,
+    })
 }
 
 /// Whether samples lie so far apart, or so close, that the unit of time must be wrong.

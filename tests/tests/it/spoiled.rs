@@ -4,10 +4,12 @@ use handstand::challenge::Motions;
 use handstand_tests::spoiled::{Answer, Spoiling, bundled, judge, simulated, unspoiled};
 
 #[test]
-fn a_reversed_arm_gets_the_right_remedy() {
+fn a_spoiled_arm_gets_the_right_remedy() {
     let rig = simulated(Motions::Arm, "coulomb", 1).unwrap();
-    let outcome = judge(&rig, Spoiling::PositionSign(0));
-    assert_eq!(outcome.answer, Answer::Right, "{outcome:#?}");
+    for spoiling in [Spoiling::PositionSign(0), Spoiling::Milliseconds] {
+        let outcome = judge(&rig, spoiling);
+        assert_eq!(outcome.answer, Answer::Right, "{outcome:#?}");
+    }
 }
 
 #[test]
@@ -19,8 +21,13 @@ fn spoiled_joints_of_a_chain_are_told_apart() {
 
 #[test]
 fn logs_as_they_are_raise_no_alarm() {
-    // A tilt is not among them: the warning of a zero that is off is right there.
-    let arms = ["delay"];
+    let arms = [
+        "delay",
+        "base_tilt",
+        "encoder_zero",
+        "torque_scale",
+        "backlash",
+    ];
     let rigs = arms
         .into_iter()
         .zip(1..)
