@@ -28,6 +28,8 @@ pub mod output;
 pub mod paper;
 pub mod plot;
 pub mod report;
+#[cfg(feature = "virtual-cm5")]
+pub mod robot_demo;
 pub mod sim;
 pub mod study;
 pub mod synth;
