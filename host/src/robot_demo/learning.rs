@@ -15,7 +15,7 @@ use std::path::Path;
 /// Age of a goal when it acts in a recording, s, without any of the servos' own: a tick until the
 /// firmware sends it, less what passes until the sample is taken. Of a recorded delay the rest is the
 /// drive's. `cargo xtask robot-demo` prints both of each robot.
-pub const PATH_DELAY_S: f64 = 0.009;
+pub const PATH_DELAY_S: f64 = 0.0095;
 
 /// Kinds of effects that are tried: those of servos and links that a designer can do something about.
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
