@@ -73,30 +73,31 @@ pub(super) fn values_of(model: &Model) -> Vec<ParameterPath> {
         .collect()
 }
 
-/// Values of one kind that may be wrong together: masses and inertias of all links, stall torques of
-/// all motors; none where there are not several.
+/// Values of one kind that one factor may have made wrong: masses and inertias of all links, stall
+/// torques of all motors. None where they belong to one link or motor: an effect says that.
 pub(super) fn kinds_of_values(model: &Model) -> Vec<Vec<ParameterPath>> {
-    let is_inertial = |path: &ParameterPath| {
-        let ParameterPath::Link { field, .. } = path else {
-            return false;
-        };
-        matches!(field, LinkField::Mass | LinkField::Inertia)
+    // What it belongs to, from 0.
+    let inertial = |path: &ParameterPath| match path {
+        ParameterPath::Link { index, field } => {
+            matches!(field, LinkField::Mass | LinkField::Inertia).then_some(*index)
+        }
+        _ => None,
     };
-    let is_torque = |path: &ParameterPath| {
-        let field = match path {
-            ParameterPath::Joint { field, .. } => Some(*field),
-            _ => None,
-        };
-        field == Some(JointField::StallTorque)
+    let torque = |path: &ParameterPath| match path {
+        ParameterPath::Joint { index, field } => {
+            (*field == JointField::StallTorque).then_some(*index)
+        }
+        _ => None,
     };
-    let all = values_of(model);
-    let of = |is: &dyn Fn(&ParameterPath) -> bool| {
-        let kind = all.iter().copied().filter(|path| is(path));
-        kind.collect::<Vec<ParameterPath>>()
+    let mut all = values_of(model);
+    all.retain(|path| path.get(model) != Some(0.0));
+    let of = |owner: &dyn Fn(&ParameterPath) -> Option<usize>| {
+        let first = all.iter().find_map(owner);
+        let several = all.iter().filter_map(owner).any(|own| Some(own) != first);
+        let kind = all.iter().copied().filter(|path| owner(path).is_some());
+        several.then(|| kind.collect::<Vec<ParameterPath>>())
     };
-    let mut kinds = vec![of(&is_inertial), of(&is_torque)];
-    kinds.retain(|kind| kind.len() > 1);
-    kinds
+    [of(&inertial), of(&torque)].into_iter().flatten().collect()
 }
 
 /// Addresses of those of a fit's values that contradict the given model.
