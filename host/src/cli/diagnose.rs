@@ -20,7 +20,7 @@
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
-use handstand::conventions::ModelFile;
+use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{
     DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
 };

@@ -19,7 +19,7 @@
 
 use super::input::positive;
 use super::{ExitStatus, Talk};
-use handstand::excite::{
+use handstand::sysid::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
 use handstand::{Error, Result, output};

@@ -5,7 +5,7 @@ use super::options::DiagnoseOptions;
 use super::progress::Progress;
 use super::search::diagnose;
 use super::words::{HELD_OUT, LOGS, MODEL};
-use crate::conventions::{self, ModelFile};
+use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
 use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, split};
 use crate::model::Model;

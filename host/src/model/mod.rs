@@ -6,6 +6,7 @@
 mod address;
 mod columns;
 pub mod edit;
+pub mod export;
 mod field;
 mod limits;
 pub mod new_model;

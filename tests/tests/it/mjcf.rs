@@ -2,8 +2,8 @@
 
 use handstand::Model;
 use handstand::challenge::{KINDS, Motions, bench};
-use handstand::export::mjcf;
 use handstand::log::Motion;
+use handstand::model::export::mjcf;
 use handstand::sim::{Plant, SensorState, Start, predict};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -39,7 +39,7 @@ use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
 use super::{ExitStatus, Talk};
-use handstand::balance::{BalanceEnd, BalanceOutcome, Balancer};
+use handstand::deploy::balance::{BalanceEnd, BalanceOutcome, Balancer};
 use handstand::link::record::RobotRecorder;
 use handstand::{Error, Result, output};
 use handstand_shared::message::ArmLimits;
