@@ -13,7 +13,7 @@ use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
 use super::step_size::coarsened;
 use super::values::as_given;
-use crate::fitting::{Candidate, FitData, Horizon};
+use crate::fitting::{Candidate, FitData, FitOptions, Horizon};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -76,9 +76,9 @@ impl<'a> Evaluator<'a> {
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
             .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
-        base.evaluate(&training, held_out.as_ref(), FINISH);
+        base.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
         let mut given = as_given(model, &search);
-        given.evaluate(&training, held_out.as_ref(), FINISH);
+        given.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
@@ -124,7 +124,11 @@ impl<'a> Evaluator<'a> {
 
     /// Evaluates a hypothesis over the evaluation horizon.
     pub fn evaluate(&self, hypothesis: &mut Hypothesis) {
-        hypothesis.evaluate(&self.training, self.held_out.as_ref(), EVALUATE);
+        hypothesis.evaluate(
+            &self.training,
+            self.held_out.as_ref(),
+            FitOptions::iterations(EVALUATE),
+        );
     }
 
     /// Few samples and nothing held out: simulations are cheap, and a single motion has more false

@@ -4,7 +4,7 @@ use super::block_errors::{gain, paired};
 use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitData, FitOptions, Horizon};
 use crate::log::Motion;
 use rayon::prelude::*;
 
@@ -65,7 +65,8 @@ impl Evaluator<'_> {
         let evaluated = |hypothesis: &Hypothesis| {
             let mut hypothesis = hypothesis.clone();
             hypothesis.evaluation = None;
-            hypothesis.evaluate(&training, held_out.as_ref(), EVALUATE);
+            let options = FitOptions::iterations(EVALUATE).rough();
+            hypothesis.evaluate(&training, held_out.as_ref(), options);
             hypothesis
         };
         let base = evaluated(&self.base);
@@ -83,7 +84,11 @@ impl Evaluator<'_> {
         let placebos = self.placebos.iter_mut();
         for hypothesis in placebos.chain([&mut self.base, &mut self.given]) {
             hypothesis.evaluation = None;
-            hypothesis.evaluate(&self.training, self.held_out.as_ref(), FINISH);
+            hypothesis.evaluate(
+                &self.training,
+                self.held_out.as_ref(),
+                FitOptions::iterations(FINISH),
+            );
         }
     }
 }

@@ -29,9 +29,8 @@ impl Evaluator<'_> {
     fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
         let look = |&path: &ParameterPath| {
             let from = &from.search;
-            let free = [from.free.as_slice(), &[path]].concat();
             let options = FitOptions::iterations(LOOK).rough();
-            let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
+            let search = from.with_free(&from.model, &[path], &self.search, options);
             Hypothesis {
                 values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
