@@ -1,7 +1,7 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::budget::{EVALUATE, FEW_SAMPLES, FINISH, planned_steps};
+use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, LOOK, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::horizon::search_horizon;
@@ -129,6 +129,21 @@ impl<'a> Evaluator<'a> {
             self.held_out.as_ref(),
             FitOptions::iterations(EVALUATE),
         );
+    }
+
+    /// Evaluates hypotheses fitted to the end on short windows, the best first; what is far behind
+    /// gets a look. Calls `done` after each.
+    pub fn evaluate_all(&self, hypotheses: &mut [Hypothesis], done: impl Fn() + Sync) {
+        let best = hypotheses.iter().map(|h| h.search_mean);
+        let far = FAR_BEHIND * best.fold(f64::INFINITY, f64::min);
+        hypotheses.par_iter_mut().for_each(|hypothesis| {
+            let options = match hypothesis.search_mean > far {
+                true => FitOptions::iterations(LOOK).rough(),
+                false => FitOptions::iterations(EVALUATE),
+            };
+            hypothesis.evaluate(&self.training, self.held_out.as_ref(), options);
+            done();
+        });
     }
 
     /// Few samples and nothing held out: simulations are cheap, and a single motion has more false

@@ -41,8 +41,8 @@ impl Evaluator<'_> {
         values.truncate(FINALISTS);
         values.par_iter_mut().for_each(|value| {
             value.resume(&self.search, FitOptions::iterations(FINISH));
-            self.evaluate(value);
         });
+        self.evaluate_all(&mut values, || {});
         values
     }
 }
