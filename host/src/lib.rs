@@ -4,8 +4,8 @@
 //! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
 //! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
 //! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
-//! `paper`; `synth` + `controllers` + `link` -> `deploy`; `cli` sits on top and nothing depends on it.
-//! Every layer may read `error`, and `output`, which writes files, numbers and plots.
+//! `paper`; `synth` + `controllers` + `link` -> `deploy`; `cli` sits on top and nothing depends on
+//! it. Every layer may read `error`, and `output`, which writes files, numbers and plots.
 
 pub mod challenge;
 pub mod compare;

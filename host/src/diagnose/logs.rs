@@ -21,8 +21,8 @@ pub struct LogDiagnosis {
 }
 
 /// Diagnoses the model of `file` from logs. Logs that the checks refuse end in
-/// [`Verdict::Unfit`](super::Verdict::Unfit), where the options do not trust them; without logs to judge by, the last third of the
-/// motions is held out.
+/// [`Verdict::Unfit`](super::Verdict::Unfit), where the options do not trust them; without logs to
+/// judge by, the last third of the motions is held out.
 ///
 /// # Errors
 /// Logs that cannot be read, or rows that are fitted and held out.

@@ -187,7 +187,8 @@ pub struct Motor {
     pub nominal_supply_v: Option<f64>,
 }
 
-/// One effect of the library with its values: at a joint, at all driven joints, or on the whole rig.
+/// One effect of the library with its values: at a joint, at all driven joints, or on the whole
+/// rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectInstance {
     /// Which effect.

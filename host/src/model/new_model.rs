@@ -119,7 +119,7 @@ fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
     }
 }
 
-/// Columns under names that can be picked anew.
+/// Columns under names that can be picked again.
 fn write_log(text: &mut String, plan: &ModelPlan) {
     text.push_str("\n[log]\ntime = { column = \"time_s\", unit = \"s\" }\n");
     for (index, link) in plan.links.iter().enumerate() {

@@ -15,7 +15,7 @@ use handstand_simavr::ElfCm5;
 
 /// A code of the shafts' clock, ms.
 const CODE_MS: f64 = 0.02;
-/// Codes until the clock begins anew: two periods of the law.
+/// Codes until the clock wraps: two periods of the law.
 const CODES: u64 = 1000;
 const SHOULDER: u8 = 1;
 const HIP: u8 = 11;
