@@ -18,6 +18,7 @@ pub mod dynamics;
 pub mod effects;
 pub mod error;
 pub mod excite;
+pub mod experiment;
 pub mod export;
 pub mod fitting;
 pub mod lab;
