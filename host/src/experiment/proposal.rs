@@ -1,7 +1,7 @@
 //! What a proposal says, as plain values for every writer: text and JSON.
 
 use super::condition::Condition;
-use crate::diagnose::{FittedEffect, Verdict, WrongValue};
+use crate::diagnose::{FittedEffect, Verdict};
 use crate::excite::ExcitationKind;
 use crate::log::Motion;
 use serde::Serialize;
@@ -95,17 +95,16 @@ pub struct ExperimentProposal {
 
 impl RivalName {
     /// The name of these effects and values.
-    pub(super) fn of(effects: &[FittedEffect], values: &[WrongValue]) -> RivalName {
+    pub(super) fn of(effects: &[FittedEffect], values: &[String]) -> RivalName {
         let effects: Vec<String> = effects.iter().map(FittedEffect::address).collect();
-        let values: Vec<String> = values.iter().map(|w| w.fitted.path.clone()).collect();
-        let all: Vec<&str> = effects.iter().chain(&values).map(String::as_str).collect();
+        let all: Vec<&str> = effects.iter().chain(values).map(String::as_str).collect();
         let name = match all.is_empty() {
-            true => "the model as given".to_string(),
+            true => "the model with its free values refitted".to_string(),
             false => all.join(" + "),
         };
         RivalName {
             effects,
-            values,
+            values: values.to_vec(),
             name,
         }
     }

@@ -121,7 +121,7 @@ fn all_experiments(rival: &Rival, options: &ProposeOptions) -> Result<Vec<Experi
 }
 
 /// The experiment that puts the closest two rivals farthest apart, of those that any can part.
-fn parted(
+pub(super) fn parted(
     rivals: &[Rival],
     logs: &FitData,
     horizon: Horizon,
@@ -224,17 +224,15 @@ fn measured(proposal: &ExperimentProposal) -> Vec<MeasuredValue> {
     let mut found: Vec<MeasuredValue> = Vec::new();
     for &(a, b) in open {
         let (a, b) = (&proposal.rivals[a].values, &proposal.rivals[b].values);
-        let only = |own: &'_ [String], other: &[String]| {
-            own.iter().find(|path| !other.contains(path)).cloned()
-        };
-        let Some(path) = only(a, b).or_else(|| only(b, a)) else {
-            continue;
-        };
-        if let Some(instruction) = how_to_measure(&path)
-            && !found.iter().any(|measured| measured.path == path)
-        {
-            found.push(MeasuredValue { path, instruction });
-        }
+        let only_a = a.iter().filter(|path| !b.contains(path));
+        let only_b = b.iter().filter(|path| !a.contains(path));
+        let measured = only_a.chain(only_b).find_map(|path| {
+            Some(MeasuredValue {
+                path: path.clone(),
+                instruction: how_to_measure(path)?,
+            })
+        });
+        found.extend(measured.filter(|measured| !found.contains(measured)));
     }
     found
 }

@@ -40,17 +40,27 @@ pub(super) fn rivals(model: &Model, diagnosis: &Diagnosis, logs: &FitData) -> Ve
     let others = diagnosis.alternatives.iter();
     let others = others.map(|other| (&other.effects, &other.wrong_values));
     let all: Vec<_> = std::iter::once(own).chain(others).collect();
+    let given = model;
     let fitted = all.into_par_iter().map(|(effects, wrong)| {
-        let (model, free) = explained(model, &diagnosis.base, effects, wrong);
-        // Beside effects, wrong values are those that the file frees anyway.
-        let values = if effects.is_empty() {
-            wrong.as_slice()
-        } else {
-            &[]
-        };
-        Rival::fitted(RivalName::of(effects, values), &model, &free, logs)
+        let (model, free) = explained(given, &diagnosis.base, effects, wrong);
+        Rival::fitted(
+            RivalName::of(effects, &own_values(given, wrong)),
+            &model,
+            &free,
+            logs,
+        )
     });
     fitted.collect()
+}
+
+/// The wrong values that are an explanation's own: those that the file frees go with every one.
+fn own_values(given: &Model, wrong: &[WrongValue]) -> Vec<String> {
+    let is_free = |path: &String| {
+        let path = path.parse::<ParameterPath>();
+        path.is_ok_and(|path| given.free.contains(&path))
+    };
+    let paths = wrong.iter().map(|wrong| wrong.fitted.path.clone());
+    paths.filter(|path| !is_free(path)).collect()
 }
 
 /// The model with effects and values, and what is free of it.

@@ -7,6 +7,8 @@ use super::rival::Rival;
 use crate::fitting::{FitData, FitOptions, Horizon, fit, fit_start_states};
 use rayon::prelude::*;
 
+/// Iterations of a fit of start states.
+const START: usize = 4;
 /// Iterations of the fit that confirms a separation.
 const CONFIRM: usize = 15;
 
@@ -58,7 +60,11 @@ pub(super) fn by_derivatives(
     let squared = |truth: usize, other: usize| {
         let rival = &rivals[other];
         let (model, free) = (&rival.fit.model, &rival.fit.free);
-        let at = fit(model, free, &data[truth], None, FitOptions::iterations(0));
+        // Where dry friction holds at the start, derivatives are good near the right state alone.
+        let start = FitOptions::iterations(START).rough();
+        let started = fit(model, &[], &data[truth], None, start);
+        let (nodes, options) = (Some(&started.nodes[..]), FitOptions::iterations(0));
+        let at = fit(model, free, &data[truth], nodes, options);
         rival.share * at.information().cost_left(&rival.known)
     };
     let of_pairs = pairs(rivals.len()).into_iter();
