@@ -15,6 +15,7 @@ pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod experiment;
 pub mod fitting;
 pub mod lab;
 pub mod link;

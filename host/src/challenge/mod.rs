@@ -10,6 +10,7 @@ mod error;
 mod hidden_effect;
 mod motion;
 mod physics;
+mod played;
 mod reference;
 mod regulator;
 mod robot;
@@ -26,6 +27,7 @@ mod tests;
 pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench};
 pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
+pub use played::{ArmInputs, play};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 

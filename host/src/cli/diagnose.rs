@@ -43,6 +43,9 @@ pub struct DiagnoseArgs {
     /// Effect to leave out of the candidates
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
+    /// Value of the file that was measured by itself, and is right
+    #[arg(long, value_name = "PATH")]
+    known: Vec<String>,
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -106,6 +109,7 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
+        known: input::known(model, &args.known)?,
         horizon: args.judging.run.horizon,
         trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),

@@ -15,7 +15,7 @@ use super::step_size::coarsened;
 use super::values::as_given;
 use crate::fitting::{Candidate, FitData, FitOptions, Horizon};
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
 /// What every hypothesis is fitted to and judged by.
@@ -41,6 +41,8 @@ pub(super) struct Evaluator<'a> {
     pub changes: Vec<Vec<PredictionChange>>,
     /// The model as it came.
     pub start: Model,
+    /// Values of it that are right.
+    pub known: Vec<ParameterPath>,
     pub seed: u64,
     /// Error that is good enough, rad.
     pub tolerance_rad: Option<f64>,
@@ -94,6 +96,7 @@ impl<'a> Evaluator<'a> {
             candidates,
             changes,
             start: model.clone(),
+            known: options.known.clone(),
             seed: options.seed,
             most_effects,
             steps,

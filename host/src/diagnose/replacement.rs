@@ -3,7 +3,7 @@
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{PredictionChange, ProjectedResidual};
-use super::values::{kinds_of_values, values_of};
+use super::values::kinds_of_values;
 use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -85,12 +85,15 @@ impl Evaluator<'_> {
                 share: guess.gain / target.size(),
             })
         });
-        let single = values_of(&self.start).into_iter().map(|path| vec![path]);
+        let single = self.open_values().into_iter().map(|path| vec![path]);
         let mut values: Vec<Vec<ParameterPath>> = single.collect();
         values.extend(kinds_of_values(&self.start));
         values.retain(|paths| {
             let is_free = |path: &ParameterPath| rest.free.contains(path);
-            !paths.iter().any(is_free) && Part::Values(paths.clone()) != *part
+            !paths
+                .iter()
+                .any(|path| is_free(path) || self.known.contains(path))
+                && Part::Values(paths.clone()) != *part
         });
         let by_values = values.into_par_iter().filter_map(|paths| {
             let (moves, share) = self.moves(&paths, &local.fit, &little)?;

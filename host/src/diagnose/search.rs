@@ -40,7 +40,9 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
-    let mut evaluator = Evaluator::new(model, training, held_out, options, progress);
+    let mut model = model.clone();
+    model.free.retain(|path| !options.known.contains(path));
+    let mut evaluator = Evaluator::new(&model, training, held_out, options, progress);
     evaluator.placebos = evaluator.try_placebos();
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());

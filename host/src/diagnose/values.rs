@@ -12,7 +12,7 @@ use rayon::prelude::*;
 impl Evaluator<'_> {
     /// Every value of the given model fitted alone, free or not; the best are evaluated.
     pub fn try_values(&self) -> Vec<Hypothesis> {
-        self.fit_values(&self.given, &values_of(&self.start))
+        self.fit_values(&self.given, &self.open_values())
     }
 
     /// Every value that is not free fitted along with those that are; the best are evaluated.
@@ -21,9 +21,16 @@ impl Evaluator<'_> {
         if free.is_empty() {
             return Vec::new();
         }
-        let mut paths = values_of(&self.start);
+        let mut paths = self.open_values();
         paths.retain(|path| !free.contains(path));
         self.fit_values(&self.base, &paths)
+    }
+
+    /// Values of the given model that may be wrong.
+    pub fn open_values(&self) -> Vec<ParameterPath> {
+        let mut open = values_of(&self.start);
+        open.retain(|path| !self.known.contains(path));
+        open
     }
 
     fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {

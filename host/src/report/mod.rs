@@ -9,6 +9,7 @@ mod json;
 pub(crate) mod page;
 mod parameters;
 pub mod playback;
+mod proposal;
 mod provenance;
 mod remains;
 mod signatures;
@@ -21,6 +22,7 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
+pub use proposal::proposal_text;
 pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
 

@@ -5,7 +5,6 @@ mod blocks;
 mod dead_zone;
 mod dynamics;
 mod estimate;
-pub mod excite;
 pub mod generate;
 mod model;
 pub mod polynomial;

@@ -5,11 +5,11 @@
 
 use super::case::{Case, Files, HiddenEffect};
 use handstand::effects;
+use handstand::experiment::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
 use handstand::link::record::{GoalMotion, RobotRecorder, Stream, follow, read};
 use handstand::link::virtual_cm5::{Cm5Port, SimLink, set_up, spec_with_robot};
 use handstand::model::edit::{add_effect, set_values};
 use handstand::model::{EffectInstance, ParameterPath};
-use handstand::sysid::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
