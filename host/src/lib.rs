@@ -20,6 +20,8 @@ pub mod error;
 pub mod excite;
 pub mod export;
 pub mod fitting;
+pub mod import;
+pub mod init;
 pub mod lab;
 pub mod link;
 pub mod log;
