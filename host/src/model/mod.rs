@@ -8,6 +8,7 @@ mod columns;
 pub mod edit;
 pub mod export;
 mod field;
+pub mod import;
 mod limits;
 pub mod new_model;
 mod parse;
