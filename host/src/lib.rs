@@ -24,6 +24,8 @@ pub mod model;
 pub mod output;
 pub mod paper;
 pub mod report;
+#[cfg(feature = "virtual-cm5")]
+pub mod robot_demo;
 pub mod sim;
 pub mod study;
 pub mod synth;

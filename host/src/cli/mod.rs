@@ -14,6 +14,8 @@ mod completions;
 mod controllers;
 mod delays;
 mod demo;
+#[cfg(feature = "virtual-cm5")]
+mod demo_robot;
 mod deploy;
 mod diagnose;
 mod doctor;

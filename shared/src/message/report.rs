@@ -1,6 +1,7 @@
 //! From the CM-5 to the host.
 
 use super::command::PLAN_CHUNK;
+use super::fault::FaultEntry;
 use crate::packed::{Positions, SERVOS};
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,13 @@ pub enum Report {
         length: u16,
         /// The piece, filled up with zeros.
         bytes: [u8; PLAN_CHUNK],
+    },
+    /// Answers [`super::Command::FaultRead`].
+    Fault {
+        /// Which was asked for.
+        back: u8,
+        /// It; none where there are not so many.
+        entry: Option<FaultEntry>,
     },
 }
 
