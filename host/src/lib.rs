@@ -25,7 +25,6 @@ pub mod output;
 pub mod paper;
 pub mod report;
 #[cfg(feature = "virtual-cm5")]
-pub mod robot_demo;
 pub mod sim;
 pub mod study;
 pub mod synth;

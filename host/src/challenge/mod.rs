@@ -14,6 +14,7 @@ mod played;
 mod reference;
 mod regulator;
 mod robot;
+pub mod robot_demo;
 mod robot_motion;
 mod rounding;
 mod score;
