@@ -34,8 +34,8 @@ pub const ROUND_US: u16 = 14_000;
 /// needs about 2 ms.
 pub const LAST_RETRY_US: u16 = 7_600;
 
-/// Time without a sign of life from the host after which an armed robot goes soft, us. It is noticed
-/// at the next tick, at most [`LONGEST_PERIOD_US`] later.
+/// Time without a sign of life from the host after which an armed robot goes soft, us. It is
+/// noticed at the next tick, at most [`LONGEST_PERIOD_US`] later.
 pub const SILENT_US: u32 = 80_000;
 
 /// Oldest attitude that is balanced with, us: three reports of the host's.
@@ -44,8 +44,8 @@ pub const ATTITUDE_US: u32 = 30_000;
 /// Time in which the torque limit falls to nothing, us. Torque is off at the tick that follows.
 pub const FADE_US: u32 = 160_000;
 
-/// Ticks begin no further apart, us: after one that is longer than its period the next one begins at
-/// once.
+/// Ticks begin no further apart, us: after one that is longer than its period the next one begins
+/// at once.
 pub const LONGEST_PERIOD_US: u32 = 2 * TICK_US as u32;
 
 /// For so long torque off is said again in every tick, us: a servo may have missed it in noise.

@@ -2,11 +2,13 @@
 
 use super::show::{or_dash, table_of};
 use super::{ExitStatus, Talk};
+use handstand::challenge::robot_demo::{
+    BalanceAttempt, DemoStep, RobotDemo, ScoredEffect, run as circle,
+};
 use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
-use handstand::robot_demo::{BalanceAttempt, DemoStep, RobotDemo, ScoredEffect, run as circle};
 use handstand::{Error, Result};
 use std::path::Path;
 

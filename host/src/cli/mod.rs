@@ -27,6 +27,8 @@ mod flash;
 mod gains;
 mod help;
 mod identify;
+mod import;
+mod init;
 mod input;
 mod interrupt;
 mod lab;
@@ -35,6 +37,7 @@ mod log;
 mod man;
 mod map;
 mod model;
+mod next;
 mod page;
 mod paper;
 mod port;
@@ -92,10 +95,14 @@ impl Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Start a model from a log: columns, units and links guessed
+    Init(init::InitArgs),
     /// Compare a model's simulation with measured logs
     Compare(compare::CompareArgs),
     /// Diagnose which physical effect a model lacks, from logs
     Diagnose(diagnose::DiagnoseArgs),
+    /// Propose the experiment that parts what a diagnosis leaves open, or tightens a value
+    Next(Box<next::NextArgs>),
     /// List and explain the physical effects of the library
     Effects(effects::EffectsArgs),
     /// Check logs before a model is fitted to them
@@ -112,6 +119,8 @@ pub enum Command {
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Import a model from another simulator's file: URDF, MJCF
+    Import(import::ImportArgs),
     /// Export a model for other simulators
     #[command(subcommand)]
     Model(model::ModelCommand),
@@ -171,8 +180,10 @@ impl Command {
     /// Requests that make no sense, files that cannot be read or are refused.
     pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
         match self {
+            Command::Init(args) => init::run(args, talk),
             Command::Compare(args) => compare::run(args, talk),
             Command::Diagnose(args) => diagnose::run(args, talk),
+            Command::Next(args) => next::run(args, talk),
             Command::Effects(args) => effects::run(args, talk),
             Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),
@@ -180,6 +191,7 @@ impl Command {
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),
+            Command::Import(args) => import::run(args, talk),
             Command::Model(model::ModelCommand::Export(args)) => model::export(args, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),

@@ -1,6 +1,6 @@
 //! What the program says, word for word.
 //!
-//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference
+//! `GOLDEN=write cargo test --test it golden` rewrites the transcripts; read their difference
 //! before keeping it.
 
 use crate::common::Bench;

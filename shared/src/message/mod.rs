@@ -33,8 +33,8 @@ pub trait Message: Serialize + for<'de> Deserialize<'de> {
 }
 
 impl Message for Command {
-    /// The CM-5's boot loader takes it, during a reset, for the wish to stay in it: a restart of the
-    /// controller while the host speaks would leave the servos torqued.
+    /// The CM-5's boot loader takes it, during a reset, for the wish to stay in it: a restart of
+    /// the controller while the host speaks would leave the servos torqued.
     const WITHOUT: Option<u8> = Some(b'#');
 
     fn is_critical(&self) -> bool {

@@ -229,7 +229,8 @@ pub struct Telemetry {
     pub gyro: u16,
     /// Its code at rest, as the plan has it; 0 without a plan.
     pub gyro_zero: u16,
-    /// [`super::Attitude::RATE_LSB_RAD_S`] per code, times 16, as the plan has it; 0 without a plan.
+    /// [`super::Attitude::RATE_LSB_RAD_S`] per code, times 16, as the plan has it; 0 without a
+    /// plan.
     pub gyro_scale: i16,
     /// The servo that let the robot down, until it is armed again.
     pub tripped: Option<TrippedServo>,

@@ -4,6 +4,7 @@ mod bench_firmware;
 #[cfg(unix)]
 mod bench_record;
 mod hidden;
+mod next;
 mod page;
 mod peers;
 mod real;
@@ -30,6 +31,8 @@ enum Chore {
     Peers(peers::Args),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(hidden::Args),
+    /// Measure how often one proposed experiment settles an ambiguous diagnosis
+    Next(next::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
     /// Balance virtual robots before and after they were measured
@@ -52,6 +55,7 @@ impl Chores {
         let well = match &self.chore {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
+            Chore::Next(args) => next::run(args),
             Chore::Real(args) => real::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),

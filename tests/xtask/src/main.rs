@@ -44,6 +44,8 @@ enum Chore {
     Hidden(Words),
     /// Measure other programs and the library on the same tasks
     Peers(Words),
+    /// Measure how often one proposed experiment settles an ambiguous diagnosis
+    Next(Words),
     /// Diagnose public logs of real rigs
     Real(Words),
     /// Balance virtual robots before and after they were measured
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         Chore::BenchRecord(words) => ("bench-record", words),
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),
+        Chore::Next(words) => ("next", words),
         Chore::Real(words) => ("real", words),
         Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),

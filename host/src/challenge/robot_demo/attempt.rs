@@ -1,7 +1,7 @@
 //! An attempt to balance the virtual robot with a plan, through the firmware.
 
 use super::hidden::HiddenRobot;
-use crate::balance::{AttitudeSource, BalanceEnd, BalanceOutcome, Balancer};
+use crate::deploy::balance::{AttitudeSource, BalanceEnd, BalanceOutcome, Balancer};
 use crate::error::{Error, Result};
 use crate::link::virtual_cm5::{
     Cm5Port, SimLink, attitude_sensor_of, set_up_model, spec_with_robot,

@@ -2,7 +2,7 @@
 
 use super::hidden::HiddenRobot;
 use crate::error::Result;
-use crate::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
+use crate::experiment::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
 use crate::link::record::{GoalMotion, RobotRecorder, Stream, follow, read};
 use crate::link::virtual_cm5::{Cm5Port, SimLink, set_up_model, spec_with_robot};
 use crate::log::{LogRequest, LogSet};

@@ -3,7 +3,7 @@
 use super::attempt::{BalanceAttempt, STANDS_S};
 use super::run::RobotDemo;
 use crate::output::number::exact;
-use crate::plot::{Chart, Curve, Tone};
+use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::page::{Section, document, table};
 use maud::{Markup, html};
 

@@ -1,8 +1,8 @@
 //! From recordings to a better model, and from a model to the plan that the CM-5 gets.
 
 use crate::controllers::BoardTiming;
-use crate::conventions::ModelFile;
 use crate::deploy::{self, Board, BoardLaw};
+use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Progress, diagnose_logs};
 use crate::effects::EFFECTS;
 use crate::error::{Error, Result};
