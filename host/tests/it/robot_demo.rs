@@ -1,7 +1,7 @@
 //! The whole circle on a virtual robot: it falls as believed, and stands as learned.
 
+use handstand::challenge::robot_demo::{HiddenRobot, RobotAnswer, run};
 use handstand::challenge::unseal;
-use handstand::robot_demo::{HiddenRobot, RobotAnswer, run};
 
 /// Lag and dry friction, found in the recordings, carried into the plan. One robot: a diagnosis is
 /// most of a minute. `cargo xtask robot-demo` runs ten.
@@ -28,6 +28,9 @@ fn a_robot_that_falls_as_believed_stands_as_learned() {
     }
     assert!(read("learned.toml").contains("kind = \"delay\""));
     let page = read("page.html");
-    assert!(page.contains("Model as believed: falls"), "the first attempt");
+    assert!(
+        page.contains("Model as believed: falls"),
+        "the first attempt"
+    );
     assert!(page.contains("Model as learned: stands"), "the second");
 }
