@@ -3,6 +3,7 @@
 pub use handstand_xtask::firmware;
 
 pub mod bench;
+pub mod experiment;
 pub mod hidden;
 #[cfg(unix)]
 pub mod kills;

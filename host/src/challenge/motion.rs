@@ -234,7 +234,7 @@ impl SupplyDrift {
 }
 
 /// What a 10-bit encoder with hanging in the middle makes of an angle, rad; never a negative zero.
-fn quantised(angle: f64) -> f64 {
+pub fn quantised(angle: f64) -> f64 {
     (angle / Position::LSB_RAD).round().clamp(-512.0, 511.0) * Position::LSB_RAD + 0.0
 }
 

@@ -14,13 +14,13 @@
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
 //! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
-//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
-//! `docs/json.md`.
+//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the
+//! diagnosis; its keys are in `docs/json.md`.
 
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
-use handstand::conventions::ModelFile;
+use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{
     DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
 };
@@ -43,6 +43,9 @@ pub struct DiagnoseArgs {
     /// Effect to leave out of the candidates
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
+    /// Value of the file that was measured by itself, and is right
+    #[arg(long, value_name = "PATH")]
+    known: Vec<String>,
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -106,6 +109,7 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
     let options = DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
+        known: input::known(model, &args.known)?,
         horizon: args.judging.run.horizon,
         trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),

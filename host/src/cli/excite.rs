@@ -17,9 +17,9 @@
 //! `--json` prints `file`, `seconds`, `samples`, `hz`, `seed`, `motions` (`kind`, `begin_s`,
 //! `end_s`), `joints` (`servos`, `lowest_rad`, `highest_rad`, `fastest_rad_s`).
 
-use super::input::positive;
+use super::input::{positive, range};
 use super::{ExitStatus, Talk};
-use handstand::excite::{
+use handstand::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
 use handstand::{Error, Result, output};
@@ -68,18 +68,6 @@ fn kind(text: &str) -> Result<ExcitationKind, String> {
         .find(|kind| kind.name() == text);
     let names = EXCITATION_KINDS.map(ExcitationKind::name).join(", ");
     found.ok_or_else(|| format!("`{text}` is no kind of motion: {names}"))
-}
-
-/// Two numbers, `LOW..HIGH`.
-fn range(option: &str, text: &str) -> Result<(f64, f64)> {
-    let ends = text.split_once("..");
-    let ends = ends.and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)));
-    ends.ok_or_else(|| {
-        Error::usage(
-            format!("--{option} {text} is no range"),
-            "write two numbers, such as -0.5..0.5",
-        )
-    })
 }
 
 impl ExciteArgs {

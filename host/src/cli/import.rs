@@ -16,7 +16,7 @@
 
 use super::{ExitStatus, Talk, input};
 use handstand::Result;
-use handstand::import::{ImportPlan, import};
+use handstand::model::import::{ImportPlan, import};
 use handstand::output::vacant;
 use serde_json::json;
 use std::path::PathBuf;

@@ -15,7 +15,7 @@
 //! where a file was written) and `guesses` (`what`, `guess`, `why`).
 
 use super::{ExitStatus, Talk, input};
-use handstand::init::Draft;
+use handstand::log::init::Draft;
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::vacant;
 use handstand::{Error, Result};

@@ -1,8 +1,9 @@
 //! Arguments that several commands take.
 
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
-use handstand::fitting::Horizon;
+use handstand::fitting::{Horizon, free_parameters};
 use handstand::log::{LogRequest, LogSet, Motion, Split};
+use handstand::model::ParameterPath;
 use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
@@ -105,6 +106,32 @@ pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("give a number above 0".to_string()),
+    }
+}
+
+/// Two numbers, `LOW..HIGH`.
+///
+/// # Errors
+/// Text that is no range.
+pub fn range(option: &str, text: &str) -> Result<(f64, f64)> {
+    let ends = text.split_once("..");
+    let ends = ends.and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)));
+    ends.ok_or_else(|| {
+        Error::usage(
+            format!("--{option} {text} is no range"),
+            "write two numbers, such as -0.5..0.5",
+        )
+    })
+}
+
+/// Addresses of values that were measured by themselves.
+///
+/// # Errors
+/// What is no address, or not of this model.
+pub fn known(model: &Model, named: &[String]) -> Result<Vec<ParameterPath>> {
+    match named {
+        [] => Ok(Vec::new()),
+        named => Ok(free_parameters(model, named)?),
     }
 }
 

@@ -14,6 +14,8 @@ mod completions;
 mod controllers;
 mod delays;
 mod demo;
+#[cfg(feature = "virtual-cm5")]
+mod demo_robot;
 mod deploy;
 mod diagnose;
 mod doctor;
@@ -35,6 +37,7 @@ mod log;
 mod man;
 mod map;
 mod model;
+mod next;
 mod page;
 mod paper;
 mod port;
@@ -98,6 +101,8 @@ pub enum Command {
     Compare(compare::CompareArgs),
     /// Diagnose which physical effect a model lacks, from logs
     Diagnose(diagnose::DiagnoseArgs),
+    /// Propose the experiment that parts what a diagnosis leaves open, or tightens a value
+    Next(Box<next::NextArgs>),
     /// List and explain the physical effects of the library
     Effects(effects::EffectsArgs),
     /// Check logs before a model is fitted to them
@@ -178,6 +183,7 @@ impl Command {
             Command::Init(args) => init::run(args, talk),
             Command::Compare(args) => compare::run(args, talk),
             Command::Diagnose(args) => diagnose::run(args, talk),
+            Command::Next(args) => next::run(args, talk),
             Command::Effects(args) => effects::run(args, talk),
             Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
             Command::Fit(args) => fit::run(args, talk),

@@ -31,7 +31,7 @@ fn remedy(diagnosis: &Diagnosis) -> Option<String> {
         .collect();
     let by_values = sets.iter().filter(|(effects, _)| effects.is_empty());
     let mut measured = by_values.flat_map(|(_, values)| values.iter());
-    if let Some(measure) = measured.find_map(|value| measure(&value.fitted.path)) {
+    if let Some(measure) = measured.find_map(|value| how_to_measure(&value.fitted.path)) {
         return Some(measure);
     }
     let differing = |a: &FittedEffect| {
@@ -59,8 +59,8 @@ fn remedy(diagnosis: &Diagnosis) -> Option<String> {
     by_confusion.map(str::to_string).or_else(experiment)
 }
 
-/// How a value of the model file is measured by itself.
-fn measure(path: &str) -> Option<String> {
+/// How a value of the model file is measured by itself; none for one of an effect.
+pub fn how_to_measure(path: &str) -> Option<String> {
     let how = match path.parse().ok()? {
         ParameterPath::Link { index, field } => {
             let link = index + 1;
@@ -98,9 +98,12 @@ mod tests {
 
     #[test]
     fn a_value_is_measured_by_itself() {
-        assert_eq!(measure("link2.mass_kg").as_deref(), Some("weigh link 2"));
-        let torque = measure("joint1.stall_torque_nm").unwrap();
+        assert_eq!(
+            how_to_measure("link2.mass_kg").as_deref(),
+            Some("weigh link 2")
+        );
+        let torque = how_to_measure("joint1.stall_torque_nm").unwrap();
         assert!(torque.contains("known mass"), "{torque}");
-        assert_eq!(measure("viscous@1.coefficient_nm_s_rad"), None);
+        assert_eq!(how_to_measure("viscous@1.coefficient_nm_s_rad"), None);
     }
 }

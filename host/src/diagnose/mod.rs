@@ -6,6 +6,7 @@ mod budget;
 mod candidates;
 mod conclusion;
 mod consistency;
+pub mod conventions;
 mod equivalence;
 mod error_budget;
 mod evaluator;
@@ -36,7 +37,9 @@ pub use findings::{
     Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
     ResidualStructure, RuledOut, Verdict, WrongValue,
 };
+pub use inseparable::how_to_measure;
 pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use options::DiagnoseOptions;
 pub use progress::Progress;
 pub use search::diagnose;
+pub(crate) use selection::independent_share;

@@ -1,6 +1,7 @@
 //! What a diagnosis may be told.
 
 use crate::fitting::Horizon;
+use crate::model::ParameterPath;
 
 /// How to diagnose.
 #[derive(Debug, Clone)]
@@ -9,6 +10,8 @@ pub struct DiagnoseOptions {
     pub seed: u64,
     /// Effects left out of the library.
     pub without: Vec<String>,
+    /// Values of the model file that were measured by themselves: they are right, and not fitted.
+    pub known: Vec<ParameterPath>,
     /// Window length; chosen from the data when absent.
     pub horizon: Option<Horizon>,
     /// Most effects named together.
@@ -25,6 +28,7 @@ impl Default for DiagnoseOptions {
         DiagnoseOptions {
             seed: 0,
             without: Vec::new(),
+            known: Vec::new(),
             horizon: None,
             most_effects: 3,
             trust_log: false,

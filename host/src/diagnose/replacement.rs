@@ -3,7 +3,7 @@
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{PredictionChange, ProjectedResidual};
-use super::values::{kinds_of_values, values_of};
+use super::values::kinds_of_values;
 use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// An effect or values can stand in for a part if they make at least this share of what it changes,
 /// squared. From one start of an effect of several values less may be seen than it can do.
 const LEAST_SHARE: f64 = 0.8;
-/// A value's change for its derivative, as a share of it.
+/// A value's change for its derivative, as a share of it; the least that a value counts as.
 const MOVED: f64 = 1e-3;
 /// Share of a part that is taken out for its derivative.
 const LITTLE: f64 = 0.01;
@@ -48,7 +48,7 @@ impl Part {
 
 impl Evaluator<'_> {
     /// What may stand in for a part, the best first; `rest` is the explanation without it, with its
-    /// derivatives. Nothing that brings more values, unless all of them are of one kind.
+    /// derivatives. Nothing that brings more values, unless one factor changes all of them.
     pub fn others(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Vec<Other> {
         let made = rest.residuals.less(&chosen.search.residuals);
         let target = ProjectedResidual::of(rest, &made);
@@ -85,12 +85,15 @@ impl Evaluator<'_> {
                 share: guess.gain / target.size(),
             })
         });
-        let single = values_of(&self.start).into_iter().map(|path| vec![path]);
+        let single = self.open_values().into_iter().map(|path| vec![path]);
         let mut values: Vec<Vec<ParameterPath>> = single.collect();
         values.extend(kinds_of_values(&self.start));
         values.retain(|paths| {
             let is_free = |path: &ParameterPath| rest.free.contains(path);
-            !paths.iter().any(is_free) && Part::Values(paths.clone()) != *part
+            !paths
+                .iter()
+                .any(|path| is_free(path) || self.known.contains(path))
+                && Part::Values(paths.clone()) != *part
         });
         let by_values = values.into_par_iter().filter_map(|paths| {
             let (moves, share) = self.moves(&paths, &local.fit, &little)?;
@@ -120,8 +123,8 @@ impl Evaluator<'_> {
         others
     }
 
-    /// A small share of a part taken out where the explanation stands: there the derivatives of what
-    /// is equal to the logs agree, however far the part has gone.
+    /// A small share of a part taken out where the explanation stands: there the derivatives of
+    /// what is equal to the logs agree, however far the part has gone.
     fn little_of(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Little {
         let (model, nodes) = (&chosen.search.model, Some(&chosen.search.nodes[..]));
         let fit = fit(
@@ -158,30 +161,29 @@ impl Evaluator<'_> {
         Little { fit, made }
     }
 
-    /// How far to move each value so that together they make most of the target, and the share
-    /// they make.
+    /// How far to move the values, several of them by one factor, to make most of the target, and
+    /// the share they make.
     fn moves(
         &self,
         paths: &[ParameterPath],
         at: &Fit,
         target: &ProjectedResidual,
     ) -> Option<(Vec<f64>, f64)> {
-        let steps = paths
-            .iter()
-            .map(|path| Some(MOVED * path.get(&at.model)?.abs().max(MOVED)));
-        let steps = steps.collect::<Option<Vec<f64>>>()?;
-        let columns = paths.iter().zip(&steps).map(|(path, step)| {
-            let mut model = at.model.clone();
-            let known = path.set(&mut model, path.get(&at.model)? + step);
-            let moved = residuals(&model, &self.search, &at.nodes);
-            known.then(|| at.residuals.less(&moved))
-        });
-        let (weights, share) = target.span(&columns.collect::<Option<Vec<_>>>()?)?;
-        let moves = weights
-            .iter()
-            .zip(&steps)
-            .map(|(weight, step)| weight * step);
-        Some((moves.collect(), share))
+        let mut model = at.model.clone();
+        let mut steps = Vec::new();
+        for path in paths {
+            let value = path.get(&at.model)?;
+            let step = match value.abs() < MOVED {
+                true if paths.len() == 1 => MOVED * MOVED,
+                _ => MOVED * value,
+            };
+            path.set(&mut model, value + step).then_some(())?;
+            steps.push(step);
+        }
+        let moved = residuals(&model, &self.search, &at.nodes);
+        let (weights, share) = target.span(&[at.residuals.less(&moved)])?;
+        let weight = weights[0];
+        Some((steps.into_iter().map(|step| weight * step).collect(), share))
     }
 }
 

@@ -40,7 +40,9 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
-    let mut evaluator = Evaluator::new(model, training, held_out, options, progress);
+    let mut model = model.clone();
+    model.free.retain(|path| !options.known.contains(path));
+    let mut evaluator = Evaluator::new(&model, training, held_out, options, progress);
     evaluator.placebos = evaluator.try_placebos();
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
@@ -188,10 +190,9 @@ impl Evaluator<'_> {
 
     /// Evaluates the finalists.
     fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let finalists = hypotheses.par_iter_mut().take(FINALISTS);
-        finalists.for_each(|hypothesis| {
-            self.evaluate(hypothesis);
-            self.steps.step(EVALUATION_STEPS);
+        let count = hypotheses.len().min(FINALISTS);
+        self.evaluate_all(&mut hypotheses[..count], || {
+            self.steps.step(EVALUATION_STEPS)
         });
         hypotheses
     }

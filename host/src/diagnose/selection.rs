@@ -5,7 +5,7 @@ use super::block_errors::{
 };
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use crate::fitting::Fit;
+use crate::fitting::{Fit, FitData};
 
 /// A hypothesis that leaves up to this much more of the squared error may be as good.
 const NEAR: f64 = 1.1;
@@ -131,6 +131,11 @@ impl Evaluator<'_> {
 /// Samples that count as independent, as a share of all.
 pub(super) fn effective_share(errors: &BlockErrors, fit: &Fit) -> f64 {
     effective_samples(errors, fit) / errors.count().max(1) as f64
+}
+
+/// The same share for a fit to these data.
+pub(crate) fn independent_share(fit: &Fit, data: &FitData) -> f64 {
+    effective_share(&BlockErrors::of(&fit.residuals, data), fit)
 }
 
 /// Samples that count as independent: fewer, the more neighbouring residuals agree.

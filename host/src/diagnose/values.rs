@@ -12,7 +12,7 @@ use rayon::prelude::*;
 impl Evaluator<'_> {
     /// Every value of the given model fitted alone, free or not; the best are evaluated.
     pub fn try_values(&self) -> Vec<Hypothesis> {
-        self.fit_values(&self.given, &values_of(&self.start))
+        self.fit_values(&self.given, &self.open_values())
     }
 
     /// Every value that is not free fitted along with those that are; the best are evaluated.
@@ -21,17 +21,23 @@ impl Evaluator<'_> {
         if free.is_empty() {
             return Vec::new();
         }
-        let mut paths = values_of(&self.start);
+        let mut paths = self.open_values();
         paths.retain(|path| !free.contains(path));
         self.fit_values(&self.base, &paths)
+    }
+
+    /// Values of the given model that may be wrong.
+    pub fn open_values(&self) -> Vec<ParameterPath> {
+        let mut open = values_of(&self.start);
+        open.retain(|path| !self.known.contains(path));
+        open
     }
 
     fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
         let look = |&path: &ParameterPath| {
             let from = &from.search;
-            let free = [from.free.as_slice(), &[path]].concat();
             let options = FitOptions::iterations(LOOK).rough();
-            let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
+            let search = from.with_free(&from.model, &[path], &self.search, options);
             Hypothesis {
                 values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
@@ -42,8 +48,8 @@ impl Evaluator<'_> {
         values.truncate(FINALISTS);
         values.par_iter_mut().for_each(|value| {
             value.resume(&self.search, FitOptions::iterations(FINISH));
-            self.evaluate(value);
         });
+        self.evaluate_all(&mut values, || {});
         values
     }
 }
@@ -73,30 +79,31 @@ pub(super) fn values_of(model: &Model) -> Vec<ParameterPath> {
         .collect()
 }
 
-/// Values of one kind that may be wrong together: masses and inertias of all links, stall torques of
-/// all motors; none where there are not several.
+/// Values of one kind that one factor may have made wrong: masses and inertias of all links, stall
+/// torques of all motors. None where they belong to one link or motor: an effect says that.
 pub(super) fn kinds_of_values(model: &Model) -> Vec<Vec<ParameterPath>> {
-    let is_inertial = |path: &ParameterPath| {
-        let ParameterPath::Link { field, .. } = path else {
-            return false;
-        };
-        matches!(field, LinkField::Mass | LinkField::Inertia)
+    // What it belongs to, from 0.
+    let inertial = |path: &ParameterPath| match path {
+        ParameterPath::Link { index, field } => {
+            matches!(field, LinkField::Mass | LinkField::Inertia).then_some(*index)
+        }
+        _ => None,
     };
-    let is_torque = |path: &ParameterPath| {
-        let field = match path {
-            ParameterPath::Joint { field, .. } => Some(*field),
-            _ => None,
-        };
-        field == Some(JointField::StallTorque)
+    let torque = |path: &ParameterPath| match path {
+        ParameterPath::Joint { index, field } => {
+            (*field == JointField::StallTorque).then_some(*index)
+        }
+        _ => None,
     };
-    let all = values_of(model);
-    let of = |is: &dyn Fn(&ParameterPath) -> bool| {
-        let kind = all.iter().copied().filter(|path| is(path));
-        kind.collect::<Vec<ParameterPath>>()
+    let mut all = values_of(model);
+    all.retain(|path| path.get(model) != Some(0.0));
+    let of = |owner: &dyn Fn(&ParameterPath) -> Option<usize>| {
+        let first = all.iter().find_map(owner);
+        let several = all.iter().filter_map(owner).any(|own| Some(own) != first);
+        let kind = all.iter().copied().filter(|path| owner(path).is_some());
+        several.then(|| kind.collect::<Vec<ParameterPath>>())
     };
-    let mut kinds = vec![of(&is_inertial), of(&is_torque)];
-    kinds.retain(|kind| kind.len() > 1);
-    kinds
+    [of(&inertial), of(&torque)].into_iter().flatten().collect()
 }
 
 /// Addresses of those of a fit's values that contradict the given model.

@@ -19,6 +19,7 @@ mod fit;
 mod fitted_value;
 mod free;
 mod growth;
+mod information;
 mod jacobian;
 mod levenberg_marquardt;
 #[cfg(test)]
@@ -45,6 +46,7 @@ pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
 pub use fitted_value::{FittedValue, fitted_values};
 pub use free::{FreeError, free_parameters};
+pub use information::Information;
 pub use node::Node;
 pub use noise::{estimated_resolution, noise};
 pub use profile::profile_intervals;

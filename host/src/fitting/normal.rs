@@ -66,6 +66,17 @@ impl WindowJacobian {
         &self.parameters - &self.node * coupling
     }
 
+    /// Squared residuals less what the window's own start state can remove.
+    pub fn reduced_cost(&self) -> f64 {
+        let prior = self.node_precision.component_mul(&self.node_pull);
+        let cost = self.residual.norm_squared() + prior.dot(&self.node_pull);
+        let gradient = self.node_gradient();
+        match self.node_cholesky() {
+            Some(cholesky) => cost - gradient.dot(&cholesky.solve(&gradient)),
+            None => cost,
+        }
+    }
+
     /// A change of the residual without what the window's own start state could explain.
     pub fn reduced(&self, change: DVector<f64>) -> DVector<f64> {
         let Some(cholesky) = self.node_cholesky() else {

@@ -8,6 +8,7 @@ mod folder;
 mod format;
 mod header;
 mod holdout;
+pub mod init;
 mod iso;
 mod lines;
 mod log_set;

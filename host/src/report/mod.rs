@@ -9,6 +9,7 @@ mod json;
 pub(crate) mod page;
 mod parameters;
 pub mod playback;
+mod proposal;
 mod provenance;
 mod remains;
 mod signatures;
@@ -21,12 +22,13 @@ mod words;
 
 pub use json::{diagnosis_json, json};
 pub use page::html;
+pub use proposal::proposal_text;
 pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
-use crate::plot::Tone;
+use crate::output::plot::Tone;
 use serde::Serialize;
 
 /// Tone of what was measured.

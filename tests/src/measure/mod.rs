@@ -4,9 +4,11 @@ mod bench_firmware;
 #[cfg(unix)]
 mod bench_record;
 mod hidden;
+mod next;
 mod page;
 mod peers;
 mod real;
+mod robot_demo;
 mod scatter;
 mod spoiled;
 #[cfg(unix)]
@@ -29,8 +31,12 @@ enum Chore {
     Peers(peers::Args),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(hidden::Args),
+    /// Measure how often one proposed experiment settles an ambiguous diagnosis
+    Next(next::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Balance virtual robots before and after they were measured
+    RobotDemo(robot_demo::Args),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(spoiled::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -49,7 +55,9 @@ impl Chores {
         let well = match &self.chore {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
+            Chore::Next(args) => next::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             #[cfg(unix)]

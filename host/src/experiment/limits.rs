@@ -1,0 +1,149 @@
+//! Within which angles, speeds, torques and time an experiment must stay.
+
+use crate::error::{Error, Result};
+use crate::log::Motion;
+use crate::model::{Drive, MeasuredSignal, Model};
+use std::f64::consts::PI;
+
+/// Samples over which a speed is taken from readings.
+const SPEED_SAMPLES: usize = 4;
+/// Slowest and fastest sampling of an experiment, Hz.
+const RATE_HZ: (f64, f64) = (10.0, 1000.0);
+
+/// Limits of an experiment. What the rig does is predicted by every explanation that is left, and
+/// none may leave them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExperimentLimits {
+    /// Per joint: lowest angle, rad in the log's convention.
+    pub low_rad: Vec<f64>,
+    /// Per joint: highest angle.
+    pub high_rad: Vec<f64>,
+    /// Per joint: fastest speed, rad/s.
+    pub speed_rad_s: Vec<f64>,
+    /// Largest torque of any drive, N m; none for what the motors have.
+    pub torque_nm: Option<f64>,
+    /// Longest duration, s.
+    pub seconds: f64,
+    /// Samples per second.
+    pub hz: f64,
+}
+
+impl ExperimentLimits {
+    /// What the logs have already covered: their angles, their fastest speeds, their rate; motions
+    /// of `seconds`.
+    pub fn of_logs(model: &Model, motions: &[Motion], seconds: f64) -> ExperimentLimits {
+        let joints = 0..model.link_count();
+        let angles = |joint: usize| {
+            let all = motions.iter().flat_map(move |m| &m.position_rad[joint]);
+            all.copied().filter(|angle| angle.is_finite())
+        };
+        let low = |joint| angles(joint).reduce(f64::min).unwrap_or(-PI);
+        let high = |joint| angles(joint).reduce(f64::max).unwrap_or(PI);
+        let fastest = |joint: usize| {
+            let speeds = motions.iter().map(|motion| fastest_rad_s(motion, joint));
+            let most = speeds.fold(0.0, f64::max);
+            if most > 0.0 { most } else { f64::INFINITY }
+        };
+        ExperimentLimits {
+            low_rad: joints.clone().map(low).collect(),
+            high_rad: joints.clone().map(high).collect(),
+            speed_rad_s: joints.map(fastest).collect(),
+            torque_nm: None,
+            seconds,
+            hz: rate_hz(motions),
+        }
+    }
+
+    /// Whether there is something between them.
+    ///
+    /// # Errors
+    /// Which limit leaves nothing.
+    pub fn check(&self) -> Result<()> {
+        let ranges = self.low_rad.iter().zip(&self.high_rad);
+        for (joint, (low, high)) in (1..).zip(ranges) {
+            if low.is_nan() || high.is_nan() || low >= high {
+                return Err(Error::usage(
+                    format!("angles {low:.3} to {high:.3} rad leave joint {joint} no motion"),
+                    "give a lower and a higher angle by --angles LOW..HIGH",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a predicted motion stays within them.
+    pub fn keeps(&self, model: &Model, motion: &Motion) -> bool {
+        (0..model.link_count()).all(|joint| {
+            let angles = motion.position_rad[joint].iter();
+            let within = angles
+                .filter(|angle| !angle.is_nan())
+                .all(|angle| (self.low_rad[joint]..=self.high_rad[joint]).contains(angle));
+            within
+                && fastest_rad_s(motion, joint) <= self.speed_rad_s[joint]
+                && self
+                    .torque_nm
+                    .is_none_or(|most| most_torque_nm(model, motion, joint) <= most)
+        })
+    }
+}
+
+/// Largest speed of a joint over a few samples, rad/s.
+fn fastest_rad_s(motion: &Motion, joint: usize) -> f64 {
+    if let Some(rate) = &motion.velocity_rad_s[joint]
+        && motion.position_rad[joint]
+            .iter()
+            .all(|angle| angle.is_nan())
+    {
+        let rates = rate.iter().filter(|rate| rate.is_finite());
+        return rates.fold(0.0, |most, rate| most.max(rate.abs()));
+    }
+    let (time, position) = (&motion.time_s, &motion.position_rad[joint]);
+    let ends = (0..position.len().saturating_sub(SPEED_SAMPLES)).map(|k| {
+        let end = k + SPEED_SAMPLES;
+        ((position[end] - position[k]) / (time[end] - time[k])).abs()
+    });
+    ends.filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+}
+
+/// Largest torque that a joint's drive is asked for, N m, before any effect.
+fn most_torque_nm(model: &Model, motion: &Motion, joint: usize) -> f64 {
+    let Some(input) = &motion.input[joint] else {
+        return 0.0;
+    };
+    let position = &motion.position_rad[joint];
+    let torque = |(k, &input): (usize, &f64)| {
+        let on = motion.torque_on.as_ref().is_none_or(|on| on[k]);
+        let duty = match &model.joints[joint].drive {
+            _ if !on => 0.0,
+            Drive::Passive => 0.0,
+            Drive::Torque | Drive::Duty(_) => input,
+            Drive::Position { gain_per_rad, .. } => {
+                let error = input - position[k];
+                // An angle that is not measured says nothing of the torque: the most there is.
+                if error.is_nan() {
+                    1.0
+                } else {
+                    (gain_per_rad * error).clamp(-1.0, 1.0)
+                }
+            }
+            Drive::Speed { .. } => 1.0,
+        };
+        let full = model.joints[joint].drive.motor();
+        full.map_or(1.0, |motor| motor.stall_torque_nm) * duty.abs()
+    };
+    input.iter().enumerate().map(torque).fold(0.0, f64::max)
+}
+
+/// Median rate of the samples, Hz.
+fn rate_hz(motions: &[Motion]) -> f64 {
+    let steps = motions.iter().flat_map(|motion| motion.time_s.windows(2));
+    let mut steps: Vec<f64> = steps.map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let median = steps.get(steps.len() / 2).copied().unwrap_or(0.01);
+    (1.0 / median).round().clamp(RATE_HZ.0, RATE_HZ.1)
+}
+
+/// What a log would hold of a joint.
+pub(super) fn signal(model: &Model, joint: usize) -> MeasuredSignal {
+    model.log.joints[joint].signal()
+}

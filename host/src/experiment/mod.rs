@@ -1,0 +1,32 @@
+//! Which experiment tells explanations apart that the logs leave open, or tightens a value.
+//!
+//! Optimal experiment design by simulation: motions of [`excite`](crate::excite) within limits,
+//! under conditions that a person can change (a known mass, the rig turned, another supply), are
+//! predicted by every explanation that is left, each fitted to the logs. Explanations are told
+//! apart by the experiment in which the closest two of them differ most, in standard errors, after
+//! either has been refitted to what the other predicts (Hunter & Reiner 1965; Atkinson & Fedorov
+//! 1975). Values are tightened by the experiment that adds most to the Fisher information (D- or
+//! A-optimality; Atkinson, Donev & Tobias 2007).
+
+mod candidates;
+mod condition;
+pub mod excite;
+mod inputs;
+mod limits;
+mod prediction;
+mod proposal;
+mod propose;
+mod rival;
+mod separation;
+mod tighten;
+
+#[cfg(test)]
+mod tests;
+
+pub use condition::Condition;
+pub use limits::ExperimentLimits;
+pub use proposal::{
+    ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation, TightenedValue,
+};
+pub use propose::{ProposeOptions, propose, propose_values};
+pub use tighten::Criterion;

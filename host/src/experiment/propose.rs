@@ -1,0 +1,315 @@
+//! The choice of an experiment among all that were simulated.
+
+use super::candidates::{Experiment, experiments, with_payload_place};
+use super::condition::usual_mass_kg;
+use super::limits::ExperimentLimits;
+use super::prediction::predicted_motion;
+use super::proposal::{
+    ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation, TightenedValue,
+};
+use super::rival::{Rival, rivals};
+use super::separation::{Separations, by_derivatives, by_fits, pairs};
+use super::tighten::{Criterion, covariance_with};
+use crate::diagnose::{Diagnosis, Verdict, how_to_measure};
+use crate::error::Result;
+use crate::fitting::{FitData, Horizon, intervals};
+use crate::log::Motion;
+use crate::model::{Model, ParameterPath};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// Standard errors from which a diagnosis tells two explanations apart: an explanation is replaced
+/// only where an interval over blocks, and a criterion that counts values, agree.
+const PARTED: f64 = 8.0;
+/// Standard errors from which more is not worth more effort.
+const AMPLE: f64 = 3.0 * PARTED;
+/// Experiments whose separation is confirmed by fits.
+const CONFIRMED: usize = 4;
+
+/// What a proposal may be told.
+#[derive(Debug, Clone)]
+pub struct ProposeOptions {
+    /// Limits of the motion.
+    pub limits: ExperimentLimits,
+    /// Known mass that can be bolted on, kg; chosen from the last link's where absent.
+    pub mass_kg: Option<f64>,
+    /// What tightening makes small.
+    pub criterion: Criterion,
+    /// Seed of random motions.
+    pub seed: u64,
+}
+
+/// An experiment with what it does for each pair of rivals.
+type Judged<'a> = (&'a Experiment, Separations);
+
+/// The experiment that parts what a diagnosis leaves open; where it leaves nothing open, the one
+/// that tightens the values of its explanation and the model's free ones.
+///
+/// # Errors
+/// Limits that no motion can be held in.
+pub fn propose(
+    model: &Model,
+    diagnosis: &Diagnosis,
+    motions: Vec<Motion>,
+    options: &ProposeOptions,
+) -> Result<ExperimentProposal> {
+    let horizon = Horizon::from_seconds(diagnosis.horizon_s);
+    let model = with_payload_place(model);
+    let logs = FitData::new(&model, motions, horizon);
+    let rivals = rivals(&model, diagnosis, &logs);
+    let verdict = Some(diagnosis.verdict);
+    match (diagnosis.verdict, rivals.as_slice()) {
+        (Verdict::Unexplained | Verdict::Unfit, _) | (_, []) => Ok(ExperimentProposal {
+            verdict,
+            ..nothing(&rivals)
+        }),
+        (_, [rival]) => {
+            let places: Vec<usize> = (0..rival.fit.free.len()).collect();
+            let proposal = tightened(rival, &places, &logs, horizon, options)?;
+            Ok(ExperimentProposal {
+                verdict,
+                ..proposal
+            })
+        }
+        _ => {
+            let proposal = parted(&rivals, &logs, horizon, options)?;
+            Ok(ExperimentProposal {
+                verdict,
+                ..proposal
+            })
+        }
+    }
+}
+
+/// The experiment that tightens these values of a model; its own free values are refitted along.
+///
+/// # Errors
+/// As [`propose`].
+pub fn propose_values(
+    model: &Model,
+    values: &[ParameterPath],
+    motions: Vec<Motion>,
+    horizon: Horizon,
+    options: &ProposeOptions,
+) -> Result<ExperimentProposal> {
+    let model = with_payload_place(model);
+    let logs = FitData::new(&model, motions, horizon);
+    let mut free = values.to_vec();
+    free.extend(model.free.iter().filter(|path| !values.contains(path)));
+    let rival = Rival::fitted(RivalName::of(&[], &[]), &model, &free, &logs);
+    let places: Vec<usize> = (0..values.len()).collect();
+    tightened(&rival, &places, &logs, horizon, options)
+}
+
+fn nothing(rivals: &[Rival]) -> ExperimentProposal {
+    ExperimentProposal {
+        verdict: None,
+        rivals: rivals.iter().map(|rival| rival.name.clone()).collect(),
+        experiment: None,
+        separations: Vec::new(),
+        values: Vec::new(),
+        measure: Vec::new(),
+        simulated: 0,
+        within_limits: 0,
+    }
+}
+
+fn all_experiments(rival: &Rival, options: &ProposeOptions) -> Result<Vec<Experiment>> {
+    let model = &rival.fit.model;
+    let mass_kg = options.mass_kg.unwrap_or_else(|| usual_mass_kg(model));
+    experiments(model, &options.limits, mass_kg, options.seed)
+}
+
+/// The experiment that puts the closest two rivals farthest apart, of those that any can part.
+pub(super) fn parted(
+    rivals: &[Rival],
+    logs: &FitData,
+    horizon: Horizon,
+    options: &ProposeOptions,
+) -> Result<ExperimentProposal> {
+    let limits = &options.limits;
+    let experiments = all_experiments(&rivals[0], options)?;
+    let judged = experiments.par_iter().filter_map(|experiment| {
+        let apart = by_derivatives(rivals, experiment, limits, logs, horizon)?;
+        Some((experiment, apart))
+    });
+    let judged: Vec<Judged> = judged.collect();
+    let mut proposal = ExperimentProposal {
+        simulated: experiments.len(),
+        within_limits: judged.len(),
+        ..nothing(rivals)
+    };
+    let possible: Vec<bool> = (0..pairs(rivals.len()).len())
+        .map(|pair| {
+            judged
+                .iter()
+                .any(|(_, apart)| apart.of_pairs[pair] >= PARTED)
+        })
+        .collect();
+    let mut leaders = ranked(judged, &possible);
+    leaders.truncate(CONFIRMED);
+    let confirmed = leaders.into_iter().filter_map(|(experiment, _)| {
+        let apart = by_fits(rivals, experiment, limits, logs, horizon)?;
+        Some((experiment, apart))
+    });
+    // The order stays: the first that does is the one of least effort.
+    let mut best: Option<Judged> = None;
+    for (experiment, apart) in confirmed {
+        let least = closest(&apart, &possible);
+        if best
+            .as_ref()
+            .is_none_or(|(_, held)| least > closest(held, &possible))
+        {
+            best = Some((experiment, apart));
+        }
+        if least >= PARTED {
+            break;
+        }
+    }
+    if let Some((experiment, apart)) = best {
+        proposal.separations = separations(&apart, rivals.len());
+        if proposal.separations.iter().any(|pair| pair.parted) {
+            proposal.experiment = Some(proposed(experiment, &rivals[0], limits));
+        }
+    }
+    proposal.measure = measured(&proposal);
+    Ok(proposal)
+}
+
+/// Smallest separation among the pairs that some experiment parts.
+fn closest(apart: &Separations, possible: &[bool]) -> f64 {
+    let pairs = apart.of_pairs.iter().zip(possible);
+    let pairs = pairs
+        .filter(|(_, possible)| **possible)
+        .map(|(apart, _)| *apart);
+    pairs.reduce(f64::min).unwrap_or(0.0)
+}
+
+/// The best first: those that part amply by their effort, then the others by how far they part.
+fn ranked<'a>(mut judged: Vec<Judged<'a>>, possible: &[bool]) -> Vec<Judged<'a>> {
+    judged.retain(|(_, apart)| closest(apart, possible) > 0.0);
+    judged.sort_by(|(a, apart_a), (b, apart_b)| {
+        let (least_a, least_b) = (closest(apart_a, possible), closest(apart_b, possible));
+        let ample = (least_b >= AMPLE).cmp(&(least_a >= AMPLE));
+        let changes = match least_a >= AMPLE && least_b >= AMPLE {
+            true => a.effort().0.cmp(&b.effort().0),
+            false => std::cmp::Ordering::Equal,
+        };
+        let farther = least_b.total_cmp(&least_a);
+        ample
+            .then(changes)
+            .then(farther)
+            .then(a.effort().cmp(&b.effort()))
+    });
+    judged
+}
+
+fn separations(apart: &Separations, rivals: usize) -> Vec<Separation> {
+    let pairs = pairs(rivals).into_iter().zip(&apart.of_pairs);
+    let separation = pairs.map(|(rivals, &standard_errors)| Separation {
+        rivals,
+        standard_errors,
+        parted: standard_errors >= PARTED,
+    });
+    separation.collect()
+}
+
+/// Values of the file whose measurement parts what the experiment does not.
+fn measured(proposal: &ExperimentProposal) -> Vec<MeasuredValue> {
+    let every_pair = pairs(proposal.rivals.len());
+    let open = every_pair.iter().filter(|pair| {
+        let mut known = proposal.separations.iter();
+        proposal.experiment.is_none() || known.any(|s| s.rivals == **pair && !s.parted)
+    });
+    let mut found: Vec<MeasuredValue> = Vec::new();
+    for &(a, b) in open {
+        let (a, b) = (&proposal.rivals[a].values, &proposal.rivals[b].values);
+        let only_a = a.iter().filter(|path| !b.contains(path));
+        let only_b = b.iter().filter(|path| !a.contains(path));
+        let measured = only_a.chain(only_b).find_map(|path| {
+            Some(MeasuredValue {
+                path: path.clone(),
+                instruction: how_to_measure(path)?,
+            })
+        });
+        found.extend(measured.filter(|measured| !found.contains(measured)));
+    }
+    found
+}
+
+/// The experiment that tightens the values at `places` most.
+fn tightened(
+    rival: &Rival,
+    places: &[usize],
+    logs: &FitData,
+    horizon: Horizon,
+    options: &ProposeOptions,
+) -> Result<ExperimentProposal> {
+    let mut proposal = nothing(std::slice::from_ref(rival));
+    let before = rival.known.clone().try_inverse();
+    let Some(before) = before.filter(|_| !places.is_empty()) else {
+        return Ok(proposal);
+    };
+    let experiments = all_experiments(rival, options)?;
+    let judged = experiments.par_iter().filter_map(|experiment| {
+        let after = covariance_with(rival, experiment, &options.limits, logs, horizon)?;
+        let gain = options.criterion.gain(&before, &after, places);
+        Some((experiment, after, gain))
+    });
+    let judged: Vec<(&Experiment, DMatrix<f64>, f64)> = judged.collect();
+    proposal.simulated = experiments.len();
+    proposal.within_limits = judged.len();
+    let best = judged.iter().max_by(|(a, _, gain_a), (b, _, gain_b)| {
+        gain_a.total_cmp(gain_b).then(b.effort().cmp(&a.effort()))
+    });
+    let Some((experiment, after, _)) = best else {
+        return Ok(proposal);
+    };
+    proposal.experiment = Some(proposed(experiment, rival, &options.limits));
+    proposal.values = tighter(rival, places, logs, &before, after);
+    Ok(proposal)
+}
+
+/// Standard errors before, as the logs have them, and after, smaller by the ratio of covariances.
+fn tighter(
+    rival: &Rival,
+    places: &[usize],
+    logs: &FitData,
+    before: &DMatrix<f64>,
+    after: &DMatrix<f64>,
+) -> Vec<TightenedValue> {
+    let known = intervals(&rival.fit, logs).map(|(intervals, _)| intervals);
+    let values = rival.fit.values();
+    let tightened = places.iter().map(|&i| {
+        let path = rival.fit.free[i];
+        let error = match &known {
+            Some(intervals) => intervals[i].standard_error,
+            None => before[(i, i)].sqrt(),
+        };
+        TightenedValue {
+            path: path.to_string(),
+            unit: path.unit().to_string(),
+            value: values[i],
+            standard_error_before: error,
+            standard_error_after: error * (after[(i, i)] / before[(i, i)]).sqrt(),
+        }
+    });
+    tightened.collect()
+}
+
+fn proposed(
+    experiment: &Experiment,
+    rival: &Rival,
+    limits: &ExperimentLimits,
+) -> ProposedExperiment {
+    let motion = predicted_motion(&rival.fit.model, experiment);
+    ProposedExperiment {
+        motions: experiment.kinds.clone(),
+        seconds: motion.duration_s(),
+        hz: limits.hz,
+        width: experiment.width,
+        condition: experiment.condition,
+        instructions: experiment.condition.instructions(&rival.fit.model),
+        motion,
+    }
+}
