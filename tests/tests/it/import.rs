@@ -5,7 +5,7 @@
 
 use handstand::Model;
 use handstand::dynamics::Workspace;
-use handstand::import::{ImportPlan, import};
+use handstand::model::import::{ImportPlan, import};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -293,7 +293,7 @@ impl Evidence {
         columns
             .joints
             .iter()
-            .map(|joint| link(joint, length_m))
+            .map(|joint| link(joint, length_m, mass_kg))
             .collect()
     }
 }

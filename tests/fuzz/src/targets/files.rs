@@ -2,10 +2,10 @@
 //! loader.
 
 use super::{text, with_file};
-use handstand::init::Draft;
 use handstand::link::Settings;
 use handstand::link::boot_loader::Image;
 use handstand::link::record;
+use handstand::log::init::Draft;
 use handstand::log::{LogRequest, RawLog, read};
 use handstand::model::{LogColumns, Model};
 use handstand::study::{Study, merge};

@@ -2,8 +2,8 @@
 
 use super::text;
 use handstand::effects::EFFECTS;
-use handstand::import::ImportPlan;
 use handstand::model::edit::{add_effect, set_values};
+use handstand::model::import::ImportPlan;
 use handstand::model::{EffectInstance, Model};
 use std::path::Path;
 
@@ -57,7 +57,7 @@ pub(crate) fn import(bytes: &[u8]) {
         joints: Vec::new(),
         driven: bytes.len() % 2 == 0,
     };
-    if let Ok(imported) = handstand::import::import(text, Path::new("robot.xml"), &plan) {
+    if let Ok(imported) = handstand::model::import::import(text, Path::new("robot.xml"), &plan) {
         let model = Model::parse(&imported.toml, Path::new("imported.toml"));
         assert_eq!(
             model.map(|model| model.link_count()).ok(),
