@@ -160,7 +160,7 @@ fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
 fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
     let count = joints(draws);
     let mut text = format!(
-        "<mujoco><compiler angle=\"degree\" eulerseq=\"zyx\"/><option gravity=\"{}\"/>\
+        "<mujoco><compiler angle=\"degree\" eulerseq=\"zyx\"/><option gravity=\"{}\"><flag contact=\"disable\"/></option>\
          <default><geom density=\"700\"/><default class=\"arm\"><joint damping=\"0.05\"/></default></default>\
          <worldbody><body euler=\"{}\" childclass=\"arm\"><geom size=\"0.1\"/>",
         draws.three(9.81),
