@@ -26,6 +26,7 @@ mod recipes;
 mod record;
 mod render;
 mod riccati;
+mod robot_demo;
 mod rounds;
 mod study;
 mod sysid;
