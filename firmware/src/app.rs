@@ -2,8 +2,9 @@
 
 use crate::age::Age;
 use crate::balance::Balance;
-use crate::board::{Board, since_us};
-use crate::design::{INSIST_US, START_TICKS, TICK_US};
+use crate::board::Board;
+use crate::design::{INSIST_US, START_TICKS};
+use crate::fault_log::FaultLog;
 use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::Buttons;
@@ -16,6 +17,7 @@ use handstand_shared::packed::{Positions, Speeds};
 mod arming;
 mod buttons;
 mod command;
+mod faults;
 mod modes;
 mod soft_stop;
 mod state;
@@ -41,6 +43,7 @@ pub struct App {
     statistics: Statistics,
     buttons: Buttons,
     writer: Writer,
+    faults: FaultLog,
     goal: Goal,
     balance: Balance,
     attitude: Attitude,
@@ -92,7 +95,7 @@ impl App {
         } else {
             State::Bridge
         };
-        App {
+        let mut app = App {
             state,
             link: Link::default(),
             filter: Filter::default(),
@@ -100,6 +103,8 @@ impl App {
             statistics: Statistics::default(),
             buttons: Buttons::default(),
             writer: Writer::new(board),
+            // Before the boot counter: reading waits for what is being written.
+            faults: FaultLog::new(board),
             goal: Goal::Hold,
             balance: Balance::NONE,
             attitude: Attitude::default(),
@@ -124,7 +129,11 @@ impl App {
             longest_tick_us: 0,
             longest_law_us: 0,
             has_looked: false,
+        };
+        if let State::Fault(cause) = state {
+            app.log_fault(cause);
         }
+        app
     }
 
     /// What it is doing.
@@ -223,6 +232,7 @@ impl App {
             }
             self.stored(board, sequence);
         }
+        self.faults.tick(board);
         match self.state {
             State::Bridge => {}
             State::Stream(Torque::Off) => self.watch(board, started),
@@ -260,18 +270,6 @@ impl App {
             let silence_ms = u16::try_from(self.life.us() / 1000).unwrap_or(u16::MAX);
             self.longest_silence_ms = self.longest_silence_ms.max(silence_ms);
         }
-    }
-
-    fn account<B: Board>(&mut self, board: &mut B, started: u16) {
-        self.tick_us = since_us(board, started);
-        self.longest_tick_us = self.longest_tick_us.max(self.tick_us);
-        self.calm = self.calm.saturating_add(1);
-        if self.tick_us > TICK_US {
-            self.overruns = self.overruns.saturating_add(1);
-            self.calm = 0;
-        }
-        let lost = u16::from(board.link_overruns());
-        self.statistics.overruns = self.statistics.overruns.saturating_add(lost);
     }
 
     /// The plan in EEPROM, if it can be used, else the one compiled in, if there is one.

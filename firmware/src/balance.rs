@@ -20,8 +20,8 @@ const LOST_AFTER: u8 = 3;
 /// A joint further off than 10 degrees, in codes, was not put there on purpose.
 const POSE_CODES: u16 = 34;
 
-/// Of a reading there was none before. Zero, as all of [`Balance::NONE`]: another value would take a
-/// constant of its whole size from the AVR's RAM.
+/// Of a reading there was none before. Zero, as all of [`Balance::NONE`]: another value would take
+/// a constant of its whole size from the AVR's RAM.
 const NEVER_HEARD: u8 = 0;
 
 /// What balancing remembers from tick to tick.

@@ -1,22 +1,17 @@
-//! Every timing and limit of the firmware, with its arithmetic.
-
-/// Crystal of the CM-5, Hz.
-pub const CPU_HZ: u32 = 16_000_000;
+//! Every timing and limit of the firmware, with its arithmetic, whatever board it runs on. What
+//! follows from a board's crystal is the board's: `atmega128/clock.rs`.
 
 /// Period of the tick, us: 100 Hz, as the paper samples.
 pub const TICK_US: u16 = 10_000;
 
-/// Counts of [`crate::board::Board::clock`] per microsecond: the timer runs at CPU_HZ / 8.
+/// Counts of [`crate::board::Board::clock`] per microsecond, on every board.
 pub const CLOCK_PER_US: u16 = 2;
 
 /// Speed of the PC line, baud. 57600 is what the CM-5 and its boot loader use.
 pub const LINK_BAUD: u32 = 57_600;
 
-/// Baud register of the PC line at double speed: 16 MHz / 8 / 57600 - 1 = 33.7, so 34, 0.8 % slow.
-pub const LINK_UBRR: u16 = ((CPU_HZ / 8 + LINK_BAUD / 2) / LINK_BAUD - 1) as u16;
-
-/// Baud register of the servo bus at double speed: 16 MHz / 8 / 1 M - 1 = 1, exact.
-pub const BUS_UBRR: u16 = 1;
+/// Speed of the servo bus, baud: what servos have from the factory.
+pub const BUS_BAUD: u32 = 1_000_000;
 
 /// From the last stop bit of a request to the first byte of its answer, us, beside the servo's
 /// return delay: 22 us to begin, 10 us for the byte, a motor interrupt of 130 us, and as much again
@@ -39,8 +34,8 @@ pub const ROUND_US: u16 = 14_000;
 /// needs about 2 ms.
 pub const LAST_RETRY_US: u16 = 7_600;
 
-/// Time without a sign of life from the host after which an armed robot goes soft, us. It is noticed
-/// at the next tick, at most [`LONGEST_PERIOD_US`] later.
+/// Time without a sign of life from the host after which an armed robot goes soft, us. It is
+/// noticed at the next tick, at most [`LONGEST_PERIOD_US`] later.
 pub const SILENT_US: u32 = 80_000;
 
 /// Oldest attitude that is balanced with, us: three reports of the host's.
@@ -49,8 +44,8 @@ pub const ATTITUDE_US: u32 = 30_000;
 /// Time in which the torque limit falls to nothing, us. Torque is off at the tick that follows.
 pub const FADE_US: u32 = 160_000;
 
-/// Ticks begin no further apart, us: after one that is longer than its period the next one begins at
-/// once.
+/// Ticks begin no further apart, us: after one that is longer than its period the next one begins
+/// at once.
 pub const LONGEST_PERIOD_US: u32 = 2 * TICK_US as u32;
 
 /// For so long torque off is said again in every tick, us: a servo may have missed it in noise.
@@ -82,8 +77,6 @@ pub const GOAL_SLEW: u16 = 20;
 pub const DEBOUNCE_TICKS: u8 = 3;
 
 const _: () = {
-    let line_baud = CPU_HZ / 8 / (LINK_UBRR as u32 + 1);
-    assert!(line_baud.abs_diff(LINK_BAUD) * 100 < 2 * LINK_BAUD);
     let soft_us = SILENT_US + LONGEST_PERIOD_US;
     assert!(soft_us <= 100_000);
     // Soft begins with one step down, so the fall takes a period less than it would.

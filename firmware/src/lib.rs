@@ -2,8 +2,8 @@
 //! own.
 //!
 //! Everything but `atmega128` is logic behind [`board::Board`] and is tested on a PC, on the host
-//! board of `handstand-cm5-sim`. Read downward only: `design` -> `age`; `board` -> `bus` -> `servos`;
-//! `link`, `filter`, `plan_store`, `boot_counter`, `panel`, `balance` -> `app`.
+//! board of `handstand-cm5-sim`. Read downward only: `design` -> `age`; `board` -> `bus` ->
+//! `servos`; `link`, `filter`, `plan_store`, `boot_counter`, `fault_log`, `panel`, `balance` -> `app`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
 #![cfg_attr(target_arch = "avr", feature(abi_avr_interrupt, asm_experimental_arch))]
@@ -18,6 +18,7 @@ pub mod board;
 pub mod boot_counter;
 pub mod bus;
 pub mod design;
+pub mod fault_log;
 pub mod filter;
 pub mod link;
 pub mod panel;

@@ -4,22 +4,18 @@
 //! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
 //! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
 //! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
-//! `paper`; `synth` + `controllers` + `link` -> `deploy` -> `balance`; `cli` sits on top and nothing depends on
-//! it. Every layer may read `error`, and `output`, which writes files and numbers.
+//! `paper`; `synth` + `controllers` + `link` -> `deploy`; `cli` sits on top and nothing depends on
+//! it. Every layer may read `error`, and `output`, which writes files, numbers and plots.
 
-pub mod balance;
 pub mod challenge;
 pub mod compare;
 pub mod controllers;
-pub mod conventions;
 pub mod deploy;
 pub mod diagnose;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
-pub mod excite;
 pub mod experiment;
-pub mod export;
 pub mod fitting;
 pub mod lab;
 pub mod link;
@@ -27,7 +23,6 @@ pub mod log;
 pub mod model;
 pub mod output;
 pub mod paper;
-pub mod plot;
 pub mod report;
 pub mod sim;
 pub mod study;

@@ -7,9 +7,9 @@
 //! zero; the fixed bits are checked too.
 //!
 //! A byte may be kept off the line: the body's bytes are combined with the mask `s` * 8 by an
-//! exclusive or before they are stuffed, and the sender chooses an `s` that leaves no such byte. The
-//! CRC runs over `s` as over a byte in front, so it is as safe as the rest; with `s` = 0 a frame is
-//! what it would be without masks.
+//! exclusive or before they are stuffed, and the sender chooses an `s` that leaves no such byte.
+//! The CRC runs over `s` as over a byte in front, so it is as safe as the rest; with `s` = 0 a
+//! frame is what it would be without masks.
 
 use crate::crc::{START_16, crc16};
 

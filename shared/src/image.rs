@@ -1,7 +1,7 @@
 //! The mark behind a program for the CM-5: what it is, how long, and whether it is whole.
 //!
-//! `cargo xtask firmware` writes it behind the raw binary; it goes into flash with it. Whoever flashes
-//! checks it first: another AVR program, or a file cut short, is none of ours.
+//! `cargo xtask firmware` writes it behind the raw binary; it goes into flash with it. Whoever
+//! flashes checks it first: another AVR program, or a file cut short, is none of ours.
 
 use crate::crc::crc32;
 

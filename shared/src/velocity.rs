@@ -5,7 +5,8 @@ use crate::fixed::{saturate, shift_right};
 /// Places that the memory keeps below the estimate's step.
 const FRACTION: u8 = 6;
 
-/// How velocities are estimated: v = (position - position before) / Ts, then v' += share (v - v') / 256.
+/// How velocities are estimated: v = (position - position before) / Ts, then v' += share (v - v') /
+/// 256.
 ///
 /// The estimate's step is that of the position, per sample, over 2^`fraction`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

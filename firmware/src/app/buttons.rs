@@ -25,7 +25,8 @@ impl App {
     }
 
     /// Any button stops a robot that is armed, and an adapter, whose user may have switched torque
-    /// on: it passes nothing on any more. Start chooses balancing while torque is off; the host arms.
+    /// on: it passes nothing on any more. Start chooses balancing while torque is off; the host
+    /// arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
             State::Stream(Torque::On | Torque::Fading { .. }) => {

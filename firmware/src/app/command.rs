@@ -71,6 +71,10 @@ impl App {
                 },
             },
             Command::PlanRead { offset } => self.read_plan(board, offset),
+            Command::FaultRead { back } => match self.read_fault(board, back) {
+                Ok(()) => Outcome::Quiet,
+                Err(refusal) => Outcome::Answer(Err(refusal)),
+            },
         }
     }
 

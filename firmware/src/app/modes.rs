@@ -4,6 +4,7 @@ use super::{App, Goal, State};
 use crate::balance::Stop;
 use crate::board::{Board, since_us};
 use crate::bus;
+use crate::design::TICK_US;
 use handstand_shared::message::{Cause, Report, StreamReport};
 
 impl App {
@@ -107,5 +108,18 @@ impl App {
             gyro: board.gyro(),
         };
         self.link.send(board, &Report::Stream(report));
+    }
+
+    /// What the tick took, and what it lost.
+    pub(super) fn account<B: Board>(&mut self, board: &mut B, started: u16) {
+        self.tick_us = since_us(board, started);
+        self.longest_tick_us = self.longest_tick_us.max(self.tick_us);
+        self.calm = self.calm.saturating_add(1);
+        if self.tick_us > TICK_US {
+            self.overruns = self.overruns.saturating_add(1);
+            self.calm = 0;
+        }
+        let lost = u16::from(board.link_overruns());
+        self.statistics.overruns = self.statistics.overruns.saturating_add(lost);
     }
 }

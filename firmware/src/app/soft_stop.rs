@@ -6,7 +6,7 @@ use crate::board::Board;
 use crate::bus;
 use crate::design::{ATTITUDE_US, FADE_US, LOW_ROUNDS, LOW_SUPPLY, SILENT_US, TICK_US};
 use handstand_shared::control_table::TORQUE_LIMIT;
-use handstand_shared::message::{Cause, Mode};
+use handstand_shared::message::{Cause, Condition, Mode};
 use handstand_shared::packed::SERVOS;
 
 impl App {
@@ -45,6 +45,7 @@ impl App {
         cause: Cause,
         within: fn(Torque) -> State,
     ) {
+        self.log_fault(cause);
         if self.servos.tripped.is_some() {
             self.servos.release(board);
         }
@@ -83,6 +84,10 @@ impl App {
 
     /// Torque off at once.
     pub(super) fn give_up<B: Board>(&mut self, board: &mut B, cause: Cause) {
+        let is_soft = matches!(self.condition(), Condition::Soft);
+        if !is_soft {
+            self.log_fault(cause);
+        }
         self.disarm(board);
         self.state = State::Fault(cause);
     }

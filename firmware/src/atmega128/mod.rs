@@ -7,6 +7,7 @@
 #![allow(unsafe_code)]
 
 mod adc;
+mod clock;
 mod eeprom;
 mod flash;
 mod port;

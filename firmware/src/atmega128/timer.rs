@@ -1,13 +1,12 @@
 //! Timer 1 makes the tick, timer 3 is the clock.
 
-use crate::design::{CLOCK_PER_US, CPU_HZ, TICK_US};
+use crate::design::{CLOCK_PER_US, TICK_US};
 use avr_device::atmega128a::Peripherals;
 
 const BY_8: u8 = 0b010;
 const CLEAR_ON_COMPARE: u8 = 1 << 3;
 const TICK: u8 = 1 << 4; // OCF1A
 const TOP: u16 = TICK_US * CLOCK_PER_US - 1;
-const _: () = assert!(CPU_HZ / 8 == CLOCK_PER_US as u32 * 1_000_000);
 
 /// Both run, without interrupts; all other timers stop.
 pub fn start(r: &Peripherals) {

@@ -45,7 +45,8 @@ pub struct ScoredValue {
 pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore> {
     let file = dir.join("answer.sealed");
     let text = std::fs::read_to_string(&file).map_err(|error| Error::file(&file, "read", error))?;
-    let answer = unseal(&text).map_err(|why| Error::refused(Place::file(&file), why))?;
+    let answer: ChallengeAnswer =
+        unseal(&text).map_err(|why| Error::refused(Place::file(&file), why))?;
     let nominal = Model::load(&dir.join("nominal.toml"))?;
     let truth = Model::parse(&answer.true_model_toml, &file)?;
     let added = beyond(model, &nominal);

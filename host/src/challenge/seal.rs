@@ -5,6 +5,7 @@
 
 use super::error::ChallengeError;
 use crate::output::number::hex;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -35,7 +36,7 @@ struct Sealed {
 }
 
 /// The content of `answer.sealed`.
-pub fn seal(answer: &ChallengeAnswer) -> String {
+pub fn seal(answer: &impl Serialize) -> String {
     let plain = serde_json::to_vec(answer).expect("an answer is plain data");
     let sealed = Sealed {
         note: NOTE.to_owned(),
@@ -51,7 +52,7 @@ pub fn seal(answer: &ChallengeAnswer) -> String {
 ///
 /// # Errors
 /// It was changed, or is no sealed answer.
-pub fn unseal(text: &str) -> Result<ChallengeAnswer, ChallengeError> {
+pub fn unseal<T: DeserializeOwned>(text: &str) -> Result<T, ChallengeError> {
     let sealed: Sealed = serde_json::from_str(text).map_err(|_| ChallengeError::NotSealed)?;
     let bytes = unhex(&sealed.sealed).ok_or(ChallengeError::NotHexadecimal)?;
     let plain = masked(&bytes);

@@ -124,16 +124,19 @@ fn a_sealed_answer_opens_and_a_changed_one_does_not() {
     let answer = generate(11, Hidden::Effect("cogging")).answer;
     let text = seal(&answer);
     assert!(!text.contains("cogging"));
-    assert_eq!(unseal(&text).unwrap(), answer);
+    assert_eq!(unseal::<ChallengeAnswer>(&text).unwrap(), answer);
     let at = text.find("\"sealed\": \"").unwrap() + 20;
     let mut changed = text.clone();
     let other = if &text[at..=at] == "0" { "1" } else { "0" };
     changed.replace_range(at..=at, other);
-    let error = unseal(&changed).unwrap_err();
+    let error = unseal::<ChallengeAnswer>(&changed).unwrap_err();
     assert_eq!(error, ChallengeError::Changed);
     let error = Error::refused(Place::file("answer.sealed"), error);
     assert_eq!(error.exit_code(), 3);
-    assert_eq!(unseal("{}").unwrap_err(), ChallengeError::NotSealed);
+    assert_eq!(
+        unseal::<ChallengeAnswer>("{}").unwrap_err(),
+        ChallengeError::NotSealed
+    );
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! $ handstand bus write 3 "moving speed" 100 --port sim
 //! $ handstand bus setup --port /dev/ttyUSB0
 //! $ handstand bus doctor --port /dev/ttyUSB0
+//! $ handstand bus log --port /dev/ttyUSB0
 //! ```
 //!
 //! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus
@@ -13,8 +14,10 @@
 //! manual; codes are the register's own.
 
 mod backup;
+mod bring_up;
 mod changes;
 mod doctor;
+mod log;
 mod monitor;
 mod registers;
 mod scan;
@@ -42,6 +45,8 @@ pub enum BusCommand {
     Restore(backup::RestoreArgs),
     /// Diagnose why a servo returns no status packet
     Doctor(doctor::DoctorArgs),
+    /// Read the CM-5's fault log
+    Log(log::FaultLogArgs),
 }
 
 /// Does it.
@@ -55,5 +60,6 @@ pub fn run(command: &BusCommand, talk: &Talk) -> Result<ExitStatus> {
         BusCommand::Backup(args) => backup::backup(args, talk),
         BusCommand::Restore(args) => backup::restore(args, talk),
         BusCommand::Doctor(args) => doctor::run(args, talk),
+        BusCommand::Log(args) => log::run(args, talk),
     }
 }

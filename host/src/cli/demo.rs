@@ -1,4 +1,5 @@
-//! `handstand demo [-o DIR]`: the whole loop on a virtual bench, in under a minute.
+//! `handstand demo [--robot] [-o DIR]`: the whole loop on a virtual bench, in under a minute, or
+//! with `--robot` on a virtual robot that shall balance.
 //!
 //! Hides an effect in a bench arm, judges its logs, compares, diagnoses, adds what was named, and
 //! opens the answer. Every step is a command line that could be typed; they go to stderr with what
@@ -12,6 +13,18 @@
 //! first.
 //!
 //! `--json` prints what `handstand challenge score --json` prints.
+//!
+//! `--robot` closes the circle, in under three minutes: a robot hangs on simulated servos behind the
+//! CM-5's firmware (its own logic in process). `--seed` draws what its owner's model has not: the
+//! drives' lag, and dry friction, a dead zone or a wrong mass. A plan for that model is deployed and
+//! falls or sways; the hanging robot is recorded through the firmware; what is missing is diagnosed,
+//! added, and a plan for what was learned is deployed. `page.html` shows both attempts side by side.
+//! The diagnosis tries lag, dead zone, friction and mass alone, on short recordings; `handstand
+//! diagnose` tries all effects on the same files. Exit code 1: the robot does not stand in the end.
+//!
+//! `--robot --json` prints `seed`, `nominal` and `learned` (`stood_s`, `stands`, `sway_rms_rad`, once
+//! 2 s have passed, null if it fell before; `end`), `verdict`, `added`, `effects` (`address`, `key`,
+//! `true_value`, `estimate`), `named`.
 
 use super::{Cli, Command, ExitStatus, Talk, challenge, diagnose};
 use clap::Parser as _;
@@ -29,17 +42,23 @@ pub struct DemoArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// The effect to hide, or `none`; random without it
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", conflicts_with = "robot")]
     effect: Option<String>,
+    /// Balance a virtual robot, measure it, diagnose, and balance it again
+    #[arg(long)]
+    robot: bool,
 }
 
 /// Runs the loop.
 pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
     let output = match &args.output {
         Some(output) => output.clone(),
-        None => temporary()?,
+        None => temporary(if args.robot { "robot" } else { "bench" })?,
     };
     talk.say(&format!("Everything is written to {}", output.display()));
+    if args.robot {
+        return robot(args.seed, &output, talk);
+    }
     let at = |name: &str| output.join(name).to_string_lossy().into_owned();
     let (folder, nominal, model) = (
         output.to_string_lossy(),
@@ -103,10 +122,20 @@ pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
 }
 
 /// A place for a folder that nobody else uses; it stays for the user to look into.
-fn temporary() -> Result<PathBuf> {
+fn temporary(name: &str) -> Result<PathBuf> {
     let folder = tempfile::Builder::new().prefix("handstand-demo-").tempdir();
     let refused = |error| Error::file(std::env::temp_dir(), "write", error);
-    Ok(folder.map_err(refused)?.keep().join("bench"))
+    Ok(folder.map_err(refused)?.keep().join(name))
+}
+
+#[cfg(feature = "virtual-cm5")]
+fn robot(seed: u64, output: &std::path::Path, talk: &Talk) -> Result<ExitStatus> {
+    super::demo_robot::run(seed, output, talk)
+}
+
+#[cfg(not(feature = "virtual-cm5"))]
+fn robot(_seed: u64, _output: &std::path::Path, _talk: &Talk) -> Result<ExitStatus> {
+    Err(super::simulated::absent())
 }
 
 /// Says a command line and runs it.

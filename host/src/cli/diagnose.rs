@@ -14,13 +14,13 @@
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
 //! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
-//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the diagnosis; its keys are in
-//! `docs/json.md`.
+//! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the
+//! diagnosis; its keys are in `docs/json.md`.
 
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
-use handstand::conventions::ModelFile;
+use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{
     DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
 };

@@ -9,9 +9,9 @@
 //! $ handstand drift arm.toml monday.csv friday.csv --free coulomb@1.torque_nm
 //! ```
 //!
-//! Exit code 1 when fewer than two logs determine the values. `--json` prints `sessions` and `joints`
-//! (`path`, `unit`, `values`: `of`, `path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`,
-//! `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
+//! Exit code 1 when fewer than two logs determine the values. `--json` prints `sessions` and
+//! `joints` (`path`, `unit`, `values`: `of`, `path`, `key`, `unit`, `value`, `low`, `high`,
+//! `on_bound`, `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Drift, DriftReport, OneValue, Session, drift, free_parameters};

@@ -19,7 +19,7 @@
 
 use super::input::{positive, range};
 use super::{ExitStatus, Talk};
-use handstand::excite::{
+use handstand::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
 use handstand::{Error, Result, output};

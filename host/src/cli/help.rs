@@ -8,8 +8,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Measure",
         &[
-            "excite", "log", "compare", "diagnose", "next", "add", "fit", "drift", "effects",
-            "model", "view", "identify", "map",
+            "excite", "init", "log", "compare", "diagnose", "next", "add", "fit", "drift",
+            "effects", "import", "model", "view", "identify", "map",
         ],
     ),
     (

@@ -17,7 +17,7 @@
 use super::ExitStatus;
 use super::Talk;
 use super::input;
-use handstand::conventions::{self, ModelFile};
+use handstand::diagnose::conventions::{self, ModelFile};
 use handstand::log::{LogFinding, LogRequest, Severity};
 use handstand::{Model, Result};
 use serde_json::{Value, json};

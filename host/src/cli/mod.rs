@@ -14,6 +14,8 @@ mod completions;
 mod controllers;
 mod delays;
 mod demo;
+#[cfg(feature = "virtual-cm5")]
+mod demo_robot;
 mod deploy;
 mod diagnose;
 mod doctor;
@@ -25,6 +27,8 @@ mod flash;
 mod gains;
 mod help;
 mod identify;
+mod import;
+mod init;
 mod input;
 mod interrupt;
 mod lab;
@@ -91,6 +95,8 @@ impl Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Start a model from a log: columns, units and links guessed
+    Init(init::InitArgs),
     /// Compare a model's simulation with measured logs
     Compare(compare::CompareArgs),
     /// Diagnose which physical effect a model lacks, from logs
@@ -113,6 +119,8 @@ pub enum Command {
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Import a model from another simulator's file: URDF, MJCF
+    Import(import::ImportArgs),
     /// Export a model for other simulators
     #[command(subcommand)]
     Model(model::ModelCommand),
@@ -172,6 +180,7 @@ impl Command {
     /// Requests that make no sense, files that cannot be read or are refused.
     pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
         match self {
+            Command::Init(args) => init::run(args, talk),
             Command::Compare(args) => compare::run(args, talk),
             Command::Diagnose(args) => diagnose::run(args, talk),
             Command::Next(args) => next::run(args, talk),
@@ -182,6 +191,7 @@ impl Command {
             Command::Add(args) => add::run(args, talk),
             Command::Gains(args) => deploy::gains(args, talk),
             Command::Study(command) => study::run(command, talk),
+            Command::Import(args) => import::run(args, talk),
             Command::Model(model::ModelCommand::Export(args)) => model::export(args, talk),
             Command::Identify(args) => identify::run(args, talk),
             Command::Map(command) => map::run(command, talk),

@@ -11,7 +11,7 @@
 //! (null where a file was written) and `not_carried` (`part`, `joint`, `why`).
 
 use super::{ExitStatus, Talk};
-use handstand::export::{Exported, mjcf, urdf};
+use handstand::model::export::{Exported, mjcf, urdf};
 use handstand::output::vacant;
 use handstand::{Model, Result};
 use serde_json::json;

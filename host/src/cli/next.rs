@@ -22,7 +22,7 @@
 
 use super::input::{self, positive};
 use super::{ExitStatus, Talk};
-use handstand::conventions::ModelFile;
+use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose_logs};
 use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose, propose_values,

@@ -1,7 +1,7 @@
 //! The port of a command: a serial one, or a simulated one.
 
 use super::simulated;
-use handstand::balance::AttitudeSource;
+use handstand::deploy::balance::AttitudeSource;
 use handstand::link::{Serial, SerialLink, Servos, Tap, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};

@@ -1,22 +1,23 @@
-//! `handstand replay MOTION.csv|MOTION.mcap`: the servos do again what a recording says, or what any
-//! CSV with `time_s` and `goal1_rad` asks for.
+//! `handstand replay MOTION.csv|MOTION.mcap`: the servos do again what a recording says, or what
+//! any CSV with `time_s` and `goal1_rad` asks for.
 //!
 //! The goals are followed, or the positions of a recording without goals (a motion shown by hand).
-//! Where a motion's `torque_on` is 0 the servos are let go. `-` is CSV from the standard input. Torque goes on, the servos go to the first pose at 0.5 rad/s, then the motion runs at its
-//! own speed, and torque goes off; also after Ctrl-C and any error. It is stopped, with exit code
-//! 5, if a servo reports overload, overheating or a wrong supply, or if the CM-5 lets the robot
-//! down. It asks before it moves anything, unless `--yes`.
+//! Where a motion's `torque_on` is 0 the servos are let go. `-` is CSV from the standard input.
+//! Torque goes on, the servos go to the first pose at 0.5 rad/s, then the motion runs at its own
+//! speed, and torque goes off; also after Ctrl-C and any error. It is stopped, with exit code 5, if
+//! a servo reports overload, overheating or a wrong supply, or if the CM-5 lets the robot down. It
+//! asks before it moves anything, unless `--yes`.
 //!
 //! ```console
 //! $ handstand replay swing.mcap --record again.mcap --port /dev/ttyUSB0
 //! ```
 //!
-//! A CM-5 with Handstand's firmware reads the servos and sends the goals itself (`--stream`, without
-//! being told): a line that breaks lets the robot down, and any of its buttons stops it. `--adapter`
-//! passes the packets through it instead, and neither does.
+//! A CM-5 with Handstand's firmware reads the servos and sends the goals itself (`--stream`,
+//! without being told): a line that breaks lets the robot down, and any of its buttons stops it.
+//! `--adapter` passes the packets through it instead, and neither does.
 //!
-//! `--json` prints `way` (`stream` or `adapter`), `samples`, `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad`
-//! (to the positions recorded), `stopped` (why, or null).
+//! `--json` prints `way` (`stream` or `adapter`), `samples`, `seconds`, `tracking_rms_rad` (to the
+//! goals sent), `repeat_rms_rad` (to the positions recorded), `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;

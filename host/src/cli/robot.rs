@@ -74,8 +74,8 @@ impl RobotArgs {
     }
 }
 
-/// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it, whose
-/// servos would hear what is said.
+/// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,
+/// whose servos would hear what is said.
 fn is_cm5(link: &mut AnyLink) -> Result<bool> {
     const SERVO_BUS_BAUD: u32 = 900_000;
     if link.baud() >= SERVO_BUS_BAUD {

@@ -2,7 +2,7 @@
 
 use super::port::AnyLink;
 use handstand::Result;
-use handstand::balance::AttitudeSource;
+use handstand::deploy::balance::AttitudeSource;
 #[cfg(feature = "virtual-cm5")]
 use handstand::link::virtual_cm5::{
     AdapterPort, Bus, Cm5Port, SimLink, attitude_sensor, set_up, spec,

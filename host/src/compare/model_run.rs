@@ -38,8 +38,8 @@ impl ModelRun {
         }
     }
 
-    /// Measured minus predicted, rad or rad/s, `[joint][motion][sample]`; not a number where nothing was
-    /// measured.
+    /// Measured minus predicted, rad or rad/s, `[joint][motion][sample]`; not a number where
+    /// nothing was measured.
     pub fn residuals(&self) -> Vec<Vec<Vec<f64>>> {
         let joints = 0..self.model.link_count();
         let residual = |joint| residual(&self.data, &self.predicted, joint);

@@ -66,8 +66,8 @@ pub struct ResidualTest {
     pub meaning: String,
 }
 
-/// Error when the model starts afresh every `horizon_s`, of all joints with a measured angle, rad, or
-/// of the rates where no angle is measured, rad/s.
+/// Error when the model starts afresh every `horizon_s`, of all joints with a measured angle, rad,
+/// or of the rates where no angle is measured, rad/s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HorizonError {
     /// What it is an error of.

@@ -156,7 +156,8 @@ fn gains(
     Ok(gains)
 }
 
-/// The stationary filter's gains, for each reading one column; a reading that there is not has none.
+/// The stationary filter's gains, for each reading one column; a reading that there is not has
+/// none.
 fn filter(
     known: &DesignModel,
     options: &Options,

@@ -1,11 +1,11 @@
-//! What the torque limit allows, computed: how far each unstable mode grows before an answer to what
-//! is read can act, and which share of what the torques can bring back a sensor step uses up.
+//! What the torque limit allows, computed: how far each unstable mode grows before an answer to
+//! what is read can act, and which share of what the torques can bring back a sensor step uses up.
 //!
 //! A mode with pole p > 0 and left eigenvector w (w'A = p w') of x' = A x + B u under |u| <= u_max
 //! is brought back from states with |w'x| < u_max |w'B|_1 / p, and from no others, whatever the law
 //! (Hu, Lin, Control Systems with Actuator Saturation (2001), section 2.2). Torques that follow
-//! their inputs with a lag T leave 1 / (1 + p T) of it. A state that is off by d is off by d e^{p t}
-//! when the first input that knows of it acts.
+//! their inputs with a lag T leave 1 / (1 + p T) of it. A state that is off by d is off by d e^{p
+//! t} when the first input that knows of it acts.
 
 use super::observer_known;
 use crate::controllers::BoardTiming;
@@ -34,8 +34,8 @@ pub struct ModeLimit {
     pub growth: f64,
     /// Share of the recoverable states that a start of 1 deg in the worst corner is.
     pub degree_share: f64,
-    /// Share of them that half a step of every sensor is, when the answer to it acts. Above 1 no law
-    /// recovers from it.
+    /// Share of them that half a step of every sensor is, when the answer to it acts. Above 1 no
+    /// law recovers from it.
     pub half_step_share: f64,
 }
 

@@ -4,6 +4,7 @@
 //! or the observer-based law. [`upload`] and [`verify`] transfer it, [`replay`] compares the
 //! firmware's law with wide integers.
 
+pub mod balance;
 mod board;
 mod limits;
 mod observer;

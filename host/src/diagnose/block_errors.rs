@@ -10,8 +10,8 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct BlockErrors {
     /// In order of motions and time.
     blocks: Vec<Block>,
-    /// Per motion: sum of squared residuals, rad^2 (rad^2/s^2 where no angle is measured), and their
-    /// number.
+    /// Per motion: sum of squared residuals, rad^2 (rad^2/s^2 where no angle is measured), and
+    /// their number.
     pub motions: Vec<(f64, usize)>,
 }
 
@@ -143,8 +143,8 @@ pub(super) struct PairedSums {
 
 impl PairedSums {
     /// Gain of log-likelihood of residuals whose noise is this motion's own, one factor before and
-    /// one after. Counted in residuals, of which neighbours are alike: good to weigh motions against
-    /// each other, not as a number by itself.
+    /// one after. Counted in residuals, of which neighbours are alike: good to weigh motions
+    /// against each other, not as a number by itself.
     fn gain(&self) -> f64 {
         // No fit is better than the noise.
         let mean = |sum: f64| (sum / self.count.max(1.0)).max(LEAST_MEAN);
@@ -155,8 +155,8 @@ impl PairedSums {
 /// Mean squared weighted residuals below this are noise that happened to be small.
 const LEAST_MEAN: f64 = 0.5;
 
-/// 95 % interval of a statistic of paired blocks by bootstrap, blocks resampled within their motion:
-/// motions differ in how large and how variable their errors are.
+/// 95 % interval of a statistic of paired blocks by bootstrap, blocks resampled within their
+/// motion: motions differ in how large and how variable their errors are.
 pub(super) fn bootstrap(
     before: &BlockErrors,
     after: &BlockErrors,

@@ -6,6 +6,9 @@ pub(super) const LOOK: usize = 4;
 pub(super) const FINISH: usize = 25;
 /// Iterations over the evaluation horizon, from what the windows found.
 pub(super) const EVALUATE: usize = 12;
+/// A hypothesis whose squared error on the windows, fitted to the end, is so many times the best
+/// one's is only looked at over the evaluation horizon.
+pub(super) const FAR_BEHIND: f64 = 9.0;
 /// Finalists of each size.
 pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.

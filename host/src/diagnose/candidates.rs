@@ -6,8 +6,9 @@ use crate::log::Motion;
 use crate::model::{Drive, MeasuredSignal, Model};
 
 /// Every effect of the library and of the model's file at every place where it can act on this
-/// model and be seen in these motions, except those the model holds and those named in `without`; what comes with a servo also at all driven
-/// joints with the same values, where these are of one type.
+/// model and be seen in these motions, except those the model holds and those named in `without`;
+/// what comes with a servo also at all driven joints with the same values, where these are of one
+/// type.
 pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for &effect in EFFECTS

@@ -65,8 +65,8 @@ fn error(evidence: &Evidence) -> ErrorReduction {
     }
 }
 
-/// The values that are wrong: the one that explains all, or those that the refit contradicts; all of
-/// them where only together they differ.
+/// The values that are wrong: the one that explains all, or those that the refit contradicts; all
+/// of them where only together they differ.
 fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
     let given = &evidence.evaluator.start;
     let contradicted = contradicted(given, base);

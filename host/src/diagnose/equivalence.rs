@@ -119,7 +119,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried or anew.
+    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
     fn evaluated_other(&self, other: Other, tried: &[Hypothesis]) -> Hypothesis {
         let known = tried
             .iter()

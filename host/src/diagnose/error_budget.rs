@@ -75,7 +75,8 @@ fn name(chosen: &Hypothesis, part: &Part) -> String {
     }
 }
 
-/// The model as given with one part alone; an effect with the free values refitted, as it was tried.
+/// The model as given with one part alone; an effect with the free values refitted, as it was
+/// tried.
 fn alone(evidence: &Evidence, part: &Part) -> Hypothesis {
     let (evaluator, chosen) = (evidence.evaluator, evidence.chosen());
     let mut hypothesis = match part {

@@ -1,7 +1,7 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::budget::{EVALUATE, FEW_SAMPLES, FINISH, planned_steps};
+use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, LOOK, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::horizon::search_horizon;
@@ -13,7 +13,7 @@ use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
 use super::step_size::coarsened;
 use super::values::as_given;
-use crate::fitting::{Candidate, FitData, Horizon};
+use crate::fitting::{Candidate, FitData, FitOptions, Horizon};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -78,9 +78,9 @@ impl<'a> Evaluator<'a> {
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
             .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
-        base.evaluate(&training, held_out.as_ref(), FINISH);
+        base.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
         let mut given = as_given(model, &search);
-        given.evaluate(&training, held_out.as_ref(), FINISH);
+        given.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
@@ -127,7 +127,26 @@ impl<'a> Evaluator<'a> {
 
     /// Evaluates a hypothesis over the evaluation horizon.
     pub fn evaluate(&self, hypothesis: &mut Hypothesis) {
-        hypothesis.evaluate(&self.training, self.held_out.as_ref(), EVALUATE);
+        hypothesis.evaluate(
+            &self.training,
+            self.held_out.as_ref(),
+            FitOptions::iterations(EVALUATE),
+        );
+    }
+
+    /// Evaluates hypotheses fitted to the end on short windows, the best first; what is far behind
+    /// gets a look. Calls `done` after each.
+    pub fn evaluate_all(&self, hypotheses: &mut [Hypothesis], done: impl Fn() + Sync) {
+        let best = hypotheses.iter().map(|h| h.search_mean);
+        let far = FAR_BEHIND * best.fold(f64::INFINITY, f64::min);
+        hypotheses.par_iter_mut().for_each(|hypothesis| {
+            let options = match hypothesis.search_mean > far {
+                true => FitOptions::iterations(LOOK).rough(),
+                false => FitOptions::iterations(EVALUATE),
+            };
+            hypothesis.evaluate(&self.training, self.held_out.as_ref(), options);
+            done();
+        });
     }
 
     /// Few samples and nothing held out: simulations are cheap, and a single motion has more false

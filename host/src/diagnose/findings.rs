@@ -147,8 +147,8 @@ pub struct Diagnosis {
     /// Effects that are missing: all of them when named, the best set when ambiguous, a partial set
     /// when unexplained.
     pub effects: Vec<FittedEffect>,
-    /// Values of the model file that are wrong: all that is needed where the verdict says so; beside
-    /// the effects, those that the motions contradict.
+    /// Values of the model file that are wrong: all that is needed where the verdict says so;
+    /// beside the effects, those that the motions contradict.
     pub wrong_values: Vec<WrongValue>,
     /// Error of the model as given, of the same refitted, with what was found, and of a perfect
     /// model.
@@ -165,7 +165,7 @@ pub struct Diagnosis {
     pub residual_structure: Option<ResidualStructure>,
     /// Per motion.
     pub motions: Vec<MotionError>,
-    /// The explanation fitted and judged anew with other motions held out; empty where there are
+    /// The explanation fitted and judged again with other motions held out; empty where there are
     /// fewer than three, and where the model as given explains the measurement.
     pub folds: Vec<Fold>,
     /// Pairs of parameters the data hardly tell apart: addresses and correlation.

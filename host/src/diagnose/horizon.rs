@@ -4,7 +4,7 @@ use super::block_errors::{gain, paired};
 use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitData, FitOptions, Horizon};
 use crate::log::Motion;
 use rayon::prelude::*;
 
@@ -27,6 +27,14 @@ pub(super) fn search_horizon(whole: &FitData, longest: Horizon, few: bool) -> Ho
     longest.shorter(Horizon::Seconds(wanted))
 }
 
+/// The most that leading hypotheses gain at a horizon.
+struct MostGained {
+    /// Log-likelihood over the base model.
+    gain: f64,
+    /// Whether one of them leaves nothing but noise.
+    at_noise_floor: bool,
+}
+
 impl Evaluator<'_> {
     /// Chooses the horizon at which the leading hypotheses gain the most over the base model, where
     /// the user has not chosen one, and evaluates the base there.
@@ -39,12 +47,18 @@ impl Evaluator<'_> {
         let ladder = LADDER_S.into_iter().filter(|seconds| *seconds < longest);
         let mut horizons = vec![Horizon::Whole];
         horizons.extend(ladder.map(Horizon::Seconds));
-        if self.horizon_given || horizons.len() == 1 {
+        if self.horizon_given || horizons.len() == 1 || self.at_noise_floor(&self.base) {
             return;
         }
-        let gains: Vec<f64> = horizons
-            .par_iter()
-            .map(|&horizon| self.most_gained(leaders, horizon))
+        let whole = self.most_gained(leaders, Horizon::Whole);
+        // No shorter run shows more than one that leaves nothing but noise.
+        if whole.at_noise_floor {
+            return;
+        }
+        let shorter = horizons[1..].par_iter();
+        let shorter = shorter.map(|&horizon| self.most_gained(leaders, horizon).gain);
+        let gains: Vec<f64> = std::iter::once(whole.gain)
+            .chain(shorter.collect::<Vec<_>>())
             .collect();
         let mut best = 0;
         for (index, gain) in gains.iter().enumerate() {
@@ -58,21 +72,28 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Most log-likelihood that any of the leaders gains over the base model at a horizon.
-    fn most_gained(&self, leaders: &[Hypothesis], horizon: Horizon) -> f64 {
+    /// What the best of the leaders gains over the base model at a horizon.
+    fn most_gained(&self, leaders: &[Hypothesis], horizon: Horizon) -> MostGained {
         let training = self.training.recut(horizon);
         let held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
         let evaluated = |hypothesis: &Hypothesis| {
             let mut hypothesis = hypothesis.clone();
             hypothesis.evaluation = None;
-            hypothesis.evaluate(&training, held_out.as_ref(), EVALUATE);
+            let options = FitOptions::iterations(EVALUATE).rough();
+            hypothesis.evaluate(&training, held_out.as_ref(), options);
             hypothesis
         };
         let base = evaluated(&self.base);
-        let leaders = leaders.par_iter().take(LEADERS).map(evaluated);
-        let gains =
-            leaders.filter_map(|leader| Some(gain(&paired(base.deciding()?, leader.deciding()?))));
-        gains.reduce(|| f64::NEG_INFINITY, f64::max)
+        let leaders: Vec<Hypothesis> = { leaders.par_iter().take(LEADERS) }
+            .map(evaluated)
+            .collect();
+        let gained =
+            |leader: &Hypothesis| gain(&paired(base.deciding()?, leader.deciding()?)).into();
+        let gains = leaders.iter().filter_map(gained);
+        MostGained {
+            gain: gains.fold(f64::NEG_INFINITY, f64::max),
+            at_noise_floor: leaders.iter().any(|leader| self.at_noise_floor(leader)),
+        }
     }
 
     /// Judges over another horizon.
@@ -83,7 +104,11 @@ impl Evaluator<'_> {
         let placebos = self.placebos.iter_mut();
         for hypothesis in placebos.chain([&mut self.base, &mut self.given]) {
             hypothesis.evaluation = None;
-            hypothesis.evaluate(&self.training, self.held_out.as_ref(), FINISH);
+            hypothesis.evaluate(
+                &self.training,
+                self.held_out.as_ref(),
+                FitOptions::iterations(FINISH),
+            );
         }
     }
 }

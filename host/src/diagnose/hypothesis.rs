@@ -114,10 +114,9 @@ impl Hypothesis {
     ) -> Hypothesis {
         let mut model = self.search.model.clone();
         model.effects.push(candidate.instance(values));
-        let mut free = self.search.free.clone();
-        free.extend(candidate.paths());
-        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(iterations));
-        let search = fit(&model, &free, data, Some(nodes), options.rough());
+        let paths: Vec<ParameterPath> = candidate.paths().collect();
+        let options = FitOptions::iterations(iterations).rough();
+        let search = self.search.with_free(&model, &paths, data, options);
         Hypothesis::new(self.set_with(candidate), search)
     }
 
@@ -151,11 +150,16 @@ impl Hypothesis {
     }
 
     /// Refits over the evaluation horizon from the values found, and predicts the held-out motions.
-    pub fn evaluate(&mut self, training: &FitData, held_out: Option<&FitData>, iterations: usize) {
+    pub fn evaluate(
+        &mut self,
+        training: &FitData,
+        held_out: Option<&FitData>,
+        options: FitOptions,
+    ) {
         if self.evaluation.is_some() {
             return;
         }
-        let (search, options) = (&self.search, FitOptions::iterations(iterations));
+        let search = &self.search;
         // Start states carry over where the windows are the same.
         let same = search.nodes.len() == training.windows.len();
         let nodes = same.then_some(&search.nodes[..]);

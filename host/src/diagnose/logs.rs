@@ -5,7 +5,7 @@ use super::options::DiagnoseOptions;
 use super::progress::Progress;
 use super::search::diagnose;
 use super::words::{HELD_OUT, LOGS, MODEL};
-use crate::conventions::{self, ModelFile};
+use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
 use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, split};
 use crate::model::Model;
@@ -21,8 +21,8 @@ pub struct LogDiagnosis {
 }
 
 /// Diagnoses the model of `file` from logs. Logs that the checks refuse end in
-/// [`Verdict::Unfit`](super::Verdict::Unfit), where the options do not trust them; without logs to judge by, the last third of the
-/// motions is held out.
+/// [`Verdict::Unfit`](super::Verdict::Unfit), where the options do not trust them; without logs to
+/// judge by, the last third of the motions is held out.
 ///
 /// # Errors
 /// Logs that cannot be read, or rows that are fitted and held out.

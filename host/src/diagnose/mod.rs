@@ -6,6 +6,7 @@ mod budget;
 mod candidates;
 mod conclusion;
 mod consistency;
+pub mod conventions;
 mod equivalence;
 mod error_budget;
 mod evaluator;

@@ -123,8 +123,8 @@ impl Evaluator<'_> {
         others
     }
 
-    /// A small share of a part taken out where the explanation stands: there the derivatives of what
-    /// is equal to the logs agree, however far the part has gone.
+    /// A small share of a part taken out where the explanation stands: there the derivatives of
+    /// what is equal to the logs agree, however far the part has gone.
     fn little_of(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Little {
         let (model, nodes) = (&chosen.search.model, Some(&chosen.search.nodes[..]));
         let fit = fit(

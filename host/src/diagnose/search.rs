@@ -190,10 +190,9 @@ impl Evaluator<'_> {
 
     /// Evaluates the finalists.
     fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let finalists = hypotheses.par_iter_mut().take(FINALISTS);
-        finalists.for_each(|hypothesis| {
-            self.evaluate(hypothesis);
-            self.steps.step(EVALUATION_STEPS);
+        let count = hypotheses.len().min(FINALISTS);
+        self.evaluate_all(&mut hypotheses[..count], || {
+            self.steps.step(EVALUATION_STEPS)
         });
         hypotheses
     }

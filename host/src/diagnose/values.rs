@@ -36,9 +36,8 @@ impl Evaluator<'_> {
     fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
         let look = |&path: &ParameterPath| {
             let from = &from.search;
-            let free = [from.free.as_slice(), &[path]].concat();
             let options = FitOptions::iterations(LOOK).rough();
-            let search = fit(&from.model, &free, &self.search, Some(&from.nodes), options);
+            let search = from.with_free(&from.model, &[path], &self.search, options);
             Hypothesis {
                 values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
@@ -49,8 +48,8 @@ impl Evaluator<'_> {
         values.truncate(FINALISTS);
         values.par_iter_mut().for_each(|value| {
             value.resume(&self.search, FitOptions::iterations(FINISH));
-            self.evaluate(value);
         });
+        self.evaluate_all(&mut values, || {});
         values
     }
 }

@@ -5,7 +5,7 @@ use super::condition::{Condition, payload_at_m};
 use super::inputs::{Goals, asked};
 use super::limits::ExperimentLimits;
 use crate::error::{Error, Result};
-use crate::excite::{
+use crate::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
 use crate::log::Motion;

@@ -4,7 +4,7 @@
 use super::condition::Condition;
 use super::limits::ExperimentLimits;
 use crate::dynamics::EquationsOfMotion;
-use crate::excite::Excitation;
+use crate::experiment::excite::Excitation;
 use crate::log::Motion;
 use crate::model::{Drive, Model, hanging};
 use crate::sim::{Plant, SensorState, Start, predict};

@@ -2,7 +2,7 @@
 
 use super::condition::Condition;
 use crate::diagnose::{FittedEffect, Verdict};
-use crate::excite::ExcitationKind;
+use crate::experiment::excite::ExcitationKind;
 use crate::log::Motion;
 use serde::Serialize;
 

@@ -59,8 +59,8 @@ pub struct FitData {
     pub windows: Vec<Window>,
     /// Per joint: what is measured of it.
     pub signals: Vec<MeasuredSignal>,
-    /// Per joint: standard deviation of the measurement, rad, of a rate rad/s, by which residuals are
-    /// divided.
+    /// Per joint: standard deviation of the measurement, rad, of a rate rad/s, by which residuals
+    /// are divided.
     pub sigma: Vec<f64>,
     /// Per motion: the longest windows in which start errors stay small.
     stable: Vec<Horizon>,
@@ -102,8 +102,8 @@ impl FitData {
         }
     }
 
-    /// The same motions with the weights of others: those that decide on a fit are weighted as those
-    /// it was fitted to.
+    /// The same motions with the weights of others: those that decide on a fit are weighted as
+    /// those it was fitted to.
     pub fn weighted_like(self, other: &FitData) -> FitData {
         FitData {
             sigma: other.sigma.clone(),
@@ -267,8 +267,8 @@ impl FitData {
         durations.fold(0.0, f64::max)
     }
 
-    /// Root-mean-square error that a perfect model would show, rad, all joints together; rad/s where
-    /// no angle is measured.
+    /// Root-mean-square error that a perfect model would show, rad, all joints together; rad/s
+    /// where no angle is measured.
     pub fn floor(&self) -> f64 {
         let joints = (0..self.joints()).filter(|&joint| self.counts(joint));
         let (mut squares, mut count) = (0.0, 0);

@@ -1,5 +1,5 @@
-//! Whether values differ from session to session, or from servo to servo: each log fitted by itself,
-//! then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
+//! Whether values differ from session to session, or from servo to servo: each log fitted by
+//! itself, then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
 
 use super::data::{FitData, Horizon};
 use super::fitted_value::{FittedValue, fitted_values};

@@ -84,8 +84,8 @@ impl Fit {
         .collect()
     }
 
-    /// Root-mean-square error, rad, over all joints with a measured angle and every sample of `data`
-    /// that was measured, rad/s where no angle is; `data` are those of the fit.
+    /// Root-mean-square error, rad, over all joints with a measured angle and every sample of
+    /// `data` that was measured, rad/s where no angle is; `data` are those of the fit.
     pub fn rms(&self, data: &FitData) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {

@@ -8,6 +8,13 @@ use crate::model::ParameterPath;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// What moves an unknown in every window: the step of each motion, and its residuals after it,
+/// window by window.
+struct Differences {
+    motions: usize,
+    columns: Vec<(f64, Vec<Vec<f64>>)>,
+}
+
 impl LevenbergMarquardt<'_> {
     /// Derivatives at the present values, window by window.
     pub fn jacobian(&mut self) -> Vec<WindowJacobian> {
@@ -16,9 +23,44 @@ impl LevenbergMarquardt<'_> {
         let unknowns = node.map_or(0, |node| node.unknowns.len());
         // Without a sensor that trails, a start's acceleration changes nothing.
         let orders = if self.fit.model.trails() { 3 } else { 2 };
-        let columns = parameters + orders * self.data.joints();
+        let differences = self.differences(0..parameters + orders * self.data.joints());
+        let windows = self.places().map(|(w, motion, at)| {
+            let base = &self.fit.residuals.windows[w];
+            let of = |row: usize, column: usize| differences.of(base, motion, at, row, column);
+            let of_node = |row: usize, column: usize| of(row, parameters + column);
+            let parameters = DMatrix::from_fn(base.len(), parameters, of);
+            self.window(
+                w,
+                parameters,
+                DMatrix::from_fn(base.len(), unknowns, of_node),
+            )
+        });
+        windows.collect()
+    }
+
+    /// Derivatives of a fit that had the first parameters, joined by those of the others at the
+    /// present values.
+    pub fn extended(&mut self, known: &[WindowJacobian]) -> Vec<WindowJacobian> {
+        let parameters = self.fit.free.len();
+        let had = known.first().map_or(0, |window| window.parameters.ncols());
+        let differences = self.differences(had..parameters);
+        let windows = self.places().map(|(w, motion, at)| {
+            let (base, known) = (&self.fit.residuals.windows[w], &known[w]);
+            let parameters = DMatrix::from_fn(base.len(), parameters, |row, column| {
+                match column.checked_sub(had) {
+                    None => known.parameters[(row, column)],
+                    Some(added) => differences.of(base, motion, at, row, added),
+                }
+            });
+            self.window(w, parameters, known.node.clone())
+        });
+        windows.collect()
+    }
+
+    /// Simulates with each of the unknowns moved: parameters first, then those of the start states.
+    fn differences(&mut self, columns: std::ops::Range<usize>) -> Differences {
         let motions = self.data.motions.len();
-        let tasks: Vec<(usize, usize)> = (0..columns)
+        let tasks: Vec<(usize, usize)> = columns
             .flat_map(|column| (0..motions).map(move |motion| (column, motion)))
             .collect();
         let columns: Vec<(f64, Vec<Vec<f64>>)> = tasks
@@ -26,35 +68,32 @@ impl LevenbergMarquardt<'_> {
             .map(|&(column, motion)| self.column(column, motion))
             .collect();
         self.fit.simulations += columns.len() / motions.max(1);
-        let mut index_in_motion = vec![0; motions];
-        let mut windows = Vec::with_capacity(self.data.windows.len());
-        for (w, window) in self.data.windows.iter().enumerate() {
-            let at = index_in_motion[window.motion];
-            index_in_motion[window.motion] += 1;
-            let base = &self.fit.residuals.windows[w];
-            let derivative = |row: usize, column: usize| {
-                let Some((delta, shifted)) = columns.get(column * motions + window.motion) else {
-                    return 0.0;
-                };
-                // Residual is measured minus predicted, so the prediction's derivative has the
-                // other sign.
-                (base[row] - shifted[at][row]) / delta
-            };
-            let (guess, node) = (&self.guesses[w], &self.fit.nodes[w]);
-            let (node_precision, node_pull) = guess.prior(node);
-            let of_node = |r: usize, c: usize| derivative(r, parameters + c);
-            let mut window = WindowJacobian {
-                residual: DVector::from_column_slice(base),
-                parameters: DMatrix::from_fn(base.len(), parameters, derivative),
-                node: DMatrix::from_fn(base.len(), unknowns, of_node),
-                node_precision,
-                node_pull,
-                node_edge: guess.edges(node),
-            };
-            window.hold_edges();
-            windows.push(window);
-        }
-        windows
+        Differences { motions, columns }
+    }
+
+    /// Every window, its motion, and its index among the windows of that motion.
+    fn places(&self) -> impl Iterator<Item = (usize, usize, usize)> + use<'_> {
+        let mut seen = vec![0; self.data.motions.len()];
+        let windows = self.data.windows.iter().enumerate();
+        windows.map(move |(w, window)| {
+            seen[window.motion] += 1;
+            (w, window.motion, seen[window.motion] - 1)
+        })
+    }
+
+    fn window(&self, w: usize, parameters: DMatrix<f64>, node: DMatrix<f64>) -> WindowJacobian {
+        let (guess, own) = (&self.guesses[w], &self.fit.nodes[w]);
+        let (node_precision, node_pull) = guess.prior(own);
+        let mut window = WindowJacobian {
+            residual: DVector::from_column_slice(&self.fit.residuals.windows[w]),
+            parameters,
+            node,
+            node_precision,
+            node_pull,
+            node_edge: guess.edges(own),
+        };
+        window.hold_edges();
+        window
     }
 
     /// Residuals of one motion with one unknown moved by a small amount.
@@ -80,6 +119,17 @@ impl LevenbergMarquardt<'_> {
         }
         let shifted = motion_residuals(&fit.model, self.data, &nodes, motion);
         (delta, shifted)
+    }
+}
+
+impl Differences {
+    /// Derivative of a row of a window, the `at`th of its motion; zero of unknowns not moved.
+    fn of(&self, base: &[f64], motion: usize, at: usize, row: usize, column: usize) -> f64 {
+        let Some((delta, shifted)) = self.columns.get(column * self.motions + motion) else {
+            return 0.0;
+        };
+        // Residual is measured minus predicted, so the prediction's derivative has the other sign.
+        (base[row] - shifted[at][row]) / delta
     }
 }
 

@@ -75,7 +75,8 @@ impl<'a> LevenbergMarquardt<'a> {
                 self.correct(&step);
                 break;
             }
-            let trusted = TRUSTED.contains(&(step.reduction / step.predicted));
+            // A fit that is only compared goes on with doubtful derivatives while they lead down.
+            let trusted = options.rough || TRUSTED.contains(&(step.reduction / step.predicted));
             if small || !trusted || self.is_cheap() {
                 self.linearise();
             } else {

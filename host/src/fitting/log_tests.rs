@@ -24,8 +24,8 @@ fn pendulum(columns: &str, torque_nm: f64) -> Model {
 const ANGLE: &str = "position = { column = \"q\", unit = \"rad\", resolution_rad = 0.001 }";
 const RATE: &str = "velocity = { column = \"w\", unit = \"rad/s\", resolution_rad_s = 0.01 }";
 
-/// What a model does from this angle, at these times, let go at rest: what it predicts goes into the
-/// angles, or into the rates where it has those alone.
+/// What a model does from this angle, at these times, let go at rest: what it predicts goes into
+/// the angles, or into the rates where it has those alone.
 fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
     let joints = model.link_count();
     let gaps = vec![f64::NAN; time_s.len()];

@@ -35,8 +35,8 @@ const REACH_S: f64 = 0.06;
 const SPEED_UNKNOWN_RAD_S: f64 = 2.0;
 
 impl Guess {
-    /// From a parabola through the samples around the window's start; `sigma` is each joint's noise,
-    /// `assumed` says where joints are whose angle is not measured.
+    /// From a parabola through the samples around the window's start; `sigma` is each joint's
+    /// noise, `assumed` says where joints are whose angle is not measured.
     pub fn of(motion: &Motion, sigma: &[f64], assumed: &AssumedStates, window: &Window) -> Guess {
         let (joints, first) = (motion.position_rad.len(), window.samples.start);
         let mut unknowns = DVector::zeros(3 * joints);

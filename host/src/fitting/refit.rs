@@ -17,7 +17,8 @@ use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, Model, ParameterPath};
 
-/// Over short windows the squared error has few false valleys: where start values are told apart, s.
+/// Over short windows the squared error has few false valleys: where start values are told apart,
+/// s.
 const SCREENING_S: f64 = 1.0;
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: FitOptions = FitOptions {
@@ -119,9 +120,9 @@ pub fn refit(
     finish(model, found, &data, split, horizon)
 }
 
-/// Adds the candidates, one after the other, and fits their values along with the model's free ones,
-/// from every start value of each effect. The error before is that of the model refitted without
-/// them. `progress` hears of starts done and starts in all.
+/// Adds the candidates, one after the other, and fits their values along with the model's free
+/// ones, from every start value of each effect. The error before is that of the model refitted
+/// without them. `progress` hears of starts done and starts in all.
 ///
 /// # Errors
 /// The motions do not determine the values.

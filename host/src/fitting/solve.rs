@@ -24,6 +24,35 @@ impl Fit {
         };
         LevenbergMarquardt::new(self.clone(), data, guesses(data)).run(options)
     }
+
+    /// Fits more parameters of `model`, which holds this fit's values and a start for the new ones.
+    ///
+    /// The derivatives by what was free before are taken over until steps contradict them: of the
+    /// simulations of a short fit they would be most.
+    pub fn with_free(
+        &self,
+        model: &Model,
+        added: &[ParameterPath],
+        data: &FitData,
+        options: FitOptions,
+    ) -> Fit {
+        let start = Fit {
+            model: model.clone(),
+            free: [&self.free, added].concat(),
+            residuals: residuals(model, data, &self.nodes),
+            nodes: self.nodes.clone(),
+            converged: false,
+            simulations: 1,
+            jacobian: Vec::new(),
+            fresh: false,
+        };
+        let mut run = LevenbergMarquardt::new(start, data, guesses(data));
+        // A sensor that trails makes the start's acceleration matter.
+        if self.model.trails() == model.trails() && !self.jacobian.is_empty() {
+            run.fit.jacobian = run.extended(&self.jacobian);
+        }
+        run.run(options)
+    }
 }
 
 /// Fits the free parameters and every window's start state; nodes are guessed where none are given.

@@ -8,7 +8,9 @@
 
 mod account;
 pub mod boot_loader;
+pub mod bring_up;
 pub mod doctor;
+mod fault_log;
 mod faulty;
 pub(crate) mod port;
 #[cfg(unix)]
@@ -27,6 +29,7 @@ mod tap;
 pub mod virtual_cm5;
 
 pub use account::{account_words, is_let_down};
+pub use fault_log::{cause_words, fault_log};
 pub use faulty::Faulty;
 pub use port::{LineWriter, SerialLink, read_some};
 #[cfg(unix)]

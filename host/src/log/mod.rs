@@ -1,10 +1,13 @@
 //! Measurement logs: CSV and JSON readers, quality check, training and held-out motions.
 
 mod bam;
+pub(crate) mod cdr;
 pub mod check;
 mod csv;
 mod header;
 mod holdout;
+pub mod init;
+mod iso;
 mod lines;
 mod log_set;
 mod motion;

@@ -51,7 +51,8 @@ impl Motion {
         self.time_s.is_empty()
     }
 
-    /// What is measured of a joint: its angles, rad, or its rates, rad/s; all gaps where nothing is.
+    /// What is measured of a joint: its angles, rad, or its rates, rad/s; all gaps where nothing
+    /// is.
     pub fn measured(&self, joint: usize, signal: MeasuredSignal) -> &[f64] {
         match (signal, &self.velocity_rad_s[joint]) {
             (MeasuredSignal::Rate, Some(rate)) => rate,

@@ -2,9 +2,10 @@
 
 use super::bam;
 use super::header::{LogHeader, fields, number};
+use super::iso::iso_ns;
 use super::lines::Lines;
 use super::request::LogRequest;
-use crate::error::Result;
+use crate::error::{Error, Place, Result};
 use std::path::Path;
 
 /// Columns of a log.
@@ -14,6 +15,8 @@ pub struct RawLog {
     pub names: Vec<String>,
     /// Values of each column; not a number where a cell is none.
     pub columns: Vec<Vec<f64>>,
+    /// Whether the column holds ISO 8601 time stamps; its values count in s from the first.
+    pub iso: Vec<bool>,
 }
 
 impl RawLog {
@@ -27,6 +30,24 @@ impl RawLog {
             true => Ok(of_bam(bam::read(&request)?)),
             false => read_csv(path),
         }
+    }
+
+    /// Reads the rows asked for.
+    ///
+    /// # Errors
+    /// As [`RawLog::read`]; rows beyond the file.
+    pub fn read_request(request: &LogRequest) -> Result<RawLog> {
+        let mut log = RawLog::read(&request.path)?;
+        let rows = log.columns.first().map_or(0, Vec::len);
+        if let Some(reason) = request.beyond(rows) {
+            return Err(Error::refused(Place::file(&request.path), reason));
+        }
+        if let Some((first, last)) = request.rows {
+            log.columns
+                .iter_mut()
+                .for_each(|column| *column = column[first..=last].to_vec());
+        }
+        Ok(log)
     }
 
     /// The first column that is called a time, else the first that only grows.
@@ -47,14 +68,24 @@ fn read_csv(path: &Path) -> Result<RawLog> {
     let (header, first) = LogHeader::read(path, &mut lines, "")?;
     let mut log = RawLog {
         columns: vec![Vec::new(); header.names.len()],
+        iso: vec![false; header.names.len()],
         names: header.names,
     };
+    let mut first_ns = vec![None; log.names.len()];
     let mut take = |line: &str| {
         let cells = fields(line, header.separator);
         for (index, column) in log.columns.iter_mut().enumerate() {
             let value = cells
                 .get(index)
-                .and_then(|cell| number(cell, header.separator));
+                .and_then(|cell| match number(cell, header.separator) {
+                    None if log.iso[index] || column.is_empty() => {
+                        let stamp_ns = iso_ns(cell)?;
+                        log.iso[index] = true;
+                        let first_ns = *first_ns[index].get_or_insert(stamp_ns);
+                        Some(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
+                    }
+                    value => value,
+                });
             column.push(value.unwrap_or(f64::NAN));
         }
     };
@@ -74,6 +105,7 @@ fn of_bam(motion: super::Motion) -> RawLog {
     let mut push = |name: &str, column: Option<Vec<f64>>| {
         if let Some(column) = column {
             log.names.push(name.into());
+            log.iso.push(false);
             log.columns.push(column);
         }
     };
@@ -99,5 +131,17 @@ mod tests {
         assert_eq!(log.columns[0], [1.5, 2.0]);
         assert!(log.columns[1][0].is_nan() && log.columns[1][1] == 3.0);
         assert_eq!(log.time(), Some(2));
+        assert_eq!(log.iso, [false; 3]);
+    }
+
+    #[test]
+    fn time_stamps_count_from_the_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let text = "stamp,q\n2026-03-01T12:00:00.25Z,1\n2026-03-01T13:00:00.5+01:00,2\n";
+        std::fs::write(&path, text).unwrap();
+        let log = RawLog::read(&path).unwrap();
+        assert_eq!(log.columns[0], [0.0, 0.25]);
+        assert_eq!(log.iso, [true, false]);
     }
 }

@@ -22,8 +22,9 @@ pub const LEAST_ROWS: usize = 10;
 /// the value before. A motion begins when all its inputs are known, or while torque is off.
 ///
 /// # Errors
-/// Columns without any value, unreadable cells and rows, time that does not increase, a payload or orientation that changes
-/// within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line, column and remedy.
+/// Columns without any value, unreadable cells and rows, time that does not increase, a payload or
+/// orientation that changes within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line,
+/// column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut motions = Vec::new();
     for request in requests {

@@ -1,11 +1,13 @@
 //! Turns the lines of a CSV log into rows.
 
 use super::header::{LogCell, LogHeader, fields, number};
+use super::iso::iso_ns;
 use super::reason::LogReason;
 use super::row::{Fields, LogRow};
 use crate::error::{Error, Place, Result};
 use crate::model::{Column, ColumnMean, LogColumns};
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::path::Path;
 
 /// Where a quantity stands, and how it is scaled.
@@ -35,6 +37,8 @@ pub(super) struct RowReader<'a> {
     payload: Option<LogQuantity<'a>>,
     turned: Option<LogCell>,
     joints: Vec<JointQuantities<'a>>,
+    /// The file's first time stamp, ns, where they are text: the others count from it.
+    first_ns: Cell<Option<i64>>,
 }
 
 impl<'a> RowReader<'a> {
@@ -71,6 +75,7 @@ impl<'a> RowReader<'a> {
             payload: maybe(&columns.payload)?,
             turned: cell(&columns.turned)?,
             joints: joints.collect::<Result<_>>()?,
+            first_ns: Cell::new(None),
         })
     }
 
@@ -171,6 +176,9 @@ impl Cells<'_> {
     fn value(&self, LogQuantity { cell, column }: &LogQuantity) -> Result<f64> {
         let written = match cell {
             LogCell::Constant(value, _) => Some(*value),
+            LogCell::Field(index) if column.unit.name == "iso8601" => {
+                return self.stamp_s(cell, &self.fields[*index]);
+            }
             LogCell::Field(index) => number(&self.fields[*index], self.reader.separator),
         };
         match written.map(|written| column.to_si(written)) {
@@ -178,6 +186,15 @@ impl Cells<'_> {
             Some(_) => Err(self.refuse(cell, "finite")),
             None => Err(self.refuse(cell, "a number")),
         }
+    }
+
+    /// Seconds since the file's first stamp.
+    fn stamp_s(&self, cell: &LogCell, text: &str) -> Result<f64> {
+        let expected = "a time stamp such as 2026-03-01T12:00:00.5Z";
+        let stamp_ns = iso_ns(text).ok_or_else(|| self.refuse(cell, expected))?;
+        let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
+        self.reader.first_ns.set(Some(first_ns));
+        Ok(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
     }
 
     fn flag(&self, cell: &Option<LogCell>) -> Result<Option<bool>> {

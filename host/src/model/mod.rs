@@ -6,7 +6,9 @@
 mod address;
 mod columns;
 pub mod edit;
+pub mod export;
 mod field;
+pub mod import;
 mod limits;
 pub mod new_model;
 mod parse;
@@ -186,7 +188,8 @@ pub struct Motor {
     pub nominal_supply_v: Option<f64>,
 }
 
-/// One effect of the library with its values: at a joint, at all driven joints, or on the whole rig.
+/// One effect of the library with its values: at a joint, at all driven joints, or on the whole
+/// rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectInstance {
     /// Which effect.

@@ -18,6 +18,9 @@ pub struct ModelPlan {
     pub angle_zero: String,
     /// `relative` or `absolute`.
     pub angles: String,
+    /// Gravity, m/s^2, where it is not the Earth's.
+    #[serde(default)]
+    pub gravity_m_s2: Option<f64>,
     /// From the base outwards.
     pub links: Vec<LinkPlan>,
 }
@@ -48,6 +51,17 @@ pub struct LinkPlan {
 /// # Errors
 /// Figures that make no model.
 pub fn new_model_toml(plan: &ModelPlan) -> Result<String> {
+    let head =
+        "# Written from a form. `handstand compare` shows how far it is from a log, and where.\n\n";
+    model_toml(plan, head, &log_table(plan))
+}
+
+/// The model file of a plan between comments at its head and what follows the joints: effects,
+/// `[fit]` and `[log]`.
+///
+/// # Errors
+/// Figures that make no model.
+pub fn model_toml(plan: &ModelPlan, head: &str, tail: &str) -> Result<String> {
     if plan.links.is_empty() || plan.links.len() > MOST_LINKS {
         return Err(Error::usage(
             format!("a model has 1 to {MOST_LINKS} links here"),
@@ -55,10 +69,7 @@ pub fn new_model_toml(plan: &ModelPlan) -> Result<String> {
         ));
     }
     let quoted = |text: &str| toml_edit::Value::from(text).to_string();
-    let mut text = String::from(
-        "# Written from a form. `handstand compare` shows how far it is from a log, and where.\n\n\
-         [rig]\n",
-    );
+    let mut text = format!("{head}[rig]\n");
     let _ = writeln!(text, "name = {}", quoted(&plan.name));
     let zero = quoted(&plan.angle_zero);
     let _ = writeln!(
@@ -66,13 +77,16 @@ pub fn new_model_toml(plan: &ModelPlan) -> Result<String> {
         "angle_zero = {zero} # where the log's angles are zero"
     );
     let _ = writeln!(text, "angles = {}", quoted(&plan.angles));
+    if let Some(gravity) = plan.gravity_m_s2 {
+        let _ = writeln!(text, "gravity_m_s2 = {}", number(gravity));
+    }
     for (index, link) in plan.links.iter().enumerate() {
         write_link(&mut text, index, link);
     }
     for (index, link) in plan.links.iter().enumerate() {
         write_joint(&mut text, index, link);
     }
-    write_log(&mut text, plan);
+    text.push_str(tail);
     Model::parse(&text, Path::new("model.toml"))?;
     Ok(text)
 }
@@ -119,9 +133,9 @@ fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
     }
 }
 
-/// Columns under names that can be picked anew.
-fn write_log(text: &mut String, plan: &ModelPlan) {
-    text.push_str("\n[log]\ntime = { column = \"time_s\", unit = \"s\" }\n");
+/// Columns under names that can be picked later.
+fn log_table(plan: &ModelPlan) -> String {
+    let mut text = String::from("\n[log]\ntime = { column = \"time_s\", unit = \"s\" }\n");
     for (index, link) in plan.links.iter().enumerate() {
         let joint = index + 1;
         let _ = write!(
@@ -135,6 +149,7 @@ fn write_log(text: &mut String, plan: &ModelPlan) {
             );
         }
     }
+    text
 }
 
 /// A number as TOML writes it.
@@ -167,6 +182,7 @@ mod tests {
             name: "five \"links\"\n[joint]".into(),
             angle_zero: "upright".into(),
             angles: "absolute".into(),
+            gravity_m_s2: None,
             links: drives.map(link).to_vec(),
         };
         let text = new_model_toml(&plan).unwrap();
@@ -193,6 +209,7 @@ mod tests {
             name: "x".into(),
             angle_zero: "hanging".into(),
             angles: "relative".into(),
+            gravity_m_s2: None,
             links,
         };
         let wrong = LinkPlan {

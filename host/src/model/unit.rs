@@ -76,6 +76,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("ms", Dimension::Time, 1e-3),
     ("us", Dimension::Time, 1e-6),
     ("ns", Dimension::Time, 1e-9),
+    // Time stamps as text; a log counts them in s from its first.
+    ("iso8601", Dimension::Time, 1.0),
     ("rad", Dimension::Angle, 1.0),
     ("deg", Dimension::Angle, PI / 180.0),
     ("turn", Dimension::Angle, TAU),

@@ -2,6 +2,7 @@
 //! for people: [`number`].
 
 pub mod number;
+pub mod plot;
 pub mod table;
 
 use crate::error::{Error, Result};

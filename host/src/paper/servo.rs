@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::output::number::interval;
-use crate::plot::{Chart, Curve, Tone};
+use crate::output::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{

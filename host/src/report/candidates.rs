@@ -6,7 +6,7 @@ use super::{AFTER, BEFORE, Report};
 use crate::diagnose::words::{SHOWN, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
 use crate::output::number::{NONE, mrad, short};
-use crate::plot::{Bar, largest};
+use crate::output::plot::{Bar, largest};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

@@ -7,7 +7,7 @@ use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
 use crate::fitting::in_windows;
 use crate::output::number::{mrad, short};
-use crate::plot::Tone;
+use crate::output::plot::Tone;
 use maud::{Markup, html};
 
 /// Top of the page.

@@ -28,7 +28,7 @@ pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
-use crate::plot::Tone;
+use crate::output::plot::Tone;
 use serde::Serialize;
 
 /// Tone of what was measured.

@@ -7,7 +7,7 @@ use crate::diagnose::words::effect_name;
 use crate::effects::named;
 use crate::fitting::FittedValue;
 use crate::output::number::{interval, short, unit};
-use crate::plot;
+use crate::output::plot;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

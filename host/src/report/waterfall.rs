@@ -6,7 +6,7 @@ use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::{BudgetedPart, MotionError};
 use crate::output::number::{mrad, percent};
-use crate::plot::{Bar, largest};
+use crate::output::plot::{Bar, largest};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

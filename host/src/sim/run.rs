@@ -27,8 +27,8 @@ pub struct Start {
 /// over the period.
 const SPARED: f64 = 0.1;
 
-/// Predicted readings, rad in the log's convention, at samples `stretch` of the motion; rates, rad/s,
-/// of joints whose rate alone is logged.
+/// Predicted readings, rad in the log's convention, at samples `stretch` of the motion; rates,
+/// rad/s, of joints whose rate alone is logged.
 ///
 /// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are
 /// the recorded ones, each held until the next sample. Returns the state at the last sample of the

@@ -50,8 +50,8 @@ impl SensorState {
         }
     }
 
-    /// Writes what the log holds as sample `k` of `samples`, joint by joint: the reading, or the rate
-    /// of a joint whose rate alone is logged.
+    /// Writes what the log holds as sample `k` of `samples`, joint by joint: the reading, or the
+    /// rate of a joint whose rate alone is logged.
     pub(super) fn record(
         &self,
         plant: &Plant,

@@ -37,8 +37,8 @@ fn a_robot_is_set_up_and_stands_and_is_let_down() {
     assert!(recorded.lines().count() > 900 && recorded.starts_with("time_s,q1_rad"));
 }
 
-/// Servos of `models/robot_servos.toml`: a lag of 34 ms, back-EMF, friction, backlash, a dead zone of
-/// 8 %, a supply that sags.
+/// Servos of `models/robot_servos.toml`: a lag of 34 ms, back-EMF, friction, backlash, a dead zone
+/// of 8 %, a supply that sags.
 #[test]
 fn a_robot_with_real_servos_stands() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
 //! What the program says, word for word.
 //!
-//! `GOLDEN=write cargo test --test it golden` writes the transcripts anew; read their difference
+//! `GOLDEN=write cargo test --test it golden` rewrites the transcripts; read their difference
 //! before keeping it.
 
 use crate::common::Bench;
@@ -63,6 +63,10 @@ fn bus() {
             "bus setup --port sim:ids=1-2 --ids 1-2",
             "bus doctor --port sim:ids=1-4,delay=0,dead=2,hot=3 --ids 1-4",
             "bus doctor --port sim:ids=1-4,delay=0,baud=34 --ids 1-4",
+            "bus doctor --bring-up --yes --ids 1 --port sim-cm5:delay=0",
+            "bus doctor --bring-up --ids 1 --port sim-cm5:delay=0,supply=8 --json",
+            "bus log --port sim-cm5:delay=0",
+            "bus log --port sim-cm5:delay=0 --json",
             "latency --port sim:ids=1-18,delay=0",
             "latency --port sim-cm5:ids=1-18,delay=0 --stream",
             "latency --port sim-cm5:ids=1-18",

@@ -276,7 +276,7 @@ mod killed {
             signal("-CONT", &robot);
             std::thread::sleep(Duration::from_millis(500));
             if baud == 57_600 {
-                // It may have found the line silent, and stopped: greeted anew it is an adapter
+                // It may have found the line silent, and stopped: greeted again it is an adapter
                 // again.
                 let line =
                     format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");

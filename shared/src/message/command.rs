@@ -61,6 +61,11 @@ pub enum Command {
     /// Lets an armed robot down softly: positions held, or stopped in wheel mode, the torque limit
     /// falling to nothing.
     LetDown,
+    /// Asks for an entry of the fault log. Refused while armed.
+    FaultRead {
+        /// Which: 0 the newest, 1 the one before it.
+        back: u8,
+    },
 }
 
 impl Command {
@@ -80,7 +85,8 @@ impl Command {
             | Command::PlanRead { .. }
             | Command::Arm { .. }
             | Command::PlanChunk { .. }
-            | Command::PlanStore { .. } => false,
+            | Command::PlanStore { .. }
+            | Command::FaultRead { .. } => false,
         }
     }
 }

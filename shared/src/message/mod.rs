@@ -6,9 +6,11 @@
 //! `Hello` before anything else is accepted.
 
 mod command;
+mod fault;
 mod report;
 
 pub use command::{ArmLimits, Attitude, Command, Mode, PLAN_CHUNK, ServoList, Subject};
+pub use fault::FaultEntry;
 pub use report::{
     Answer, Cause, Condition, Hello, Housekeeping, Refusal, Report, ResetCause, Statistics,
     StreamReport, Telemetry, TrippedServo,
@@ -19,7 +21,7 @@ use crate::frame::{self, MAX_BODY, MAX_FRAME};
 use serde::{Deserialize, Serialize};
 
 /// Version of the messages; host and firmware must have the same.
-pub const VERSION: u8 = 4;
+pub const VERSION: u8 = 5;
 
 /// A message for one direction of the line.
 pub trait Message: Serialize + for<'de> Deserialize<'de> {
@@ -31,8 +33,8 @@ pub trait Message: Serialize + for<'de> Deserialize<'de> {
 }
 
 impl Message for Command {
-    /// The CM-5's boot loader takes it, during a reset, for the wish to stay in it: a restart of the
-    /// controller while the host speaks would leave the servos torqued.
+    /// The CM-5's boot loader takes it, during a reset, for the wish to stay in it: a restart of
+    /// the controller while the host speaks would leave the servos torqued.
     const WITHOUT: Option<u8> = Some(b'#');
 
     fn is_critical(&self) -> bool {
@@ -48,7 +50,8 @@ impl Message for Command {
             | Command::Disarm
             | Command::LetDown
             | Command::Ask(_)
-            | Command::PlanRead { .. } => false,
+            | Command::PlanRead { .. }
+            | Command::FaultRead { .. } => false,
         }
     }
 }

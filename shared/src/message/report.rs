@@ -1,6 +1,7 @@
 //! From the CM-5 to the host.
 
 use super::command::PLAN_CHUNK;
+use super::fault::FaultEntry;
 use crate::packed::{Positions, SERVOS};
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,13 @@ pub enum Report {
         length: u16,
         /// The piece, filled up with zeros.
         bytes: [u8; PLAN_CHUNK],
+    },
+    /// Answers [`super::Command::FaultRead`].
+    Fault {
+        /// Which was asked for.
+        back: u8,
+        /// It; none where there are not so many.
+        entry: Option<FaultEntry>,
     },
 }
 
@@ -221,7 +229,8 @@ pub struct Telemetry {
     pub gyro: u16,
     /// Its code at rest, as the plan has it; 0 without a plan.
     pub gyro_zero: u16,
-    /// [`super::Attitude::RATE_LSB_RAD_S`] per code, times 16, as the plan has it; 0 without a plan.
+    /// [`super::Attitude::RATE_LSB_RAD_S`] per code, times 16, as the plan has it; 0 without a
+    /// plan.
     pub gyro_scale: i16,
     /// The servo that let the robot down, until it is armed again.
     pub tripped: Option<TrippedServo>,

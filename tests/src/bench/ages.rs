@@ -9,14 +9,17 @@ use super::SimulatedCm5 as _;
 use super::balance::{arm_balance, plan};
 use super::run::HOST_MS;
 use handstand_shared::control_table::MOVING_SPEED;
-use handstand_shared::message::{Attitude, Command, Report};
+use handstand_shared::message::{Attitude, Command, Condition, Report};
+use handstand_shared::plan::Plan;
 use handstand_shared::raw::Position;
 use handstand_simavr::ElfCm5;
 
 /// A code of the shafts' clock, ms.
 const CODE_MS: f64 = 0.02;
-/// Codes until the clock begins anew: two periods of the law.
+/// Codes until the clock begins again: two periods of the law.
 const CODES: u64 = 1000;
+/// Code with which it begins: 0 and 1023 are out of every plan's range.
+const FIRST: u64 = 1;
 const SHOULDER: u8 = 1;
 const HIP: u8 = 11;
 
@@ -51,19 +54,20 @@ struct Round {
 /// Measures over so many seconds.
 ///
 /// # Panics
-/// The firmware does not arm.
+/// The firmware does not arm, or lets the robot down.
 pub fn ages(rig: &mut ElfCm5, seconds: f64) -> Ages {
-    arm_balance(rig, &plan().1).expect("it arms");
+    arm_balance(rig, &unlimited()).expect("it arms");
     rig.trace = Some(Vec::new());
     rig.clear();
     let begun_ms = rig.now_ms();
     let (mut said, mut heard) = (Vec::new(), Vec::new());
-    let mut due_ms = begun_ms;
+    let (mut due_ms, mut condition) = (begun_ms, Condition::Balance);
     while rig.now_ms() < begun_ms + seconds * 1e3 {
         turn(rig);
         rig.run_ms(CODE_MS);
         for (arrived_ms, report) in rig.reports() {
             if let Report::Stream(report) = report {
+                condition = report.condition;
                 let code = |place| report.positions.get(place);
                 heard.push((arrived_ms, [code(0), code(usize::from(HIP) - 1)]));
                 due_ms = arrived_ms + HOST_MS;
@@ -76,8 +80,25 @@ pub fn ages(rig: &mut ElfCm5, seconds: f64) -> Ages {
             said.push((rig.now_ms(), rig.arrival_ms()));
         }
     }
+    assert_eq!(
+        condition,
+        Condition::BalanceArmed,
+        "ages are those of a robot that balances"
+    );
     let trace = rig.trace.take().unwrap_or_default();
     measured(&rounds(&trace), &said, &heard)
+}
+
+/// The plan of the closed loop, for joints that may be anywhere and turn as fast as a clock: else the
+/// firmware would let the robot down at once.
+fn unlimited() -> Plan {
+    let mut plan = plan().1;
+    for joint in &mut plan.joints {
+        let centre = joint.centre as i16;
+        (joint.lowest, joint.highest) = (1 - centre, 1022 - centre);
+        joint.fastest = 1023;
+    }
+    plan
 }
 
 fn to_ms(cycle: u64) -> f64 {
@@ -86,7 +107,7 @@ fn to_ms(cycle: u64) -> f64 {
 
 /// The code that the clock shows.
 fn code_at(ms: f64) -> u64 {
-    (ms / CODE_MS).round() as u64 % CODES
+    FIRST + (ms / CODE_MS).round() as u64 % CODES
 }
 
 fn turn(rig: &mut ElfCm5) {

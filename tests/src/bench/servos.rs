@@ -2,8 +2,8 @@
 //! `handstand balance` does it.
 
 use handstand::Model;
-use handstand::balance::{AttitudeSource, Balancer};
 use handstand::controllers::BoardTiming;
+use handstand::deploy::balance::{AttitudeSource, Balancer};
 use handstand::deploy::{self, Board, BoardLaw};
 use handstand::link::virtual_cm5::{Cm5Port, SimLink, attitude_sensor, set_up, spec};
 use handstand_shared::message::{ArmLimits, Attitude};

@@ -5,7 +5,7 @@
 
 use super::case::{Case, Files, HiddenEffect};
 use handstand::effects;
-use handstand::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
+use handstand::experiment::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
 use handstand::link::record::{GoalMotion, RobotRecorder, Stream, follow, read};
 use handstand::link::virtual_cm5::{Cm5Port, SimLink, set_up, spec_with_robot};
 use handstand::model::edit::{add_effect, set_values};

@@ -3,11 +3,12 @@
 //! Families of cases: one effect at the bench arm, at the robot hanging, at the robot hanging and
 //! balancing; two and three effects; none; one that the library lacks. Every rig has motions to
 //! learn from and some held out. The truth is the library's own independent equations, with
-//! `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the firmware. A line goes to stderr as each diagnosis ends, whichever ends first;
-//! the tables go to stdout. Fails when a target is missed or a case cannot be made.
+//! `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the firmware.
+//! A line goes to stderr as each diagnosis ends, whichever ends first; the tables go to stdout.
+//! Fails when a target is missed or a case cannot be made.
 //!
-//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is not
-//! tried again: a run that was stopped goes on, and the files of shards, put together, make one
+//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is
+//! not tried again: a run that was stopped goes on, and the files of shards, put together, make one
 //! table.
 
 use super::page::Page;

@@ -8,6 +8,7 @@ mod next;
 mod page;
 mod peers;
 mod real;
+mod robot_demo;
 mod scatter;
 mod spoiled;
 #[cfg(unix)]
@@ -34,6 +35,8 @@ enum Chore {
     Next(next::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Balance virtual robots before and after they were measured
+    RobotDemo(robot_demo::Args),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(spoiled::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -54,6 +57,7 @@ impl Chores {
             Chore::Hidden(args) => hidden::run(args),
             Chore::Next(args) => next::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             #[cfg(unix)]

@@ -2,7 +2,9 @@
 
 use super::rig::Rig;
 use super::spoiling::Spoiling;
-use handstand::conventions::{LeaveOut, Quantity, Unusable, leave_out, search, unexplained};
+use handstand::diagnose::conventions::{
+    LeaveOut, Quantity, Unusable, leave_out, search, unexplained,
+};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -117,7 +119,7 @@ fn leaves_out(spoiling: Spoiling, left_out: &LeaveOut) -> bool {
     }
 }
 
-fn said(found: &[handstand::conventions::Found], left_out: &[LeaveOut]) -> Vec<String> {
+fn said(found: &[handstand::diagnose::conventions::Found], left_out: &[LeaveOut]) -> Vec<String> {
     let trials = found
         .iter()
         .flat_map(|f| std::iter::once(&f.trial).chain(&f.rivals));

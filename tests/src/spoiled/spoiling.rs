@@ -5,7 +5,7 @@ use super::edits::{
 };
 use super::rig::Rig;
 use handstand::Model;
-use handstand::conventions::{Quantity, Remedy};
+use handstand::diagnose::conventions::{Quantity, Remedy};
 use handstand::log::Motion;
 use handstand::model::{AngleZero, Angles, Unit};
 use std::f64::consts::{PI, TAU};

@@ -130,8 +130,8 @@ fn an_outcome_is_read_back_as_it_was_written() {
     assert_eq!((back.answer, back.sets), (outcome.answer, outcome.sets));
 }
 
-/// Recorded through the firmware's logic, with lost answers and without a look at the true state: the
-/// true model leaves what resolution leaves, the one without the effect leaves more.
+/// Recorded through the firmware's logic, with lost answers and without a look at the true state:
+/// the true model leaves what resolution leaves, the one without the effect leaves more.
 #[test]
 fn the_virtual_robot_s_recordings_show_what_it_hides() {
     for (kind, seed) in [("mass", 1), ("cable_spring", 2), ("torque_scale", 1)] {

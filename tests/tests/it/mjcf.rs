@@ -2,8 +2,8 @@
 
 use handstand::Model;
 use handstand::challenge::{KINDS, Motions, bench};
-use handstand::export::mjcf;
 use handstand::log::Motion;
+use handstand::model::export::mjcf;
 use handstand::sim::{Plant, SensorState, Start, predict};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ fn python() -> Option<PathBuf> {
         .then_some(python)
 }
 
-/// A true model of the benchmark, in the units of its drives' motors and without a sensor's rounding.
+/// A true model of the benchmark, in the units of its drives' motors and without a sensor's
+/// rounding.
 ///
 /// None where the library's effect cannot act at the joint that was drawn.
 fn model(motions: Motions, kind: &'static str, seed: u64) -> Option<Model> {

@@ -1,7 +1,7 @@
 //! `cargo xtask firmware`: builds the CM-5's program, says what it takes, and refuses what must not
 //! be in it.
 
-use handstand_xtask::firmware::{self, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolchain};
+use handstand_xtask::firmware::{self, Budget, Built, FLASH_LIMIT, Image, RAM_SIZE, Toolchain};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -11,6 +11,9 @@ pub struct Args {
     /// A plan to compile in, as `handstand gains deploy --header` writes it; one in EEPROM wins
     #[arg(long)]
     plan: Option<PathBuf>,
+    /// Take this image's flash and RAM as what later ones may not exceed: firmware/budget.json
+    #[arg(long, conflicts_with = "plan")]
+    accept_size: bool,
     /// Print sizes and files as JSON
     #[arg(long)]
     json: bool,
@@ -21,7 +24,7 @@ pub fn run(args: &Args) -> bool {
     match made(args) {
         Ok((toolchain, built, image)) => {
             show(args, toolchain.name, &built, &image);
-            is_fit(&image)
+            is_fit(&image) && keeps_budget(args, &image)
         }
         Err(why) => {
             eprintln!("{why}");
@@ -72,6 +75,20 @@ fn show(args: &Args, toolchain: &str, built: &Built, image: &Image) {
     println!("ELF    {}", built.elf.display());
     println!("HEX    {}", built.hex.display());
     println!("BIN    {}", built.bin.display());
+}
+
+/// Whether flash and RAM are about what they were last; a plan adds to them.
+fn keeps_budget(args: &Args, image: &Image) -> bool {
+    if args.plan.is_some() {
+        return true;
+    }
+    let checked = match args.accept_size {
+        true => Budget::accept(image).map(|()| Vec::new()),
+        false => Budget::last().map(|last| last.exceeded(image)),
+    };
+    let said = checked.unwrap_or_else(|why| vec![why]);
+    said.iter().for_each(|line| eprintln!("{line}"));
+    said.is_empty()
 }
 
 fn is_fit(image: &Image) -> bool {

@@ -6,6 +6,7 @@ mod fuzz;
 mod image;
 mod install;
 mod lane;
+mod mutants;
 mod npm;
 mod python;
 mod test;
@@ -31,6 +32,8 @@ enum Chore {
     Install(install::Args),
     /// Fuzz the parsers with libFuzzer
     Fuzz(fuzz::Args),
+    /// Change the firmware's code, and see whether the tests notice
+    Mutants(mutants::Args),
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(image::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -45,6 +48,8 @@ enum Chore {
     Next(Words),
     /// Diagnose public logs of real rigs
     Real(Words),
+    /// Balance virtual robots before and after they were measured
+    RobotDemo(Words),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(Words),
     /// Offer the firmware, in simavr or in process, as a serial port
@@ -69,6 +74,7 @@ fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         Chore::Fuzz(args) => return code(fuzz::run(&args)),
+        Chore::Mutants(args) => return code(mutants::run(&args)),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchRecord(words) => ("bench-record", words),
@@ -76,6 +82,7 @@ fn main() -> ExitCode {
         Chore::Peers(words) => ("peers", words),
         Chore::Next(words) => ("next", words),
         Chore::Real(words) => ("real", words),
+        Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),
         Chore::Virtual(words) => ("virtual", words),
     };

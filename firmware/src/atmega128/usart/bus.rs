@@ -8,10 +8,11 @@ use super::{
     DOUBLE_SPEED, EIGHT_BITS, EMPTY_INTERRUPT, RECEIVED, RECEIVER, RECEIVER_ON, SENT,
     SENT_INTERRUPT, TRANSMITTER,
 };
+use crate::atmega128::clock::BUS_UBRR;
 use crate::atmega128::port::{bus_listens, bus_transmits};
 use crate::atmega128::ring::{Ring, SharedByte};
 use crate::atmega128::timer::clock;
-use crate::design::{BUS_UBRR, CLOCK_PER_US};
+use crate::design::CLOCK_PER_US;
 use avr_device::atmega128a::Peripherals;
 
 /// From the servos. A whole answer of 26 bytes can wait here.
@@ -28,7 +29,7 @@ pub fn start(r: &Peripherals) {
         r.USART0.ucsr0a().write(|w| w.bits(DOUBLE_SPEED));
         r.USART0.ucsr0c().write(|w| w.bits(EIGHT_BITS));
         r.USART0.ubrr0h().write(|w| w.bits(0));
-        r.USART0.ubrr0l().write(|w| w.bits(BUS_UBRR as u8));
+        r.USART0.ubrr0l().write(|w| w.bits(BUS_UBRR));
         r.USART0.ucsr0b().write(|w| w.bits(RECEIVER | TRANSMITTER));
     }
 }

@@ -1,8 +1,8 @@
 //! USART1, the PC line, as embedded-io's reader and writer.
 
 use super::{DOUBLE_SPEED, EIGHT_BITS, EMPTY, EMPTY_INTERRUPT, RECEIVER, TRANSMITTER};
+use crate::atmega128::clock::LINK_UBRR;
 use crate::atmega128::ring::Ring;
-use crate::design::LINK_UBRR;
 use avr_device::atmega128a::{Peripherals, USART1};
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
@@ -24,7 +24,7 @@ impl Link {
             usart.ucsr1a().write(|w| w.bits(DOUBLE_SPEED));
             usart.ucsr1c().write(|w| w.bits(EIGHT_BITS));
             usart.ubrr1h().write(|w| w.bits(0));
-            usart.ubrr1l().write(|w| w.bits(LINK_UBRR as u8));
+            usart.ubrr1l().write(|w| w.bits(LINK_UBRR));
             usart.ucsr1b().write(|w| w.bits(RECEIVER | TRANSMITTER));
         }
         Link(usart)

@@ -87,7 +87,7 @@ fn ticks_that_last_too_long_are_not_armed_with() {
     for servo in &mut cm5.bus().servos {
         servo.set(RETURN_DELAY, 0);
     }
-    // A new list is asked for its delays anew.
+    // A new list is asked for its own delays.
     ask(&mut cm5, &Command::ServoList(ServoList::default()));
     say(&mut cm5, &Command::KeepAlive, 800);
     assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));

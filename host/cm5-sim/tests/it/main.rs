@@ -3,6 +3,7 @@
 mod arming;
 mod attitude;
 mod bus;
+mod fault_log;
 mod invariants;
 mod joints;
 mod life;

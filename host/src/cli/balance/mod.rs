@@ -10,11 +10,11 @@
 //! $ handstand balance handstand.toml --port sim-cm5:robot=handstand.toml,start=held --yes
 //! ```
 //!
-//! Step by step: the driven servos get into wheel mode and all of `--ids` return delay 0, which their
-//! EEPROM keeps (read back; `handstand bus restore` brings the old limits back); the servos are
-//! named to the CM-5; it asks, unless `--yes`; after `--countdown` seconds torque comes on. Hold the robot
-//! upright and straight until then. The CM-5 refuses to arm where something speaks against it, and
-//! says what. A terminal shows joints, attitude, supply and latency as they are.
+//! Step by step: the driven servos get into wheel mode and all of `--ids` return delay 0, which
+//! their EEPROM keeps (read back; `handstand bus restore` brings the old limits back); the servos
+//! are named to the CM-5; it asks, unless `--yes`; after `--countdown` seconds torque comes on.
+//! Hold the robot upright and straight until then. The CM-5 refuses to arm where something speaks
+//! against it, and says what. A terminal shows joints, attitude, supply and latency as they are.
 //!
 //! `--attitude` says where the first link's attitude comes from: `gyro`, the gyro at the CM-5's
 //! ADC; `lines`, an IMU or a camera that writes a line for each attitude to standard input, angle
@@ -39,7 +39,7 @@ use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
 use super::{ExitStatus, Talk};
-use handstand::balance::{BalanceEnd, BalanceOutcome, Balancer};
+use handstand::deploy::balance::{BalanceEnd, BalanceOutcome, Balancer};
 use handstand::link::record::RobotRecorder;
 use handstand::{Error, Result, output};
 use handstand_shared::message::ArmLimits;

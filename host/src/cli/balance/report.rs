@@ -3,7 +3,7 @@
 use crate::cli::show::{or_dash, table};
 use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
-use handstand::balance::{BalanceOutcome, BalanceStatus, WheelChange};
+use handstand::deploy::balance::{BalanceOutcome, BalanceStatus, WheelChange};
 use handstand::link::condition_words;
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::Supply;

@@ -1,7 +1,7 @@
 //! Where the plan and the first link's attitude come from.
 
 use super::{AttitudeKind, BalanceArgs};
-use handstand::balance::{AttitudeLines, AttitudeSource};
+use handstand::deploy::balance::{AttitudeLines, AttitudeSource};
 use handstand::deploy::{self, BoardLaw, plan_of_file};
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;

@@ -4,11 +4,18 @@
 //! It listens for an echo, pings every servo twenty times, and where no servo answers tries a
 //! CM-5's firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all
 //! is well; 1: causes were found.
+//!
+//! `--bring-up` walks through the checklist of a CM-5's first power-on. What the line can tell is
+//! measured; what needs instruments is asked for, and not done where there is no terminal. The first
+//! of `--ids` gets a tenth of its torque and holds its position. `--json` prints each step's `id`,
+//! `title`, `outcome` (`passed`, `failed`, `not_done`) and `found`.
 
+use super::bring_up;
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::link::doctor::{BusDiagnosis, examine};
+use std::path::PathBuf;
 
 /// Find what is wrong.
 #[derive(Debug, clap::Args)]
@@ -18,11 +25,24 @@ pub struct DoctorArgs {
     /// Servos that should be there
     #[arg(long, default_value = "1-18", value_parser = id_list)]
     ids: Ids,
+    /// Walk through the first power-on checklist (docs/bring-up.md) instead, with a CM-5
+    #[arg(long)]
+    bring_up: bool,
+    /// Write what the checklist found, in Markdown
+    #[arg(long, value_name = "FILE.md", requires = "bring_up")]
+    report: Option<PathBuf>,
+    /// Allow the first servo a tenth of its torque without asking
+    #[arg(long, requires = "bring_up")]
+    yes: bool,
 }
 
 /// Examines, shows.
 pub fn run(args: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
     let link = args.port.open()?;
+    if args.bring_up {
+        let report = args.report.as_deref();
+        return bring_up::run(link, &args.ids.0, report, args.yes, talk);
+    }
     let bar = talk.bar(0);
     let diagnosis = examine(link, &args.ids.0, |step| {
         bar.set_message(step.to_string());

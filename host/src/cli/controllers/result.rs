@@ -3,8 +3,8 @@
 use super::ControllerTrial;
 use crate::cli::show;
 use handstand::controllers::ControllerDesign;
+use handstand::output::plot::heat_map;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
-use handstand::plot::heat_map;
 use handstand::study::LoopCondition;
 
 /// Three tables: share stabilised, region, and how well under the last condition.

@@ -24,8 +24,9 @@
 //! ```
 //!
 //! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null),
-//! `fingerprint`, `bytes`, `uploaded`, `states_replayed`, `limits` (of each unstable mode `pole_per_s`,
-//! `answer_s`, `growth`, `degree_share`, `half_step_share`; empty with `--law state`).
+//! `fingerprint`, `bytes`, `uploaded`, `states_replayed`, `limits` (of each unstable mode
+//! `pole_per_s`, `answer_s`, `growth`, `degree_share`, `half_step_share`; empty with `--law
+//! state`).
 
 pub mod board;
 mod build;

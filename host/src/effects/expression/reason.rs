@@ -117,7 +117,7 @@ impl Reason for ExpressionReason {
             R::NoName { .. } => "a name is small letters, digits and _, a letter first".into(),
             R::TooMany { .. } => "write the law as several effects".into(),
             R::Bounds => "write bounds = [lowest, highest] with start between them".into(),
-            R::TooManyLaws { .. } => "start the program anew".into(),
+            R::TooManyLaws { .. } => "start the program again".into(),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::effects::signature::signature;
 use crate::effects::{Effect, named};
 use crate::lab::session::{CardRole, Evaluation, SavedCard, SavedSession};
 use crate::output::number::short;
-use crate::plot::{Chart, Curve, Tone};
+use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::signature_chart;
 use maud::{Markup, html};
 

@@ -4,7 +4,7 @@ use super::in_milli;
 use crate::error::Result;
 use crate::lab::session::{Evaluation, SavedSession, SavedStep, Session};
 use crate::output::number::{NONE, percent};
-use crate::plot::{Bar, Tone, largest};
+use crate::output::plot::{Bar, Tone, largest};
 use maud::{Markup, html};
 use std::sync::Arc;
 

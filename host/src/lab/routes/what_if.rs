@@ -29,7 +29,7 @@ pub(super) struct Tried {
     #[serde(default)]
     motion: usize,
     /// Whether a slider moves still: windows then start where those of the model in force start,
-    /// which takes one simulation; else their starts are fitted anew.
+    /// which takes one simulation; else their starts are refitted.
     #[serde(default)]
     moving: bool,
     /// Effects to add: `coulomb@1`, at their start values.

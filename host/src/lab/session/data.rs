@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::saved::{SavedLog, SavedSession, SavedStep};
-use crate::conventions::{self, ModelFile};
+use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::{Error, Result};
 use crate::log::{LogFinding, LogRequest, LogSet, Split, split};
 use crate::model::Model;

@@ -5,7 +5,7 @@ use super::card::SavedDiagnosis;
 use super::data::model_file;
 use super::job::JobReport;
 use super::saved::{SavedSession, SavedStep};
-use crate::conventions::ModelFile;
+use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{

@@ -3,7 +3,8 @@
 //! `#` during reset until the banner, `\r`, prompt `- `; `load 0` -> `Ready..` -> the raw bytes and
 //! their sum modulo 256; 150 ms of silence end them -> `Success` or `Error`, `Size:`,
 //! `Checksum:XX-YY`; then `verify`, `app` (start the application at power-on), `go`. `sys` undoes
-//! `app`: sent before an image, it keeps half of one from being started. 57600 8N1. It lies at 0x1E000, so an image has at most 122,880 bytes.
+//! `app`: sent before an image, it keeps half of one from being started. 57600 8N1. It lies at
+//! 0x1E000, so an image has at most 122,880 bytes.
 
 mod error;
 mod image;

@@ -30,9 +30,9 @@ pub enum MotionStop {
 }
 
 /// Torque on, to the first pose at 0.5 rad/s, along the motion at its own speed, torque off: the
-/// last whatever happened. Where the motion has torque off the servos are let go; when it comes back
-/// they go to the pose of that moment as to the first. Every sample goes to `recorder`. Before each, `goes_on` is asked;
-/// `progress` is told the place in the motion.
+/// last whatever happened. Where the motion has torque off the servos are let go; when it comes
+/// back they go to the pose of that moment as to the first. Every sample goes to `recorder`. Before
+/// each, `goes_on` is asked; `progress` is told the place in the motion.
 ///
 /// # Errors
 /// The device failed or fell silent, or the recording cannot be written.

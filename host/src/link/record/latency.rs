@@ -78,7 +78,8 @@ impl RoundTrip {
         })
     }
 
-    /// Ask the CM-5 for its telemetry 50 times. The request's body has 4 bytes, the report's about 24.
+    /// Ask the CM-5 for its telemetry 50 times. The request's body has 4 bytes, the report's about
+    /// 24.
     ///
     /// # Errors
     /// The CM-5 does not answer.

@@ -3,10 +3,10 @@
 //! where its zero and scale are known), and `/servo_health` (JSON: supply, temperature, error bits,
 //! the gyro's code and zero). What a servo did not say is NaN or null.
 
-use super::cdr::{IMU_NAME, IMU_SCHEMA, ImuMessage, JointStateMessage, NAME, SCHEMA};
 use super::recorder::Writer;
 use super::sample::{GyroSample, RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
+use crate::log::cdr::{IMU_NAME, IMU_SCHEMA, ImuMessage, JointStateMessage, NAME, SCHEMA};
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, MessageStream, WriteOptions, read::Options};
 use std::collections::BTreeMap;

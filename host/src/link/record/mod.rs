@@ -1,10 +1,9 @@
 //! Recording servos: samples from a robot into files that survive a crash, and back.
 //!
-//! Read downward: `sample` -> `cdr` -> `csv`, `mcap` -> [`RobotRecorder`], [`read`]; `source` ->
+//! Read downward: `sample` -> `csv`, `mcap` -> [`RobotRecorder`], [`read`]; `source` ->
 //! `adapter`, `stream` fetch samples over a link.
 
 mod adapter;
-mod cdr;
 mod csv;
 mod follow;
 mod latency;

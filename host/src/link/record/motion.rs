@@ -18,8 +18,8 @@ pub struct GoalMotion {
 }
 
 impl GoalMotion {
-    /// The motion of a recording: its goals, with torque as it was, or its positions where it has no
-    /// goals; `file` names it in errors.
+    /// The motion of a recording: its goals, with torque as it was, or its positions where it has
+    /// no goals; `file` names it in errors.
     ///
     /// # Errors
     /// Fewer than two samples, times that do not grow, or a servo without goal and position.

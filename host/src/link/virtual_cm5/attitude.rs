@@ -18,23 +18,28 @@ pub type AttitudeSensor = Box<dyn FnMut() -> Option<Attitude> + Send>;
 /// # Errors
 /// The robot's model cannot be read.
 pub fn attitude_sensor(bus: &mut Bus, spec: &BusSpec) -> Result<Option<AttitudeSensor>> {
-    let (Some(robot), Some(described)) = (bus.robot(), &spec.robot) else {
-        return Ok(None);
-    };
-    let model = Model::load(&described.model)?;
-    let upright_rad = upright(&model).first().copied().unwrap_or(0.0);
+    match &spec.robot {
+        Some(described) => Ok(attitude_sensor_of(bus, &Model::load(&described.model)?)),
+        None => Ok(None),
+    }
+}
+
+/// The same of a robot that this model describes.
+pub fn attitude_sensor_of(bus: &mut Bus, model: &Model) -> Option<AttitudeSensor> {
+    let robot = bus.robot()?;
+    let upright_rad = upright(model).first().copied().unwrap_or(0.0);
     let (tell, states) = channel();
     robot.watch_every(PERIOD_S, tell);
     let steps = |value: f64, lsb: f64| {
         let most = f64::from(i16::MAX);
         (value / lsb).round().clamp(-most, most) as i16
     };
-    Ok(Some(Box::new(move || {
+    Some(Box::new(move || {
         let state = states.try_iter().last()?;
         let (angle_rad, rate_rad_s) = (state.angle_rad.first()?, state.speed_rad_s.first()?);
         Some(Attitude {
             angle: steps(angle_rad - upright_rad, Attitude::ANGLE_LSB_RAD),
             rate: steps(*rate_rad_s, Attitude::RATE_LSB_RAD_S),
         })
-    })))
+    }))
 }

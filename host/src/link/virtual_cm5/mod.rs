@@ -14,10 +14,10 @@ mod robot;
 mod serve;
 mod state_log;
 
-pub use attitude::{AttitudeSensor, attitude_sensor};
+pub use attitude::{AttitudeSensor, attitude_sensor, attitude_sensor_of};
 pub use handstand_cm5_sim::{AdapterPort, Bus, BusSpec, Cm5Port, RobotSpec, RobotState};
 pub use link::SimLink;
-pub use robot::{set_up, spec, spec_with_robot};
+pub use robot::{set_up, set_up_model, spec, spec_with_robot};
 #[cfg(unix)]
 pub use serve::serve;
 pub use state_log::StateLog;

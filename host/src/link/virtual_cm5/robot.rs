@@ -34,15 +34,24 @@ pub fn spec_with_robot(text: &str, model: Option<&Path>) -> Result<BusSpec> {
 /// # Errors
 /// The robot's model cannot be read or does not fit, or it needs servos that are not there.
 pub fn set_up(spec: &BusSpec) -> Result<Bus> {
-    let mut bus = spec.bus();
-    if let Some(robot) = &spec.robot {
-        bus.attach(self::robot(robot, &spec.ids)?);
+    match &spec.robot {
+        Some(robot) => set_up_model(spec, Model::load(&robot.model)?),
+        None => Ok(spec.bus()),
     }
+}
+
+/// The bus that `spec` describes, with this model as its robot whatever file it names.
+///
+/// # Errors
+/// The model does not fit, or it needs servos that are not there.
+pub fn set_up_model(spec: &BusSpec, model: Model) -> Result<Bus> {
+    let mut bus = spec.bus();
+    let described = spec.robot.clone().unwrap_or_default();
+    bus.attach(robot(&described, model, &spec.ids)?);
     Ok(bus)
 }
 
-fn robot(spec: &RobotSpec, ids: &[u8]) -> Result<Robot> {
-    let model = Model::load(&spec.model)?;
+fn robot(spec: &RobotSpec, model: Model, ids: &[u8]) -> Result<Robot> {
     let driven: Vec<usize> = (0..model.joints.len())
         .filter(|at| model.joints[*at].drive.is_driven())
         .collect();

@@ -1,4 +1,4 @@
-//! Columns of a model's logs, picked anew: names, units, signs and zeros.
+//! Columns of a model's logs, picked by hand: names, units, signs and zeros.
 
 use super::{checked, document, misfit};
 use crate::error::Result;

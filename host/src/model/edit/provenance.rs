@@ -1,5 +1,5 @@
-//! Where fitted values came from: `[effect.fitted]` beside an effect's values, `[fit.fitted]` for those
-//! of links and drives.
+//! Where fitted values came from: `[effect.fitted]` beside an effect's values, `[fit.fitted]` for
+//! those of links and drives.
 
 use super::{checked, document, misfit, number, owner};
 use crate::error::Result;

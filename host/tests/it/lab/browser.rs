@@ -286,7 +286,7 @@ impl Browser {
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false,
         });
         self.call("Emulation.setDeviceMetricsOverride", size);
-        // Charts are drawn anew with the next frame.
+        // Charts are drawn again with the next frame.
         self.value(
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => \
              setTimeout(done, 60))))",

@@ -102,7 +102,7 @@ pub(crate) fn settings(bytes: &[u8]) {
 /// The sealed answer of a challenge.
 pub(crate) fn seal(bytes: &[u8]) {
     if let Some(text) = text(bytes) {
-        let _ = handstand::challenge::unseal(text);
+        let _ = handstand::challenge::unseal::<handstand::challenge::ChallengeAnswer>(text);
     }
 }
 

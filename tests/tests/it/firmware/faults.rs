@@ -126,7 +126,7 @@ pub fn a_servo_gives_up_while_streaming(bench: &mut impl SimulatedCm5, way: Give
     }
     assert_eq!(tripped(bench), None);
     is_let_down(bench, 7, way, Condition::StreamArmed, &goals);
-    // Cooled down it is armed anew, and nobody is named any more.
+    // Cooled down it arms again, and no servo is named any more.
     bench.bus().servo(7).expect("18 servos").temperature = 30.0;
     arm(bench);
     assert_eq!(tripped(bench), None, "{way:?}");

@@ -65,7 +65,7 @@ pub fn find_built() -> Result<Built, String> {
     match made_from == fingerprint() {
         true => Ok(built),
         false => Err(format!(
-            "{} is older than its sources: `cargo xtask firmware` builds it anew",
+            "{} is older than its sources: `cargo xtask firmware` builds it again",
             built.elf.display()
         )),
     }

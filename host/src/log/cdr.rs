@@ -51,9 +51,8 @@ impl JointStateMessage {
 
     /// Reads the bytes; none if they are no such message.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let mut reader = CdrReader { bytes, at: 4 };
-        (bytes.get(..4)? == HEADER).then_some(())?;
-        let second = u64::try_from(i32::from_le_bytes(reader.take(4)?)).ok()?;
+        let mut reader = CdrReader::new(bytes)?;
+        let second = u64::from(i32::try_from(reader.length()?).ok()?.unsigned_abs());
         let nanosecond = u64::from(reader.length()?);
         reader.text()?;
         let names = reader.length()?;
@@ -121,14 +120,11 @@ impl ImuMessage {
 
     /// Reads the bytes; none if they are no such message.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let mut reader = CdrReader { bytes, at: 4 };
-        (bytes.get(..4)? == HEADER).then_some(())?;
-        let second = u64::try_from(i32::from_le_bytes(reader.take(4)?)).ok()?;
+        let mut reader = CdrReader::new(bytes)?;
+        let second = u64::from(i32::try_from(reader.length()?).ok()?.unsigned_abs());
         let nanosecond = u64::from(reader.length()?);
         reader.text()?;
-        let numbers: Option<Vec<f64>> = (0..IMU_NUMBERS)
-            .map(|_| reader.take(8).map(f64::from_le_bytes))
-            .collect();
+        let numbers: Option<Vec<f64>> = (0..IMU_NUMBERS).map(|_| reader.number()).collect();
         Some(ImuMessage {
             stamp_ns: second * 1_000_000_000 + nanosecond,
             rate_rad_s: *numbers?.get(IMU_RATE)?,
@@ -155,18 +151,41 @@ fn put_text(out: &mut Vec<u8>, text: &str) {
 struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,
+    big_endian: bool,
 }
 
-impl CdrReader<'_> {
+impl<'a> CdrReader<'a> {
+    /// Behind the header: XCDR1 in either byte order, whatever its options.
+    fn new(bytes: &'a [u8]) -> Option<Self> {
+        let big_endian = match bytes.get(..HEADER.len())? {
+            [0, 0, ..] => true,
+            [0, 1, ..] => false,
+            _ => return None,
+        };
+        Some(CdrReader {
+            bytes,
+            at: HEADER.len(),
+            big_endian,
+        })
+    }
+
     fn take<const N: usize>(&mut self, align: usize) -> Option<[u8; N]> {
         self.at = (self.at - HEADER.len()).next_multiple_of(align) + HEADER.len();
         let bytes = self.bytes.get(self.at..self.at + N)?;
         self.at += N;
-        bytes.try_into().ok()
+        let mut bytes: [u8; N] = bytes.try_into().ok()?;
+        if self.big_endian {
+            bytes.reverse();
+        }
+        Some(bytes)
     }
 
     fn length(&mut self) -> Option<u32> {
         self.take(4).map(u32::from_le_bytes)
+    }
+
+    fn number(&mut self) -> Option<f64> {
+        self.take(8).map(f64::from_le_bytes)
     }
 
     fn text(&mut self) -> Option<String> {
@@ -179,9 +198,7 @@ impl CdrReader<'_> {
 
     fn numbers(&mut self) -> Option<Vec<f64>> {
         let count = self.length()?;
-        (0..count)
-            .map(|_| self.take(8).map(f64::from_le_bytes))
-            .collect()
+        (0..count).map(|_| self.number()).collect()
     }
 }
 
@@ -240,6 +257,18 @@ mod tests {
             0, 0, 0, 0, 0, 0, 0, 0xc0,               // -2.0
         ];
         assert_eq!(bytes, expected);
+        // The same as a big-endian computer writes it.
+        #[rustfmt::skip]
+        let big_endian = [
+            0, 0, 0, 0,
+            0, 0, 0, 2, 0, 0, 0, 3,
+            0, 0, 0, 1, 0, 0, 0, 0,
+            0, 0, 0, 1, 0, 0, 0, 2, b'a', 0, 0, 0,
+            0, 0, 0, 1, 0, 0, 0, 0, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0,
+            0, 0, 0, 0, 0, 0, 0, 1,
+            0xc0, 0, 0, 0, 0, 0, 0, 0,
+        ];
+        assert_eq!(JointStateMessage::of(&big_endian), Some(state.clone()));
         assert_eq!(JointStateMessage::of(&bytes), Some(state));
         assert!((0..bytes.len()).all(|length| JointStateMessage::of(&bytes[..length]).is_none()));
     }

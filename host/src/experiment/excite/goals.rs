@@ -72,8 +72,8 @@ impl Excitation {
         self.joints.iter().enumerate().map(extent).collect()
     }
 
-    /// As `handstand replay` plays it: `time_s`, `goal1_rad` for each servo, `torque_on` where torque
-    /// goes off.
+    /// As `handstand replay` plays it: `time_s`, `goal1_rad` for each servo, `torque_on` where
+    /// torque goes off.
     pub fn to_csv(&self) -> String {
         let mut text = String::from("time_s");
         // Writing to a string does not fail.

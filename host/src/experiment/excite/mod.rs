@@ -1,9 +1,9 @@
 //! Motions that a measurement needs, within given limits: excitation for identification.
 //!
-//! A multisine excites every joint at frequencies of its own, so that one joint's motion can be told
-//! from another's (Schroeder 1970; Pintelon & Schoukens 2012, ch. 5); steps show delay and
-//! saturation, slow triangles friction and backlash, holds breakaway and sag, and a drop with torque
-//! off what friction there is without a drive.
+//! A multisine excites every joint at frequencies of its own, so that one joint's motion can be
+//! told from another's (Schroeder 1970; Pintelon & Schoukens 2012, ch. 5); steps show delay and
+//! saturation, slow triangles friction and backlash, holds breakaway and sag, and a drop with
+//! torque off what friction there is without a drive.
 
 mod goals;
 mod limits;

@@ -5,8 +5,8 @@ use crate::log::Motion;
 /// Samples of an excerpt.
 const LENGTH: usize = 400;
 
-/// Pieces of the motions, evenly spread, of some `most` samples in all; the motions themselves where
-/// they have no more.
+/// Pieces of the motions, evenly spread, of some `most` samples in all; the motions themselves
+/// where they have no more.
 pub(super) fn excerpts(motions: &[Motion], most: usize) -> Vec<Motion> {
     let samples: usize = motions.iter().map(Motion::len).sum();
     if samples <= most {

@@ -12,8 +12,8 @@ use handstand_shared::packed::SERVOS;
 use handstand_shared::plan::Plan;
 use std::time::Duration;
 
-/// Reports before which not every servo's supply and mode are known, or a gyro's zero, the mean over
-/// some 0.32 s, has not settled: 2 s.
+/// Reports before which not every servo's supply and mode are known, or a gyro's zero, the mean
+/// over some 0.32 s, has not settled: 2 s.
 const SETTLED: usize = 200;
 /// For so long the CM-5 repeats that torque is off after a mode was chosen.
 const INSISTS: Duration = Duration::from_millis(250);
@@ -35,7 +35,8 @@ impl<L: SerialLink> Balancer<L> {
             })
     }
 
-    /// Makes the CM-5 have this plan; whether it had to be uploaded. `progress` gets the bytes sent.
+    /// Makes the CM-5 have this plan; whether it had to be uploaded. `progress` gets the bytes
+    /// sent.
     ///
     /// # Errors
     /// The CM-5 does not answer, refuses, or keeps another one.
@@ -88,8 +89,8 @@ impl<L: SerialLink> Balancer<L> {
         Ok(Servos::new(link))
     }
 
-    /// Names the servos, and hears them until all have told their supply and mode, and a gyro at rest
-    /// its zero.
+    /// Names the servos, and hears them until all have told their supply and mode, and a gyro at
+    /// rest its zero.
     ///
     /// # Errors
     /// The CM-5 refuses or falls silent.

@@ -1,0 +1,117 @@
+//! From recordings to a better model, and from a model to the plan that the CM-5 gets.
+
+use crate::controllers::BoardTiming;
+use crate::deploy::{self, Board, BoardLaw};
+use crate::diagnose::conventions::ModelFile;
+use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Progress, diagnose_logs};
+use crate::effects::EFFECTS;
+use crate::error::{Error, Result};
+use crate::fitting::{Addition, Horizon, add_effects, candidates_named};
+use crate::log::LogSet;
+use crate::model::Model;
+use handstand_shared::plan::Plan;
+use std::path::Path;
+
+/// Age of a goal when it acts in a recording, s, without any of the servos' own: a tick until the
+/// firmware sends it, less what passes until the sample is taken. Of a recorded delay the rest is the
+/// drive's. `cargo xtask robot-demo` prints both of each robot.
+pub const PATH_DELAY_S: f64 = 0.009;
+
+/// Kinds of effects that are tried: those of servos and links that a designer can do something about.
+/// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
+/// same files.
+const TRIED: [&str; 5] = ["delay", "dead_zone", "coulomb", "viscous", "mass"];
+/// Length of the windows that are judged, s.
+const HORIZON: Horizon = Horizon::Seconds(0.4);
+
+/// What the recordings taught.
+#[derive(Debug, Clone)]
+pub struct Learned {
+    /// What was found.
+    pub diagnosis: Diagnosis,
+    /// Effects that were added, as `delay@all`; none where nothing was found.
+    pub added: Vec<String>,
+    /// The model file with them; the old one where there are none.
+    pub model_toml: String,
+}
+
+impl Learned {
+    /// Diagnoses the model of `file` and adds what is missing.
+    ///
+    /// # Errors
+    /// Logs that cannot be read, or effects that the model has no room for.
+    pub fn from_logs(
+        text: &str,
+        file: &Path,
+        logs: &LogSet,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Result<Learned> {
+        let model = Model::parse(text, file)?;
+        let options = DiagnoseOptions {
+            without: (EFFECTS.iter().map(|effect| effect.info().id))
+                .filter(|id| !TRIED.contains(id))
+                .map(String::from)
+                .collect(),
+            horizon: Some(HORIZON),
+            most_effects: 2,
+            ..DiagnoseOptions::default()
+        };
+        let named = ModelFile { path: file, text };
+        let found = diagnose_logs(&model, named, logs, &options, progress)?;
+        let added: Vec<String> = (found.diagnosis.effects.iter())
+            .map(FittedEffect::address)
+            .collect();
+        let model_toml = match added.is_empty() {
+            true => text.to_string(),
+            false => {
+                let candidates = candidates_named(&added, &model)?;
+                let horizon = Some(HORIZON);
+                let addition =
+                    add_effects(text, file, &candidates, &found.split, horizon, &|_, _| {})?;
+                match addition {
+                    Addition::Added { text, .. } => text,
+                    Addition::NotReduced(_) | Addition::Undetermined(_) => text.to_string(),
+                }
+            }
+        };
+        Ok(Learned {
+            diagnosis: found.diagnosis,
+            added,
+            model_toml,
+        })
+    }
+}
+
+/// The plan for a model: its links, smooth friction and back-EMF in the gains, its drives' delay in
+/// observer and gains, its dead zone jumped over.
+///
+/// # Errors
+/// A delay that the CM-5 keeps too few inputs for, or a model that cannot be balanced.
+pub fn plan_for(model: &Model) -> Result<Plan> {
+    let largest = |id: &str, of: &dyn Fn(&[f64]) -> f64| {
+        let driven = model.driven_joints();
+        let effects = driven.iter().flat_map(|joint| model.effects_at(*joint));
+        let found = effects.filter(|effect| effect.effect.info().id == id);
+        let values = found.map(|effect| of(&effect.values));
+        values.fold(0.0, f64::max)
+    };
+    let delay_s = largest("delay", &|values| values[0]);
+    // What a command loses on its way is jumped over, not the width below which it does nothing.
+    let dead_zone = largest("dead_zone", &|values| (-values[1]).clamp(0.0, values[0]));
+    let mut timing = BoardTiming::HOST_ATTITUDE;
+    timing.effect_s += (delay_s - PATH_DELAY_S).max(0.0);
+    let board = Board {
+        dead_zone,
+        joint_range_rad: 1.5,
+        joint_speed_rad_s: 12.0,
+        ..Board::BIOLOID
+    };
+    if board.slew_nm <= board.dead_zone * board.full_nm {
+        return Err(Error::design(
+            format!("a dead zone of {:.0} %", 100.0 * board.dead_zone),
+            "the slew limit must exceed it: record more, or look at the diagnosis",
+        ));
+    }
+    let machine = deploy::observer_design(model, &board, &timing)?;
+    deploy::plan(model, BoardLaw::Observer(&machine), &board)
+}

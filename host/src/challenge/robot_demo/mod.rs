@@ -1,0 +1,23 @@
+//! The whole circle on a virtual robot behind the CM-5's firmware: balance with what its owner
+//! believes, measure, diagnose, balance with what was learned.
+//!
+//! `hidden` (what is drawn by seed, and sealed) -> `attempt` (a plan balances the robot) ->
+//! `recording` (excitation, played through the firmware, the robot hanging) -> `learning` (diagnose,
+//! add, a plan for what was learned) -> `page` (both attempts side by side).
+//!
+//! The robot is a model of this crate on simulated servos, the firmware its own logic in process;
+//! nothing of the true state reaches the diagnosis, and only the first link's attitude the law.
+
+mod attempt;
+mod hidden;
+mod learning;
+mod page;
+mod recording;
+mod run;
+
+pub use attempt::{AttemptSample, BalanceAttempt};
+pub use hidden::{HiddenRobot, RobotAnswer, RobotEffect};
+pub use learning::{Learned, PATH_DELAY_S, plan_for};
+pub use page::html;
+pub use recording::MOTIONS;
+pub use run::{DemoStep, RobotDemo, ScoredEffect, run};

@@ -1,0 +1,115 @@
+//! A page that shows both attempts side by side.
+
+use super::attempt::{BalanceAttempt, STANDS_S};
+use super::run::RobotDemo;
+use crate::output::number::exact;
+use crate::output::plot::{Chart, Curve, Tone};
+use crate::report::page::{Section, document, table};
+use maud::{Markup, html};
+
+/// Two pictures beside each other, or below each other on a narrow page.
+const PAIR: &str = "display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr))";
+
+/// The page, which needs nothing but itself.
+pub fn html(demo: &RobotDemo) -> String {
+    let title = format!("Robot {}: before and after the measurement", demo.seed);
+    let header = html! {
+        header {
+            h1 { (title) }
+            p {
+                "With the model as believed the robot " (said(&demo.nominal)) "; with what was "
+                "learned from its recordings it " (said(&demo.learned)) "."
+            }
+        }
+    };
+    let sections = [
+        Section {
+            id: "first-link",
+            title: "The first link",
+            lead: "Its angle from upright while the CM-5's firmware balances the robot, from the \
+                   same start. The scales differ.",
+            body: pair(demo, "degrees from upright", |attempt| {
+                vec![curve(attempt, "first link", Tone::Ink, |s| s.lean_rad)]
+            }),
+        },
+        Section {
+            id: "joints",
+            title: "Shoulder and hip",
+            lead: "Their angles from straight, as their servos tell them.",
+            body: pair(demo, "degrees from straight", |attempt| {
+                vec![
+                    curve(attempt, "shoulder", Tone::Orange, |s| s.joint_rad[0]),
+                    curve(attempt, "hip", Tone::Blue, |s| s.joint_rad[1]),
+                ]
+            }),
+        },
+        Section {
+            id: "hidden",
+            title: "What was hidden, and what was found",
+            lead: "The robot had these effects, and its owner's model had not. The diagnosis saw \
+                   recordings alone.",
+            body: effects(demo),
+        },
+    ];
+    document(&title, &header, &sections)
+}
+
+fn said(attempt: &BalanceAttempt) -> String {
+    let sway = attempt.sway_rms_rad.map_or(String::new(), |rad| {
+        format!(", swaying by {:.1} mrad rms", 1e3 * rad)
+    });
+    match attempt.stands {
+        true => format!("stands for {STANDS_S:.0} s{sway}"),
+        false => format!("falls after {:.1} s", attempt.stood_s),
+    }
+}
+
+type Sample = super::attempt::AttemptSample;
+
+fn curve(
+    attempt: &BalanceAttempt,
+    name: &str,
+    tone: Tone,
+    angle_rad: impl Fn(&Sample) -> f64,
+) -> Curve {
+    let samples = attempt.samples.iter();
+    let points = samples.map(|sample| (sample.time_s, angle_rad(sample).to_degrees()));
+    Curve::line(name, tone, points.collect())
+}
+
+fn pair(demo: &RobotDemo, label: &str, curves: impl Fn(&BalanceAttempt) -> Vec<Curve>) -> Markup {
+    let sides = [
+        ("as believed", &demo.nominal),
+        ("as learned", &demo.learned),
+    ];
+    html! {
+        div style=(PAIR) {
+            @for (name, attempt) in sides {
+                @let title = format!("Model {name}: {}", said(attempt));
+                @let chart = Chart::new(title.clone(), "s", label, curves(attempt));
+                figure {
+                    figcaption { (title) }
+                    (chart.svg(460.0, 300.0))
+                    div.legend { (chart.legend()) }
+                }
+            }
+        }
+    }
+}
+
+fn effects(demo: &RobotDemo) -> Markup {
+    let headings = html! {
+        th { "Effect" } th { "Value" } th.number { "True" } th.number { "Estimated" }
+    };
+    let rows = html! {
+        @for effect in &demo.effects {
+            tr {
+                td { (effect.address) }
+                td { (effect.key) }
+                td.number { (exact(effect.true_value)) }
+                td.number { (effect.estimate.map_or("not found".to_string(), exact)) }
+            }
+        }
+    };
+    table(&headings, &rows)
+}

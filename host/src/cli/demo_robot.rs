@@ -1,0 +1,98 @@
+//! `handstand demo --robot`: the whole circle on a virtual robot behind the CM-5's firmware.
+
+use super::show::{or_dash, table_of};
+use super::{ExitStatus, Talk};
+use handstand::challenge::robot_demo::{
+    BalanceAttempt, DemoStep, RobotDemo, ScoredEffect, run as circle,
+};
+use handstand::diagnose::Verdict;
+use handstand::log::LogRequest;
+use handstand::output::number::exact;
+use handstand::output::table::TableColumn;
+use handstand::{Error, Result};
+use std::path::Path;
+
+/// Runs the circle with the robot of this seed in a new folder; exit code 1 where the robot does not
+/// stand in the end.
+pub fn run(seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
+    let refused = |error| Error::file(output, "create", error);
+    std::fs::create_dir_all(output).map_err(refused)?;
+    let bar = talk.bar(0);
+    let demo = circle(seed, output, &|step| match step {
+        DemoStep::Diagnosing(progress) => {
+            bar.set_length(progress.total as u64);
+            bar.set_position(progress.done as u64);
+            bar.set_message(progress.what);
+        }
+        step => bar.suspend(|| talk.say(&words(&step))),
+    })?;
+    drop(bar);
+    talk.result(&demo, || text(&demo))?;
+    let page = output.join("page.html");
+    talk.say(&format!("Both attempts side by side: {}", page.display()));
+    Ok(ExitStatus::answer(demo.learned.stands))
+}
+
+fn words(step: &DemoStep) -> String {
+    match step {
+        DemoStep::Drawn => "A virtual robot on servos behind the CM-5's firmware, its logic in \
+                            process. It has effects that nominal.toml has not; answer.sealed holds \
+                            them."
+            .to_string(),
+        DemoStep::First(attempt) => format!(
+            "\nA plan for nominal.toml, deployed and armed: it {}.",
+            said(attempt)
+        ),
+        DemoStep::Recorded(logs) => format!(
+            "\nHanging from its bar it was moved through the firmware (excite, replay), 5 s each: \
+             {} to learn from, {} to judge by.",
+            names(&logs.training),
+            names(&logs.held_out)
+        ),
+        DemoStep::Diagnosing(progress) => progress.what.to_string(),
+        DemoStep::Diagnosed(found) => format!("\n{}", found.summary.join("\n")),
+        DemoStep::Second(attempt) => format!(
+            "\nlearned.toml has what was found. A plan for it, deployed and armed: it {}.",
+            said(attempt)
+        ),
+    }
+}
+
+fn names(logs: &[LogRequest]) -> String {
+    let names = logs.iter().map(|log| super::page::file_name(&log.path));
+    names.collect::<Vec<_>>().join(" and ")
+}
+
+fn said(attempt: &BalanceAttempt) -> String {
+    let sway = attempt.sway_rms_rad.map(|rad| 1e3 * rad);
+    match attempt.stands {
+        true => format!(
+            "stands for {:.0} s and sways by {} mrad rms",
+            attempt.stood_s,
+            or_dash(sway, |mrad| format!("{mrad:.1}"))
+        ),
+        false => format!(
+            "is let down after {:.1} s ({})",
+            attempt.stood_s, attempt.end
+        ),
+    }
+}
+
+fn text(demo: &RobotDemo) -> String {
+    let columns: &[TableColumn<ScoredEffect>] = &[
+        ("Hidden", &|effect| effect.address.clone()),
+        ("Value", &|effect| effect.key.clone()),
+        ("True", &|effect| exact(effect.true_value)),
+        ("Estimated", &|effect| or_dash(effect.estimate, exact)),
+    ];
+    let named = match (demo.named, demo.verdict) {
+        (true, _) => "The diagnosis named what was hidden.",
+        (false, Verdict::Named) => "The diagnosis named something else.",
+        (false, _) => "The diagnosis did not name all that was hidden.",
+    };
+    let (before, after) = (said(&demo.nominal), said(&demo.learned));
+    format!(
+        "{}\n{named}\n\nAs believed: {before}\nAs learned: {after}",
+        table_of(&demo.effects, columns)
+    )
+}

@@ -1,0 +1,79 @@
+//! `handstand import ROBOT.urdf|ROBOT.xml [--joints NAME...] -o MODEL.toml`: a model out of another
+//! simulator's file.
+//!
+//! Reads URDF and MJCF. The model is the planar chain of the joints named, from the base to the
+//! tip; without names that with most hinges. Masses, moments of inertia, armature, damping,
+//! friction, springs and actuators are carried over; other joints are held where the file has
+//! them. What is not carried is listed on stderr, and in the file.
+//!
+//! ```console
+//! $ handstand import robot.urdf --joints shoulder elbow -o arm.toml
+//! ```
+//!
+//! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
+//! (or null), `text` (null where a file was written), `joints` and `not_carried` (`part`, `name`,
+//! `why`).
+
+use super::{ExitStatus, Talk, input};
+use handstand::Result;
+use handstand::model::import::{ImportPlan, import};
+use handstand::output::vacant;
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Import a model from another simulator's file.
+#[derive(Debug, clap::Args)]
+pub struct ImportArgs {
+    /// URDF or MJCF file
+    #[arg(value_name = "ROBOT")]
+    robot: PathBuf,
+    /// Joints of the chain, from the base to the tip; the most hinges in a row without
+    #[arg(long, num_args = 1.., value_name = "NAME")]
+    joints: Vec<String>,
+    /// Drive joints without an actuator by a torque; they are passive without
+    #[arg(long)]
+    driven: bool,
+    /// Model file to write; stdout without it
+    #[arg(long, short, value_name = "MODEL.toml")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// Imports, and lists what is not carried.
+pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
+    if let Some(file) = &args.output {
+        vacant(file, args.force)?;
+    }
+    let plan = ImportPlan {
+        joints: args.joints.clone(),
+        driven: args.driven,
+    };
+    let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
+    talk.say(&format!("joints: {}", imported.joints.join(", ")));
+    for part in &imported.left_out {
+        let of = part
+            .name
+            .as_ref()
+            .map_or(String::new(), |name| format!(" of {name}"));
+        talk.say(&format!("not carried: {}{of} ({})", part.part, part.why));
+    }
+    if let Some(file) = &args.output {
+        talk.write(file, &imported.toml, args.force)?;
+    }
+    let written = args.output.is_some();
+    let data = json!({
+        "format": imported.format,
+        "file": args.output,
+        "text": (!written).then_some(&imported.toml),
+        "joints": imported.joints,
+        "not_carried": imported.left_out,
+    });
+    if talk.json {
+        talk.data(&data)?;
+    } else if !written {
+        talk.print(&imported.toml)?;
+    }
+    Ok(ExitStatus::Done)
+}

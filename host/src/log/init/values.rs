@@ -1,0 +1,255 @@
+//! What a column's values say of it: unit, sign, and where the angles rest.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Beyond two turns either way no joint of a chain swings in rad, but it does in degrees.
+const MOST_RAD: f64 = 2.0 * TAU;
+/// Counts per turn of common encoders.
+const COUNTS: [f64; 4] = [1024.0, 4096.0, 16384.0, 65536.0];
+
+/// Lowest and highest finite value; none where there is no such value.
+pub fn range(values: &[f64]) -> Option<(f64, f64)> {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let low = finite().reduce(f64::min)?;
+    Some((low, finite().reduce(f64::max)?))
+}
+
+/// Whether the values are all one, or none is finite.
+pub fn stands_still(values: &[f64]) -> bool {
+    range(values).is_none_or(|(low, high)| low == high)
+}
+
+/// The middle of the finite values; 0 of none.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The unit of a time whose name says none, from the middle step between rows.
+pub fn time_unit(values: &[f64]) -> &'static str {
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    match median(
+        &steps
+            .into_iter()
+            .filter(|step| *step > 0.0)
+            .collect::<Vec<_>>(),
+    ) {
+        step if step < 0.5 => "s",
+        step if step < 500.0 => "ms",
+        step if step < 5e5 => "us",
+        _ => "ns",
+    }
+}
+
+/// The unit of an angle whose name says none, with counts per turn.
+pub fn angle_unit(values: &[f64]) -> (&'static str, Option<f64>) {
+    let (low, high) = range(values).unwrap_or((0.0, 0.0));
+    let whole = values
+        .iter()
+        .filter(|v| v.is_finite())
+        .all(|v| v.fract() == 0.0);
+    match () {
+        () if low.abs().max(high.abs()) <= MOST_RAD => ("rad", None),
+        () if whole && high - low > 0.0 && low >= 0.0 => ("ticks", Some(counts(high))),
+        () => ("deg", None),
+    }
+}
+
+/// Counts per turn of the least encoder that reaches so far.
+pub fn counts(highest: f64) -> f64 {
+    let reach = COUNTS.into_iter().find(|counts| highest < *counts);
+    reach.unwrap_or(COUNTS[COUNTS.len() - 1])
+}
+
+/// A speed's unit and sign, from the slope of its angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedFit {
+    /// `rad/s`, `deg/s` or `rpm`.
+    pub unit: &'static str,
+    /// Whether it counts the other way round.
+    pub reversed: bool,
+    /// Value written per rad/s.
+    pub ratio: f64,
+}
+
+/// Which unit makes the speeds the angles' slopes; none where they are not.
+///
+/// `time_s` and `angle_rad` are in SI, `speed` as written.
+pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<SpeedFit> {
+    let (mut cross, mut square, mut own) = (0.0, 0.0, 0.0);
+    for k in 1..time_s.len().saturating_sub(1) {
+        let span = time_s[k + 1] - time_s[k - 1];
+        let slope = (angle_rad[k + 1] - angle_rad[k - 1]) / span;
+        if span > 0.0 && slope.is_finite() && speed[k].is_finite() {
+            cross += slope * speed[k];
+            square += slope * slope;
+            own += speed[k] * speed[k];
+        }
+    }
+    // Where noise outweighs motion, nothing can be said.
+    let alike = cross / (square * own).sqrt();
+    if !(alike.abs() > 0.7) {
+        return None;
+    }
+    // Noise of the slopes lowers their share in the speed and the reverse; between the two lies
+    // the ratio.
+    let ratio = (own / square).sqrt();
+    let units = [("rad/s", 1.0), ("deg/s", 180.0 / PI), ("rpm", 60.0 / TAU)];
+    let off = |unit: f64| (ratio / unit).ln().abs();
+    let (unit, factor) = units
+        .into_iter()
+        .min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
+    (off(factor) < 0.7).then_some(SpeedFit {
+        unit,
+        reversed: cross < 0.0,
+        ratio,
+    })
+}
+
+/// `hanging`, `horizontal` or `upright`, whichever explains that a free joint rests around this
+/// angle, and whether angles count clockwise for that.
+pub fn zero_at_rest(rest_rad: f64) -> &'static str {
+    let turned = rest_rad.rem_euclid(TAU);
+    let off = |angle: f64| {
+        let apart = (turned - angle).rem_euclid(TAU);
+        apart.min(TAU - apart)
+    };
+    let zeros = [
+        ("hanging", 0.0),
+        ("upright", PI),
+        ("horizontal", -FRAC_PI_2),
+        ("horizontal", FRAC_PI_2),
+    ];
+    let nearest = zeros
+        .into_iter()
+        .min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+    nearest.map_or("hanging", |(name, _)| name)
+}
+
+/// Where torques of gravity say that zero is: the sign of `a` in tau = a sin(q) + b cos(q) + c w.
+///
+/// None where the torques do not follow the angles.
+pub fn zero_of_torques(
+    angle_rad: &[f64],
+    speed: &[f64],
+    torque_nm: &[f64],
+) -> Option<&'static str> {
+    let rows: Vec<[f64; 4]> = (0..angle_rad.len())
+        .map(|k| {
+            [
+                angle_rad[k].sin(),
+                angle_rad[k].cos(),
+                speed[k],
+                torque_nm[k],
+            ]
+        })
+        .filter(|row| row.iter().all(|value| value.is_finite()))
+        .collect();
+    let a = nalgebra::DMatrix::from_fn(rows.len(), 3, |i, j| rows[i][j]);
+    let b = nalgebra::DVector::from_fn(rows.len(), |i, _| rows[i][3]);
+    let found = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
+    let unexplained = (&a * &found - &b).norm() / b.norm();
+    if !(unexplained < 0.7) {
+        return None;
+    }
+    let (sin, cos) = (found[0], found[1]);
+    Some(match sin.abs() >= cos.abs() {
+        true if sin > 0.0 => "hanging",
+        true => "upright",
+        false => "horizontal",
+    })
+}
+
+/// Length of an even rod that swings as often about its rest as these angles do, m; none where
+/// they do not swing.
+pub fn rod_length_m(time_s: &[f64], angle_rad: &[f64], gravity_m_s2: f64) -> Option<f64> {
+    let rest = median(angle_rad);
+    let mut crossings = Vec::new();
+    for k in 1..time_s.len() {
+        if (angle_rad[k - 1] < rest) && (angle_rad[k] >= rest) {
+            crossings.push(time_s[k]);
+        }
+    }
+    let periods: Vec<f64> = crossings.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if periods.len() < 3 {
+        return None;
+    }
+    let omega = TAU / median(&periods);
+    let length_m = 1.5 * gravity_m_s2 / (omega * omega);
+    (0.01..5.0).contains(&length_m).then_some(length_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_speeds_unit_and_sign_come_from_the_slopes() {
+        let time_s: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
+        let angle: Vec<f64> = time_s.iter().map(|t| (3.0 * t).sin()).collect();
+        for (unit, factor, sign) in [
+            ("rad/s", 1.0, 1.0),
+            ("deg/s", 57.29578, -1.0),
+            ("rpm", 9.5493, 1.0),
+        ] {
+            let speed: Vec<f64> = time_s
+                .iter()
+                .map(|t| sign * factor * 3.0 * (3.0 * t).cos())
+                .collect();
+            let fit = speed_fit(&time_s, &angle, &speed).unwrap();
+            assert_eq!((fit.unit, fit.reversed), (unit, sign < 0.0));
+        }
+        let noise: Vec<f64> = (0..200).map(|k| f64::from(k * 7919 % 101) - 50.0).collect();
+        assert_eq!(speed_fit(&time_s, &angle, &noise), None);
+    }
+
+    #[test]
+    fn rest_and_torques_tell_the_zero() {
+        let tell = [-0.1, 3.2, -3.0, 1.5, -1.6, 6.2].map(zero_at_rest);
+        let told = [
+            "hanging",
+            "upright",
+            "upright",
+            "horizontal",
+            "horizontal",
+            "hanging",
+        ];
+        assert_eq!(tell, told);
+        let angle: Vec<f64> = (0..100).map(|k| 0.05 * f64::from(k)).collect();
+        let still = vec![0.0; 100];
+        let torque = |sign: f64| {
+            angle
+                .iter()
+                .map(|q| sign * 2.0 * q.sin())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            zero_of_torques(&angle, &still, &torque(1.0)),
+            Some("hanging")
+        );
+        assert_eq!(
+            zero_of_torques(&angle, &still, &torque(-1.0)),
+            Some("upright")
+        );
+    }
+
+    #[test]
+    fn units_come_from_ranges() {
+        assert_eq!(time_unit(&[0.0, 10.0, 20.0]), "ms");
+        assert_eq!(time_unit(&[0.0, 1e4, 2e4]), "us");
+        assert_eq!(time_unit(&[0.0, 0.01, 0.02]), "s");
+        assert_eq!(angle_unit(&[0.1, -3.0]), ("rad", None));
+        assert_eq!(angle_unit(&[-90.5, 45.0]), ("deg", None));
+        assert_eq!(angle_unit(&[2048.0, 1000.0]), ("ticks", Some(4096.0)));
+    }
+
+    #[test]
+    fn a_swing_tells_a_rods_length() {
+        let time_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+        let omega = (1.5 * 9.81 / 0.3f64).sqrt();
+        let angle: Vec<f64> = time_s.iter().map(|t| 0.1 * (omega * t).cos()).collect();
+        let length = rod_length_m(&time_s, &angle, 9.81).unwrap();
+        assert!((length - 0.3).abs() < 0.02, "{length}");
+    }
+}

@@ -1,0 +1,92 @@
+//! A guessed model as a file that says what was guessed.
+
+use super::{ColumnGuess, Draft};
+use crate::error::Result;
+use crate::model::new_model::model_toml;
+use std::fmt::Write as _;
+
+pub(super) fn toml(draft: &Draft) -> Result<String> {
+    let mut head = String::from("# Guessed from a log; go through it line by line:\n");
+    for guess in &draft.guesses {
+        let line = format!("{}: {} ({})", guess.what, guess.guess, guess.why);
+        let _ = writeln!(head, "# - {}", line.replace(char::is_control, " "));
+    }
+    head.push_str(
+        "# `handstand log check` tells which signs, zeros, units and angles do not agree with a \
+         log,\n# `handstand fit` estimates what [fit] lists, `handstand diagnose` finds what is \
+         missing.\n\n",
+    );
+    model_toml(&draft.plan, &head, &tail(draft))
+}
+
+fn tail(draft: &Draft) -> String {
+    let free: Vec<String> = free(draft)
+        .iter()
+        .map(|path| format!("    {path:?},\n"))
+        .collect();
+    let mut text = format!(
+        "\n# Guesses that a fit may change. What the logs do not determine, it says: take that off.\n\
+         [fit]\nfree = [\n{}]\n\n[log]\n",
+        free.concat()
+    );
+    let columns = &draft.columns;
+    let quoted = |text: &str| toml_edit::Value::from(text).to_string();
+    let _ = writeln!(text, "time = {}", columns.time.toml());
+    if let Some(gap_s) = draft.split_at_gap_s {
+        let _ = writeln!(text, "split_at_gap_s = {gap_s:?}");
+    }
+    if let Some(segment) = &columns.segment {
+        let _ = writeln!(
+            text,
+            "segment = {} # each run of equal values is a motion",
+            quoted(segment)
+        );
+    }
+    if let Some(supply) = &columns.supply {
+        let _ = writeln!(text, "supply = {}", supply.toml());
+    }
+    if let Some(torque_on) = &columns.torque_on {
+        let _ = writeln!(text, "torque_on = {}", quoted(torque_on));
+    }
+    for (joint, plan) in columns.joints.iter().zip(&draft.plan.links) {
+        let _ = writeln!(
+            text,
+            "\n[[log.joint]] # {}",
+            joint.name.replace(char::is_control, " ")
+        );
+        let input = joint.input.as_ref().filter(|_| plan.drive != "passive");
+        let own: [(&str, Option<&ColumnGuess>); 3] = [
+            ("position", joint.position.as_ref()),
+            ("velocity", joint.velocity.as_ref()),
+            ("input", input),
+        ];
+        for (key, column) in own {
+            if let Some(column) = column {
+                let _ = writeln!(text, "{key} = {}", column.toml());
+            }
+        }
+    }
+    text.replace("[[log.joint]] # \n", "[[log.joint]]\n")
+}
+
+/// What logs of such a rig determine: a free chain's masses only in proportion to each other.
+fn free(draft: &Draft) -> Vec<String> {
+    let links = &draft.plan.links;
+    let mut free = Vec::new();
+    for (index, link) in links.iter().enumerate() {
+        let number = index + 1;
+        free.push(format!("link{number}.com_m"));
+        if link.drive == "torque" || index > 0 {
+            free.push(format!("link{number}.inertia_kg_m2"));
+        }
+        if index > 0 {
+            free.push(format!("link{number}.mass_kg"));
+        }
+        match link.drive.as_str() {
+            "position" => free.push(format!("joint{number}.gain_per_rad")),
+            "speed" => free.push(format!("joint{number}.gain_s_per_rad")),
+            _ => {}
+        }
+    }
+    free
+}

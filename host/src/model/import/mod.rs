@@ -1,0 +1,93 @@
+//! Models out of other simulators' files: URDF and MJCF.
+//!
+//! A robot in space becomes the planar chain of some of its joints: [`import`]. What a model does
+//! not have is listed with the reason, never left out silently.
+
+mod mjcf;
+mod planar;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod urdf;
+mod write;
+mod xml;
+
+pub use tree::LeftOut;
+
+use crate::error::{Error, Result};
+use planar::planar_chain;
+use std::path::Path;
+use tree::TreeDrive;
+use xml::XmlFile;
+
+/// Most bodies of a robot.
+const MOST_BODIES: usize = 10_000;
+
+/// What to take of a robot.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ImportPlan {
+    /// Joints from the base to the tip; without names the most hinges in a row.
+    pub joints: Vec<String>,
+    /// Whether joints that the file does not drive are driven by a torque.
+    pub driven: bool,
+}
+
+/// A model made of another simulator's file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// `urdf` or `mjcf`.
+    pub format: &'static str,
+    /// The model file.
+    pub toml: String,
+    /// The joints, from the base to the tip.
+    pub joints: Vec<String>,
+    /// What of the file the model does not hold.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// The model of a URDF or MJCF text; `path` only names it.
+///
+/// Forward dynamics are those of the file for motions of the chosen joints: masses, moments of
+/// inertia, armature, damping, springs. Other joints are held where the file describes them.
+///
+/// # Errors
+/// Broken XML and what the formats' readers refuse, with line and column; joints that make no
+/// planar chain.
+pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
+    let file = XmlFile::parse(path, text)?;
+    let root = file.root();
+    let (format, mut tree) = match root.tag() {
+        "robot" => ("urdf", urdf::tree(root)?),
+        "mujoco" => ("mjcf", mjcf::tree(root)?),
+        other => {
+            let what = format!("<{other}> is no robot's root");
+            return Err(root.wrong(what, "URDF begins with <robot>, MJCF with <mujoco>"));
+        }
+    };
+    let name = path.display().to_string();
+    if tree.bodies.len() > MOST_BODIES {
+        let what = format!("{name}: {} bodies", tree.bodies.len());
+        return Err(Error::usage(
+            what,
+            format!("at most {MOST_BODIES} are read"),
+        ));
+    }
+    if plan.driven {
+        for joint in tree.bodies.iter_mut().flat_map(|body| &mut body.joints) {
+            if joint.drive == TreeDrive::None {
+                joint.drive = TreeDrive::Torque(None);
+            }
+        }
+    }
+    let chain = planar_chain(&tree, &plan.joints, &name)?;
+    let mut left_out = tree.left_out.clone();
+    left_out.extend(chain.left_out.iter().cloned());
+    let toml = write::toml(&tree.name, &chain, format, &mut left_out)?;
+    let joints = chain.links.into_iter().map(|link| link.joint.name);
+    Ok(Imported {
+        format,
+        toml,
+        joints: joints.collect(),
+        left_out,
+    })
+}

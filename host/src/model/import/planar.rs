@@ -1,0 +1,306 @@
+//! A planar chain out of a robot in space: the joints chosen, the rest held, all seen along the
+//! joints' common axis.
+
+use super::tree::{Inertial, LeftOut, Motion, RobotTree, TreeJoint};
+use crate::error::{Error, Result};
+use nalgebra::{Isometry3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// Axes further apart than this are not parallel, rad; files round to six digits.
+const PARALLEL_RAD: f64 = 1e-5;
+/// Shorter, a link has no direction, m.
+const NO_LENGTH_M: f64 = 1e-12;
+/// Gravity less than this is none, m/s^2.
+const NO_GRAVITY_M_S2: f64 = 1e-6;
+
+/// A link and the joint that carries it, in the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PlanarLink {
+    pub joint: TreeJoint,
+    /// Whether the file's joint counts clockwise.
+    pub reversed: bool,
+    /// Relative angle here, the first from hanging, where the file's coordinate is 0, rad.
+    pub offset_rad: f64,
+    pub length_m: f64,
+    pub com_m: f64,
+    pub com_angle_rad: f64,
+    pub mass_kg: f64,
+    /// About the centre of mass, kg m^2.
+    pub inertia_kg_m2: f64,
+}
+
+/// The chain.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PlanarChain {
+    pub links: Vec<PlanarLink>,
+    pub gravity_m_s2: f64,
+    pub left_out: Vec<LeftOut>,
+}
+
+/// The chain of these joints, base to tip; without names that with most hinges.
+///
+/// # Errors
+/// Joints that are not there, do not follow each other or do not turn about parallel axes; links
+/// without mass.
+pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Result<PlanarChain> {
+    let mut left_out = Vec::new();
+    let chosen = match names {
+        [] => longest(tree, file, &mut left_out)?,
+        names => named(tree, names, file)?,
+    };
+    let poses = tree.world_poses();
+    let frame = Frame::of(tree, &chosen, &poses, file)?;
+    held(tree, &chosen, &mut left_out);
+    let (base, masses) = masses(tree, &chosen, &poses);
+    if base.mass_kg > 0.0 {
+        let why = format!(
+            "{} kg stand before the first joint, which does not move",
+            base.mass_kg
+        );
+        left_out.push(LeftOut::new("base", None, why));
+    }
+    let mut links: Vec<PlanarLink> = Vec::new();
+    let mut direction_rad = 0.0;
+    for (index, &body) in chosen.iter().enumerate() {
+        let joint = &tree.bodies[body].joints[0];
+        let anchor = poses[body] * joint.anchor_m;
+        let next = chosen
+            .get(index + 1)
+            .map(|&next| poses[next] * tree.bodies[next].joints[0].anchor_m);
+        let mass = &masses[index];
+        if mass.mass_kg <= 0.0 {
+            return Err(Error::usage(
+                format!("{file}: nothing behind joint {} has a mass", joint.name),
+                "give its link an <inertial>, or choose other joints with --joints",
+            ));
+        }
+        let com = frame.seen(&(mass.com_m - anchor));
+        let along = next.map_or(com, |next| frame.seen(&(next - anchor)));
+        let before_rad = direction_rad;
+        if along.0 > NO_LENGTH_M {
+            direction_rad = along.1;
+        }
+        let off_line = match com.0 > NO_LENGTH_M {
+            true => wrapped(com.1 - direction_rad),
+            false => 0.0,
+        };
+        let reversed = frame.axis.dot(&(poses[body] * joint.axis)) < 0.0;
+        let sign = if reversed { -1.0 } else { 1.0 };
+        let offset = wrapped(direction_rad - before_rad) - sign * joint.reference_rad;
+        let behind = (off_line.abs() - PI).abs() < 1e-12;
+        links.push(PlanarLink {
+            joint: joint.clone(),
+            reversed,
+            offset_rad: offset,
+            length_m: if next.is_some() { along.0 } else { com.0 },
+            com_m: if behind { -com.0 } else { com.0 },
+            com_angle_rad: if behind || off_line.abs() < 1e-12 {
+                0.0
+            } else {
+                off_line
+            },
+            mass_kg: mass.mass_kg,
+            inertia_kg_m2: frame.axis.dot(&(mass.inertia_kg_m2 * frame.axis)),
+        });
+    }
+    Ok(PlanarChain {
+        links,
+        gravity_m_s2: frame.gravity_m_s2,
+        left_out,
+    })
+}
+
+/// An angle within half a turn either way.
+fn wrapped(angle_rad: f64) -> f64 {
+    let angle = angle_rad.rem_euclid(TAU);
+    if angle > PI { angle - TAU } else { angle }
+}
+
+/// The plane: x to the right, up against gravity, the axis towards the one who looks.
+struct Frame {
+    axis: Vector3<f64>,
+    right: Vector3<f64>,
+    up: Vector3<f64>,
+    gravity_m_s2: f64,
+}
+
+impl Frame {
+    fn of(
+        tree: &RobotTree,
+        chosen: &[usize],
+        poses: &[Isometry3<f64>],
+        file: &str,
+    ) -> Result<Self> {
+        let axis_of = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
+        let axis = axis_of(chosen[0]);
+        for &body in &chosen[1..] {
+            let apart = axis_of(body).cross(&axis).norm().min(1.0).asin();
+            if apart > PARALLEL_RAD {
+                let name = |body: usize| &tree.bodies[body].joints[0].name;
+                return Err(Error::usage(
+                    format!(
+                        "{file}: joints {} and {} turn about axes {:.1} degrees apart",
+                        name(chosen[0]),
+                        name(body),
+                        apart.to_degrees()
+                    ),
+                    "a chain here is planar: choose joints with parallel axes by --joints",
+                ));
+            }
+        }
+        let within = tree.gravity_m_s2 - axis * axis.dot(&tree.gravity_m_s2);
+        let gravity_m_s2 = within.norm();
+        let up = match gravity_m_s2 > NO_GRAVITY_M_S2 {
+            true => -within / gravity_m_s2,
+            // Any direction across the axis.
+            false => {
+                let other = if axis.x.abs() < 0.9 {
+                    Vector3::x()
+                } else {
+                    Vector3::y()
+                };
+                axis.cross(&other).normalize()
+            }
+        };
+        Ok(Frame {
+            axis,
+            right: up.cross(&axis),
+            up,
+            gravity_m_s2: if gravity_m_s2 > NO_GRAVITY_M_S2 {
+                gravity_m_s2
+            } else {
+                0.0
+            },
+        })
+    }
+
+    /// Length of a vector in the plane, m, and its angle from hanging, rad, counter-clockwise.
+    fn seen(&self, vector: &Vector3<f64>) -> (f64, f64) {
+        let (x, y) = (self.right.dot(vector), self.up.dot(vector));
+        (x.hypot(y), x.atan2(-y))
+    }
+}
+
+/// Whether a body has one hinge.
+fn hinged(tree: &RobotTree, body: usize) -> bool {
+    matches!(tree.bodies[body].joints.as_slice(), [joint] if joint.motion == Motion::Hinge)
+}
+
+fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
+    let mut hinges = vec![0usize; tree.bodies.len()];
+    for (body, own) in tree.bodies.iter().enumerate() {
+        let before = own.parent.map_or(0, |parent| hinges[parent]);
+        hinges[body] = before + usize::from(hinged(tree, body));
+    }
+    let most = hinges.iter().copied().max().unwrap_or(0);
+    let tips: Vec<usize> = (0..hinges.len())
+        .filter(|&b| hinges[b] == most && hinged(tree, b))
+        .collect();
+    let Some(&tip) = tips.first().filter(|_| most > 0) else {
+        return Err(Error::usage(
+            format!("{file}: no joint turns about one axis"),
+            "a chain needs hinges: revolute or continuous joints, <joint type=\"hinge\">",
+        ));
+    };
+    if tips.len() > 1 {
+        let name = &tree.bodies[tip].joints[0].name;
+        let why = format!(
+            "{} branches have {most} joints; the one that ends at {name} is taken, --joints names \
+             another",
+            tips.len()
+        );
+        left_out.push(LeftOut::new("branches", None, why));
+    }
+    let chain = ancestors(tree, tip)
+        .into_iter()
+        .filter(|&body| hinged(tree, body));
+    Ok(chain.collect())
+}
+
+/// A body and those that carry it, the base first.
+fn ancestors(tree: &RobotTree, body: usize) -> Vec<usize> {
+    let mut chain: Vec<usize> =
+        std::iter::successors(Some(body), |&body| tree.bodies[body].parent).collect();
+    chain.reverse();
+    chain
+}
+
+fn named(tree: &RobotTree, names: &[String], file: &str) -> Result<Vec<usize>> {
+    let mut chosen: Vec<usize> = Vec::new();
+    for name in names {
+        let has = |body: &usize| {
+            tree.bodies[*body]
+                .joints
+                .iter()
+                .any(|joint| joint.name == *name)
+        };
+        let Some(body) = (0..tree.bodies.len()).find(has) else {
+            let all = tree.bodies.iter().flat_map(|body| &body.joints);
+            let all: Vec<&str> = all.map(|joint| joint.name.as_str()).collect();
+            let what = format!("{file}: there is no joint \"{name}\"");
+            return Err(Error::usage(
+                what,
+                format!("its joints: {}", all.join(", ")),
+            ));
+        };
+        if !hinged(tree, body) {
+            return Err(Error::usage(
+                format!("{file}: joint {name} does not turn about one axis of its own body"),
+                "name hinges, one for each body",
+            ));
+        }
+        if chosen
+            .last()
+            .is_some_and(|before| *before == body || !ancestors(tree, body).contains(before))
+        {
+            return Err(Error::usage(
+                format!("{file}: joint {name} does not lie behind the one named before it"),
+                "name the joints from the base to the tip",
+            ));
+        }
+        chosen.push(body);
+    }
+    Ok(chosen)
+}
+
+/// Says which joints do not move.
+fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<LeftOut>) {
+    for (index, body) in tree
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| !chosen.contains(i))
+    {
+        let before = ancestors(tree, index)
+            .iter()
+            .any(|body| chosen.contains(body));
+        let why = match before {
+            true => "held where the file has it, what it carries moves as one",
+            false => "held where the file has it: the base of the chain stands still",
+        };
+        let joints = body.joints.iter();
+        left_out.extend(joints.map(|joint| LeftOut::new("joint", Some(&joint.name), why)));
+    }
+}
+
+/// What each link carries, in the world: that of the base, then of the links.
+fn masses(
+    tree: &RobotTree,
+    chosen: &[usize],
+    poses: &[Isometry3<f64>],
+) -> (Inertial, Vec<Inertial>) {
+    let mut base = Inertial::NONE;
+    let mut links = vec![Inertial::NONE; chosen.len()];
+    let mut owner: Vec<Option<usize>> = Vec::with_capacity(tree.bodies.len());
+    for (index, body) in tree.bodies.iter().enumerate() {
+        let own = chosen.iter().position(|&link| link == index);
+        let own = own.or_else(|| body.parent.and_then(|parent| owner[parent]));
+        owner.push(own);
+        let part = body.inertial.seen_from(&poses[index]);
+        match own {
+            Some(link) => links[link] = links[link].with(&part),
+            None => base = base.with(&part),
+        }
+    }
+    (base, links)
+}

@@ -1,0 +1,189 @@
+//! A robot as other simulators describe it: rigid bodies in space, each carried by its parent.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+
+/// Why a part of a file is not in the model.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct LeftOut {
+    /// The element, or the quantity: `range`, `mimic`, `tendon`.
+    pub part: String,
+    /// The joint or body, where it is of one.
+    pub name: Option<String>,
+    /// Why, and what was taken instead.
+    pub why: String,
+}
+
+impl LeftOut {
+    pub(super) fn new(part: &str, name: Option<&str>, why: impl Into<String>) -> Self {
+        LeftOut {
+            part: part.to_string(),
+            name: name.map(str::to_string),
+            why: why.into(),
+        }
+    }
+}
+
+/// Mass, its centre, and the moments about that.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Inertial {
+    /// kg.
+    pub mass_kg: f64,
+    /// Centre of mass in the body's frame, m.
+    pub com_m: Point3<f64>,
+    /// About the centre of mass along the body's axes, kg m^2.
+    pub inertia_kg_m2: Matrix3<f64>,
+}
+
+impl Inertial {
+    /// Nothing.
+    pub const NONE: Inertial = Inertial {
+        mass_kg: 0.0,
+        com_m: Point3::new(0.0, 0.0, 0.0),
+        inertia_kg_m2: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    };
+
+    /// The same in the frame in which its own has this pose.
+    pub fn seen_from(&self, pose: &Isometry3<f64>) -> Inertial {
+        let turn = pose.rotation.to_rotation_matrix();
+        Inertial {
+            mass_kg: self.mass_kg,
+            com_m: pose * self.com_m,
+            inertia_kg_m2: turn * self.inertia_kg_m2 * turn.inverse(),
+        }
+    }
+
+    /// Both as one body; frames are the same.
+    pub fn with(&self, other: &Inertial) -> Inertial {
+        let mass_kg = self.mass_kg + other.mass_kg;
+        if mass_kg <= 0.0 {
+            return Inertial {
+                inertia_kg_m2: self.inertia_kg_m2 + other.inertia_kg_m2,
+                ..*self
+            };
+        }
+        let weighted = self.com_m.coords * self.mass_kg + other.com_m.coords * other.mass_kg;
+        let com_m = Point3::from(weighted / mass_kg);
+        let about = |part: &Inertial| {
+            let arm = part.com_m - com_m;
+            let square = Matrix3::identity() * arm.norm_squared() - arm * arm.transpose();
+            part.inertia_kg_m2 + square * part.mass_kg
+        };
+        Inertial {
+            mass_kg,
+            com_m,
+            inertia_kg_m2: about(self) + about(other),
+        }
+    }
+}
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    /// About an axis.
+    Hinge,
+    /// Along an axis.
+    Slide,
+    /// In several ways: ball, floating, planar.
+    Free,
+}
+
+/// What drives a joint in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) enum TreeDrive {
+    /// Nothing.
+    #[default]
+    None,
+    /// A torque, N m, at most so large.
+    Torque(Option<f64>),
+    /// A share of full voltage.
+    Duty { stall_nm: f64, damping_nm_s: f64 },
+    /// torque = stiffness (goal - angle) - damping w, at most `limit_nm`.
+    Position {
+        stiffness_nm: f64,
+        damping_nm_s: f64,
+        limit_nm: f64,
+    },
+    /// torque = gain (goal - w), at most `limit_nm`.
+    Speed { gain_nm_s: f64, limit_nm: f64 },
+}
+
+/// A joint between a body and its parent.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TreeJoint {
+    pub name: String,
+    pub motion: Motion,
+    /// In the body's frame, of length 1.
+    pub axis: Vector3<f64>,
+    /// A point of the axis in the body's frame, m.
+    pub anchor_m: Point3<f64>,
+    /// Coordinate in the pose that the file describes, rad.
+    pub reference_rad: f64,
+    /// Lowest and highest coordinate, rad.
+    pub range_rad: Option<(f64, f64)>,
+    /// Highest speed, rad/s.
+    pub speed_rad_s: Option<f64>,
+    pub damping_nm_s: f64,
+    pub friction_nm: f64,
+    pub armature_kg_m2: f64,
+    pub stiffness_nm: f64,
+    pub spring_rest_rad: f64,
+    pub drive: TreeDrive,
+}
+
+impl TreeJoint {
+    pub fn new(name: String, motion: Motion, axis: Vector3<f64>) -> Self {
+        TreeJoint {
+            name,
+            motion,
+            axis,
+            anchor_m: Point3::origin(),
+            reference_rad: 0.0,
+            range_rad: None,
+            speed_rad_s: None,
+            damping_nm_s: 0.0,
+            friction_nm: 0.0,
+            armature_kg_m2: 0.0,
+            stiffness_nm: 0.0,
+            spring_rest_rad: 0.0,
+            drive: TreeDrive::None,
+        }
+    }
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Body {
+    pub name: String,
+    /// Index of the body that carries it, always a smaller one; none for the world.
+    pub parent: Option<usize>,
+    /// In the parent's frame, with every joint at its reference.
+    pub pose: Isometry3<f64>,
+    pub inertial: Inertial,
+    /// None where it is fixed to its parent.
+    pub joints: Vec<TreeJoint>,
+}
+
+/// A robot, and what its file says beyond bodies and joints.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RobotTree {
+    pub name: String,
+    /// Parents before children; the first is the world, or what stands in it.
+    pub bodies: Vec<Body>,
+    pub gravity_m_s2: Vector3<f64>,
+    pub left_out: Vec<LeftOut>,
+}
+
+impl RobotTree {
+    /// Poses of all bodies in the world.
+    pub fn world_poses(&self) -> Vec<Isometry3<f64>> {
+        let mut poses: Vec<Isometry3<f64>> = Vec::with_capacity(self.bodies.len());
+        for body in &self.bodies {
+            let pose = match body.parent {
+                Some(parent) => poses[parent] * body.pose,
+                None => body.pose,
+            };
+            poses.push(pose);
+        }
+        poses
+    }
+}

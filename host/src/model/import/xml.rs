@@ -1,0 +1,145 @@
+//! Elements and attributes of an XML file, with the place of what is wrong.
+
+use crate::error::{Error, Place, Result};
+use nalgebra::Vector3;
+use roxmltree::{Document, Node, ParsingOptions};
+use std::path::Path;
+
+/// Most elements and texts of a file; a robot with meshes has thousands.
+const MOST_NODES: u32 = 1_000_000;
+/// Largest number that a robot's file can mean.
+const LARGEST: f64 = 1e9;
+
+/// A file and its elements.
+pub(super) struct XmlFile<'a> {
+    pub path: &'a Path,
+    pub document: Document<'a>,
+}
+
+/// An element with its file.
+#[derive(Clone, Copy)]
+pub(super) struct Element<'a> {
+    pub file: &'a XmlFile<'a>,
+    pub node: Node<'a, 'a>,
+}
+
+impl<'a> XmlFile<'a> {
+    /// Parses; entities and document types are refused, so no text grows while it is read.
+    pub fn parse(path: &'a Path, text: &'a str) -> Result<Self> {
+        let options = ParsingOptions {
+            allow_dtd: false,
+            nodes_limit: MOST_NODES,
+            ..ParsingOptions::default()
+        };
+        let document = Document::parse_with_options(text, options).map_err(|error| {
+            let at = error.pos();
+            let place = Place::at(path, at.row as usize, at.col as usize);
+            Error::data(
+                place,
+                format!("no XML: {error}"),
+                "write the robot's file as XML",
+            )
+        })?;
+        Ok(XmlFile { path, document })
+    }
+
+    pub fn root(&'a self) -> Element<'a> {
+        Element {
+            file: self,
+            node: self.document.root_element(),
+        }
+    }
+}
+
+impl<'a> Element<'a> {
+    pub fn tag(&self) -> &'a str {
+        self.node.tag_name().name()
+    }
+
+    pub fn elements(&self) -> impl Iterator<Item = Element<'a>> + use<'a> {
+        let file = self.file;
+        let nodes = self.node.children().filter(Node::is_element);
+        nodes.map(move |node| Element { file, node })
+    }
+
+    pub fn all(&self, tag: &'a str) -> impl Iterator<Item = Element<'a>> + use<'a> {
+        self.elements().filter(move |element| element.tag() == tag)
+    }
+
+    pub fn first(&self, tag: &'a str) -> Option<Element<'a>> {
+        self.all(tag).next()
+    }
+
+    pub fn text(&self, key: &str) -> Option<&'a str> {
+        self.node.attribute(key)
+    }
+
+    /// # Errors
+    /// No such attribute.
+    pub fn required(&self, key: &str) -> Result<&'a str> {
+        let lacks = || {
+            self.wrong(
+                format!("<{}> lacks {key}", self.tag()),
+                format!("add {key}"),
+            )
+        };
+        self.text(key).ok_or_else(lacks)
+    }
+
+    /// # Errors
+    /// An attribute that is no finite number.
+    pub fn number(&self, key: &str) -> Result<Option<f64>> {
+        self.text(key)
+            .map(|text| self.one_number(key, text))
+            .transpose()
+    }
+
+    /// # Errors
+    /// As [`Element::number`], for numbers with blanks between them.
+    pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {
+        self.text(key)
+            .map(|text| self.numbers_of(key, text))
+            .transpose()
+    }
+
+    /// # Errors
+    /// As [`Element::numbers`]; not three of them.
+    pub fn vector(&self, key: &str) -> Result<Option<Vector3<f64>>> {
+        self.numbers(key)?
+            .map(|values| self.three(key, &values))
+            .transpose()
+    }
+
+    pub fn one_number(&self, key: &str, text: &str) -> Result<f64> {
+        let value = text.trim().parse::<f64>().ok();
+        value
+            .filter(|value| value.is_finite() && value.abs() <= LARGEST)
+            .ok_or_else(|| {
+                let text: String = text.chars().take(40).collect();
+                self.wrong(
+                    format!("{key}=\"{text}\" is no number"),
+                    "write a number such as 0.25",
+                )
+            })
+    }
+
+    pub fn numbers_of(&self, key: &str, text: &str) -> Result<Vec<f64>> {
+        text.split_whitespace()
+            .map(|word| self.one_number(key, word))
+            .collect()
+    }
+
+    pub fn three(&self, key: &str, values: &[f64]) -> Result<Vector3<f64>> {
+        match values {
+            [x, y, z] => Ok(Vector3::new(*x, *y, *z)),
+            _ => Err(self.wrong(format!("{key} has {} numbers", values.len()), "write three")),
+        }
+    }
+
+    /// An error at this element.
+    pub fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        let at = self.file.document.text_pos_at(self.node.range().start);
+        let place = Place::at(self.file.path, at.row as usize, at.col as usize);
+        Error::data(place, what, remedy)
+    }
+}
