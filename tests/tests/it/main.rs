@@ -12,4 +12,5 @@ mod intervals;
 #[cfg(unix)]
 mod kills;
 mod mjcf;
+mod next;
 mod spoiled;
