@@ -8,6 +8,7 @@ mod deploy;
 mod firmware;
 mod fuzz;
 mod hidden;
+mod import;
 mod intervals;
 #[cfg(unix)]
 mod kills;
