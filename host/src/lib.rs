@@ -24,7 +24,6 @@ pub mod model;
 pub mod output;
 pub mod paper;
 pub mod report;
-#[cfg(feature = "virtual-cm5")]
 pub mod sim;
 pub mod study;
 pub mod synth;

@@ -18,6 +18,11 @@ enum Part {
     Line(String),
 }
 
+/// Line of a document behind which a command puts what it measured.
+pub const BEGIN: &str = "<!-- measured -->";
+/// Line that ends it.
+pub const END: &str = "<!-- end of measured -->";
+
 /// Where a table comes from: what a reader needs to measure it again.
 #[derive(Debug, Clone)]
 pub struct Provenance {
@@ -70,14 +75,45 @@ impl Measured {
             "# {title}\n\nMeasured on {date} with version {version} by\n\n```sh\n{command}\n```\n\n\
              which wrote this page. Do not edit it: measure again with `--write`.\n"
         );
-        for part in &self.parts {
-            page += "\n";
-            page += &match part {
-                Part::Table(table) => markdown_table(table),
-                Part::Line(line) => format!("{}\n", line.trim_end()),
-            };
-        }
+        page += &self.markdown_parts();
         page
+    }
+
+    /// Tables and lines in Markdown, each after a blank line.
+    fn markdown_parts(&self) -> String {
+        let parts = self.parts.iter().map(|part| match part {
+            Part::Table(table) => format!("\n{}", markdown_table(table)),
+            Part::Line(line) => format!("\n{}\n", line.trim_end()),
+        });
+        parts.collect()
+    }
+
+    /// Puts it into a document in place of what stands between the lines [`BEGIN`] and [`END`].
+    ///
+    /// # Errors
+    /// What the system refuses, or a document without these lines.
+    pub fn insert(&self, file: &Path, from: &Provenance) -> Result<(), String> {
+        let refused = |error: std::io::Error| format!("{}: {error}", file.display());
+        let text = std::fs::read_to_string(file).map_err(refused)?;
+        let parts = text
+            .split_once(BEGIN)
+            .and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+        let Some((before, after)) = parts else {
+            let file = file.display();
+            return Err(format!(
+                "{file}: the lines `{BEGIN}` and `{END}` are missing"
+            ));
+        };
+        let Provenance {
+            command,
+            version,
+            date,
+        } = from;
+        let measured = self.markdown_parts();
+        let text = format!(
+            "{before}{BEGIN}\nMeasured on {date} with version {version} by `{command}`:\n{measured}\n{END}{after}"
+        );
+        std::fs::write(file, text).map_err(refused)
     }
 
     /// Writes the page NAME.md into a folder; its path.
@@ -214,6 +250,30 @@ mod tests {
         let file = within.join("peers.md");
         let refused = measured().write(&file, "peers", "Peers", &provenance());
         assert!(refused.unwrap_err().contains("peers.md"));
+    }
+
+    #[test]
+    fn a_document_gets_the_table_between_its_marks() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("firmware.md");
+        std::fs::write(&file, format!("a\n{BEGIN}\nold\n{END}\nb\n")).unwrap();
+        for _ in 0..2 {
+            measured().insert(&file, &provenance()).unwrap();
+            let text = std::fs::read_to_string(&file).unwrap();
+            assert!(text.starts_with(&format!("a\n{BEGIN}\nMeasured on 2026-11-22")));
+            assert!(
+                text.ends_with(&format!("Times are medians.\n\n{END}\nb\n")),
+                "{text}"
+            );
+            assert_eq!(text.matches("| ratio |").count(), 1, "{text}");
+            assert!(!text.contains("old"));
+        }
+        std::fs::write(&file, "a\nb\n").unwrap();
+        let refused = measured().insert(&file, &provenance()).unwrap_err();
+        assert!(
+            refused.contains("firmware.md") && refused.contains(BEGIN),
+            "{refused}"
+        );
     }
 
     #[test]

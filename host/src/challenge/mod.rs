@@ -14,6 +14,7 @@ mod played;
 mod reference;
 mod regulator;
 mod robot;
+#[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
 mod robot_motion;
 mod rounding;

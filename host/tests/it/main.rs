@@ -27,6 +27,7 @@ mod recipes;
 mod record;
 mod render;
 mod riccati;
+mod robot_demo;
 mod rounds;
 mod study;
 mod sysid;

@@ -95,6 +95,9 @@ pub fn run(args: &Args) -> bool {
     let written = args
         .page
         .show(json, &measured, "bench-firmware", "The firmware's promises");
+    // A part, or small figures, would not be what the document promises.
+    let is_whole = args.only.is_none() && !args.quick;
+    let written = written && (!is_whole || args.page.insert(&measured, "firmware.md"));
     written && rows.iter().all(|row| row.holds != Some(false))
 }
 

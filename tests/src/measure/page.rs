@@ -13,6 +13,20 @@ pub(super) struct Page {
 }
 
 impl Page {
+    /// Puts the tables into a document of `docs` too, if they are to be written; whether that could
+    /// be done.
+    pub(super) fn insert(&self, measured: &Measured, document: &str) -> bool {
+        if !self.write {
+            return true;
+        }
+        let file = root().join("docs").join(document);
+        let inserted = measured.insert(&file, &Provenance::here());
+        if let Err(why) = &inserted {
+            eprintln!("{why}");
+        }
+        inserted.is_ok()
+    }
+
     /// Prints the tables, or the JSON where that is asked for, and writes docs/measured/NAME.md if
     /// asked; whether that could be done.
     pub(super) fn show(

@@ -13,4 +13,5 @@ mod intervals;
 #[cfg(unix)]
 mod kills;
 mod mjcf;
+mod next;
 mod spoiled;

@@ -15,12 +15,12 @@ use std::path::Path;
 /// Age of a goal when it acts in a recording, s, without any of the servos' own: a tick until the
 /// firmware sends it, less what passes until the sample is taken. Of a recorded delay the rest is the
 /// drive's. `cargo xtask robot-demo` prints both of each robot.
-pub const PATH_DELAY_S: f64 = 0.009;
+pub const PATH_DELAY_S: f64 = 0.0095;
 
 /// Kinds of effects that are tried: those of servos and links that a designer can do something about.
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
 /// same files.
-const TRIED: [&str; 5] = ["delay", "dead_zone", "coulomb", "viscous", "mass"];
+const TRIED: [&str; 4] = ["delay", "dead_zone", "coulomb", "mass"];
 /// Length of the windows that are judged, s.
 const HORIZON: Horizon = Horizon::Seconds(0.4);
 
@@ -83,7 +83,7 @@ impl Learned {
 }
 
 /// The plan for a model: its links, smooth friction and back-EMF in the gains, its drives' delay in
-/// observer and gains, its dead zone jumped over.
+/// observer and gains, its dead zone and the joints' dry friction jumped over.
 ///
 /// # Errors
 /// A delay that the CM-5 keeps too few inputs for, or a model that cannot be balanced.
@@ -97,11 +97,13 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     };
     let delay_s = largest("delay", &|values| values[0]);
     // What a command loses on its way is jumped over, not the width below which it does nothing.
+    // Dry friction costs it as much again.
     let dead_zone = largest("dead_zone", &|values| (-values[1]).clamp(0.0, values[0]));
+    let friction_nm = largest("coulomb", &|values| values[0]);
     let mut timing = BoardTiming::HOST_ATTITUDE;
     timing.effect_s += (delay_s - PATH_DELAY_S).max(0.0);
     let board = Board {
-        dead_zone,
+        dead_zone: dead_zone + friction_nm / Board::BIOLOID.full_nm,
         joint_range_rad: 1.5,
         joint_speed_rad_s: 12.0,
         ..Board::BIOLOID
