@@ -1,4 +1,4 @@
-//! Drive/backdrive asymmetry: the gear loses more of the motor's torque than of the load's, or less.
+//! Drive/backdrive asymmetry: of the motor's torque a gear loses another share than of the load's.
 
 use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
 
