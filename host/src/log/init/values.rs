@@ -89,7 +89,7 @@ pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<Spe
     }
     // Where noise outweighs motion, nothing can be said.
     let alike = cross / (square * own).sqrt();
-    if !(alike.abs() > 0.7) {
+    if alike.is_nan() || alike.abs() <= 0.7 {
         return None;
     }
     // Noise of the slopes lowers their share in the speed and the reverse; between the two lies
@@ -175,7 +175,7 @@ pub fn gravity_of_torques(
     let b = nalgebra::DVector::from_fn(rows.len(), |i, _| rows[i][0]);
     let found = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
     let unexplained = (&a * &found - &b).norm() / b.norm();
-    if !(unexplained < 0.4) {
+    if unexplained.is_nan() || unexplained >= 0.4 {
         return None;
     }
     let (sin, cos) = (found[0], found[1]);

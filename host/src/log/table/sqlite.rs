@@ -41,6 +41,9 @@ pub(super) type Row = (i64, Vec<Value>);
 /// What is wrong with a file.
 type Broken = &'static str;
 
+/// What takes the rows of a table, with the names of its columns.
+type Visitor<'v> = dyn FnMut(&[String], Row) -> Result<(), Broken> + 'v;
+
 impl<'a> Sqlite<'a> {
     /// # Errors
     /// Bytes that are no such file.
@@ -75,18 +78,15 @@ impl<'a> Sqlite<'a> {
     ///
     /// # Errors
     /// No such table, broken pages, and what the visitor refuses.
-    pub fn rows(
-        &self,
-        table: &str,
-        visitor: &mut dyn FnMut(&[String], Row) -> Result<(), Broken>,
-    ) -> Result<(), Broken> {
+    pub fn rows(&self, table: &str, visitor: &mut Visitor<'_>) -> Result<(), Broken> {
         let mut found = None;
         self.walk(1, &mut |(_, values)| {
-            if let [kind, name, _, Value::Integer(root), sql, ..] = values.as_slice() {
-                if kind.text() == Some("table") && name.text() == Some(table) {
-                    let root = usize::try_from(*root).map_err(|_| "a table begins on no page")?;
-                    found = Some((root, columns(sql.text().unwrap_or_default())));
-                }
+            if let [kind, name, _, Value::Integer(root), sql, ..] = values.as_slice()
+                && kind.text() == Some("table")
+                && name.text() == Some(table)
+            {
+                let root = usize::try_from(*root).map_err(|_| "a table begins on no page")?;
+                found = Some((root, columns(sql.text().unwrap_or_default())));
             }
             Ok(())
         })?;
