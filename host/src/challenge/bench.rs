@@ -102,8 +102,9 @@ const FRICTION: [(&str, f64, f64); 2] = [("viscous", 0.01, 0.03), ("coulomb", 0.
 /// First of the streams from which the robot's hidden effects are drawn.
 const SECRETS: u64 = 200;
 /// Kinds that only driven joints have.
-const OF_DRIVES: [&str; 10] = [
+const OF_DRIVES: [&str; 11] = [
     "load_friction",
+    "drive_asymmetry",
     "direction_asymmetry",
     "dead_zone",
     "delay",

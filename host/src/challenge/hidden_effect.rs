@@ -44,7 +44,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-const EFFECTS: [(&str, Parameters); 23] = [
+const EFFECTS: [(&str, Parameters); 24] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -96,6 +96,13 @@ const EFFECTS: [(&str, Parameters); 23] = [
         ],
     ),
     ("torque_scale", &[("factor", Factor(0.08, 0.25))]),
+    (
+        "drive_asymmetry",
+        &[
+            ("motor_factor", Within(0.1, 0.25)),
+            ("outside_factor", Within(0.0, 0.05)),
+        ],
+    ),
 ];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.

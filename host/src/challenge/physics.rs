@@ -26,6 +26,7 @@ pub struct Physics {
     excess: f64,
     stribeck_speed: f64,
     load_factor: f64,
+    gear_factors: [f64; 2],
     half_difference: f64,
     dead_width: f64,
     dead_punch: f64,
@@ -109,6 +110,7 @@ impl Physics {
             ("coulomb", &[f]) => self.coulomb += f,
             ("stribeck", &[excess, speed]) => (self.excess, self.stribeck_speed) = (excess, speed),
             ("load_friction", &[factor]) => self.load_factor = factor,
+            ("drive_asymmetry", &[motor, outside]) => self.gear_factors = [motor, outside],
             ("direction_asymmetry", &[half]) => self.half_difference = half,
             ("dead_zone", &[width, punch]) => (self.dead_width, self.dead_punch) = (width, punch),
             ("delay", &[delay]) => self.delay_s = delay,
@@ -185,10 +187,14 @@ impl Physics {
         torque
     }
 
-    /// Magnitude of dry friction, N m, against `direction`, with `gear_load` N m through the gear.
-    pub fn friction(&self, speed: f64, direction: f64, gear_load: f64) -> f64 {
+    /// Magnitude of dry friction, N m, against `direction`; the motor gives `drive` N m, and
+    /// `holding` N m would hold the joint against the load.
+    pub fn friction(&self, speed: f64, direction: f64, drive: f64, holding: f64) -> f64 {
+        let gear_load = (drive + holding).abs();
         let mut magnitude =
             self.coulomb + self.load_factor * gear_load + self.half_difference * direction;
+        let [motor, outside] = self.gear_factors;
+        magnitude += (motor * drive + outside * holding).abs();
         if self.excess != 0.0 {
             magnitude += self.excess * (-speed.abs() / self.stribeck_speed).exp();
         }

@@ -192,11 +192,11 @@ impl<'a> Robot<'a> {
         });
         // Impulses of dry friction, least and most.
         let limits: [(f64, f64); LINKS] = std::array::from_fn(|k| {
-            let load = match joints[k].stall_nm > 0.0 {
-                true => (drive[k] + needed[k]).abs(),
-                false => 0.0,
+            let (motor, holding) = match joints[k].stall_nm > 0.0 {
+                true => (drive[k], needed[k]),
+                false => (0.0, 0.0),
             };
-            let most = |direction| h * joints[k].friction(at_speed[k], direction, load);
+            let most = |direction| h * joints[k].friction(at_speed[k], direction, motor, holding);
             (-most(1.0), most(-1.0))
         });
         let mut impulse: Joints =

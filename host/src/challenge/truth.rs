@@ -77,8 +77,7 @@ impl<'a> Arm<'a> {
         let smooth = self.physics.smooth(self.angle, at_speed);
         let pushed = self.speed + h / self.inertia * (drive + smooth - holding);
         let direction = if pushed < 0.0 { -1.0 } else { 1.0 };
-        let gear_load = (drive + holding).abs();
-        let friction = self.physics.friction(at_speed, direction, gear_load);
+        let friction = self.physics.friction(at_speed, direction, drive, holding);
         direction * (pushed.abs() - h / self.inertia * friction).max(0.0)
     }
 

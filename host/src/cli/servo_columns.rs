@@ -133,6 +133,7 @@ impl ServoColumns {
                 velocity: None,
                 input: Some(input.clone().into()),
             }],
+            arm: None,
             split_at_gap_s: None,
         })
     }

@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the residual torque is a square wave in step with the sign of the speed; a free \
      swing loses the same angle every half period (straight envelope) and stops off the bottom",
     confused_with: &[
+        "drive_asymmetry: the same at one load; change the mass or the length of the arm",
         "dead_zone: both swallow small commands; with the torque off only friction remains",
         "stribeck: both jump at reversal; Stribeck's part fades as speed grows",
         "load_friction: the same at one load; change the mass or the arm's length",

@@ -16,6 +16,7 @@ mod coulomb;
 mod dead_zone;
 mod delay;
 mod direction_asymmetry;
+mod drive_asymmetry;
 mod encoder_scale;
 mod encoder_zero;
 pub mod expression;
@@ -57,6 +58,7 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &coulomb::Coulomb,
     &stribeck::Stribeck,
     &load_friction::LoadFriction,
+    &drive_asymmetry::DriveAsymmetry,
     &bearing_friction::BearingFriction,
     &direction_asymmetry::DirectionAsymmetry,
     &viscous::Viscous,
@@ -302,6 +304,10 @@ pub struct Slide {
     /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear
     /// transmits.
     pub gear_load_nm: f64,
+    /// Torque of the motor, N m.
+    pub motor_nm: f64,
+    /// Torque from outside (gravity, coupling), N m.
+    pub outside_nm: f64,
     /// Magnitude of the force in the bearing, N.
     pub bearing_load_n: f64,
 }

@@ -181,6 +181,8 @@ fn friction(effect: &dyn Effect, values: &[f64], speed: f64, gear_nm: f64, beari
         speed_rad_s: speed.abs(),
         direction,
         gear_load_nm: gear_nm,
+        motor_nm: gear_nm,
+        outside_nm: 0.0,
         bearing_load_n: bearing_n,
     };
     direction * effect.friction(values, &slide)

@@ -4,7 +4,7 @@
 use super::condition::{Condition, payload_at_m};
 use super::inputs::{Goals, asked};
 use super::limits::ExperimentLimits;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
@@ -54,6 +54,15 @@ pub(super) fn experiments(
     seed: u64,
 ) -> Result<Vec<Experiment>> {
     limits.check()?;
+    if model.driven_joints().is_empty() {
+        return Err(Error::usage(
+            format!(
+                "no joint of `{}` is driven, so no motion can be asked of it",
+                model.name
+            ),
+            "let it swing by hand from other angles, or with a known mass on the last link",
+        ));
+    }
     let mut planned: Vec<(f64, Excitation)> = Vec::new();
     let mut refused = None;
     for width in WIDTHS {

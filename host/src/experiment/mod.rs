@@ -1,6 +1,6 @@
 //! Which experiment tells explanations apart that the logs leave open, or tightens a value.
 //!
-//! Optimal experiment design by simulation: motions of [`excite`](crate::excite) within limits,
+//! Optimal experiment design by simulation: motions of [`excite`] within limits,
 //! under conditions that a person can change (a known mass, the rig turned, another supply), are
 //! predicted by every explanation that is left, each fitted to the logs. Explanations are told
 //! apart by the experiment in which the closest two of them differ most, in standard errors, after

@@ -5,17 +5,16 @@ use super::condition::usual_mass_kg;
 use super::limits::ExperimentLimits;
 use super::prediction::predicted_motion;
 use super::proposal::{
-    ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation, TightenedValue,
+    ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation,
 };
 use super::rival::{Rival, rivals};
 use super::separation::{Separations, by_derivatives, by_fits, pairs};
-use super::tighten::{Criterion, covariance_with};
+use super::tighten::{Criterion, tightened};
 use crate::diagnose::{Diagnosis, Verdict, how_to_measure};
 use crate::error::Result;
-use crate::fitting::{FitData, Horizon, intervals};
+use crate::fitting::{FitData, Horizon};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Standard errors from which a diagnosis tells two explanations apart: an explanation is replaced
@@ -101,7 +100,7 @@ pub fn propose_values(
     tightened(&rival, &places, &logs, horizon, options)
 }
 
-fn nothing(rivals: &[Rival]) -> ExperimentProposal {
+pub(super) fn nothing(rivals: &[Rival]) -> ExperimentProposal {
     ExperimentProposal {
         verdict: None,
         rivals: rivals.iter().map(|rival| rival.name.clone()).collect(),
@@ -114,7 +113,7 @@ fn nothing(rivals: &[Rival]) -> ExperimentProposal {
     }
 }
 
-fn all_experiments(rival: &Rival, options: &ProposeOptions) -> Result<Vec<Experiment>> {
+pub(super) fn all_experiments(rival: &Rival, options: &ProposeOptions) -> Result<Vec<Experiment>> {
     let model = &rival.fit.model;
     let mass_kg = options.mass_kg.unwrap_or_else(|| usual_mass_kg(model));
     experiments(model, &options.limits, mass_kg, options.seed)
@@ -237,67 +236,7 @@ fn measured(proposal: &ExperimentProposal) -> Vec<MeasuredValue> {
     found
 }
 
-/// The experiment that tightens the values at `places` most.
-fn tightened(
-    rival: &Rival,
-    places: &[usize],
-    logs: &FitData,
-    horizon: Horizon,
-    options: &ProposeOptions,
-) -> Result<ExperimentProposal> {
-    let mut proposal = nothing(std::slice::from_ref(rival));
-    let before = rival.known.clone().try_inverse();
-    let Some(before) = before.filter(|_| !places.is_empty()) else {
-        return Ok(proposal);
-    };
-    let experiments = all_experiments(rival, options)?;
-    let judged = experiments.par_iter().filter_map(|experiment| {
-        let after = covariance_with(rival, experiment, &options.limits, logs, horizon)?;
-        let gain = options.criterion.gain(&before, &after, places);
-        Some((experiment, after, gain))
-    });
-    let judged: Vec<(&Experiment, DMatrix<f64>, f64)> = judged.collect();
-    proposal.simulated = experiments.len();
-    proposal.within_limits = judged.len();
-    let best = judged.iter().max_by(|(a, _, gain_a), (b, _, gain_b)| {
-        gain_a.total_cmp(gain_b).then(b.effort().cmp(&a.effort()))
-    });
-    let Some((experiment, after, _)) = best else {
-        return Ok(proposal);
-    };
-    proposal.experiment = Some(proposed(experiment, rival, &options.limits));
-    proposal.values = tighter(rival, places, logs, &before, after);
-    Ok(proposal)
-}
-
-/// Standard errors before, as the logs have them, and after, smaller by the ratio of covariances.
-fn tighter(
-    rival: &Rival,
-    places: &[usize],
-    logs: &FitData,
-    before: &DMatrix<f64>,
-    after: &DMatrix<f64>,
-) -> Vec<TightenedValue> {
-    let known = intervals(&rival.fit, logs).map(|(intervals, _)| intervals);
-    let values = rival.fit.values();
-    let tightened = places.iter().map(|&i| {
-        let path = rival.fit.free[i];
-        let error = match &known {
-            Some(intervals) => intervals[i].standard_error,
-            None => before[(i, i)].sqrt(),
-        };
-        TightenedValue {
-            path: path.to_string(),
-            unit: path.unit().to_string(),
-            value: values[i],
-            standard_error_before: error,
-            standard_error_after: error * (after[(i, i)] / before[(i, i)]).sqrt(),
-        }
-    });
-    tightened.collect()
-}
-
-fn proposed(
+pub(super) fn proposed(
     experiment: &Experiment,
     rival: &Rival,
     limits: &ExperimentLimits,

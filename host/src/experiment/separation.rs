@@ -4,16 +4,15 @@ use super::candidates::Experiment;
 use super::limits::ExperimentLimits;
 use super::prediction::{as_data, predicted_motion};
 use super::rival::Rival;
-use crate::fitting::{FitData, FitOptions, Horizon, fit, fit_start_states};
+use crate::fitting::{Fit, FitData, FitOptions, Horizon, fit};
 use rayon::prelude::*;
 
 /// Iterations of a fit of start states.
-const START: usize = 4;
+const START: usize = 6;
 /// Iterations of the fit that confirms a separation.
 const CONFIRM: usize = 15;
 
-/// Separation of each pair of rivals `(a, b)`, a before b, in standard errors; `None` where a rival
-/// leaves the limits.
+/// Separation of each pair of rivals `(a, b)`, a before b, in standard errors.
 pub(super) struct Separations {
     /// In the order of [`pairs`].
     pub of_pairs: Vec<f64>,
@@ -27,24 +26,36 @@ pub(super) fn pairs(rivals: usize) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The experiment as each rival predicts it, as data; `None` where one leaves the limits.
+/// An experiment as one rival predicts it.
+struct Prediction {
+    /// Without noise.
+    data: FitData,
+    /// The rival's own start states fitted to it: what that leaves is no separation. Where dry
+    /// friction holds at the start, it is not nothing.
+    own: Fit,
+}
+
+/// The experiment as each rival predicts it; `None` where one leaves the limits.
 fn predictions(
     rivals: &[Rival],
     experiment: &Experiment,
     limits: &ExperimentLimits,
     logs: &FitData,
     horizon: Horizon,
-) -> Option<Vec<FitData>> {
+) -> Option<Vec<Prediction>> {
     let motions = rivals.iter().map(|rival| {
         let motion = predicted_motion(&rival.fit.model, experiment);
-        limits.keeps(&rival.fit.model, &motion).then_some(motion)
+        let keeps = limits.keeps(&rival.fit.model, &motion);
+        keeps.then_some((rival, motion))
     });
-    let motions = motions.collect::<Option<Vec<_>>>()?;
-    let data = rivals.iter().zip(motions);
-    Some(
-        data.map(|(rival, motion)| as_data(&rival.fit.model, motion, logs, horizon, 1))
-            .collect(),
-    )
+    let motions = motions.collect::<Option<Vec<_>>>()?.into_iter();
+    let predictions = motions.map(|(rival, motion)| {
+        let model = &rival.fit.model;
+        let data = as_data(model, motion, logs, horizon, 1);
+        let own = fit(model, &[], &data, None, FitOptions::iterations(START));
+        Prediction { data, own }
+    });
+    Some(predictions.collect())
 }
 
 /// Separations by derivatives: each rival moves its free values one Gauss-Newton step towards what
@@ -56,22 +67,15 @@ pub(super) fn by_derivatives(
     logs: &FitData,
     horizon: Horizon,
 ) -> Option<Separations> {
-    let data = predictions(rivals, experiment, limits, logs, horizon)?;
+    let predictions = predictions(rivals, experiment, limits, logs, horizon)?;
     let squared = |truth: usize, other: usize| {
-        let rival = &rivals[other];
-        let (model, free) = (&rival.fit.model, &rival.fit.free);
-        // Where dry friction holds at the start, derivatives are good near the right state alone.
-        let start = FitOptions::iterations(START).rough();
-        let started = fit(model, &[], &data[truth], None, start);
-        let (nodes, options) = (Some(&started.nodes[..]), FitOptions::iterations(0));
-        let at = fit(model, free, &data[truth], nodes, options);
-        rival.share * at.information().cost_left(&rival.known)
+        let (rival, Prediction { data, own }) = (&rivals[other], &predictions[truth]);
+        let (nodes, options) = (Some(&own.nodes[..]), FitOptions::iterations(0));
+        let at = fit(&rival.fit.model, &rival.fit.free, data, nodes, options);
+        let left = at.information().cost_left(&rival.known) - own.information().cost;
+        rival.share * left.max(0.0)
     };
-    let of_pairs = pairs(rivals.len()).into_iter();
-    let of_pairs = of_pairs.map(|(a, b)| squared(a, b).min(squared(b, a)).sqrt());
-    Some(Separations {
-        of_pairs: of_pairs.collect(),
-    })
+    Some(of_pairs(rivals.len(), squared))
 }
 
 /// The same by fitting each rival to the logs and to what the other predicts, together.
@@ -82,20 +86,24 @@ pub(super) fn by_fits(
     logs: &FitData,
     horizon: Horizon,
 ) -> Option<Separations> {
-    let data = predictions(rivals, experiment, limits, logs, horizon)?;
+    let predictions = predictions(rivals, experiment, limits, logs, horizon)?;
     let squared = |truth: usize, other: usize| {
-        let rival = &rivals[other];
-        let (model, free) = (&rival.fit.model, &rival.fit.free);
-        let mut nodes = rival.fit.nodes.clone();
-        nodes.extend(fit_start_states(model, &data[truth]).nodes);
-        let joined = logs.joined(&data[truth]);
+        let (rival, Prediction { data, own }) = (&rivals[other], &predictions[truth]);
+        let nodes = [&rival.fit.nodes[..], &own.nodes].concat();
         let options = FitOptions::iterations(CONFIRM).rough();
-        let found = fit(model, free, &joined, Some(&nodes), options);
-        rival.share * (found.residuals.cost() - rival.fit.residuals.cost()).max(0.0)
+        let (model, free) = (&rival.fit.model, &rival.fit.free);
+        let found = fit(model, free, &logs.joined(data), Some(&nodes), options);
+        let alone = rival.fit.residuals.cost() + own.residuals.cost();
+        rival.share * (found.residuals.cost() - alone).max(0.0)
     };
-    let of_pairs = pairs(rivals.len()).into_par_iter();
-    let of_pairs = of_pairs.map(|(a, b)| squared(a, b).min(squared(b, a)).sqrt());
-    Some(Separations {
-        of_pairs: of_pairs.collect(),
-    })
+    Some(of_pairs(rivals.len(), squared))
+}
+
+/// The smaller of both directions of each pair, from the squares.
+fn of_pairs(rivals: usize, squared: impl Fn(usize, usize) -> f64 + Sync) -> Separations {
+    let pairs = pairs(rivals).into_par_iter();
+    let apart = pairs.map(|(a, b)| squared(a, b).min(squared(b, a)).sqrt());
+    Separations {
+        of_pairs: apart.collect(),
+    }
 }

@@ -1,5 +1,6 @@
 //! Explanations that are known to look alike, on one arm.
 
+use super::candidates::with_payload_place;
 use super::inputs::at_rest;
 use super::limits::ExperimentLimits;
 use super::proposal::{ExperimentProposal, RivalName};
@@ -52,7 +53,7 @@ input = { column = "duty", unit = "1" }
 "#;
 
 fn arm() -> Model {
-    Model::parse(ARM, Path::new("arm.toml")).unwrap()
+    with_payload_place(&Model::parse(ARM, Path::new("arm.toml")).unwrap())
 }
 
 /// The arm with an effect, its values free beside the arm's own.

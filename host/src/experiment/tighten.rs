@@ -3,9 +3,13 @@
 use super::candidates::Experiment;
 use super::limits::ExperimentLimits;
 use super::prediction::{as_data, predicted_motion};
+use super::proposal::{ExperimentProposal, TightenedValue};
+use super::propose::{ProposeOptions, all_experiments, nothing, proposed};
 use super::rival::Rival;
-use crate::fitting::{FitData, FitOptions, Horizon, fit};
+use crate::error::Result;
+use crate::fitting::{FitData, FitOptions, Horizon, fit, intervals};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 /// What a design makes small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,7 +23,7 @@ pub enum Criterion {
 
 /// Covariance of the free values, start states eliminated, with the logs and one experiment more;
 /// `None` where the model leaves the limits, or where it is not determined.
-pub(super) fn covariance_with(
+fn covariance_with(
     rival: &Rival,
     experiment: &Experiment,
     limits: &ExperimentLimits,
@@ -63,6 +67,66 @@ impl Criterion {
             }
         }
     }
+}
+
+/// The experiment that tightens the values at `places` most.
+pub(super) fn tightened(
+    rival: &Rival,
+    places: &[usize],
+    logs: &FitData,
+    horizon: Horizon,
+    options: &ProposeOptions,
+) -> Result<ExperimentProposal> {
+    let mut proposal = nothing(std::slice::from_ref(rival));
+    let before = rival.known.clone().try_inverse();
+    let Some(before) = before.filter(|_| !places.is_empty()) else {
+        return Ok(proposal);
+    };
+    let experiments = all_experiments(rival, options)?;
+    let judged = experiments.par_iter().filter_map(|experiment| {
+        let after = covariance_with(rival, experiment, &options.limits, logs, horizon)?;
+        let gain = options.criterion.gain(&before, &after, places);
+        Some((experiment, after, gain))
+    });
+    let judged: Vec<(&Experiment, DMatrix<f64>, f64)> = judged.collect();
+    proposal.simulated = experiments.len();
+    proposal.within_limits = judged.len();
+    let best = judged.iter().max_by(|(a, _, gain_a), (b, _, gain_b)| {
+        gain_a.total_cmp(gain_b).then(b.effort().cmp(&a.effort()))
+    });
+    let Some((experiment, after, _)) = best else {
+        return Ok(proposal);
+    };
+    proposal.experiment = Some(proposed(experiment, rival, &options.limits));
+    proposal.values = tighter(rival, places, logs, &before, after);
+    Ok(proposal)
+}
+
+/// Standard errors before, as the logs have them, and after, smaller by the ratio of covariances.
+fn tighter(
+    rival: &Rival,
+    places: &[usize],
+    logs: &FitData,
+    before: &DMatrix<f64>,
+    after: &DMatrix<f64>,
+) -> Vec<TightenedValue> {
+    let known = intervals(&rival.fit, logs).map(|(intervals, _)| intervals);
+    let values = rival.fit.values();
+    let tightened = places.iter().map(|&i| {
+        let path = rival.fit.free[i];
+        let error = match &known {
+            Some(intervals) => intervals[i].standard_error,
+            None => before[(i, i)].sqrt(),
+        };
+        TightenedValue {
+            path: path.to_string(),
+            unit: path.unit().to_string(),
+            value: values[i],
+            standard_error_before: error,
+            standard_error_after: error * (after[(i, i)] / before[(i, i)]).sqrt(),
+        }
+    });
+    tightened.collect()
 }
 
 #[cfg(test)]

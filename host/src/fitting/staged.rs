@@ -4,9 +4,10 @@
 //! long one the values are known best. Each stage starts where the one before ended (Bock 1981,
 //! multiple shooting; homotopy in the length of the windows).
 
-use super::data::{FitData, Horizon};
+use super::data::{FitData, Horizon, Window};
 use super::fit::{Fit, FitOptions};
-use super::solve::fit;
+use super::node::Node;
+use super::solve::{fit, guessed_nodes};
 use crate::model::{Model, ParameterPath};
 
 /// Seconds of one window, stage by stage.
@@ -22,21 +23,50 @@ const STAGE: FitOptions = FitOptions {
 /// Root-mean-square weighted residual that leaves nothing to look for.
 const AT_FLOOR: f64 = 1.15;
 
-/// The model after the stages of short windows, and the simulations that took.
-fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> (Model, usize) {
+/// Where the stages of short windows end.
+struct Near {
+    model: Model,
+    /// Start states of the windows that were to be fitted.
+    nodes: Vec<Node>,
+    simulations: usize,
+}
+
+fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> Near {
     let longest = data.windows.iter().map(|w| w.samples.len()).max();
-    let mut at = model.clone();
-    let mut simulations = 0;
+    let mut near = Near {
+        model: model.clone(),
+        nodes: guessed_nodes(data),
+        simulations: 0,
+    };
+    let mut before: Option<(Vec<Window>, Vec<Node>)> = None;
     for seconds in STAGES_S {
         let stage = data.recut(Horizon::Seconds(seconds));
         if stage.windows.iter().map(|w| w.samples.len()).max() >= longest {
             break;
         }
-        let found = fit(&at, free, &stage, None, STAGE);
-        at = found.model;
-        simulations += found.simulations;
+        let nodes = carried(before.as_ref(), &stage);
+        let found = fit(&near.model, free, &stage, Some(&nodes), STAGE);
+        near.model = found.model;
+        near.simulations += found.simulations;
+        before = Some((stage.windows, found.nodes));
     }
-    (at, simulations)
+    near.nodes = carried(before.as_ref(), data);
+    near
+}
+
+/// Start states of the windows of `data`: those of the windows before that start with the same
+/// sample, else as the samples suggest. Guesses alone may lead a long window into a false valley.
+fn carried(before: Option<&(Vec<Window>, Vec<Node>)>, data: &FitData) -> Vec<Node> {
+    let known = |window: &Window| {
+        let (windows, nodes) = before?;
+        let start = |w: &Window| (w.motion, w.samples.start);
+        let same = windows.iter().position(|w| start(w) == start(window))?;
+        Some(nodes[same].clone())
+    };
+    let windows = data.windows.iter();
+    windows
+        .map(|window| known(window).unwrap_or_else(|| data.guessed(window)))
+        .collect()
 }
 
 /// Fits the free parameters from values that may be several times off; windows as in `data`.
@@ -49,9 +79,10 @@ pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit 
     if mean.sqrt() < AT_FLOOR {
         return plain;
     }
-    let (near, simulations) = stages(model, free, data);
-    let mut staged = fit(&near, free, data, None, FitOptions::default());
-    staged.simulations += simulations + plain.simulations;
+    let near = stages(model, free, data);
+    let nodes = Some(&near.nodes[..]);
+    let mut staged = fit(&near.model, free, data, nodes, FitOptions::default());
+    staged.simulations += near.simulations + plain.simulations;
     if staged.residuals.cost() < plain.residuals.cost() {
         staged
     } else {

@@ -9,21 +9,38 @@ use super::reason::LogReason;
 use super::request::LogRequest;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
+use crate::model::ArmFigures;
 use crate::output::number::hex;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
+/// How far a bench's mass and moment may lie off the model's, as a share: a model's link counts the
+/// arm and what was fitted, the bench its weight.
+const TOLERANCE: f64 = 0.25;
+
+/// What the logs of one rig have in common.
+#[derive(Debug, Default)]
+pub(super) struct BamBench {
+    /// The first log that names its gain, and the gain.
+    kp: Option<(String, f64)>,
+}
+
 /// Reads the log, or the entries asked for, as one motion.
 ///
-/// The mass in the file belongs to the model, so the motion carries no payload. Speed, supply and
+/// The mass in the file belongs to the model, so the motion carries no payload; with `length`, it
+/// must be that of the model's one link, and `kp` that of the logs before. Speed, supply and
 /// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from
 /// 1.
 ///
 /// # Errors
 /// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
-/// does not increase; fewer than [`LEAST_ROWS`] entries.
-pub(super) fn read(request: &LogRequest) -> Result<Motion> {
+/// does not increase; fewer than [`LEAST_ROWS`] entries; mass, length or gain of another rig.
+pub(super) fn read(
+    request: &LogRequest,
+    arm: Option<ArmFigures>,
+    bench: &mut BamBench,
+) -> Result<Motion> {
     let path = &request.path;
     let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
     let log: Value = serde_json::from_slice(&bytes).map_err(|error| {
@@ -32,6 +49,7 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
         Error::refused(place, LogReason::NotJson { message })
     })?;
     let refuse = |reason| Error::refused(Place::file(path), reason);
+    bench.check(&log, arm, &request.name()).map_err(refuse)?;
     let all = log.get("entries").and_then(Value::as_array);
     let all = all.ok_or_else(|| refuse(LogReason::NoEntries))?;
     let entries = all.len();
@@ -72,6 +90,52 @@ pub(super) fn read(request: &LogRequest) -> Result<Motion> {
         payload_kg: 0.0,
         turned: false,
     })
+}
+
+impl BamBench {
+    /// Holds a log's figures against the model's, and its gain against the logs before.
+    fn check(&mut self, log: &Value, arm: Option<ArmFigures>, name: &str) -> Result<(), LogReason> {
+        let number = |key: &str| log.get(key).and_then(Value::as_f64);
+        if let (Some(arm), Some(mass_kg), Some(length_m)) = (arm, number("mass"), number("length"))
+        {
+            let rod_kg = number("arm_mass").unwrap_or(0.0);
+            let (found_kg, found_kg_m) = (mass_kg + rod_kg, (mass_kg + rod_kg / 2.0) * length_m);
+            let compared = [
+                ("mass", found_kg, arm.mass_kg, "kg"),
+                (
+                    "mass times length",
+                    found_kg_m,
+                    arm.mass_kg * arm.com_m.abs(),
+                    "kg m",
+                ),
+            ];
+            for (quantity, found, expected, unit) in compared {
+                if (found - expected).abs() > TOLERANCE * expected {
+                    return Err(LogReason::OtherRig {
+                        quantity,
+                        found,
+                        expected,
+                        unit,
+                    });
+                }
+            }
+        }
+        match (number("kp"), &self.kp) {
+            (Some(found), Some((first, expected))) if found != *expected => {
+                let (expected, first) = (*expected, first.clone());
+                Err(LogReason::OtherGain {
+                    found,
+                    expected,
+                    first,
+                })
+            }
+            (Some(kp), None) => {
+                self.kp = Some((name.to_string(), kp));
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 struct Entries<'a> {

@@ -4,18 +4,10 @@ use super::header::LogHeader;
 use super::lines::Lines;
 use super::row::LogRow;
 use super::row_reader::RowReader;
+use super::visit::FileFacts;
 use crate::error::Result;
 use crate::model::LogColumns;
 use std::path::Path;
-
-/// What is known of a file once it has been read through.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FileFacts {
-    /// SHA-256 of all its bytes, lower-case hexadecimal.
-    pub sha256: String,
-    /// Data rows, unreadable ones included.
-    pub rows: usize,
-}
 
 /// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
 ///
@@ -25,7 +17,7 @@ pub struct FileFacts {
 ///
 /// # Errors
 /// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.
-pub fn visit(
+pub(super) fn visit(
     path: &Path,
     columns: &LogColumns,
     visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,

@@ -2,6 +2,7 @@
 
 use super::lines::Lines;
 use super::reason::LogReason;
+use super::table::Table;
 use crate::error::{Error, Place, Result};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -78,6 +79,20 @@ impl LogHeader {
                 constants,
             };
             return Ok((header, first));
+        }
+    }
+
+    /// The header of a table.
+    pub fn of_table(path: &Path, table: &Table) -> LogHeader {
+        let constants = table.constants.iter();
+        LogHeader {
+            path: path.to_path_buf(),
+            separator: b',',
+            names: table.names.clone(),
+            line: 1,
+            constants: constants
+                .map(|(name, value)| (name.clone(), *value, 1))
+                .collect(),
         }
     }
 

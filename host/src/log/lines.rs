@@ -1,6 +1,7 @@
 //! Reads a file line by line and hashes it; holds one line at a time.
 
 use super::reason::LogReason;
+use super::standard_input::{is_standard_input, standard_input};
 use crate::error::{Error, Place, Result};
 use crate::output::number::hex;
 use sha2::{Digest, Sha256};
@@ -14,7 +15,7 @@ pub(super) const LONGEST_LINE: usize = 1 << 20;
 /// Lines of a text file without their ends (LF or CR LF) and without a byte-order mark.
 pub(super) struct Lines {
     path: PathBuf,
-    reader: BufReader<File>,
+    reader: Box<dyn BufRead + Send>,
     hash: Sha256,
     line: Vec<u8>,
     /// The present line's number, counted from 1; 0 before the first.
@@ -22,12 +23,18 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Opens `path`.
+    /// Opens `path`; `-` is the standard input.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|source| Error::file(path, "read", source))?;
+        let reader: Box<dyn BufRead + Send> = match is_standard_input(path) {
+            true => Box::new(standard_input()?),
+            false => {
+                let file = File::open(path).map_err(|source| Error::file(path, "read", source))?;
+                Box::new(BufReader::new(file))
+            }
+        };
         Ok(Lines {
             path: path.to_path_buf(),
-            reader: BufReader::new(file),
+            reader,
             hash: Sha256::new(),
             line: Vec::new(),
             number: 0,

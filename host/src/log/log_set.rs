@@ -1,5 +1,6 @@
 //! Logs as named: those to learn from, and those to judge by.
 
+use super::folder::expanded;
 use super::holdout::Split;
 use super::read::read;
 use super::request::LogRequest;
@@ -35,8 +36,9 @@ impl LogSet {
 
     /// Refuses rows that are both learned from and judged by.
     fn told_apart(&self) -> Result<()> {
-        for held in &self.held_out {
-            if let Some(fitted) = self.training.iter().find(|log| log.overlaps(held)) {
+        let training = expanded(&self.training)?;
+        for held in &expanded(&self.held_out)? {
+            if let Some(fitted) = training.iter().find(|log| log.overlaps(held)) {
                 let message = match fitted == held {
                     true => format!("{held} is fitted and held out"),
                     false => format!(

@@ -1,9 +1,11 @@
-//! Measurement logs: CSV and JSON readers, quality check, training and held-out motions.
+//! Measurement logs: one reader for every format, quality check, training and held-out motions.
 
 mod bam;
 pub(crate) mod cdr;
 pub mod check;
 mod csv;
+mod folder;
+mod format;
 mod header;
 mod holdout;
 pub mod init;
@@ -18,13 +20,17 @@ mod request;
 mod row;
 mod row_reader;
 mod shift;
+mod standard_input;
+mod table;
+mod visit;
 mod write;
 
 #[cfg(test)]
 mod tests;
 
 pub use check::{LogFinding, Proof, Severity, check};
-pub use csv::{FileFacts, visit};
+pub use folder::expanded;
+pub use format::LogFormat;
 pub use holdout::{Split, split};
 pub use log_set::LogSet;
 pub use motion::{Motion, MotionSource};
@@ -33,4 +39,5 @@ pub use read::{LEAST_ROWS, read};
 pub use reason::LogReason;
 pub use request::LogRequest;
 pub use row::{Fields, LogRow};
+pub use visit::{FileFacts, visit};
 pub use write::to_csv;

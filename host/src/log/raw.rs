@@ -1,10 +1,12 @@
 //! A log's columns as they stand in the file, before a model says what they mean.
 
-use super::bam;
+use super::bam::{self, BamBench};
+use super::format::LogFormat;
 use super::header::{LogHeader, fields, number};
 use super::iso::iso_ns;
 use super::lines::Lines;
 use super::request::LogRequest;
+use super::table::Table;
 use crate::error::{Error, Place, Result};
 use std::path::Path;
 
@@ -20,15 +22,26 @@ pub struct RawLog {
 }
 
 impl RawLog {
-    /// Reads a CSV file, or a JSON log of a BAM bench.
+    /// Reads a log of any format.
     ///
     /// # Errors
     /// A file without a header, or that is no text.
     pub fn read(path: &Path) -> Result<RawLog> {
-        let request = LogRequest::whole(path);
-        match request.is_json() {
-            true => Ok(of_bam(bam::read(&request)?)),
-            false => read_csv(path),
+        match LogFormat::of(path) {
+            LogFormat::Bam => Ok(of_bam(bam::read(
+                &LogRequest::whole(path),
+                None,
+                &mut BamBench::default(),
+            )?)),
+            LogFormat::Csv => read_csv(path),
+            format => {
+                let table = Table::read(path, format)?;
+                Ok(RawLog {
+                    iso: vec![false; table.names.len()],
+                    names: table.names,
+                    columns: table.columns,
+                })
+            }
         }
     }
 

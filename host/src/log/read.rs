@@ -1,9 +1,11 @@
 //! Reads logs into motions: cut at segments and gaps, refused where no simulation can follow.
 
-use super::csv::visit;
+use super::bam::BamBench;
+use super::folder::expanded;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::{Before, LogRow};
+use super::visit::visit;
 use super::{Motion, MotionSource, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
@@ -12,7 +14,8 @@ use std::collections::HashMap;
 /// Fewest samples a motion may have.
 pub const LEAST_ROWS: usize = 10;
 
-/// Reads the requested logs into motions, in order; a file ending in `.json` is a BAM log.
+/// Reads the requested logs into motions, in order; a file's ending says its format, a folder
+/// stands for the logs in it, `-` for CSV from the standard input.
 ///
 /// Motions are named after the file, its rows where only some were asked for, and the segment:
 /// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
@@ -27,17 +30,18 @@ pub const LEAST_ROWS: usize = 10;
 /// column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut motions = Vec::new();
-    for request in requests {
+    let mut bench = BamBench::default();
+    for request in &expanded(requests)? {
         if request.is_json() {
-            motions.push(bam::read(request)?);
+            motions.push(bam::read(request, columns.arm, &mut bench)?);
         } else {
-            motions.extend(read_csv(request, columns)?);
+            motions.extend(read_rows(request, columns)?);
         }
     }
     Ok(motions)
 }
 
-fn read_csv(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
+fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
     let mut cutter = Cutter {
         request,
         columns,

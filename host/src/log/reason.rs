@@ -165,6 +165,28 @@ pub enum LogReason {
         /// Time of the entry before it.
         previous_s: f64,
     },
+    /// A bench's own figures that are not the model's.
+    #[error("the log's {quantity} is {found:.4} {unit}, the model's link has {expected:.4} {unit}")]
+    OtherRig {
+        /// What was compared.
+        quantity: &'static str,
+        /// The log's.
+        found: f64,
+        /// The model's.
+        expected: f64,
+        /// Unit of both.
+        unit: &'static str,
+    },
+    /// Logs of one rig under different gains.
+    #[error("kp is {found}, and {expected} in {first}")]
+    OtherGain {
+        /// The log's.
+        found: f64,
+        /// That of the log before.
+        expected: f64,
+        /// The log before.
+        first: String,
+    },
 }
 
 use LogReason::*;
@@ -221,6 +243,8 @@ impl Reason for LogReason {
             WrongEntry { .. } => {
                 "leave the entry out by a range such as log.json:0-99, or record again"
             }
+            OtherRig { .. } => "give the model of the rig that the log names, or mend its link",
+            OtherGain { .. } => "give the logs of one gain together: a model's drive has one gain",
             EntryTime { .. } => {
                 "ask for a range of entries without the step, such as log.json:0-99"
             }

@@ -1,5 +1,6 @@
 //! A log as named on the command line: a path, and the rows wanted.
 
+use super::format::LogFormat;
 use super::reason::LogReason;
 use crate::error::{Error, Result};
 use std::fmt;
@@ -57,11 +58,9 @@ impl LogRequest {
         }
     }
 
-    /// Whether it is a JSON log rather than CSV.
+    /// Whether it is a BAM bench's JSON, which states its own units.
     pub fn is_json(&self) -> bool {
-        self.path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+        LogFormat::of(&self.path) == LogFormat::Bam
     }
 }
 

@@ -116,11 +116,40 @@ impl<'a> RowReader<'a> {
             let reason = LogReason::FieldCount { found, expected };
             return Err(Error::refused(place, reason));
         }
-        let line = Cells {
-            reader: self,
-            fields: &fields,
-            at,
-        };
+        let source = RowSource::Text(&fields);
+        self.take(
+            &Cells {
+                reader: self,
+                source,
+                at,
+            },
+            row,
+        )
+    }
+
+    /// Fills `row` from one row of a table's columns; what is not a number is a gap.
+    ///
+    /// # Errors
+    /// An infinite number, a flag that is neither 0 nor 1, and a row without a time.
+    pub fn fill_numbers(
+        &self,
+        columns: &[Vec<f64>],
+        number: usize,
+        row: &mut LogRow,
+    ) -> Result<()> {
+        let source = RowSource::Numbers(columns, number);
+        let at = number + 1;
+        self.take(
+            &Cells {
+                reader: self,
+                source,
+                at,
+            },
+            row,
+        )
+    }
+
+    fn take(&self, line: &Cells, row: &mut LogRow) -> Result<()> {
         row.time_s = line.value(&self.time)?;
         row.segment = self.segment.as_ref().map(|cell| line.text(cell).into());
         row.supply_v = self.supply.as_ref().map(|q| line.gap_or(q)).transpose()?;
@@ -140,10 +169,18 @@ impl<'a> RowReader<'a> {
     }
 }
 
-/// The fields of one line.
+/// What a row is made of.
+enum RowSource<'a> {
+    /// The fields of one line.
+    Text(&'a [Cow<'a, str>]),
+    /// A row of these columns, counted from 0.
+    Numbers(&'a [Vec<f64>], usize),
+}
+
+/// The fields of one row.
 struct Cells<'a> {
     reader: &'a RowReader<'a>,
-    fields: &'a [Cow<'a, str>],
+    source: RowSource<'a>,
     at: usize,
 }
 
@@ -166,8 +203,16 @@ impl Cells<'_> {
 
     /// The value, or not a number where there is none.
     fn gap_or(&self, quantity: &LogQuantity) -> Result<f64> {
-        let text = self.text(&quantity.cell);
-        match text.is_empty() || text.eq_ignore_ascii_case("nan") {
+        let is_gap = match (&quantity.cell, &self.source) {
+            (LogCell::Field(index), RowSource::Numbers(columns, row)) => {
+                columns[*index][*row].is_nan()
+            }
+            (cell, _) => {
+                let text = self.text(cell);
+                text.is_empty() || text.eq_ignore_ascii_case("nan")
+            }
+        };
+        match is_gap {
             true => Ok(f64::NAN),
             false => self.value(quantity),
         }
@@ -177,9 +222,9 @@ impl Cells<'_> {
         let written = match cell {
             LogCell::Constant(value, _) => Some(*value),
             LogCell::Field(index) if column.unit.name == "iso8601" => {
-                return self.stamp_s(cell, &self.fields[*index]);
+                return self.stamp_s(cell, *index);
             }
-            LogCell::Field(index) => number(&self.fields[*index], self.reader.separator),
+            LogCell::Field(index) => self.written(*index),
         };
         match written.map(|written| column.to_si(written)) {
             Some(value) if value.is_finite() => Ok(value),
@@ -188,10 +233,19 @@ impl Cells<'_> {
         }
     }
 
+    /// The number that stands in a field, if one does.
+    fn written(&self, index: usize) -> Option<f64> {
+        match &self.source {
+            RowSource::Text(fields) => number(&fields[index], self.reader.separator),
+            RowSource::Numbers(columns, row) => Some(columns[index][*row]).filter(|v| !v.is_nan()),
+        }
+    }
+
     /// Seconds since the file's first stamp.
-    fn stamp_s(&self, cell: &LogCell, text: &str) -> Result<f64> {
+    fn stamp_s(&self, cell: &LogCell, index: usize) -> Result<f64> {
         let expected = "a time stamp such as 2026-03-01T12:00:00.5Z";
-        let stamp_ns = iso_ns(text).ok_or_else(|| self.refuse(cell, expected))?;
+        let stamp_ns = iso_ns(&self.text(&LogCell::Field(index)))
+            .ok_or_else(|| self.refuse(cell, expected))?;
         let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
         self.reader.first_ns.set(Some(first_ns));
         Ok(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
@@ -209,7 +263,11 @@ impl Cells<'_> {
 
     fn text(&self, cell: &LogCell) -> Cow<'_, str> {
         match cell {
-            LogCell::Field(index) => Cow::Borrowed(&self.fields[*index]),
+            LogCell::Field(index) => match &self.source {
+                RowSource::Text(fields) => Cow::Borrowed(&fields[*index]),
+                RowSource::Numbers(columns, row) if columns[*index][*row].is_nan() => "".into(),
+                RowSource::Numbers(columns, row) => columns[*index][*row].to_string().into(),
+            },
             LogCell::Constant(value, _) => value.to_string().into(),
         }
     }

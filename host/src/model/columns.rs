@@ -152,6 +152,15 @@ impl JointColumns {
     }
 }
 
+/// What a log may say of a rig of one link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmFigures {
+    /// kg.
+    pub mass_kg: f64,
+    /// Joint to centre of mass, m.
+    pub com_m: f64,
+}
+
 /// Every column the model reads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogColumns {
@@ -172,6 +181,8 @@ pub struct LogColumns {
     pub turned: Option<String>,
     /// One entry per joint.
     pub joints: Vec<JointColumns>,
+    /// The rig's one link, where it has one: a log that names its own is checked against it.
+    pub arm: Option<ArmFigures>,
     /// A new motion begins where time jumps by more than this, s; without it a motion goes on
     /// across every gap.
     pub split_at_gap_s: Option<f64>,

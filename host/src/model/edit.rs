@@ -12,6 +12,7 @@ mod tests;
 pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
 pub use provenance::{FitRecord, renew_provenance};
 
+use super::field::{JOINT_INERTIA, LinkField};
 use super::path::ParameterPath;
 use super::{EffectInstance, Model};
 use crate::effects::Scope;
@@ -80,9 +81,19 @@ pub fn set_values(text: &str, path: &Path, values: &[(ParameterPath, f64)]) -> R
             .get(&model)
             .and_then(|_| owner(&mut document, *parameter))
             .ok_or_else(|| misfit(path, &format!("there is no `{parameter}`")))?;
+        if let ParameterPath::Link { index, .. } = parameter {
+            about_centre_of_mass(table, model.links[*index].inertia_kg_m2);
+        }
         put(table, parameter.key(), number(*value));
     }
     checked(document, path)
+}
+
+/// A moment about the joint as that about the centre of mass, which is what a fit changes or keeps.
+fn about_centre_of_mass(table: &mut dyn TableLike, inertia_kg_m2: f64) {
+    if table.remove(JOINT_INERTIA).is_some() {
+        put(table, LinkField::Inertia.key(), number(inertia_kg_m2));
+    }
 }
 
 fn document(text: &str, path: &Path) -> Result<DocumentMut> {

@@ -5,6 +5,9 @@ use super::{Drive, Link};
 /// Range of a quantity that must be above zero; far wider than any rig on a bench.
 pub(super) const POSITIVE: (f64, f64) = (1e-9, 1e3);
 
+/// A link's moment of inertia about its joint, in place of that about its centre of mass.
+pub(super) const JOINT_INERTIA: &str = "joint_inertia_kg_m2";
+
 /// A number of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LinkField {

@@ -22,7 +22,7 @@ pub mod suggest;
 mod toml_reason;
 mod unit;
 
-pub use columns::{Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
+pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
 pub use field::{JointField, LinkField};
 pub use limits::Limits;
 pub use path::ParameterPath;

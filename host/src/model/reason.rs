@@ -23,6 +23,19 @@ pub enum ModelReason {
         /// Number of joints.
         joints: usize,
     },
+    /// Moments of inertia about joint and centre of mass at once.
+    #[error("the link has a moment of inertia about its centre of mass too")]
+    TwoInertias,
+    /// Less inertia about the joint than a point mass has.
+    #[error(
+        "{about_joint_kg_m2} kg m^2 about the joint is less than mass_kg com_m^2 = {steiner_kg_m2:.4e} kg m^2"
+    )]
+    LittleInertia {
+        /// About the joint, kg m^2.
+        about_joint_kg_m2: f64,
+        /// Of the mass at its distance, kg m^2.
+        steiner_kg_m2: f64,
+    },
     /// Columns for more joints than the model has.
     #[error("[[log.joint]] {} is one too many for {joints} joint(s)", joints + 1)]
     ExtraColumns {
@@ -156,6 +169,10 @@ impl Reason for ModelReason {
                 "every link follows one joint: add a `[[link]]` or remove the joint"
             }
             MissingJoint { .. } => "every link follows one joint: add a `[[joint]]` for each",
+            TwoInertias => "keep inertia_kg_m2 or joint_inertia_kg_m2",
+            LittleInertia { .. } => {
+                "mend one of the three; about the centre of mass it is inertia_kg_m2"
+            }
             ExtraColumns { .. } => "give one `[[log.joint]]` for each `[[joint]]`, in order",
             MissingColumns { .. } => "add one `[[log.joint]]` for each `[[joint]]`, in order",
             EffectTwice { .. } => "keep one of the two, or give it another joint",

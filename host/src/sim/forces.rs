@@ -147,7 +147,9 @@ impl<R: Rows> Forces<R> {
         let slide = Slide {
             speed_rad_s,
             direction,
-            gear_load_nm: self.loads[joint],
+            gear_load_nm: (self.loads[joint] + self.drive_torque[joint]).abs(),
+            motor_nm: self.drive_torque[joint],
+            outside_nm: -self.loads[joint],
             bearing_load_n: self.bearing[joint],
         };
         plant.joints[joint]
@@ -176,7 +178,8 @@ impl<R: Rows> Forces<R> {
         );
     }
 
-    /// Motor torque minus outside torque: gravity and velocity coupling at zero acceleration.
+    /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the
+    /// outside torques with the other sign.
     fn find_gear_loads(&mut self, plant: &Plant, at: At<'_>) {
         plant.rig.chain.inverse(
             plant.rig.gravity_turn_rad,
@@ -185,10 +188,6 @@ impl<R: Rows> Forces<R> {
             self.zeros.as_ref(),
             self.loads.as_mut(),
         );
-        let drives = self.drive_torque.as_ref();
-        for (load, drive) in self.loads.as_mut().iter_mut().zip(drives) {
-            *load = (*load + drive).abs();
-        }
     }
 
     /// Force in the bearings at the accelerations the chain has without friction.

@@ -124,6 +124,34 @@ fn compare() {
 }
 
 #[test]
+fn next() {
+    let bench = bench();
+    let driven = include_str!("../data/arm.toml")
+        .replace("\"passive\"", "\"duty\"\nstall_torque_nm = 1.0")
+        + "input = { column = \"duty\", unit = \"1\" }\n";
+    bench.put("driven.toml", driven);
+    let rows = include_str!("../data/arm.csv").lines();
+    let with_input = rows.enumerate().map(|(k, row)| match k {
+        0 => format!("{row},duty\n"),
+        _ => format!("{row},0\n"),
+    });
+    bench.put("driven.csv", with_input.collect::<String>());
+    golden(
+        &bench,
+        "next",
+        &[
+            "next --help",
+            "next driven.toml driven.csv --value link1.mass_kg -o next.csv",
+            "next driven.toml driven.csv --value link1.mass_kg -o next.csv",
+            "next driven.toml driven.csv --value link9.mass_kg",
+            "next driven.toml driven.csv --value link1.mass_kg --angles 1..-1",
+            "next driven.toml driven.csv --value link1.mass_kg --speed 0.01",
+            "next arm.toml arm.csv --value link1.mass_kg",
+        ],
+    );
+}
+
+#[test]
 fn paper() {
     golden(&bench(), "paper", &["paper"]);
 }

@@ -4,6 +4,7 @@
 mod common;
 
 mod balance;
+mod begin;
 mod bus;
 mod cli;
 mod closed_loop;

@@ -222,7 +222,7 @@ pub fn kinds(truth: Truth) -> Vec<&'static str> {
     match truth {
         Truth::Own => KINDS.to_vec(),
         Truth::Mujoco => {
-            let has = |kind: &&str| *kind != "load_friction";
+            let has = |kind: &&str| !["load_friction", "drive_asymmetry"].contains(kind);
             KINDS.into_iter().filter(has).collect()
         }
         Truth::Robot => ROBOT_KINDS.to_vec(),

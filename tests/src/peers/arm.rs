@@ -168,7 +168,7 @@ impl Arm {
             times.push(median_seconds(1, || {
                 let data = FitData::new(&start, self.motions.clone(), Horizon::Whole);
                 let found = fit_staged(&start, &self.free, &data);
-                left = fit_start_states(&found.model, &judged).rms(&judged);
+                left = fit_staged(&found.model, &[], &judged).rms(&judged);
                 values = found.values();
             }));
             let off = values

@@ -8,8 +8,10 @@ mod deploy;
 mod firmware;
 mod fuzz;
 mod hidden;
+mod import;
 mod intervals;
 #[cfg(unix)]
 mod kills;
 mod mjcf;
+mod next;
 mod spoiled;

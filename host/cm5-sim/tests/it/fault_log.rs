@@ -145,9 +145,7 @@ fn a_torn_entry_is_none() {
     assert!(written.len() > 8, "{written:?}");
     for torn in written {
         let mut eeprom = before.clone();
-        for at in EEPROM.start..torn {
-            eeprom[at] = after[at];
-        }
+        eeprom[EEPROM.start..torn].copy_from_slice(&after[EEPROM.start..torn]);
         eeprom[torn] = 0x5a ^ after[torn];
         cm5.board.eeprom = eeprom;
         cm5 = restarted(cm5, ResetCause::POWER);

@@ -25,7 +25,7 @@ pub use search::{Found, search};
 pub use trial::Trial;
 
 use crate::error::Result;
-use crate::log::{LogFinding, LogRequest, Motion, read};
+use crate::log::{LogFinding, LogRequest, Motion, expanded, read};
 use crate::model::{Model, Unit};
 use findings::Origin;
 use reread::reread;
@@ -52,6 +52,7 @@ pub fn findings(
 /// Only what the system refuses; logs that cannot be read are for [`crate::log::check()`] to judge.
 pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<Vec<LogFinding>> {
     let (mut motions, mut origins) = (Vec::new(), Vec::new());
+    let requests = expanded(requests)?;
     for request in requests.iter().filter(|request| !request.is_json()) {
         let mut first_row = request.rows.map_or(0, |(first, _)| first);
         for motion in readable(request, model) {

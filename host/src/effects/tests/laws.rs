@@ -45,6 +45,14 @@ fn load_and_direction_set_friction() {
         0.05,
     );
     near(
+        effect("drive_asymmetry").friction(&[0.1, 0.4], &slide(1.0, 1.0)),
+        0.11,
+    );
+    near(
+        effect("drive_asymmetry").friction(&[0.1, 0.1], &slide(1.0, 1.0)),
+        effect("load_friction").friction(&[0.1], &slide(1.0, 1.0)),
+    );
+    near(
         effect("bearing_friction").friction(&[1e-3], &slide(1.0, 1.0)),
         4e-3,
     );
@@ -103,6 +111,8 @@ fn friction_called_constant_is_that_and_no_other() {
                 speed_rad_s,
                 direction: 1.0,
                 gear_load_nm,
+                motor_nm: gear_load_nm,
+                outside_nm: 0.0,
                 bearing_load_n,
             };
             effect.friction(&values, &slide)

@@ -49,6 +49,8 @@ fn slide(speed_rad_s: f64, direction: f64) -> Slide {
         speed_rad_s: speed_rad_s.abs(),
         direction,
         gear_load_nm: 0.5,
+        motor_nm: 0.3,
+        outside_nm: -0.2,
         bearing_load_n: 4.0,
     }
 }

@@ -18,10 +18,11 @@ mod tests;
 
 pub use finding::{LogFinding, Proof, Severity};
 
+use super::bam::BamBench;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::LogRow;
-use super::{LEAST_ROWS, bam, csv};
+use super::{LEAST_ROWS, bam, expanded, visit};
 use crate::error::{Error, Place, Result, words};
 use crate::model::Model;
 use excitation::Excitation;
@@ -40,22 +41,24 @@ use sampling::Sampling;
 pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> {
     let mut findings = Findings::default();
     let mut excitation = Excitation::new(model);
+    let requests = &expanded(requests)?;
     for request in requests {
         let mut file = FileCheck::new(request, model, &mut excitation, &mut findings);
         let read = if request.is_json() {
             file.json()
         } else {
-            csv::visit(&request.path, &model.log, &mut |number, row| match (
-                request.wants(number),
-                row,
-            ) {
-                (false, _) => Ok(()),
-                (true, Ok(row)) => {
-                    file.take(row);
-                    Ok(())
-                }
-                (true, Err(error)) => file.broken("cell", error),
-            })
+            visit(
+                &request.path,
+                &model.log,
+                &mut |number, row| match (request.wants(number), row) {
+                    (false, _) => Ok(()),
+                    (true, Ok(row)) => {
+                        file.take(row);
+                        Ok(())
+                    }
+                    (true, Err(error)) => file.broken("cell", error),
+                },
+            )
             .map(|facts| facts.rows)
         };
         match read {
@@ -64,7 +67,7 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> 
         }
         findings.close();
     }
-    let place = match requests {
+    let place = match requests.as_slice() {
         [request] => Some(Place::file(&request.path)),
         _ => None,
     };
@@ -117,7 +120,8 @@ impl<'a> FileCheck<'a> {
     }
 
     fn json(&mut self) -> Result<usize> {
-        let motion = bam::read(self.request)?;
+        let arm = self.model.log.arm;
+        let motion = bam::read(self.request, arm, &mut BamBench::default())?;
         for index in 0..motion.len() {
             self.take(&LogRow::of(&motion, index));
         }

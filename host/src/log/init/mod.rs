@@ -15,7 +15,7 @@ use crate::log::RawLog;
 use crate::model::new_model::{LinkPlan, ModelPlan};
 use columns::log_guess;
 use serde::Serialize;
-use values::{median, rod_length_m, zero_at_rest, zero_of_torques};
+use values::{gravity_of_torques, median, rod_length_m, zero_at_rest};
 
 /// Acceleration of gravity where nothing else is said, m/s^2.
 const GRAVITY_M_S2: f64 = 9.81;
@@ -186,9 +186,8 @@ struct Evidence {
     time_s: Vec<f64>,
     /// Per joint; empty where it is not measured.
     angle_rad: Vec<Vec<f64>>,
-    speed_rad_s: Vec<f64>,
-    /// Of the first joint, where it is a torque.
-    torque_nm: Option<Vec<f64>>,
+    /// Zero and amplitude of gravity's torque on the first joint, where torques tell.
+    gravity: Option<(&'static str, f64)>,
     driven: bool,
 }
 
@@ -198,16 +197,11 @@ impl Evidence {
         let angles = joints.map(|j| j.position.as_ref().map(|c| c.si(log)).unwrap_or_default());
         let angle_rad: Vec<Vec<f64>> = angles.collect();
         let first = &columns.joints[0];
-        let slope = |k: usize| match (k.checked_sub(1), angle_rad[0].get(k + 1)) {
-            (Some(before), Some(after)) => {
-                (after - angle_rad[0][before]) / (time_s[k + 1] - time_s[before])
-            }
-            _ => f64::NAN,
-        };
         let torque = first.input.as_ref().filter(|_| first.drive == "torque");
         Evidence {
-            speed_rad_s: (0..angle_rad[0].len()).map(slope).collect(),
-            torque_nm: torque.map(|column| column.si(log)),
+            gravity: torque
+                .filter(|_| angle_rad.iter().all(|angle| !angle.is_empty()))
+                .and_then(|torque| gravity_of_torques(time_s, &angle_rad, &torque.si(log))),
             driven: columns.joints.iter().any(|joint| joint.drive != "passive"),
             time_s: time_s.to_vec(),
             angle_rad,
@@ -219,10 +213,8 @@ impl Evidence {
         if angle.is_empty() {
             return ("hanging", "a guess: no angle is measured".to_string());
         }
-        if let Some(torque) = &self.torque_nm {
-            if let Some(zero) = zero_of_torques(angle, &self.speed_rad_s, torque) {
-                return (zero, "how torques follow the angles".to_string());
-            }
+        if let Some((zero, _)) = self.gravity {
+            return (zero, "how torques follow the angles".to_string());
         }
         if self.driven {
             let why = "a guess: driven angles do not tell; `handstand log check` tries the others";
@@ -256,11 +248,23 @@ impl Evidence {
         let one_free = columns.joints.len() == 1 && !self.driven;
         let swing = rod_length_m(&self.time_s, &self.angle_rad[0], GRAVITY_M_S2);
         let length = swing.filter(|_| one_free);
+        let one = columns.joints.len() == 1;
+        let pulled = self.gravity.filter(|_| one).map(|(_, torque_nm)| {
+            let mass_kg = torque_nm / (GRAVITY_M_S2 * LENGTH_M / 2.0);
+            (1e3 * mass_kg).round() / 1e3
+        });
+        let pulled = pulled.filter(|mass_kg| (0.01..100.0).contains(mass_kg));
+        let mass_kg = pulled.unwrap_or(MASS_KG);
         match length {
             Some(length) => guesses.push(Guess::new(
                 "link",
                 format!("an even rod of {length:.3} m"),
                 "how often it swings; its mass is a guess",
+            )),
+            None if pulled.is_some() => guesses.push(Guess::new(
+                "link",
+                format!("an even rod of {LENGTH_M} m and {mass_kg} kg"),
+                "gravity's torque; its length is a guess",
             )),
             None => guesses.push(Guess::new(
                 if columns.joints.len() == 1 {
@@ -289,17 +293,17 @@ impl Evidence {
         columns
             .joints
             .iter()
-            .map(|joint| link(joint, length_m))
+            .map(|joint| link(joint, length_m, mass_kg))
             .collect()
     }
 }
 
-fn link(joint: &JointGuess, length_m: f64) -> LinkPlan {
+fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan {
     let motor = ["duty", "position", "speed"].contains(&joint.drive);
     LinkPlan {
         length_m,
         com_m: length_m / 2.0,
-        mass_kg: MASS_KG,
+        mass_kg,
         inertia_kg_m2: None,
         drive: joint.drive.to_string(),
         gain: match joint.drive {

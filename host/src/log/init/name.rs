@@ -163,6 +163,8 @@ const POSITION: &[&str] = &[
     "encoder",
     "enc",
 ];
+/// Directions in space, which say something of a speed alone.
+const AXES: &[&str] = &["x", "y", "z"];
 /// Quantities that no model reads.
 const OTHER: &[&str] = &[
     "acc",
@@ -186,9 +188,6 @@ const OTHER: &[&str] = &[
     "zero",
     "celsius",
     "power",
-    "x",
-    "y",
-    "z",
 ];
 const MEASURED: &[&str] = &[
     "meas", "measured", "actual", "act", "present", "fb", "feedback",
@@ -261,7 +260,7 @@ fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
     match () {
         () if has(SEGMENT) => Some(Role::Segment),
         () if has(&["payload"]) => Some(Role::Payload),
-        () if other && !(speed && has(&["gyro"])) => None,
+        () if other || (has(AXES) && !speed) => None,
         () if torque => Some(Role::Torque),
         () if has(DUTY) => Some(Role::Duty),
         () if has(GOAL) && speed => Some(Role::GoalVelocity),

@@ -89,7 +89,7 @@ pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<Spe
     }
     // Where noise outweighs motion, nothing can be said.
     let alike = cross / (square * own).sqrt();
-    if !(alike.abs() > 0.7) {
+    if alike.is_nan() || alike.abs() <= 0.7 {
         return None;
     }
     // Noise of the slopes lowers their share in the speed and the reverse; between the two lies
@@ -127,38 +127,64 @@ pub fn zero_at_rest(rest_rad: f64) -> &'static str {
     nearest.map_or("hanging", |(name, _)| name)
 }
 
-/// Where torques of gravity say that zero is: the sign of `a` in tau = a sin(q) + b cos(q) + c w.
+/// Torques of gravity on the first joint: where they say that angles are zero, and their amplitude,
+/// N m; none where the torques do not follow the motion.
 ///
-/// None where the torques do not follow the angles.
-pub fn zero_of_torques(
-    angle_rad: &[f64],
-    speed: &[f64],
+/// The torque is split by least squares into sines and cosines of the links' angles (each from the
+/// link before), and per joint into what its speed, the speed's sign and its acceleration add.
+pub fn gravity_of_torques(
+    time_s: &[f64],
+    angle_rad: &[Vec<f64>],
     torque_nm: &[f64],
-) -> Option<&'static str> {
-    let rows: Vec<[f64; 4]> = (0..angle_rad.len())
-        .map(|k| {
-            [
-                angle_rad[k].sin(),
-                angle_rad[k].cos(),
-                speed[k],
-                torque_nm[k],
-            ]
-        })
-        .filter(|row| row.iter().all(|value| value.is_finite()))
-        .collect();
-    let a = nalgebra::DMatrix::from_fn(rows.len(), 3, |i, j| rows[i][j]);
-    let b = nalgebra::DVector::from_fn(rows.len(), |i, _| rows[i][3]);
+) -> Option<(&'static str, f64)> {
+    const SPAN_S: f64 = 0.025;
+    const MOST_ROWS: usize = 5000;
+    let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let step_s = median(&steps);
+    let apart = ((SPAN_S / step_s).round() as usize).max(1);
+    let last = time_s.len().checked_sub(apart)?;
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let every = (time_s.len() / MOST_ROWS).max(1);
+    for k in (apart..last).step_by(every) {
+        let mut row = vec![torque_nm[k]];
+        let mut sum = 0.0;
+        for angle in angle_rad {
+            sum += angle[k];
+            row.extend([sum.sin(), sum.cos()]);
+        }
+        for angle in angle_rad {
+            let speed =
+                (angle[k + apart] - angle[k - apart]) / (time_s[k + apart] - time_s[k - apart]);
+            let bend = angle[k + apart] - 2.0 * angle[k] + angle[k - apart];
+            let sign = if speed.abs() > 0.05 {
+                speed.signum()
+            } else {
+                0.0
+            };
+            row.extend([speed, sign, bend / (apart as f64 * step_s).powi(2)]);
+        }
+        if row.iter().all(|value| value.is_finite()) {
+            rows.push(row);
+        }
+    }
+    let unknowns = 5 * angle_rad.len();
+    if rows.len() < 10 * unknowns {
+        return None;
+    }
+    let a = nalgebra::DMatrix::from_fn(rows.len(), unknowns, |i, j| rows[i][j + 1]);
+    let b = nalgebra::DVector::from_fn(rows.len(), |i, _| rows[i][0]);
     let found = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
     let unexplained = (&a * &found - &b).norm() / b.norm();
-    if !(unexplained < 0.7) {
+    if unexplained.is_nan() || unexplained >= 0.4 {
         return None;
     }
     let (sin, cos) = (found[0], found[1]);
-    Some(match sin.abs() >= cos.abs() {
+    let zero = match sin.abs() >= cos.abs() {
         true if sin > 0.0 => "hanging",
         true => "upright",
         false => "horizontal",
-    })
+    };
+    Some((zero, sin.hypot(cos)))
 }
 
 /// Length of an even rod that swings as often about its rest as these angles do, m; none where
@@ -216,22 +242,21 @@ mod tests {
             "hanging",
         ];
         assert_eq!(tell, told);
-        let angle: Vec<f64> = (0..100).map(|k| 0.05 * f64::from(k)).collect();
-        let still = vec![0.0; 100];
-        let torque = |sign: f64| {
-            angle
-                .iter()
-                .map(|q| sign * 2.0 * q.sin())
-                .collect::<Vec<_>>()
+        let time_s: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
+        let angle: Vec<f64> = time_s.iter().map(|t| 2.0 * (4.0 * t).sin()).collect();
+        // A motor that swings an arm of 0.3 kg m^2 against gravity: the acceleration outweighs it.
+        let torque = |sign: f64| -> Vec<f64> {
+            let torque = |q: &f64| sign * 2.0 * q.sin() - 0.3 * 16.0 * q;
+            angle.iter().map(torque).collect()
         };
-        assert_eq!(
-            zero_of_torques(&angle, &still, &torque(1.0)),
-            Some("hanging")
-        );
-        assert_eq!(
-            zero_of_torques(&angle, &still, &torque(-1.0)),
-            Some("upright")
-        );
+        let told = |sign| gravity_of_torques(&time_s, std::slice::from_ref(&angle), &torque(sign));
+        for (sign, zero) in [(1.0, "hanging"), (-1.0, "upright")] {
+            let (found, amplitude) = told(sign).unwrap();
+            assert_eq!(found, zero);
+            assert!((amplitude - 2.0).abs() < 0.1, "{amplitude}");
+        }
+        let noise: Vec<f64> = (0..400).map(|k| f64::from(k * 7919 % 101) - 50.0).collect();
+        assert_eq!(gravity_of_torques(&time_s, &[angle], &noise), None);
     }
 
     #[test]

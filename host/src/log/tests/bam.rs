@@ -51,3 +51,40 @@ fn reads_bam_logs() {
         assert!(error.to_string().contains(what), "{what}: {error}");
     }
 }
+
+#[test]
+fn mass_length_and_gain_are_held_against_the_model() {
+    let arm = |mass_kg, com_m| LogColumns {
+        arm: Some(ArmFigures { mass_kg, com_m }),
+        ..columns()
+    };
+    let text = |kp: u32| {
+        let entry = |i: u32| {
+            format!(
+                "{{\"timestamp\": {}, \"position\": 0.5, \"goal_position\": 0.5}}",
+                f64::from(i)
+            )
+        };
+        let entries: Vec<String> = (0..12).map(entry).collect();
+        let entries = entries.join(",");
+        format!(
+            "{{\"mass\": 0.5, \"length\": 0.1, \"arm_mass\": 0.04, \"kp\": {kp}, \"entries\": [{entries}]}}"
+        )
+    };
+    let log = file(text(32).as_bytes(), ".json");
+    let request = LogRequest::whole(log.path());
+    let read_as = |columns: &LogColumns| read(std::slice::from_ref(&request), columns);
+    assert!(read_as(&arm(0.54, 0.096)).is_ok());
+    assert!(read_as(&columns()).is_ok());
+    for (wrong, what) in [
+        (arm(0.2, 0.1), "mass is 0.5400 kg"),
+        (arm(0.54, 0.2), "mass times length"),
+    ] {
+        let said = read_as(&wrong).unwrap_err().to_string();
+        assert!(said.contains(what), "{said}");
+    }
+    let other = file(text(16).as_bytes(), ".json");
+    let both = [request.clone(), LogRequest::whole(other.path())];
+    let said = read(&both, &columns()).unwrap_err().to_string();
+    assert!(said.contains("kp is 16, and 32 in"), "{said}");
+}

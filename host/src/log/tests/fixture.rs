@@ -35,6 +35,7 @@ pub fn columns() -> LogColumns {
             velocity: None,
             input: Some(column("u", "rad").into()),
         }],
+        arm: None,
         split_at_gap_s: None,
     }
 }

@@ -3,7 +3,7 @@
 use self::fixture::{column, columns, first, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
-use crate::model::{Column, LogColumns};
+use crate::model::{ArmFigures, Column, LogColumns};
 use proptest::prelude::*;
 
 mod bam;

@@ -182,3 +182,35 @@ fn an_effect_of_all_driven_joints_is_written_as_such() {
     let twice = effect("delay", 1, 0.02);
     assert!(add_effect(&moved, path(), &twice, None).is_err());
 }
+
+#[test]
+fn an_inertia_about_the_joint_becomes_one_about_the_centre_of_mass() {
+    let text = "[rig]\nname = \"a\"\nangle_zero = \"hanging\"\n\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
+                joint_inertia_kg_m2 = 0.005 # published\n\n[[joint]]\ndrive = \"passive\"\n\n[log]\n\
+                time = { column = \"t\", unit = \"s\" }\n\n[[log.joint]]\n\
+                position = { column = \"q\", unit = \"rad\" }\n";
+    let path = Path::new("m.toml");
+    let model = Model::parse(text, path).unwrap();
+    assert!((model.links[0].inertia_kg_m2 - 0.003).abs() < 1e-15);
+    let com: ParameterPath = "link1.com_m".parse().unwrap();
+    let edited = set_values(text, path, &[(com, 0.12)]).unwrap();
+    let again = Model::parse(&edited, path).unwrap();
+    assert!(
+        (again.links[0].inertia_kg_m2 - 0.003).abs() < 1e-15,
+        "{edited}"
+    );
+    assert_eq!(again.links[0].com_m, 0.12);
+    let both = text.replace(
+        "joint_inertia_kg_m2",
+        "inertia_kg_m2 = 0.003\njoint_inertia_kg_m2",
+    );
+    assert!(
+        Model::parse(&both, path)
+            .unwrap_err()
+            .to_string()
+            .contains("centre of mass too")
+    );
+    let little = text.replace("0.005", "0.001");
+    let said = Model::parse(&little, path).unwrap_err().to_string();
+    assert!(said.starts_with("m.toml:8"), "{said}");
+}

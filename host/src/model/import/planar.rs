@@ -86,7 +86,12 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         };
         let reversed = frame.axis.dot(&(poses[body] * joint.axis)) < 0.0;
         let sign = if reversed { -1.0 } else { 1.0 };
-        let offset = wrapped(direction_rad - before_rad) - sign * joint.reference_rad;
+        let mut offset = wrapped(direction_rad - before_rad) - sign * joint.reference_rad;
+        if joint.stiffness_nm > 0.0 {
+            // A spring tells whole turns apart: its rest lies within half a turn of zero.
+            let rest = offset + sign * joint.spring_rest_rad;
+            offset -= TAU * (rest / TAU).round();
+        }
         let behind = (off_line.abs() - PI).abs() < 1e-12;
         links.push(PlanarLink {
             joint: joint.clone(),

@@ -6,9 +6,6 @@ use crate::error::Result;
 use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
 use std::fmt::Write as _;
 
-/// Half a turn and a little: the rest angle of a spring in a model.
-const MOST_REST_RAD: f64 = 3.2;
-
 pub(super) fn toml(
     name: &str,
     chain: &PlanarChain,
@@ -118,16 +115,13 @@ fn write_effects(text: &mut String, index: usize, link: &PlanarLink, left_out: &
     if joint.stiffness_nm > 0.0 {
         let sign = if link.reversed { -1.0 } else { 1.0 };
         let rest_rad = link.offset_rad + sign * joint.spring_rest_rad;
-        match rest_rad.abs() <= MOST_REST_RAD {
-            true => effect(
-                "cable_spring",
-                &[
-                    ("stiffness_nm_rad", joint.stiffness_nm),
-                    ("rest_angle_rad", rest_rad),
-                ],
-            ),
-            false => leave("stiffness", "its rest lies more than half a turn from here"),
-        }
+        effect(
+            "cable_spring",
+            &[
+                ("stiffness_nm_rad", joint.stiffness_nm),
+                ("rest_angle_rad", rest_rad),
+            ],
+        );
     }
     if let TreeDrive::Torque(Some(limit_nm)) = joint.drive {
         effect("torque_saturation", &[("limit_nm", limit_nm)]);

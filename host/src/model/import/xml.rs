@@ -29,7 +29,6 @@ impl<'a> XmlFile<'a> {
         let options = ParsingOptions {
             allow_dtd: false,
             nodes_limit: MOST_NODES,
-            ..ParsingOptions::default()
         };
         let document = Document::parse_with_options(text, options).map_err(|error| {
             let at = error.pos();

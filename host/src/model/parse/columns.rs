@@ -3,7 +3,9 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Column, ColumnMean, Dimension, Joint, JointColumns, LogColumns, Unit};
+use super::super::{
+    ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, Unit,
+};
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::error::Result;
 
@@ -15,7 +17,7 @@ const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
 /// Further apart, two columns are no one row.
 const SHIFT_S: Limits = Limits::within(-10.0, 10.0);
 
-pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
+pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<LogColumns> {
     let log = root.required_table("log")?;
     log.only(&[
         "time",
@@ -39,6 +41,13 @@ pub(super) fn read(root: &Table, joints: &[Joint]) -> Result<LogColumns> {
         payload: optional(&log, "payload", Dimension::Mass)?,
         turned: name("turned")?,
         joints: joint_columns(&log, joints)?,
+        arm: match links {
+            [link] => Some(ArmFigures {
+                mass_kg: link.mass_kg,
+                com_m: link.com_m,
+            }),
+            _ => None,
+        },
         split_at_gap_s: log.number("split_at_gap_s", ABOVE_ZERO)?,
     })
 }

@@ -6,7 +6,7 @@ mod expressions;
 #[cfg(test)]
 mod tests;
 
-use super::field::{LinkField, POSITIVE};
+use super::field::{JOINT_INERTIA, LinkField, POSITIVE};
 use super::limits::Limits;
 use super::path::ParameterPath;
 use super::reader::Table;
@@ -40,7 +40,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     let joints = joints(&root, links.len())?;
     let laws = expressions::read(&root)?;
     let effects = effects::read(&root, &joints, &laws)?;
-    let log = columns::read(&root, &joints)?;
+    let log = columns::read(&root, &links, &joints)?;
     let mut model = Model {
         name: rig.required_text("name")?.to_string(),
         angle_zero: rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,
@@ -76,19 +76,39 @@ fn links(root: &Table) -> Result<Vec<Link>> {
         count => count - 1,
     };
     let links = tables.iter().enumerate().map(|(i, table)| {
-        table.only(&LinkField::ALL.map(LinkField::key))?;
+        table.only(&[&LinkField::ALL.map(LinkField::key)[..], &[JOINT_INERTIA]].concat())?;
         let com_m = table.required_number("com_m", EITHER_SIGN)?;
+        let mass_kg = table.required_number("mass_kg", ABOVE_ZERO)?;
         let length_m = table.number("length_m", NOT_NEGATIVE)?;
         // Nothing hangs on the last link, so its length only shows in pictures.
         let length_m = length_m.or_else(|| (i == last).then_some(com_m.abs()));
         Ok(Link {
             length_m: table.required("length_m", length_m)?,
             com_m,
-            mass_kg: table.required_number("mass_kg", ABOVE_ZERO)?,
-            inertia_kg_m2: table.required_number("inertia_kg_m2", NOT_NEGATIVE)?,
+            mass_kg,
+            inertia_kg_m2: inertia(table, mass_kg * com_m * com_m)?,
         })
     });
     links.collect()
+}
+
+/// The moment about the centre of mass; `steiner_kg_m2` is what the joint's distance adds to it.
+fn inertia(table: &Table, steiner_kg_m2: f64) -> Result<f64> {
+    let Some(about_joint) = table.number(JOINT_INERTIA, NOT_NEGATIVE)? else {
+        return table.required_number(LinkField::Inertia.key(), NOT_NEGATIVE);
+    };
+    if table.has(LinkField::Inertia.key()) {
+        return Err(table.bad_key(JOINT_INERTIA, ModelReason::TwoInertias));
+    }
+    let inertia_kg_m2 = about_joint - steiner_kg_m2;
+    let reason = ModelReason::LittleInertia {
+        about_joint_kg_m2: about_joint,
+        steiner_kg_m2,
+    };
+    match inertia_kg_m2 >= 0.0 {
+        true => Ok(inertia_kg_m2),
+        false => Err(table.bad(JOINT_INERTIA, reason)),
+    }
 }
 
 fn joints(root: &Table, links: usize) -> Result<Vec<Joint>> {

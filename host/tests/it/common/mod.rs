@@ -101,7 +101,7 @@ impl Ran {
 }
 
 /// Four seconds of the pendulum let go at `angle`, with viscous friction of 0.001 N m s/rad.
-fn swing(mut angle: f64) -> String {
+pub fn swing(mut angle: f64) -> String {
     let inertia = 1e-4 + 0.2 * 0.1 * 0.1;
     let (mut speed, step) = (0.0, 1e-4);
     let mut log = String::from("time_s,angle_rad\n");

@@ -5,7 +5,8 @@ use super::{text, with_file};
 use handstand::link::Settings;
 use handstand::link::boot_loader::Image;
 use handstand::link::record;
-use handstand::log::{LogRequest, read};
+use handstand::log::init::Draft;
+use handstand::log::{LogRequest, RawLog, read};
 use handstand::model::{LogColumns, Model};
 use handstand::study::{Study, merge};
 use handstand::synth::StateFeedbackPlan;
@@ -40,6 +41,34 @@ pub(crate) fn log_csv(bytes: &[u8]) {
 
 pub(crate) fn log_json(bytes: &[u8]) {
     log("log.json", bytes);
+}
+
+/// A log before a model says what its columns mean.
+fn raw(name: &str, bytes: &[u8]) {
+    with_file(name, bytes, |path| {
+        if let Ok(log) = RawLog::read(path) {
+            assert_eq!(log.names.len(), log.columns.len());
+            let rows = log.columns.first().map_or(0, Vec::len);
+            assert!(log.columns.iter().all(|column| column.len() == rows));
+            let _ = Draft::of(&log, name, None).map(|draft| draft.toml());
+        }
+    });
+}
+
+pub(crate) fn log_mcap(bytes: &[u8]) {
+    raw("log.mcap", bytes);
+}
+
+pub(crate) fn log_mat(bytes: &[u8]) {
+    raw("log.mat", bytes);
+}
+
+pub(crate) fn log_rosbag(bytes: &[u8]) {
+    raw("log.db3", bytes);
+}
+
+pub(crate) fn draft(bytes: &[u8]) {
+    raw("log.csv", bytes);
 }
 
 fn recording(name: &str, bytes: &[u8]) {

@@ -3,6 +3,7 @@
 use super::text;
 use handstand::effects::EFFECTS;
 use handstand::model::edit::{add_effect, set_values};
+use handstand::model::import::ImportPlan;
 use handstand::model::{EffectInstance, Model};
 use std::path::Path;
 
@@ -44,5 +45,23 @@ pub(crate) fn edit(bytes: &[u8]) {
     if let Ok(written) = add_effect(text, path, &instance, None) {
         let again = Model::parse(&written, path).expect("what was written is a model");
         assert_eq!(again.effects.len(), model.effects.len() + 1);
+    }
+}
+
+/// A robot of another simulator: whatever it says, the model that comes of it is one.
+pub(crate) fn import(bytes: &[u8]) {
+    let Some(text) = text(bytes) else {
+        return;
+    };
+    let plan = ImportPlan {
+        joints: Vec::new(),
+        driven: bytes.len() % 2 == 0,
+    };
+    if let Ok(imported) = handstand::model::import::import(text, Path::new("robot.xml"), &plan) {
+        let model = Model::parse(&imported.toml, Path::new("imported.toml"));
+        assert_eq!(
+            model.map(|model| model.link_count()).ok(),
+            Some(imported.joints.len())
+        );
     }
 }

@@ -58,10 +58,10 @@ pub(super) fn tree(root: Element) -> Result<RobotTree> {
         left_out: Vec::new(),
         unnamed: 0,
     };
-    for element in root
+    let built = root
         .elements()
-        .filter(|element| BUILT.contains(&element.tag()))
-    {
+        .find(|element| BUILT.contains(&element.tag()));
+    if let Some(element) = built {
         return Err(element.wrong(format!("<{}> is not read", element.tag()), FLATTEN));
     }
     let mut gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);

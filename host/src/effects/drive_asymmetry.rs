@@ -1,0 +1,57 @@
+//! Drive/backdrive asymmetry: of the motor's torque a gear loses another share than of the load's.
+
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+
+/// |k_m tau_m - k_e tau_e|, with motor torque tau_m and outside torque tau_e.
+#[derive(Debug)]
+pub struct DriveAsymmetry;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "drive_asymmetry",
+    title: "drive/backdrive asymmetry of the gear",
+    site: Site::Friction,
+    scope: Scope::DrivenJoint,
+    needs: Needs::GearLoad,
+    law: "friction = |motor_factor * motor torque - outside_factor * outside torque|, against the \
+          motion",
+    parameters: &[
+        Parameter {
+            key: "motor_factor",
+            unit: "1",
+            meaning: "share of the motor's torque that the gear loses",
+            off: Some(0.0),
+            typical: (0.02, 0.3),
+            bounds: (0.0, 2.0),
+            starts: &[0.2, 0.05],
+        },
+        Parameter {
+            key: "outside_factor",
+            unit: "1",
+            meaning: "share of the outside torque that the gear loses",
+            off: Some(0.0),
+            typical: (0.02, 0.3),
+            bounds: (0.0, 2.0),
+            starts: &[0.05, 0.2],
+        },
+    ],
+    looks_like: "lifting a load loses another share of the torque than lowering it; with torque \
+                 off the arm swings with less friction, or more, than under its drive",
+    confused_with: &[
+        "load_friction: the same where both factors are equal; compare a swing with torque off \
+         with slow lifting",
+        "coulomb: the same at one load; change the mass or the length of the arm",
+    ],
+    experiment: "lift and lower slowly with two masses, then let the arm swing with torque off",
+    reference: "Duclusaud, Passault, Padois, Ly, Extended Friction Models for the Physics \
+                Simulation of Servo Actuators, arXiv:2410.08650, model M5",
+};
+
+impl Effect for DriveAsymmetry {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+        (values[0] * at.motor_nm - values[1] * at.outside_nm).abs()
+    }
+}

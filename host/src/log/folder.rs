@@ -1,0 +1,68 @@
+//! A folder of logs stands for the logs in it.
+
+use super::format::LogFormat;
+use super::request::LogRequest;
+use crate::error::{Error, Result};
+use std::path::PathBuf;
+
+/// The requests with each folder replaced by the logs in it, in the order of their names.
+///
+/// A folder's own folders are not searched; files of other endings are passed over.
+///
+/// # Errors
+/// A folder without a log, rows of a folder, and what the system refuses.
+pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
+    let mut all = Vec::new();
+    for request in requests {
+        match request.path.is_dir() {
+            true => all.extend(of_folder(request)?),
+            false => all.push(request.clone()),
+        }
+    }
+    Ok(all)
+}
+
+fn of_folder(request: &LogRequest) -> Result<Vec<LogRequest>> {
+    let folder = &request.path;
+    let refused = |error| Error::file(folder, "read", error);
+    let mut logs: Vec<PathBuf> = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(refused)? {
+        let path = entry.map_err(refused)?.path();
+        if path.is_file() && LogFormat::is_log(&path) {
+            logs.push(path);
+        }
+    }
+    logs.sort();
+    let message = match (request.rows, logs.is_empty()) {
+        (Some(_), _) => format!("{request}: rows of a folder"),
+        (None, true) => format!("{}: no log lies in it", folder.display()),
+        (None, false) => return Ok(logs.into_iter().map(LogRequest::whole).collect()),
+    };
+    let remedy = "name a folder with csv, tsv, txt, json, mcap, mat or db3 files, or one file";
+    Err(Error::usage(message, remedy))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_the_logs_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.csv", "a.MCAP", "notes.md", "c.mat"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        std::fs::create_dir(folder.path().join("inner.csv")).unwrap();
+        let other = LogRequest::whole("x.csv");
+        let all = expanded(&[LogRequest::whole(folder.path()), other]).unwrap();
+        let names: Vec<String> = all.iter().map(LogRequest::name).collect();
+        assert_eq!(names, ["a.MCAP", "b.csv", "c.mat", "x.csv"]);
+        let rows = LogRequest {
+            path: folder.path().to_path_buf(),
+            rows: Some((0, 5)),
+        };
+        assert_eq!(expanded(&[rows]).unwrap_err().exit_code(), 2);
+        let empty = LogRequest::whole(folder.path().join("inner.csv"));
+        assert_eq!(expanded(&[empty]).unwrap_err().exit_code(), 2);
+    }
+}

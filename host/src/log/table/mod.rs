@@ -1,0 +1,107 @@
+//! Logs that are tables of numbers already: MCAP, rosbag2, MATLAB, Parquet.
+//!
+//! Each becomes columns by name, which the model file then reads as it reads those of CSV. A value
+//! that is not there is not a number. Sizes that a file states are believed only as far as its
+//! bytes can bear them.
+
+mod joint_states;
+mod mat;
+mod mat_element;
+mod mcap;
+mod rosbag;
+mod sqlite;
+#[cfg(test)]
+mod tests;
+
+use super::format::LogFormat;
+use crate::error::{Error, Place, Result};
+use crate::output::number::hex;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Largest file that is read whole, bytes.
+const LARGEST: u64 = 4 << 30;
+/// Most numbers of a table: 1.6 GB.
+pub(super) const MOST_CELLS: usize = 200_000_000;
+
+/// A log as columns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Table {
+    /// In the file's order.
+    pub names: Vec<String>,
+    /// As long as each other.
+    pub columns: Vec<Vec<f64>>,
+    /// Numbers for the whole file.
+    pub constants: Vec<(String, f64)>,
+    /// SHA-256 of the file, lower-case hexadecimal.
+    pub sha256: String,
+}
+
+impl Table {
+    /// Reads a file in one of these formats.
+    ///
+    /// # Errors
+    /// What the system refuses, and what is no such file.
+    pub fn read(path: &Path, format: LogFormat) -> Result<Table> {
+        let refused = |source| Error::file(path, "read", source);
+        let length = std::fs::metadata(path).map_err(refused)?.len();
+        let file = TableFile { path };
+        if length > LARGEST {
+            return Err(file.wrong("more than 4 GiB", "cut the log into shorter ones"));
+        }
+        let bytes = std::fs::read(path).map_err(refused)?;
+        let mut table = Self::of(&bytes, file, format)?;
+        table.sha256 = hex(Sha256::digest(&bytes));
+        Ok(table)
+    }
+
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    /// What is no such file.
+    pub fn of(bytes: &[u8], file: TableFile, format: LogFormat) -> Result<Table> {
+        match format {
+            LogFormat::Mcap => mcap::read(bytes, file),
+            LogFormat::Mat => mat::read(bytes, file),
+            LogFormat::Rosbag => rosbag::read(bytes, file),
+            LogFormat::Parquet => Err(file.wrong(
+                "Parquet is not read",
+                "write it as CSV, in Python: pandas.read_parquet(\"a.parquet\").to_csv(\"a.csv\", \
+                 index=False)",
+            )),
+            LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),
+        }
+    }
+
+    /// Rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+}
+
+/// The file, for errors.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TableFile<'a> {
+    pub path: &'a Path,
+}
+
+impl TableFile<'_> {
+    /// The file is refused.
+    pub fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::data(Place::file(self.path), what, remedy)
+    }
+}
+
+/// Whole numbers as they stand; where a double could not hold them to the last digit, counted from
+/// the first, for then they are times.
+pub(super) fn from_integers(values: &[i64]) -> Vec<f64> {
+    const EXACT: u64 = 1 << 53;
+    let first = match values.iter().any(|value| value.unsigned_abs() > EXACT) {
+        true => values[0],
+        false => 0,
+    };
+    values
+        .iter()
+        .map(|value| value.wrapping_sub(first) as f64)
+        .collect()
+}

@@ -1,0 +1,189 @@
+//! Files that other programs wrote (`tests/peers/write_logs.py`), read to the last bit; and what is
+//! left of them after damage.
+
+use super::*;
+use serde_json::Value;
+use std::path::PathBuf;
+
+const FILES: [&str; 7] = [
+    "states_none.mcap",
+    "states_lz4.mcap",
+    "states_zstd.mcap",
+    "states.db3",
+    "many.db3",
+    "v6.mat",
+    "v7.mat",
+];
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/logs")
+        .join(name)
+}
+
+fn table(name: &str) -> Table {
+    Table::read(&path(name), LogFormat::of(&path(name))).unwrap()
+}
+
+fn of(name: &str, bytes: &[u8]) -> Result<Table> {
+    let path = path(name);
+    Table::of(bytes, TableFile { path: &path }, LogFormat::of(&path))
+}
+
+/// What a file must say, by column.
+fn expected(group: &str) -> Vec<(String, Vec<f64>)> {
+    let text = std::fs::read_to_string(path("expected.json")).unwrap();
+    let all: Value = serde_json::from_str(&text).unwrap();
+    let columns = all[group].as_object().unwrap().iter();
+    let numbers = |values: &Value| -> Vec<f64> {
+        let values = values.as_array().unwrap().iter();
+        values
+            .map(|value| value.as_f64().unwrap_or(f64::NAN))
+            .collect()
+    };
+    columns
+        .map(|(name, values)| (name.clone(), numbers(values)))
+        .collect()
+}
+
+fn assert_bits(table: &Table, name: &str, expected: &[f64]) {
+    let index = table.names.iter().position(|own| own == name);
+    let index = index.unwrap_or_else(|| panic!("{name} is none of {:?}", table.names));
+    assert_eq!(table.columns[index].len(), expected.len(), "{name}");
+    for (row, (read, wanted)) in table.columns[index].iter().zip(expected).enumerate() {
+        let same = read.to_bits() == wanted.to_bits() || (read.is_nan() && wanted.is_nan());
+        assert!(same, "{name}, row {row}: {read} instead of {wanted}");
+    }
+}
+
+#[test]
+fn joint_states_of_mcap_and_rosbag2_are_read_to_the_last_bit() {
+    let expected = expected("states");
+    for name in ["states_none.mcap", "states_lz4.mcap", "states_zstd.mcap"] {
+        let table = table(name);
+        for (column, values) in &expected {
+            assert_bits(&table, column, values);
+        }
+        assert_eq!(
+            table.names.len(),
+            expected.len(),
+            "{name}: {:?}",
+            table.names
+        );
+    }
+    let own = |column: &&(String, Vec<f64>)| !column.0.contains('/');
+    for name in ["states.db3", "many.db3"] {
+        let table = table(name);
+        for (column, values) in expected.iter().filter(own) {
+            assert_bits(&table, column, &values[..table.rows()]);
+        }
+    }
+    assert_eq!(table("states.db3").names.len(), expected.len() - 1);
+    assert_eq!(
+        (table("many.db3").names.len(), table("many.db3").rows()),
+        (301, 8)
+    );
+}
+
+#[test]
+fn matlab_files_are_read_to_the_last_bit() {
+    for name in ["v6.mat", "v7.mat"] {
+        let table = table(name);
+        let expected = expected("mat");
+        for (column, values) in &expected {
+            assert_bits(&table, column, values);
+        }
+        assert_eq!(table.names.len(), expected.len(), "{:?}", table.names);
+        assert_eq!(table.constants, [("supply_v".to_string(), 11.7)]);
+    }
+}
+
+#[test]
+fn a_torn_mcap_is_read_as_far_as_it_is_whole() {
+    let bytes = std::fs::read(path("states_none.mcap")).unwrap();
+    let whole = table("states_none.mcap");
+    let torn = of("states_none.mcap", &bytes[..bytes.len() / 2]).unwrap();
+    assert!(torn.rows() > 5 && torn.rows() < whole.rows());
+    let index = |table: &Table| {
+        table
+            .names
+            .iter()
+            .position(|n| n == "elbow.position")
+            .unwrap()
+    };
+    assert_eq!(
+        torn.columns[index(&torn)],
+        whole.columns[index(&whole)][..torn.rows()]
+    );
+}
+
+#[test]
+fn damage_is_refused_or_read_but_never_a_panic() {
+    for name in FILES {
+        let bytes = std::fs::read(path(name)).unwrap();
+        let stride = bytes.len() / 150 + 1;
+        for cut in (0..bytes.len()).step_by(stride) {
+            if let Err(error) = of(name, &bytes[..cut]) {
+                assert!(error.remedy().is_some(), "{name} cut at {cut}");
+            }
+        }
+        for at in (0..bytes.len()).step_by(stride / 3 + 1) {
+            for value in [0, 0x7f, 0xff, bytes[at] ^ 1] {
+                let mut damaged = bytes.clone();
+                damaged[at] = value;
+                let _ = of(name, &damaged);
+            }
+        }
+        assert!(of(name, b"").is_err());
+        assert!(of(name, &[0xff; 4096]).is_err());
+    }
+}
+
+#[test]
+fn sizes_that_no_file_bears_are_refused() {
+    // A compressed chunk that says it becomes 2^40 bytes, a variable of 2^31 x 2^31 numbers.
+    let mut mat = vec![b' '; 124];
+    mat.extend([0, 1, b'I', b'M']);
+    let word = |value: u32| value.to_le_bytes();
+    for value in [
+        14,
+        56,
+        6,
+        8,
+        6,
+        0,
+        5,
+        8,
+        u32::MAX >> 1,
+        u32::MAX >> 1,
+        1,
+        1,
+        u32::from(b'q'),
+        0,
+        9,
+        0,
+    ] {
+        mat.extend(word(value));
+    }
+    let said = of("a.mat", &mat).unwrap_err().to_string();
+    assert!(said.contains("another count"), "{said}");
+    // Zeros that inflate a thousandfold, over and over, end at the limit rather than in memory.
+    let hdf = [b"MATLAB 7.3 MAT-file".as_slice(), &[b' '; 200]].concat();
+    assert!(of("a.mat", &hdf).unwrap_err().to_string().contains("HDF5"));
+    assert!(
+        of("a.parquet", b"PAR1")
+            .unwrap_err()
+            .to_string()
+            .contains("Parquet")
+    );
+}
+
+#[test]
+fn whole_numbers_too_long_for_a_double_count_from_the_first() {
+    let first = 1_772_366_400_123_456_789;
+    assert_eq!(
+        from_integers(&[first, first + 1, first + 10]),
+        [0.0, 1.0, 10.0]
+    );
+    assert_eq!(from_integers(&[3, -4]), [3.0, -4.0]);
+}

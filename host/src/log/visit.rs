@@ -1,0 +1,56 @@
+//! Hands a log's rows over one by one, whatever its format.
+
+use super::csv;
+use super::format::LogFormat;
+use super::header::LogHeader;
+use super::row::LogRow;
+use super::row_reader::RowReader;
+use super::table::Table;
+use crate::error::Result;
+use crate::model::LogColumns;
+use std::path::Path;
+
+/// What is known of a file once it has been read through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileFacts {
+    /// SHA-256 of all its bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// Data rows, unreadable ones included.
+    pub rows: usize,
+}
+
+/// Hands every data row of a log to `visitor`, with its number counted from 0.
+///
+/// CSV is streamed: memory does not grow with the file. Of other formats the columns are held, and
+/// a row's line is its number, counted from 1. A row that cannot be read arrives as an error with
+/// file, line and column; the visitor decides whether that ends the reading.
+///
+/// # Errors
+/// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.
+pub fn visit(
+    path: &Path,
+    columns: &LogColumns,
+    visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,
+) -> Result<FileFacts> {
+    let format = LogFormat::of(path);
+    if matches!(format, LogFormat::Csv | LogFormat::Bam) {
+        return csv::visit(path, columns, visitor);
+    }
+    let table = Table::read(path, format)?;
+    let header = LogHeader::of_table(path, &table);
+    let reader = RowReader::new(path, columns, &header)?;
+    let mut row = LogRow {
+        path: path.to_path_buf(),
+        fields: reader.fields(),
+        ..LogRow::default()
+    };
+    for number in 0..table.rows() {
+        (row.line, row.number) = (number + 1, number);
+        let filled = reader.fill_numbers(&table.columns, number, &mut row);
+        visitor(number, filled.map(|()| &row))?;
+    }
+    Ok(FileFacts {
+        rows: table.rows(),
+        sha256: table.sha256,
+    })
+}

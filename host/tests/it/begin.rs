@@ -1,0 +1,146 @@
+//! From a log, or a robot's file, to a model that the other commands take.
+
+use crate::common::{Bench, swing};
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+/// Logs of public rigs, where they are.
+fn data() -> Option<PathBuf> {
+    std::env::var_os("HANDSTAND_DATA").map(PathBuf::from)
+}
+
+#[test]
+fn a_model_begun_from_a_log_is_checked_compared_and_fitted() {
+    let bench = Bench::new();
+    let begun = bench.run("init a.csv -o begun.toml --mass 0.2 --json");
+    assert_eq!(begun.code, Some(0), "{begun:?}");
+    let guesses = begun.json()["guesses"].as_array().unwrap().clone();
+    assert!(guesses.iter().any(|guess| guess["what"] == "angle zero"));
+    assert!(
+        begun
+            .stderr
+            .contains("next: handstand log check begun.toml a.csv")
+    );
+    assert_eq!(bench.run("init a.csv -o begun.toml").code, Some(2));
+    assert_eq!(bench.run("log check begun.toml a.csv b.csv").code, Some(0));
+    let fitted = bench
+        .run("fit begun.toml a.csv --holdout b.csv -o fitted.toml --json")
+        .json();
+    let error = |key: &str| fitted["error"][key].as_f64().unwrap();
+    assert!(error("after_rad") < 0.5 * error("before_rad"), "{fitted}");
+    assert_eq!(bench.run("compare fitted.toml b.csv").code, Some(0));
+}
+
+#[test]
+fn models_begun_from_public_logs_are_read_and_checked() {
+    let Some(data) = data() else {
+        println!("HANDSTAND_DATA is not set: nothing begun");
+        return;
+    };
+    let logs = [
+        ("multiarm/single_id.csv", ["upright", "passive"]),
+        ("multiarm/triple_id.csv", ["upright", "passive"]),
+        ("mx106_drop/drop.csv", ["horizontal", "passive"]),
+        ("htd45h/sin_sin.csv", ["hanging", "position"]),
+        ("dfki_pendulum/ddp_measured.csv", ["hanging", "torque"]),
+        (
+            "dfki_double/design_A.0_20220815_sys_id_trajectory_00.csv",
+            ["hanging", "torque"],
+        ),
+    ];
+    for (log, [zero, drive]) in logs {
+        let bench = Bench::new();
+        let log = data.join(log);
+        let log = log.display();
+        assert_eq!(
+            bench.run(&format!("init {log} -o begun.toml")).code,
+            Some(0),
+            "{log}"
+        );
+        let text = bench.get("begun.toml");
+        assert!(
+            text.contains(&format!("angle_zero = \"{zero}\"")),
+            "{log}: {text}"
+        );
+        assert!(
+            text.contains(&format!("drive = \"{drive}\"")),
+            "{log}: {text}"
+        );
+        let compared = bench.run(&format!("compare begun.toml {log}"));
+        assert_eq!(compared.code, Some(0), "{log}: {compared:?}");
+    }
+}
+
+#[test]
+fn a_folder_and_the_standard_input_are_logs() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("runs")).unwrap();
+    bench.put("runs/1.csv", swing(1.0));
+    bench.put("runs/2.csv", swing(-0.8));
+    bench.put("runs/notes.md", "no log");
+    let folder = bench.run("compare model.toml runs --json").json();
+    let single = bench
+        .run("compare model.toml runs/1.csv runs/2.csv --json")
+        .json();
+    assert_eq!(folder["comparisons"], single["comparisons"]);
+    let piped = Command::new(env!("CARGO_BIN_EXE_handstand"))
+        .args(["compare", "model.toml", "-", "--json"])
+        .current_dir(bench.path("."))
+        .write_stdin(swing(1.0))
+        .output()
+        .unwrap();
+    assert!(
+        piped.status.success(),
+        "{}",
+        String::from_utf8_lossy(&piped.stderr)
+    );
+}
+
+#[test]
+fn files_of_other_programs_are_logs() {
+    let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/logs");
+    let bench = Bench::new();
+    for file in ["states_zstd.mcap", "states.db3"] {
+        let log = logs.join(file);
+        let log = log.display();
+        assert_eq!(
+            bench
+                .run(&format!("init {log} -o model_of.toml --force"))
+                .code,
+            Some(0),
+            "{file}"
+        );
+        let compared = bench.run(&format!("compare model_of.toml {log}"));
+        assert_eq!(compared.code, Some(0), "{file}: {compared:?}");
+    }
+}
+
+#[test]
+fn a_robot_of_another_simulator_becomes_a_model() {
+    let bench = Bench::new();
+    assert_eq!(
+        bench
+            .run("model export model.toml --to mjcf -o robot.xml")
+            .code,
+        Some(0)
+    );
+    let imported = bench.run("import robot.xml -o again.toml --json");
+    assert_eq!(imported.code, Some(0), "{imported:?}");
+    assert_eq!(imported.json()["joints"], serde_json::json!(["joint1"]));
+    let again = bench.run("model export again.toml --to mjcf").stdout;
+    let mass = |text: &str| {
+        text.lines()
+            .find(|line| line.contains("<inertial"))
+            .map(str::to_string)
+    };
+    assert_eq!(mass(&again), mass(&bench.get("robot.xml")));
+    assert_eq!(bench.run("import robot.xml --joints knee").code, Some(2));
+    bench.put("broken.urdf", "<robot><link name='a'>");
+    let broken = bench.run("import broken.urdf");
+    assert_eq!(broken.code, Some(3));
+    assert!(
+        broken.stderr.contains("broken.urdf:1:"),
+        "{}",
+        broken.stderr
+    );
+}

@@ -1,0 +1,338 @@
+//! Imported robots accelerate as in Pinocchio and in MuJoCo.
+//!
+//! The robots are drawn: axes and frames turned in space, centres of mass beside the plane, joints
+//! that count either way, links of several fixed bodies, branches.
+
+use handstand::Model;
+use handstand::dynamics::Workspace;
+use handstand::model::import::{ImportPlan, import};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const ROBOTS: u64 = 24;
+const STATES: usize = 10;
+
+/// The environment that `cargo xtask hidden --truth mujoco` and `cargo xtask peers` install.
+fn python() -> Option<PathBuf> {
+    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/peers/venv/bin/python");
+    let works = Command::new(&python).args(["-c", "import numpy"]).output();
+    works
+        .is_ok_and(|output| output.status.success())
+        .then_some(python)
+}
+
+/// Splitmix64: numbers between -1 and 1.
+struct Draws(u64);
+
+impl Draws {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn above(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * 0.5 * (self.next() + 1.0)
+    }
+
+    fn three(&mut self, size: f64) -> String {
+        format!(
+            "{} {} {}",
+            size * self.next(),
+            size * self.next(),
+            size * self.next()
+        )
+    }
+}
+
+fn joints(draws: &mut Draws) -> usize {
+    1 + (draws.above(0.0, 3.999) as usize)
+}
+
+/// A turn about x, the axis of all joints, so that frames differ and axes stay parallel.
+fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
+    let count = joints(draws);
+    let mut text = String::from("<robot name=\"drawn\"><link name=\"base\"/>");
+    let link = |text: &mut String, name: &str, draws: &mut Draws| {
+        let (xx, yy, zz) = (
+            draws.above(1e-3, 2e-3),
+            draws.above(1e-3, 2e-3),
+            draws.above(1e-3, 2e-3),
+        );
+        let _ = write!(
+            text,
+            "<link name=\"{name}\"><inertial><origin xyz=\"{}\" rpy=\"{}\"/><mass value=\"{}\"/>\
+             <inertia ixx=\"{xx}\" iyy=\"{yy}\" izz=\"{zz}\" ixy=\"1e-4\" ixz=\"-2e-4\" iyz=\"{}\"/>\
+             </inertial></link>",
+            draws.three(0.2),
+            draws.three(1.0),
+            draws.above(0.1, 1.0),
+            1e-4 * draws.next(),
+        );
+    };
+    let joint = |text: &mut String,
+                 kind: &str,
+                 name: &str,
+                 [parent, child]: [&str; 2],
+                 axis: &str,
+                 rpy: &str,
+                 draws: &mut Draws| {
+        let _ = write!(
+            text,
+            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <origin xyz=\"{}\" rpy=\"{rpy}\"/><axis xyz=\"{axis}\"/>\
+             <limit lower=\"-9\" upper=\"9\" effort=\"0\" velocity=\"0\"/></joint>",
+            draws.three(0.4)
+        );
+    };
+    // The whole robot may lean, so gravity acts in part along the axes.
+    link(&mut text, "stand", draws);
+    let lean = draws.three(0.5);
+    joint(
+        &mut text,
+        "fixed",
+        "stand_joint",
+        ["base", "stand"],
+        "1 0 0",
+        &lean,
+        draws,
+    );
+    let mut parent = "stand".to_string();
+    let mut names = Vec::new();
+    for index in 0..count {
+        let child = format!("link{index}");
+        link(&mut text, &child, draws);
+        let axis = if draws.next() > 0.0 {
+            "2 0 0"
+        } else {
+            "-1 0 0"
+        };
+        let kind = if draws.next() > 0.0 {
+            "continuous"
+        } else {
+            "revolute"
+        };
+        let turn = format!("{} 0 0", 3.0 * draws.next());
+        joint(
+            &mut text,
+            kind,
+            &format!("joint{index}"),
+            [&parent, &child],
+            axis,
+            &turn,
+            draws,
+        );
+        names.push(format!("joint{index}"));
+        if draws.next() > 0.0 {
+            // A tool that is fixed, and a joint across the plane that is held.
+            let (tool, wing) = (format!("tool{index}"), format!("wing{index}"));
+            link(&mut text, &tool, draws);
+            link(&mut text, &wing, draws);
+            let turn = draws.three(3.0);
+            joint(
+                &mut text,
+                "fixed",
+                &format!("grip{index}"),
+                [&child, &tool],
+                "1 0 0",
+                &turn,
+                draws,
+            );
+            joint(
+                &mut text,
+                "continuous",
+                &format!("flap{index}"),
+                [&tool, &wing],
+                "0 1 0",
+                &turn,
+                draws,
+            );
+        }
+        parent = child;
+    }
+    (text + "</robot>", names)
+}
+
+fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
+    let count = joints(draws);
+    let mut text = format!(
+        "<mujoco><compiler angle=\"degree\" eulerseq=\"zyx\"/><option gravity=\"{}\"><flag contact=\"disable\"/></option>\
+         <default><geom density=\"700\"/><default class=\"arm\"><joint damping=\"0.05\"/></default></default>\
+         <worldbody><body euler=\"{}\" childclass=\"arm\"><geom size=\"0.1\"/>",
+        draws.three(9.81),
+        draws.three(90.0)
+    );
+    let mut names = Vec::new();
+    for index in 0..count {
+        let axis = if draws.next() > 0.0 {
+            "0 1 0"
+        } else {
+            "0 -3 0"
+        };
+        let shape = match index % 4 {
+            0 => format!(
+                "<geom type=\"capsule\" size=\"0.03\" fromto=\"{} {}\"/>",
+                draws.three(0.3),
+                draws.three(0.3)
+            ),
+            1 => format!(
+                "<geom type=\"box\" size=\"0.03 0.05 0.1\" pos=\"{}\" axisangle=\"1 2 3 {}\"/>",
+                draws.three(0.2),
+                50.0 * draws.next()
+            ),
+            2 => format!(
+                "<geom type=\"cylinder\" size=\"0.04 0.1\" mass=\"0.4\" pos=\"{}\" zaxis=\"{}\"/>",
+                draws.three(0.2),
+                draws.three(1.0)
+            ),
+            _ => format!(
+                "<inertial mass=\"0.5\" pos=\"{}\" fullinertia=\"2e-3 2e-3 2e-3 1e-4 2e-4 -3e-4\"/>",
+                draws.three(0.2)
+            ),
+        };
+        let _ = write!(
+            text,
+            "<body pos=\"{}\" quat=\"{1} 0 {2} 0\"><joint name=\"joint{index}\" axis=\"{axis}\" pos=\"{3}\" \
+             ref=\"{4}\" stiffness=\"{5}\" springref=\"{6}\" armature=\"{7}\"/>{shape}\
+             <body pos=\"{8}\" xyaxes=\"1 2 0 0 1 1\"><geom type=\"ellipsoid\" size=\"0.02 0.03 0.05\"/></body>",
+            draws.three(0.4),
+            draws.next(),
+            draws.next() + 1.5,
+            draws.three(0.1),
+            20.0 * draws.next(),
+            draws.above(0.1, 2.0),
+            20.0 * draws.next(),
+            draws.above(0.001, 0.01),
+            draws.three(0.2),
+        );
+        names.push(format!("joint{index}"));
+    }
+    text += &"</body>".repeat(count + 1);
+    (text + "</worldbody></mujoco>", names)
+}
+
+/// Accelerations in the file's coordinates.
+fn accelerations(model: &Model, q: &[f64], dq: &[f64], tau: &[f64]) -> Vec<f64> {
+    let rig = model.rig(false);
+    let count = q.len();
+    let column = |joint: usize| &model.log.joints[joint].position.as_ref().unwrap().columns()[0];
+    let sign = |joint: usize| if column(joint).reversed { -1.0 } else { 1.0 };
+    let angle: Vec<f64> = (0..count)
+        .map(|joint| column(joint).to_si(q[joint]))
+        .collect();
+    let speed: Vec<f64> = (0..count).map(|joint| sign(joint) * dq[joint]).collect();
+    let mut torque: Vec<f64> = (0..count).map(|joint| sign(joint) * tau[joint]).collect();
+    for effect in &model.effects {
+        let joint = effect.joint.unwrap();
+        match (effect.effect.info().id, effect.values.as_slice()) {
+            ("viscous", [damping]) => torque[joint] -= damping * speed[joint],
+            ("cable_spring", [stiffness, rest]) => {
+                torque[joint] -= stiffness * (angle[joint] - rest)
+            }
+            ("com_angle" | "armature", _) => {}
+            (other, _) => panic!("{other} was not in the file"),
+        }
+    }
+    let mut out = vec![0.0; count];
+    let mut work = Workspace::new(count);
+    let base = rig.chain.base_m_s2(rig.gravity_turn_rad);
+    rig.chain.forward(
+        &mut work,
+        base,
+        &angle,
+        &speed,
+        &torque,
+        &vec![false; count],
+        &mut out,
+    );
+    (0..count).map(|joint| sign(joint) * out[joint]).collect()
+}
+
+#[test]
+fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
+    let Some(python) = python() else {
+        println!("numpy is not installed in target/peers/venv: nothing compared");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (mut cases, mut models) = (Vec::new(), Vec::new());
+    for robot in 0..ROBOTS {
+        let mut draws = Draws(robot);
+        let (text, names) = match robot % 2 {
+            0 => urdf(&mut draws),
+            _ => mjcf(&mut draws),
+        };
+        let ending = ["urdf", "xml"][robot as usize % 2];
+        let file = folder.path().join(format!("{robot}.{ending}"));
+        std::fs::write(&file, &text).unwrap();
+        let plan = ImportPlan {
+            joints: names.clone(),
+            // A rotor needs a drive.
+            driven: true,
+        };
+        let imported =
+            import(&text, &file, &plan).unwrap_or_else(|error| panic!("{robot}: {error}\n{text}"));
+        let held: Vec<&str> = imported
+            .left_out
+            .iter()
+            .map(|part| part.part.as_str())
+            .collect();
+        assert!(
+            !held.contains(&"stiffness") && !held.contains(&"armature"),
+            "{held:?}"
+        );
+        let model = Model::parse(&imported.toml, Path::new("imported.toml")).unwrap();
+        let mut many =
+            |size: f64| -> Vec<f64> { names.iter().map(|_| size * draws.next()).collect() };
+        let states: Vec<[Vec<f64>; 3]> = (0..STATES)
+            .map(|_| [many(3.0), many(5.0), many(4.0)])
+            .collect();
+        let written: Vec<Value> = states
+            .iter()
+            .map(|[q, dq, tau]| json!({ "q": q, "dq": dq, "tau": tau }))
+            .collect();
+        cases.push(json!({ "file": file, "joints": names, "states": written }));
+        models.push((model, states));
+    }
+    let path = folder.path().join("cases.json");
+    std::fs::write(&path, serde_json::to_string(&cases).unwrap()).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/forward_dynamics.py");
+    let output = Command::new(python)
+        .arg(script)
+        .arg(&path)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let theirs: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (mut compared, mut worst) = ([0, 0], 0.0f64);
+    for (robot, ((model, states), theirs)) in
+        models.iter().zip(theirs.as_array().unwrap()).enumerate()
+    {
+        let Ok(theirs) = serde_json::from_value::<Vec<Vec<f64>>>(theirs.clone()) else {
+            println!("robot {robot}: its simulator is not installed");
+            continue;
+        };
+        compared[robot % 2] += 1;
+        for ([q, dq, tau], theirs) in states.iter().zip(theirs) {
+            let ours = accelerations(model, q, dq, tau);
+            let size = theirs.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
+            for (ours, theirs) in ours.iter().zip(&theirs) {
+                let off = (ours - theirs).abs() / size;
+                worst = worst.max(off);
+                assert!(off < 1e-9, "robot {robot}: {ours} instead of {theirs}");
+            }
+        }
+    }
+    println!(
+        "{} by Pinocchio, {} by MuJoCo, largest difference {worst:.1e}",
+        compared[0], compared[1]
+    );
+}
