@@ -146,8 +146,9 @@ fn ask(args: &InitArgs, draft: &mut Draft) -> Result<()> {
         let what = "angles are relative (from the link before) or absolute (from the world)";
         questions.push(("angles", what, plan.angles.clone(), args.angles.is_some()));
     }
-    for (what, question, guess, answered) in questions {
-        while !answered {
+    let open = questions.into_iter().filter(|(.., answered)| !answered);
+    for (what, question, guess, _) in open {
+        loop {
             let Some(line) = asked(question, &guess)? else {
                 break;
             };

@@ -19,7 +19,7 @@ const SETTLES_S: f64 = 2.0;
 /// How an attempt went.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BalanceAttempt {
-    /// How long it stood, s; at most [`STANDS_S`].
+    /// How long it stood, s; at most 10 s.
     pub stood_s: f64,
     /// Whether that is all of it.
     pub stands: bool,

@@ -55,7 +55,7 @@ pub(crate) fn import(bytes: &[u8]) {
     };
     let plan = ImportPlan {
         joints: Vec::new(),
-        driven: bytes.len() % 2 == 0,
+        driven: bytes.len().is_multiple_of(2),
     };
     if let Ok(imported) = handstand::model::import::import(text, Path::new("robot.xml"), &plan) {
         let model = Model::parse(&imported.toml, Path::new("imported.toml"));
