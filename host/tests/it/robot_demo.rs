@@ -3,22 +3,21 @@
 use handstand::challenge::robot_demo::{HiddenRobot, RobotAnswer, run};
 use handstand::challenge::unseal;
 
-/// Lag and a wrong mass, found in the recordings, carried into the plan. One robot: a diagnosis is
+/// Lag and a dead zone, found in the recordings, carried into the plan. One robot: a diagnosis is
 /// most of a minute. `cargo xtask robot-demo` runs ten.
 #[test]
 fn a_robot_that_falls_as_believed_stands_as_learned() {
-    const SEED: u64 = 2;
+    const SEED: u64 = 1;
     let folder = tempfile::tempdir().unwrap();
     let demo = run(SEED, folder.path(), &|_| {}).unwrap();
     assert!(!demo.nominal.stands, "{:?}", demo.nominal.end);
     assert!(demo.learned.stands, "{:?}", demo.learned.end);
     assert!(demo.learned.stood_s >= 9.9);
     assert!(demo.named, "{:?} of {:?}", demo.added, demo.effects);
-    for effect in &demo.effects {
-        let estimate = effect.estimate.expect("found");
-        let off = (estimate - effect.true_value).abs();
-        assert!(off < 0.25 * effect.true_value, "{effect:?}");
-    }
+    // Width and punch of a dead zone are told together only; the lag stands alone.
+    let lag = &demo.effects[0];
+    let off = (lag.estimate.expect("found") - lag.true_value).abs();
+    assert!(off < 0.25 * lag.true_value, "{lag:?}");
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     let answer: RobotAnswer = unseal(&read("answer.sealed")).unwrap();
     assert_eq!(answer, HiddenRobot::draw(SEED).unwrap().answer);
