@@ -44,7 +44,7 @@ fn words(step: &DemoStep) -> String {
             said(attempt)
         ),
         DemoStep::Recorded(logs) => format!(
-            "\nHanging from its bar it was moved through the firmware (excite, replay), 5 s each: \
+            "\nHanging from its bar it was moved through the firmware (excite, replay): \
              {} to learn from, {} to judge by.",
             names(&logs.training),
             names(&logs.held_out)
@@ -59,7 +59,7 @@ fn words(step: &DemoStep) -> String {
 }
 
 fn names(logs: &[LogRequest]) -> String {
-    let names = logs.iter().map(|log| super::page::file_name(&log.path));
+    let names = logs.iter().map(LogRequest::name);
     names.collect::<Vec<_>>().join(" and ")
 }
 

@@ -17,6 +17,10 @@ use std::path::Path;
 /// drive's. `cargo xtask robot-demo` prints both of each robot.
 pub const PATH_DELAY_S: f64 = 0.0095;
 
+/// Largest delay of a drive that a plan can take, s: with the attitude's age it is within the three
+/// inputs that the CM-5 keeps. What is beyond is left out.
+const MOST_DELAY_S: f64 = 0.020;
+
 /// Kinds of effects that are tried: those of servos and links that a designer can do something about.
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
 /// same files.
@@ -86,7 +90,7 @@ impl Learned {
 /// observer and gains, its dead zone and the joints' dry friction jumped over.
 ///
 /// # Errors
-/// A delay that the CM-5 keeps too few inputs for, or a model that cannot be balanced.
+/// A model that cannot be balanced.
 pub fn plan_for(model: &Model) -> Result<Plan> {
     let largest = |id: &str, of: &dyn Fn(&[f64]) -> f64| {
         let driven = model.driven_joints();
@@ -101,7 +105,7 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     let dead_zone = largest("dead_zone", &|values| (-values[1]).clamp(0.0, values[0]));
     let friction_nm = largest("coulomb", &|values| values[0]);
     let mut timing = BoardTiming::HOST_ATTITUDE;
-    timing.effect_s += (delay_s - PATH_DELAY_S).max(0.0);
+    timing.effect_s += (delay_s - PATH_DELAY_S).clamp(0.0, MOST_DELAY_S);
     let board = Board {
         dead_zone: dead_zone + friction_nm / Board::BIOLOID.full_nm,
         joint_range_rad: 1.5,

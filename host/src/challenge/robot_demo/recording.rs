@@ -9,8 +9,7 @@ use crate::log::{LogRequest, LogSet};
 use crate::output::write_new;
 use std::path::Path;
 
-/// The motions: name, what it holds, and whether it is held out. Short ones, that the diagnosis takes
-/// a minute.
+/// The motions: name, what it holds, and whether it is held out.
 pub const MOTIONS: [(&str, ExcitationKind, bool); 3] = [
     ("a", ExcitationKind::Multisine, false),
     ("b", ExcitationKind::Drop, false),
@@ -34,13 +33,24 @@ pub fn record(robot: &HiddenRobot, dir: &Path) -> Result<LogSet> {
         let excitation = excite(&plan(kind, 10 * robot.answer.seed + number))?;
         write_new(&goals, &excitation.to_csv(), false)?;
         play(robot, &goals, &log)?;
-        let request = LogRequest::whole(log);
+        let request = LogRequest {
+            path: log,
+            rows: Some(rows(kind)),
+        };
         match is_held_out {
             true => logs.held_out.push(request),
             false => logs.training.push(request),
         }
     }
     Ok(logs)
+}
+
+/// First and last row that is learned from or judged by: 3 s of a multisine, the lift and the drop.
+fn rows(kind: ExcitationKind) -> (usize, usize) {
+    match kind {
+        ExcitationKind::Drop => (50, 400),
+        _ => (50, 350),
+    }
 }
 
 fn plan(kind: ExcitationKind, seed: u64) -> ExcitePlan {
