@@ -95,7 +95,7 @@ impl App {
         } else {
             State::Bridge
         };
-        let mut app = App {
+        App {
             state,
             link: Link::default(),
             filter: Filter::default(),
@@ -129,11 +129,7 @@ impl App {
             longest_tick_us: 0,
             longest_law_us: 0,
             has_looked: false,
-        };
-        if let State::Fault(cause) = state {
-            app.log_fault(cause);
         }
-        app
     }
 
     /// What it is doing.
@@ -161,6 +157,9 @@ impl App {
         if !self.has_looked {
             // Not while booting: what boots is moved, and RAM has no room for two plans.
             self.has_looked = true;
+            if let State::Fault(cause) = self.state {
+                self.log_fault(cause);
+            }
             self.load_plan(board);
         }
         self.pump(board);

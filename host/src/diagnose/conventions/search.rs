@@ -146,6 +146,7 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
             true => strict,
             false => never,
         },
+        Remedy::Unit(columns) if stands_still(bench, remedy, columns) => never,
         // Many turns of an arm are reason enough to doubt a unit.
         Remedy::Unit(columns) if doubts_travel(bench, columns) => Least {
             ratio: 0.97,
@@ -160,6 +161,19 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
 
 /// Joints that travel further than this are likelier read in a wrong unit, rad.
 const DOUBTFUL_RAD: f64 = 30.0;
+
+/// Joints that travel less than this are likelier read in a wrong unit, rad: any model that is linear
+/// near its rest predicts so small a motion.
+const STILL_RAD: f64 = 0.1;
+
+/// Whether one of the columns is an angle that hardly moves as the remedy reads it.
+fn stands_still(bench: &Bench, remedy: &Remedy, columns: &[(Quantity, Unit)]) -> bool {
+    let motions = remedy.reread(&bench.model, &bench.motions);
+    columns.iter().any(|(quantity, _)| match quantity {
+        Quantity::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
+        _ => false,
+    })
+}
 
 /// Whether one of the columns is an angle that travels too far as it is read.
 fn doubts_travel(bench: &Bench, columns: &[(Quantity, Unit)]) -> bool {

@@ -168,7 +168,7 @@ pub fn gravity_of_torques(
         }
     }
     let unknowns = 5 * angle_rad.len();
-    if rows.len() < 10 * unknowns {
+    if unknowns == 0 || rows.len() < 10 * unknowns {
         return None;
     }
     let a = nalgebra::DMatrix::from_fn(rows.len(), unknowns, |i, j| rows[i][j + 1]);
