@@ -80,6 +80,7 @@ impl FaultLog {
     }
 
     /// Writes the next byte.
+    #[inline(never)]
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let (Some((place, _)), Some(byte)) =
             (self.newest, self.cell.get(usize::from(self.written)))

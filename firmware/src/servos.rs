@@ -88,6 +88,13 @@ impl Servos {
         }
     }
 
+    /// Forgets all but the ids of this list. Apart, so that what calls it does not hold a second one
+    /// on the stack.
+    #[inline(never)]
+    pub fn start_over(&mut self, list: &ServoList) {
+        *self = Servos::new(list);
+    }
+
     /// Reads these two last, the second of them after the first; the others in the list's order.
     #[inline(never)]
     pub fn read_last(&mut self, ids: [u8; 2]) {

@@ -4,7 +4,6 @@ use super::{App, Goal, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
 use crate::plan_store::MAX_TABLE;
-use crate::servos::Servos;
 use handstand_shared::message::{
     Answer, Cause, Command, Hello, Mode, Numbered, PLAN_CHUNK, Refusal, Report, ServoList, Subject,
     Telemetry, VERSION,
@@ -173,7 +172,7 @@ impl App {
         } else if !list.is_sound() {
             Err(Refusal::ServoList)
         } else {
-            self.servos = Servos::new(list);
+            self.servos.start_over(list);
             self.order_servos();
             Ok(())
         }

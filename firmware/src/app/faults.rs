@@ -6,6 +6,7 @@ use handstand_shared::message::{Cause, FaultEntry, Refusal, Report};
 
 impl App {
     /// Keeps a fault in EEPROM, with the state it came in.
+    #[inline(never)]
     pub(super) fn log_fault(&mut self, cause: Cause) {
         // What the host asked for is no fault.
         if cause != Cause::LetDown {

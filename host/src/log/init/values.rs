@@ -192,7 +192,7 @@ pub fn gravity_of_torques(
 pub fn rod_length_m(time_s: &[f64], angle_rad: &[f64], gravity_m_s2: f64) -> Option<f64> {
     let rest = median(angle_rad);
     let mut crossings = Vec::new();
-    for k in 1..time_s.len() {
+    for k in 1..time_s.len().min(angle_rad.len()) {
         if (angle_rad[k - 1] < rest) && (angle_rad[k] >= rest) {
             crossings.push(time_s[k]);
         }
