@@ -165,6 +165,21 @@ impl Browser {
         }
     }
 
+    /// A number that the page has. While it loads again it has none: it is asked until it has.
+    fn number(&mut self, expression: &str) -> f64 {
+        let begun = Instant::now();
+        loop {
+            if let Some(number) = self.value(expression).as_f64() {
+                return number;
+            }
+            assert!(
+                begun.elapsed() < PATIENCE,
+                "no number in {PATIENCE:?}: {expression}"
+            );
+            std::thread::sleep(Duration::from_millis(40));
+        }
+    }
+
     /// Text of an element.
     pub fn text(&mut self, selector: &str) -> String {
         let text = self.value(&format!("document.querySelector('{selector}').textContent"));
@@ -265,8 +280,8 @@ impl Browser {
                 let wrong = self.judged();
                 let place = |wrong| format!("{name} at {width} px, {scheme}: {wrong}");
                 self.complaints.extend(wrong.into_iter().map(place));
-                let wide = self.value("document.documentElement.scrollWidth - innerWidth");
-                if wide.as_f64().unwrap() > 0.0 {
+                let wide = self.number("document.documentElement.scrollWidth - innerWidth");
+                if wide > 0.0 {
                     let wide = format!("{name} at {width} px is too wide by {wide} px");
                     self.complaints.push(wide);
                 }
@@ -281,9 +296,10 @@ impl Browser {
             "Emulation.setEmulatedMedia",
             json!({ "features": features }),
         );
-        let height = self.value("Math.max(600, Math.min(4000, document.body.scrollHeight + 40))");
+        self.until("document.readyState === 'complete'");
+        let height = self.number("Math.max(600, Math.min(4000, document.body.scrollHeight + 40))");
         let size = json!({
-            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false,
+            "width": width, "height": height as u32, "deviceScaleFactor": 1, "mobile": false,
         });
         self.call("Emulation.setDeviceMetricsOverride", size);
         // Charts are drawn again with the next frame.
