@@ -1,8 +1,16 @@
 //! The lab: over HTTP as a program sees it, and in a browser as a person does.
 
-mod browser;
 mod http;
 mod pages;
 mod safety;
 mod server;
 mod speed;
+
+use handstand_browser::Browser;
+use std::path::Path;
+
+/// A browser whose pictures go into the target folder; `None`, and a line that says so, where
+/// there is no Chromium.
+fn browser() -> Option<Browser> {
+    Browser::start(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("lab"))
+}

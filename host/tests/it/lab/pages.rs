@@ -1,8 +1,9 @@
 //! A person with a log, from bringing it to a better model; keyboard alone.
 
-use super::browser::Browser;
+use super::browser;
 use super::server::Server;
 use crate::common::Bench;
+use handstand_browser::Browser;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -16,7 +17,7 @@ fn error_now(browser: &mut Browser) -> f64 {
 #[test]
 fn from_a_log_to_a_better_model_and_back() {
     let bench = Bench::new();
-    let Some(mut browser) = Browser::start() else {
+    let Some(mut browser) = browser() else {
         return;
     };
     let server = Server::start_alone(&bench, "");

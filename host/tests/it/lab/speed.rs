@@ -1,6 +1,6 @@
 //! How soon the lab answers: a start, 18 joints over a minute, a slider.
 
-use super::browser::Browser;
+use super::browser;
 use super::server::Server;
 use crate::common::Bench;
 use serde_json::json;
@@ -54,7 +54,7 @@ fn a_start_takes_less_than_a_second() {
 fn a_minute_of_eighteen_joints_is_drawn_at_once() {
     let bench = Bench::new();
     eighteen(&bench);
-    let Some(mut browser) = Browser::start() else {
+    let Some(mut browser) = browser() else {
         return;
     };
     let server = Server::start_alone(&bench, "");
