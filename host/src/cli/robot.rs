@@ -1,10 +1,12 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{AnyLink, Ids, Port, id_list};
-use handstand::link::record::{Adapter, SampleSource, Stream};
-use handstand::link::{SerialLink as _, Servos, Session, SessionError};
+use handstand::link::record::{SampleSource, is_cm5, open_source};
 use handstand::{Error, Result};
 use std::time::Duration;
+
+/// Period of a CM-5's reports.
+const CM5_PERIOD: Duration = Duration::from_millis(10);
 
 /// Which servos, and how they are read.
 #[derive(Debug, Clone, clap::Args)]
@@ -43,15 +45,8 @@ impl RobotArgs {
     }
 
     fn opened(&self, link: AnyLink, streams: bool) -> Result<Box<dyn SampleSource>> {
-        if streams {
-            return Ok(Box::new(Stream::new(link, &self.ids.0)?));
-        }
-        let mut servos = Servos::new(link);
-        let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
-        if !present {
-            return Err(handstand::link::record::no_response());
-        }
-        Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
+        let period = if streams { CM5_PERIOD } else { self.period()? };
+        open_source(link, &self.ids.0, streams, period)
     }
 
     /// Time between two samples.
@@ -60,7 +55,7 @@ impl RobotArgs {
     /// A rate that is none.
     pub fn period(&self) -> Result<Duration> {
         if self.stream {
-            return Ok(Duration::from_millis(10));
+            return Ok(CM5_PERIOD);
         }
         let sensible = (0.01..=1000.0).contains(&self.hz);
         sensible
@@ -71,19 +66,5 @@ impl RobotArgs {
                     "give 0.01 to 1000 rounds per second",
                 )
             })
-    }
-}
-
-/// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,
-/// whose servos would hear what is said.
-fn is_cm5(link: &mut AnyLink) -> Result<bool> {
-    const SERVO_BUS_BAUD: u32 = 900_000;
-    if link.baud() >= SERVO_BUS_BAUD {
-        return Ok(false);
-    }
-    match Session::open(&mut *link) {
-        Ok(_) => Ok(true),
-        Err(SessionError::NoFirmware { .. }) => Ok(false),
-        Err(error) => Err(error.into()),
     }
 }
