@@ -75,6 +75,7 @@ const show = (said) => {
       said.inputs[i]) },
   ]);
   $("gains-command").textContent = said.command;
+  $("response").dataset.answered = String(Math.round(performance.now()));
 };
 const ask = async (region) => {
   wanted = { region };

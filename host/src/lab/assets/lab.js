@@ -215,7 +215,7 @@ if (curves && curves.dataset.kind !== "what-if") {
     $("#shown-role").textContent = answer.meta.held_out ? "held out" : "fitted";
     $("#shown-window").textContent = answer.meta.window_s ?
       `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
-    curves.dataset.loaded = "1";
+    curves.dataset.answered = String(Math.round(performance.now()));
   };
   // One request at a time: the last wish wins.
   const ask = async (horizon) => {
