@@ -67,7 +67,7 @@ fn tables(steps: &[Step]) -> Measured {
             step.what.clone(),
             format!("{:.0}", step.quantile_ms(0.5)),
             format!("{:.0}", step.quantile_ms(0.95)),
-            format!("{:.0}", step.limit_ms),
+            limit(step.limit_ms),
             verdict.into(),
         ]);
     }
@@ -78,4 +78,11 @@ fn tables(steps: &[Step]) -> Measured {
          navigation until its charts are drawn, or until it is loaded where it has none. A step is \
          in time where its median is."
     ))
+}
+
+fn limit(limit_ms: f64) -> String {
+    match limit_ms.is_finite() {
+        true => format!("{limit_ms:.0}"),
+        false => "-".into(),
+    }
 }

@@ -54,13 +54,14 @@ export class ChartGroup {
 
   // `panels` over `time`: { title, unit, scale, band, joint, curves };
   // `curves`: [{ name, tone, values, wide }].
-  show(time, panels, { marks = [] } = {}) {
-    const same = this.time && this.time.length === time.length &&
+  // With `follow` the time grows from call to call, and all of it is shown.
+  show(time, panels, { marks = [], follow = false } = {}) {
+    const same = this.time && (follow || this.time.length === time.length) &&
       this.panels.length === panels.length;
     this.time = time;
     this.marks = marks;
     const first = time.length ? time[0] : 0, last = time.length ? time[time.length - 1] : 1;
-    if (!same || !this.view) this.view = [first, last];
+    if (!same || follow || !this.view) this.view = [first, last];
     this.ends = [first, last];
     if (!same) {
       this.box.replaceChildren();

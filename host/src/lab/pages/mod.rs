@@ -11,6 +11,7 @@ pub(super) mod learn;
 pub(super) mod learn_card;
 pub(super) mod learn_steps;
 pub(super) mod robot;
+mod robot_live;
 pub(super) mod what_if;
 
 use super::reply::LabError;

@@ -20,6 +20,7 @@ pub struct Evaluation {
     pub run: ModelRun,
     /// Motions that are fitted; those after them are held out.
     pub fitted: usize,
+    at_its_horizon: OnceLock<Comparison>,
     comparison: OnceLock<Comparison>,
     failing: OnceLock<Vec<FailingSamples>>,
     name: String,
@@ -30,6 +31,7 @@ impl Evaluation {
         Evaluation {
             run,
             fitted,
+            at_its_horizon: OnceLock::new(),
             comparison: OnceLock::new(),
             failing: OnceLock::new(),
             name,
@@ -41,6 +43,20 @@ impl Evaluation {
         let data = self.run.data.recut(horizon);
         let run = ModelRun::new(self.run.model.clone(), data, horizon);
         Evaluation::of(run, self.fitted, self.name.clone())
+    }
+
+    /// The same in a fraction of the time, for a slider that moves: start states are fitted
+    /// roughly.
+    pub fn roughly_at(&self, horizon: Horizon) -> Evaluation {
+        let data = self.run.data.recut(horizon);
+        let run = ModelRun::roughly(self.run.model.clone(), data, horizon);
+        Evaluation::of(run, self.fitted, self.name.clone())
+    }
+
+    /// The comparison without the errors over shorter runs, made when it is first asked for.
+    pub fn at_its_horizon(&self) -> &Comparison {
+        self.at_its_horizon
+            .get_or_init(|| self.run.at_its_horizon(&self.name))
     }
 
     /// The comparison, made when it is first asked for.

@@ -45,8 +45,20 @@ impl Session {
             text: &step.toml,
         };
         let logs = self.log_set(saved).all();
-        let found = Arc::new(conventions::findings(&logs, &model, file)?);
+        let found = aside(|| conventions::findings(&logs, &model, file))?;
+        let found = Arc::new(found);
         known.0 = Some((asked, found.clone()));
         Ok(found)
+    }
+}
+
+/// Does what takes long on half of the processors: pages are answered by the rest.
+fn aside<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads((all / 2).max(1));
+    match pool.build() {
+        Ok(pool) => pool.install(work),
+        // Without threads of its own it takes those of the others.
+        Err(_) => work(),
     }
 }

@@ -1,6 +1,9 @@
 //! The lab: over HTTP as a program sees it, and in a browser as a person does.
 
+mod bring;
+mod events;
 mod http;
+mod live;
 mod pages;
 mod safety;
 mod server;

@@ -23,7 +23,7 @@ const PAGES: [(&str, &str); 7] = [
     ("challenge", ""),
 ];
 
-/// Moves a slider by a step and back, and gives the time until the charts in `root` were drawn from
+/// Moves a slider by a share of its length, and gives the time until the charts in `root` were drawn from
 /// the answer, ms.
 const SLIDE: &str = "\
 new Promise((done) => {
@@ -162,7 +162,7 @@ impl Person {
         ))
     }
 
-    /// Moves a slider there and back; times until the charts were drawn, ms.
+    /// Moves a slider to ever new places; times until the charts were drawn, ms.
     fn slides(&mut self, page: &str, slider: &str, root: &str) -> Vec<f64> {
         self.browser.open(page);
         self.browser.until(&format!(
@@ -178,7 +178,7 @@ impl Person {
             script.replace("SHARE", &share.to_string())
         };
         (0..self.rounds)
-            .map(|round| self.browser.number(&slide([-0.05, 0.06][round % 2])))
+            .map(|_| self.browser.number(&slide(-0.4 / self.rounds as f64)))
             .collect()
     }
 }
