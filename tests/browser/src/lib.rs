@@ -38,13 +38,6 @@ impl Drop for Browser {
     }
 }
 
-/// Whether something is wrong with the page. A model that cannot be balanced is refused with 422,
-/// which the page shows; Chromium notes every refusal.
-fn is_complaint(entry: &Value) -> bool {
-    let text = entry["text"].as_str().unwrap_or_default();
-    entry["level"] == "error" && !(entry["source"] == "network" && text.contains("422"))
-}
-
 /// The program, if there is one.
 fn chromium() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
@@ -134,7 +127,7 @@ impl Browser {
                     self.complaints
                         .push(said["params"]["exceptionDetails"].to_string());
                 }
-                Some("Log.entryAdded") if is_complaint(&said["params"]["entry"]) => {
+                Some("Log.entryAdded") if said["params"]["entry"]["level"] == "error" => {
                     self.complaints.push(said["params"]["entry"].to_string());
                 }
                 _ => {}

@@ -77,6 +77,16 @@ const show = (said) => {
   $("gains-command").textContent = said.command;
   $("response").dataset.answered = String(Math.round(performance.now()));
 };
+// What stands there is of another design.
+const refuse = (error) => {
+  say(error.message);
+  poles = [];
+  drawPoles();
+  $("figures").replaceChildren(element("p", { className: "bad", textContent: error.message }));
+  $("gain").replaceChildren();
+  group.show(new Float32Array(), []);
+  for (const link of document.querySelectorAll("[data-file]")) link.removeAttribute("href");
+};
 const ask = async (region) => {
   wanted = { region };
   for (const name of Object.keys(shown)) $(`${name}-shown`).textContent = value(name);
@@ -91,7 +101,7 @@ const ask = async (region) => {
     const next = wanted;
     wanted = null;
     try { show(await send("gains", asked(next.region))); say(""); } catch (error) {
-      say(error.message); }
+      refuse(error); }
   }
   busy = false;
 };

@@ -2,6 +2,7 @@
 
 mod bring;
 mod events;
+mod gains;
 mod http;
 mod live;
 mod pages;
