@@ -2,13 +2,15 @@
 //! how it swings; each guess with its reason.
 
 mod columns;
+mod log_guess;
 mod name;
 #[cfg(test)]
 mod tests;
 mod values;
+mod words;
 mod write;
 
-pub use columns::{ColumnGuess, JointGuess, LogGuess};
+pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
