@@ -124,7 +124,7 @@ impl GuessReader<'_> {
         let why = if named.is_some() { "its name" } else { why };
         said.push(Guess::new(
             what,
-            format!("column {:?} in {}", column.name, unit_words(&column)),
+            format!("column {:?} in {}", column.name, column.unit_words()),
             why,
         ));
         column
@@ -291,18 +291,7 @@ impl GuessReader<'_> {
 
     /// Says which columns are not used.
     fn say_rest(&self, guess: &LogGuess, said: &mut Vec<Guess>) {
-        let joints = guess.joints.iter();
-        let columns = joints
-            .flat_map(|j| [&j.position, &j.velocity, &j.input])
-            .flatten();
-        let used = columns
-            .chain(&guess.supply)
-            .chain([&guess.time])
-            .map(|column| column.name.as_str());
-        let used: Vec<&str> = used
-            .chain(guess.segment.as_deref())
-            .chain(guess.torque_on.as_deref())
-            .collect();
+        let used = guess.names();
         let rest = self
             .log
             .names
@@ -321,12 +310,5 @@ impl GuessReader<'_> {
             let remedy = "payload = { column, unit, at_m } says where it is bolted";
             said.push(Guess::new("payload", "not used", remedy));
         }
-    }
-}
-
-fn unit_words(column: &ColumnGuess) -> String {
-    match column.ticks_per_turn {
-        Some(ticks) => format!("{}, {ticks} per turn", column.unit),
-        None => column.unit.to_string(),
     }
 }

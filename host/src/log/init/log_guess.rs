@@ -27,6 +27,14 @@ impl ColumnGuess {
         values.map(|value| sign * factor * value).collect()
     }
 
+    /// Its unit in a sentence.
+    pub fn unit_words(&self) -> String {
+        match self.ticks_per_turn {
+            Some(ticks) => format!("{}, {ticks} per turn", self.unit),
+            None => self.unit.to_string(),
+        }
+    }
+
     /// Name and unit as in a model file.
     pub fn toml(&self) -> String {
         let name = toml_edit::Value::from(self.name.as_str());
@@ -69,4 +77,20 @@ pub struct LogGuess {
     pub torque_on: Option<String>,
     /// From the base outwards.
     pub joints: Vec<JointGuess>,
+}
+
+impl LogGuess {
+    /// Names of all columns that it takes.
+    pub fn names(&self) -> Vec<&str> {
+        let joints = self.joints.iter();
+        let joints = joints.flat_map(|j| [&j.position, &j.velocity, &j.input]);
+        let columns = joints.flatten().chain(&self.supply).chain([&self.time]);
+        let names = columns.map(|column| column.name.as_str());
+        let marks = self
+            .segment
+            .as_deref()
+            .into_iter()
+            .chain(self.torque_on.as_deref());
+        names.chain(marks).collect()
+    }
 }
