@@ -30,7 +30,7 @@ impl<'a> Pose<'a> {
             let values = values?;
             Some(values.iter().sum::<f64>() / values.len() as f64)
         });
-        self.from_hanging(&angles.collect::<Vec<_>>())
+        self.links_rad(&angles.collect::<Vec<_>>())
     }
 
     /// The same of a robot that balances: its first link's angle is from upright, the others'
@@ -62,7 +62,7 @@ impl<'a> Pose<'a> {
 
     /// Angles in the model's convention, from hanging. One that is not known leaves those that
     /// hang on it unknown.
-    fn from_hanging(&self, joint_rad: &[Option<f64>]) -> Vec<Option<f64>> {
+    fn links_rad(&self, joint_rad: &[Option<f64>]) -> Vec<Option<f64>> {
         let Some(model) = self.model else {
             return Vec::new();
         };

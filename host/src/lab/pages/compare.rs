@@ -1,6 +1,6 @@
 //! Measured against model, and where it fails.
 
-use super::{frame, in_milli, lacking, refused, seen};
+use super::{evaluated, frame, in_milli};
 use crate::compare::{Failure, SignalError};
 use crate::lab::reply::LabError;
 use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
@@ -11,14 +11,8 @@ use maud::{Markup, html};
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(&saved, &evaluation);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, body) =
+        evaluated(session, &saved, |evaluation| Ok(shown(&saved, evaluation)))?;
     Ok(frame::page(
         session,
         &saved,

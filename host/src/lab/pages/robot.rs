@@ -1,6 +1,6 @@
 //! The robot that moves as the log says, the model's prediction over it; the one at a port, live.
 
-use super::{frame, lacking, refused, robot_live, seen};
+use super::{evaluated, frame, robot_live};
 use crate::lab::live::LiveRobot;
 use crate::lab::reply::LabError;
 use crate::lab::session::Session;
@@ -10,14 +10,7 @@ use maud::{DOCTYPE, Markup, html};
 /// The page; a page of its own in a frame, so that its keys do not meet those of the lab.
 pub fn page(session: &Session, robot: Option<&LiveRobot>) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, played) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(session.number);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, played) = evaluated(session, &saved, |_| Ok(shown(session.number)))?;
     let model = session.model(&saved)?;
     let script = if robot.is_some() { "live.js" } else { "lab.js" };
     let body = html! {

@@ -1,7 +1,7 @@
 //! Sliders for every value of the model and every effect of the library.
 
 use super::compare::motions;
-use super::{frame, in_milli, lacking, refused, seen};
+use super::{evaluated, frame, in_milli};
 use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
@@ -14,14 +14,7 @@ use serde_json::{Value, json};
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(&evaluation);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, body) = evaluated(session, &saved, |evaluation| Ok(shown(evaluation)))?;
     let script = match evaluation {
         Some(_) => "what_if.js",
         None => "lab.js",

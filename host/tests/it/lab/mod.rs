@@ -9,6 +9,7 @@ mod pages;
 mod safety;
 mod server;
 mod speed;
+mod two_browsers;
 
 use handstand_browser::Browser;
 use std::path::Path;
