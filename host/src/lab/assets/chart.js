@@ -45,8 +45,9 @@ export class ChartGroup {
       for (const { target, isIntersecting } of entries) {
         const part = this.panels.find(({ canvas }) => canvas === target);
         if (!part) continue;
+        const first = part.inSight === undefined;
         part.inSight = isIntersecting;
-        if (isIntersecting && part.stale) this.draw();
+        if (first || (isIntersecting && part.stale)) this.draw();
       }
     }, { rootMargin: "200px" });
     onLook(() => this.draw());
@@ -86,7 +87,7 @@ export class ChartGroup {
       textContent: panel.title }), ` ${panel.unit}`, readout);
     this.box.append(element("figure", {}, caption, canvas));
     this.listen(canvas);
-    return { panel, canvas, readout, inSight: false, stale: true };
+    return { panel, canvas, readout, inSight: undefined, stale: true };
   }
 
   names() {
@@ -199,7 +200,10 @@ export class ChartGroup {
         part.stale = !part.inSight;
         if (part.inSight) this.drawPanel(part);
       }
-      this.root.dataset.drawn = String(performance.now());
+      // Before it is known what is in sight nothing has been drawn.
+      if (this.panels.every((part) => part.inSight !== undefined)) {
+        this.root.dataset.drawn = String(performance.now());
+      }
     });
   }
 

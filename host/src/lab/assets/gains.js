@@ -37,8 +37,8 @@ const drawPoles = () => {
   }
 };
 const table = (head, rows) => element("table", {},
-  element("thead", {}, element("tr", {}, ...head.map((text) => element("th", {
-    textContent: text })))),
+  element("thead", {}, element("tr", {}, ...head.map((text, i) => element("th", {
+    textContent: text, className: i ? "number" : "" })))),
   element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((text, i) => element(i ?
     "td" : "th", { textContent: text, className: i ? "number" : "" }))))));
 const show = (said) => {

@@ -178,7 +178,7 @@ export const panelsOf = ({ meta, data }, names) => {
     const input = data[`input_${joint}`];
     if (input) panels.push({ title:
       `Input${meta.joints > 1 ? ` of joint ${joint + 1}` : ""}: ${meta.inputs[joint].name}`, unit:
-      meta.inputs[joint].unit, small: true, curves: [{
+      meta.inputs[joint].unit.replace(/^1$/, ""), small: true, curves: [{
       name: "input", tone: "grey", values: input }] });
   }
   return panels;
@@ -270,7 +270,7 @@ if (curves && curves.dataset.kind !== "what-if") {
       const { name, unit } = dots.meta.variables[Number(canvas.dataset.index)];
       const marked = chosen === null ? null : dots.data[`holds_${chosen}`];
       scatter(canvas, dots.data[name], dots.data.residual, {
-        band: dots.meta.floor, scale: 1e3, xLabel: `${name}, ${unit}`, marked });
+        band: dots.meta.floor, scale: 1e3, xLabel: unit === "1" ? name : `${name}, ${unit}`, marked });
     }
   };
   const loadDots = async () => {

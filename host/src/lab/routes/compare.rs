@@ -29,9 +29,12 @@ pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u
     let session = session(&lab, number)?;
     blocking(move || {
         let saved = session.saved();
-        let evaluation = session.evaluation(&saved, saved.current)?;
-        let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
-        Ok(page(frame::error(&evaluation)))
+        Ok(page(match session.evaluation(&saved, saved.current) {
+            Ok(Some(evaluation)) => frame::error(&evaluation),
+            Ok(None) => return Err(LabError::NotFound("comparison")),
+            // Where the logs are listed it is said why.
+            Err(_) => frame::unreadable(),
+        }))
     })
     .await
 }

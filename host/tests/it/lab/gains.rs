@@ -61,10 +61,10 @@ fn what_a_model_has_learned_shows_in_the_response() {
     });
     assert_eq!(without["k"], with["k"]);
     assert_eq!(
-        without["omitted"].as_array().unwrap().len(),
+        with["omitted"].as_array().unwrap().len(),
         1,
         "{}",
-        without["omitted"]
+        with["omitted"]
     );
     assert_ne!(
         without["response"]["angle_rad"],

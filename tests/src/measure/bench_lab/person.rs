@@ -55,7 +55,11 @@ pub struct Person {
 
 impl Person {
     /// With a browser.
-    pub fn new(browser: Browser, program: PathBuf, rounds: usize) -> Person {
+    pub fn new(mut browser: Browser, program: PathBuf, rounds: usize) -> Person {
+        // A screen so tall that every chart is in sight: what is not is not drawn.
+        let screen =
+            json!({ "width": 1280, "height": 5000, "deviceScaleFactor": 1, "mobile": false });
+        browser.call("Emulation.setDeviceMetricsOverride", screen);
         Person {
             browser,
             program,
