@@ -72,8 +72,10 @@ fn tables(steps: &[Step]) -> Measured {
         ]);
     }
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let load = load().map_or("unknown".into(), |load| format!("{load:.1}"));
     Measured::default().table(table).line(format!(
-        "Headless Chromium and the lab on one machine with {processors} processors. A slider's time \
+        "Headless Chromium and the lab on one machine with {processors} processors and a load of \
+         {load} tasks at the end. A slider's time \
          runs from its input event until curves and error are drawn again; a page's from the \
          navigation until its charts are drawn, or until it is loaded where it has none. A step is \
          in time where its median is."
@@ -85,4 +87,11 @@ fn limit(limit_ms: f64) -> String {
         true => format!("{limit_ms:.0}"),
         false => "-".into(),
     }
+}
+
+/// Tasks that wanted a processor over the last minute, on average; the measurement's own among
+/// them. None where the system does not say.
+fn load() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/loadavg").ok()?;
+    text.split(' ').next()?.parse().ok()
 }
