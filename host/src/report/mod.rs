@@ -6,6 +6,7 @@ pub mod effect_page;
 mod failures;
 mod headline;
 mod json;
+mod outcomes;
 pub(crate) mod page;
 mod parameters;
 pub mod playback;
@@ -22,6 +23,7 @@ mod waterfall;
 mod words;
 
 pub use json::{diagnosis_json, json};
+pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
 pub use proposal::proposal_text;
 pub use refitted::{refitted_json, refitted_text};
