@@ -201,9 +201,8 @@ export class ChartGroup {
         if (part.inSight) this.drawPanel(part);
       }
       // Before it is known what is in sight nothing has been drawn.
-      if (this.panels.every((part) => part.inSight !== undefined)) {
-        this.root.dataset.drawn = String(performance.now());
-      }
+      const known = this.panels.every((part) => part.inSight !== undefined);
+      if (known) this.root.dataset.drawn = String(performance.now());
     });
   }
 
@@ -222,8 +221,8 @@ export class ChartGroup {
         if (v > high && v < 1e12) high = v;
       }
     }
-    if (panel.band) { low = Math.min(low, -1.3 * panel.band);
-      high = Math.max(high, 1.3 * panel.band); }
+    const band = 1.3 * (panel.band ?? NaN);
+    if (band > 0) [low, high] = [Math.min(low, -band), Math.max(high, band)];
     if (!(low <= high)) { low = 0; high = 1; }
     [low, high] = [low * scale, high * scale];
     const spare = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1e-3;
@@ -284,9 +283,8 @@ export class ChartGroup {
     }
     pen.globalAlpha = 1;
     if (this.cursor !== null && this.cursor >= from && this.cursor <= to) {
-      pen.strokeStyle = colour("blue"); pen.lineWidth = 1;
-      pen.beginPath(); pen.moveTo(x(this.cursor), top); pen.lineTo(x(this.cursor), bottom);
-        pen.stroke();
+      const at = x(this.cursor); pen.strokeStyle = colour("blue"); pen.lineWidth = 1;
+      pen.beginPath(); pen.moveTo(at, top); pen.lineTo(at, bottom); pen.stroke();
     }
     pen.restore();
     readout.textContent = this.reading(shown, scale);

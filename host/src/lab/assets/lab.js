@@ -196,7 +196,7 @@ if (curves && curves.dataset.kind !== "what-if") {
   const group = new ChartGroup(curves);
   const motion = $("#motion"), other = $("#other"), slider = $("#window"), shown =
     $("#window-shown");
-  let shades = [], chosen = null, wanted = null, busy = false;
+  let shades = [], chosen = null, wanted = null, busy = false, rest = 0;
   const shade = () => {
     const part = chosen === null ? null : shades[chosen];
     group.setShade((part?.stretches_s ?? []).map(([from, to]) => ({
@@ -208,8 +208,8 @@ if (curves && curves.dataset.kind !== "what-if") {
     if (horizon) query.set("horizon", horizon);
     if (moving) query.set("moving", "true");
     const answer = await arrays(`${base}/curves?${query}`);
-    const names = [curves.dataset.name, other?.selectedOptions[0]?.textContent ?? "", "orange",
-      "blue"];
+    const second = other?.selectedOptions[0]?.textContent ?? "";
+    const names = [curves.dataset.name, second, "orange", "blue"];
     group.show(answer.data.time, panelsOf(answer, names), { marks: answer.meta.restarts_s });
     $("#shown-about").textContent = moving ? "about " : "";
     shades = answer.meta.shades;
@@ -220,7 +220,7 @@ if (curves && curves.dataset.kind !== "what-if") {
       `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
     curves.dataset.answered = String(Math.round(performance.now()));
   };
-  // One request at a time: the last wish wins.
+  // The last wish wins.
   const ask = async (horizon, moving = false) => {
     wanted = { horizon, moving };
     if (busy) return;
@@ -240,27 +240,20 @@ if (curves && curves.dataset.kind !== "what-if") {
   const tell = () => { const s = seconds(); shown.textContent = s === null ? "whole motions" :
     `${s} s`; };
   // While it moves start states are fitted roughly; what it rests on becomes the session's.
-  let rest = 0;
   slider?.addEventListener("input", () => {
-    clearTimeout(rest);
-    tell();
+    clearTimeout(rest); tell();
     ask(String(seconds() ?? "whole"), true);
   });
+  const keep = async (window) => {
+    try { go(await send("horizon", { window })); } catch (error) { say(error.message); }
+  };
   slider?.addEventListener("change", () => {
-    const keep = async () => {
-      const chosen = seconds();
-      try { go(await send("horizon", { window: chosen === null ? "whole" : { seconds: chosen } }));
-        } catch (error) { say(error.message); }
-    };
+    const chosen = seconds();
     clearTimeout(rest);
-    rest = setTimeout(keep, 500);
+    rest = setTimeout(() => keep(chosen === null ? "whole" : { seconds: chosen }), 500);
   });
-  $("#window-automatic")?.addEventListener("click", async () => {
-    try { go(await send("horizon", { window: "automatic" })); } catch (error) { say(error.message);
-      }
-  });
-  motion.addEventListener("change", () => ask());
-  other?.addEventListener("change", () => ask());
+  $("#window-automatic")?.addEventListener("click", () => keep("automatic"));
+  for (const field of [motion, other]) field?.addEventListener("change", () => ask());
   const conditions = $$("[data-condition]");
   const scatters = $("#scatters");
   let dots = null;
@@ -270,7 +263,8 @@ if (curves && curves.dataset.kind !== "what-if") {
       const { name, unit } = dots.meta.variables[Number(canvas.dataset.index)];
       const marked = chosen === null ? null : dots.data[`holds_${chosen}`];
       scatter(canvas, dots.data[name], dots.data.residual, {
-        band: dots.meta.floor, scale: 1e3, xLabel: unit === "1" ? name : `${name}, ${unit}`, marked });
+        band: dots.meta.floor, scale: 1e3, marked,
+        xLabel: unit === "1" ? name : `${name}, ${unit}` });
     }
   };
   const loadDots = async () => {

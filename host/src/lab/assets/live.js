@@ -65,7 +65,8 @@ const hear = (samples) => {
   draw();
 };
 const WORDS = {
-  idle: () => "Ready.", preparing: ({ what }) => `${what} …`, asking: () => "Waiting for your answer.",
+  idle: () => "Ready.", preparing: ({ what }) => `${what} …`,
+  asking: () => "Waiting for your answer.",
   running: ({ what }) => what, ended: ({ said }) => `Ended: ${said}.`,
   failed: ({ error, remedy }) => `${error}. ${remedy}${remedy ? "." : ""}`,
 };

@@ -79,7 +79,7 @@ impl Sender {
         }
         if self.sent.elapsed() >= EVERY {
             rest(&mut self.next);
-            // A run goes on while nobody listens for a moment; who must be there is known elsewhere.
+            // A run goes on while no page listens for a moment; the slot knows who must be there.
             let _ = self.to.send(Arc::new(std::mem::take(&mut self.next)));
             self.sent = Instant::now();
         }

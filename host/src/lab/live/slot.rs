@@ -188,7 +188,7 @@ impl LiveRobot {
         }
     }
 
-    /// Whether the run goes on: nobody has stopped it, and the page that began it is there.
+    /// Whether the run goes on: it was not stopped, and the page that began it is there.
     ///
     /// # Errors
     /// It was stopped at once.
