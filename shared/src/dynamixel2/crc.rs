@@ -1,5 +1,5 @@
-//! The CRC of Protocol 2.0: polynomial 0x8005, start 0, most significant bit first, nothing inverted
-//! (CRC-16/UMTS, also called BUYPASS).
+//! The CRC of Protocol 2.0: polynomial 0x8005, start 0, most significant bit first, nothing
+//! inverted (CRC-16/UMTS, also called BUYPASS).
 
 const POLYNOMIAL: u16 = 0x8005;
 

@@ -1,8 +1,8 @@
 //! The joint status packet of a fast sync or bulk read: servo after servo appends error byte, id,
 //! data and a CRC. It is not stuffed.
 //!
-//! Each CRC goes on from the packet's first byte over all before it, earlier CRCs included; the last
-//! one is the packet's. So the parts in front of a servo that is missing are known to be sound.
+//! Each CRC goes on from the packet's first byte over all before it, earlier CRCs included; the
+//! last one is the packet's. So the parts in front of a servo that is missing are known to be sound.
 
 use super::{BROADCAST, ErrorByte, HEADER, STATUS, crc16};
 

@@ -1,10 +1,10 @@
 //! Dynamixel Protocol 2.0, as X series and MX(2.0) servos speak it, from both ends. Source: ROBOTIS
 //! e-manual, "DYNAMIXEL Protocol 2.0".
 //!
-//! `FF FF FD 00 ID LENGTH(2) INSTRUCTION PARAMETERS.. CRC(2)`, integers little-endian. LENGTH counts
-//! what follows it. From the instruction to the last parameter an `FD` is inserted behind every
-//! `FF FF FD`, so that no header occurs inside; LENGTH and CRC are of the stuffed packet. Instruction
-//! `55` is a status: its first parameter is the error byte. Ids are those of Protocol 1.0.
+//! `FF FF FD 00 ID LENGTH(2) INSTRUCTION PARAMETERS.. CRC(2)`, integers little-endian. LENGTH
+//! counts what follows it. From the instruction to the last parameter an `FD` is inserted behind every
+//! `FF FF FD`, so that no header occurs inside; LENGTH and CRC are of the stuffed packet.
+//! Instruction `55` is a status: its first parameter is the error byte. Ids are those of Protocol 1.0.
 
 mod crc;
 mod error_byte;
@@ -31,8 +31,8 @@ pub use stuffing::Unstuffed;
 pub const HEADER: [u8; 4] = [0xff, 0xff, 0xfd, 0x00];
 /// Bytes of a packet that are not parameters.
 pub const OVERHEAD: usize = 10;
-/// The longest packet sent or received here. The length field allows 65,542 bytes; ROBOTIS's SDK has
-/// buffers of 1024.
+/// The longest packet sent or received here. The length field allows 65,542 bytes; ROBOTIS's SDK
+/// has buffers of 1024.
 pub const MAX_PACKET: usize = 1024;
 /// Instruction byte of a status packet.
 pub const STATUS: u8 = 0x55;

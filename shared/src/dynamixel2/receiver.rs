@@ -62,8 +62,8 @@ impl<const N: usize> Receiver<N> {
         }
     }
 
-    /// Gives up what was begun, as after a silence: the packets that it had swallowed can be fetched
-    /// with [`Receiver::next_packet`].
+    /// Gives up what was begun, as after a silence: the packets that it had swallowed can be
+    /// fetched with [`Receiver::next_packet`].
     pub fn give_up(&mut self) {
         let handed_out = core::mem::take(&mut self.handed_out);
         self.drop_front(handed_out.max(1));

@@ -10,8 +10,8 @@ impl RunFinder {
     /// Takes the next byte; whether it ends an `FF FF FD`.
     pub fn push(&mut self, byte: u8) -> bool {
         self.matched = match (self.matched, byte) {
-            // A third FF begins nothing new: the last two are still the prefix. A matcher that falls
-            // back to the start here misses FF FF FF FD.
+            // A third FF begins nothing new: the last two are still the prefix. A matcher that
+            // falls back to the start here misses FF FF FF FD.
             (2, 0xfd) => 3,
             (1 | 2, 0xff) => 2,
             (_, 0xff) => 1,
