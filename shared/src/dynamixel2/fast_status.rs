@@ -2,7 +2,8 @@
 //! data and a CRC. It is not stuffed.
 //!
 //! Each CRC goes on from the packet's first byte over all before it, earlier CRCs included; the
-//! last one is the packet's. So the parts in front of a servo that is missing are known to be sound.
+//! last one is the packet's. So the parts in front of a servo that is missing are known to be
+//! sound.
 
 use super::{BROADCAST, ErrorByte, HEADER, STATUS, crc16};
 

@@ -2,9 +2,10 @@
 //! e-manual, "DYNAMIXEL Protocol 2.0".
 //!
 //! `FF FF FD 00 ID LENGTH(2) INSTRUCTION PARAMETERS.. CRC(2)`, integers little-endian. LENGTH
-//! counts what follows it. From the instruction to the last parameter an `FD` is inserted behind every
-//! `FF FF FD`, so that no header occurs inside; LENGTH and CRC are of the stuffed packet.
-//! Instruction `55` is a status: its first parameter is the error byte. Ids are those of Protocol 1.0.
+//! counts what follows it. From the instruction to the last parameter an `FD` is inserted behind
+//! every `FF FF FD`, so that no header occurs inside; LENGTH and CRC are of the stuffed packet.
+//! Instruction `55` is a status: its first parameter is the error byte. Ids are those of
+//! Protocol 1.0.
 
 mod crc;
 mod error_byte;
