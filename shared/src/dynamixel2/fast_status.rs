@@ -50,9 +50,11 @@ pub fn fast_parts<'a>(
 }
 
 /// Writes the joint status of these servos into `out`; its length, or nothing if it does not fit.
-pub fn emit_fast_status(out: &mut [u8], parts: &[FastPart]) -> Option<usize> {
+/// `announced` are the bytes that all servos asked would return: more than those of `parts` where
+/// one is missing, behind which the packet breaks off.
+pub fn emit_fast_status(out: &mut [u8], announced: usize, parts: &[FastPart]) -> Option<usize> {
     let body: usize = parts.iter().map(|part| part.data.len() + 4).sum();
-    let [low, high] = u16::try_from(body + 1).ok()?.to_le_bytes();
+    let [low, high] = u16::try_from(announced + 1).ok()?.to_le_bytes();
     let out = out.get_mut(..PARTS + body)?;
     out[..4].copy_from_slice(&HEADER);
     out[4..PARTS].copy_from_slice(&[BROADCAST, low, high, STATUS]);

@@ -17,7 +17,7 @@ fn a_joint_status_with_a_header_inside_is_received() {
         data: &data,
     }];
     let mut out = [0; 64];
-    let length = emit_fast_status(&mut out, &parts).unwrap();
+    let length = emit_fast_status(&mut out, 8, &parts).unwrap();
     let mut receiver = Receiver::<64>::default();
     let found = out[..length]
         .iter()

@@ -237,6 +237,6 @@ fn a_joint_status_and_what_is_left_of_one_cut_short() {
         part(4, &[0xff, 3, 0, 0]),
     ];
     let mut out = [0; 64];
-    let length = emit_fast_status(&mut out, &parts).unwrap();
+    let length = emit_fast_status(&mut out, 24, &parts).unwrap();
     assert_eq!(out[..length], whole[..]);
 }
