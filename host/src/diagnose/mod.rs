@@ -18,6 +18,7 @@ mod initial_guess;
 mod inseparable;
 mod logs;
 mod multistart;
+pub(crate) mod names;
 mod options;
 mod progress;
 mod replacement;
@@ -30,6 +31,7 @@ mod step_size;
 mod terms;
 mod values;
 mod verdict;
+mod warnings;
 pub mod words;
 
 pub use candidates::candidates;

@@ -5,9 +5,10 @@
 
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::inseparable;
+use super::names::{effect_name, joined, listed};
+use super::warnings::{on_bound, pairs};
 
-use crate::effects;
-use crate::output::number::{measured, percent, short, with_unit};
+use crate::output::number::{measured, short};
 
 /// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
 pub const MODEL: &str = "MODEL";
@@ -18,8 +19,7 @@ pub const HELD_OUT: &str = "HELD_OUT...";
 
 /// Explanations named in a sentence; the rest are counted.
 pub(crate) const SHOWN: usize = 4;
-/// Pairs of values warned of; the rest are counted.
-const PAIRS: usize = 3;
+
 /// Adds summary, next steps and warnings.
 pub(super) fn complete(diagnosis: &mut Diagnosis) {
     diagnosis.summary = summary(diagnosis);
@@ -271,73 +271,6 @@ fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
             Some(format!("To tell {} apart: {experiment}.", effect.title))
         })
         .collect()
-}
-
-fn on_bound(diagnosis: &Diagnosis) -> impl Iterator<Item = String> {
-    let added = diagnosis
-        .effects
-        .iter()
-        .flat_map(|effect| &effect.parameters);
-    let values = diagnosis
-        .base
-        .iter()
-        .chain(added)
-        .filter(|value| value.on_bound);
-    values.map(|value| {
-        format!(
-            "{} = {} lies on its bound: the data push it further than is physical, or it is not needed",
-            value.path,
-            with_unit(&short(value.value), &value.unit)
-        )
-    })
-}
-
-/// The pairs told apart worst, worst first.
-fn pairs(diagnosis: &Diagnosis) -> Vec<String> {
-    let mut pairs: Vec<_> = diagnosis.collinear.iter().collect();
-    pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
-    let more = pairs.len().saturating_sub(PAIRS);
-    let mut lines: Vec<String> = pairs
-        .into_iter()
-        .take(PAIRS)
-        .map(|(a, b, r)| {
-            let correlation = percent(r.abs());
-            format!(
-                "{a} and {b} are hardly told apart by these motions (correlation {correlation})"
-            )
-        })
-        .collect();
-    if more > 0 {
-        lines.push(format!("and {more} more such pairs"));
-    }
-    lines
-}
-
-/// "Coulomb friction at joint 1".
-pub(crate) fn effect_name(effect: &FittedEffect) -> String {
-    at_joint(&effect.kind, &effect.title, effect.joint)
-}
-
-/// "Coulomb friction at joint 1", "delay of the drive at all driven joints", "tilt of the base".
-pub(crate) fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String {
-    match (joint, effects::at_all(kind)) {
-        (Some(joint), _) => format!("{title} at joint {joint}"),
-        (None, "") => title.to_string(),
-        (None, _) => format!("{title} at all driven joints"),
-    }
-}
-
-/// Effects in a row: "A at joint 1, B and C".
-pub(crate) fn joined(effects: &[FittedEffect]) -> String {
-    listed(effects.iter().map(effect_name).collect())
-}
-
-pub(crate) fn listed(mut names: Vec<String>) -> String {
-    match (names.pop(), names.as_slice()) {
-        (None, _) => "nothing".into(),
-        (Some(last), []) => last,
-        (Some(last), rest) => format!("{} and {last}", rest.join(", ")),
-    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod placebo;
 mod probe;
 mod sensor_lag;
 mod speed_limit;
+mod state;
 mod stribeck;
 mod supply_sag;
 mod supply_sensitivity;
@@ -42,8 +43,8 @@ mod tests;
 pub use info::{Confusion, EffectInfo, Needs, Parameter, Scope, Site};
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
+pub use state::{AtRest, DriveState, JointState, Rig, Slide, Slope};
 
-use crate::dynamics::Chain;
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
@@ -206,108 +207,4 @@ impl PartialEq for dyn Effect {
     fn eq(&self, other: &dyn Effect) -> bool {
         self.info().id == other.info().id
     }
-}
-
-/// A joint at rest, about which an effect's law is linearised.
-#[derive(Debug, Clone, Copy)]
-pub struct AtRest {
-    /// Angle from the previous link, rad; of the first joint from the model's zero.
-    pub angle_rad: f64,
-    /// Duty, -1 to 1; of a torque drive, its torque in N m.
-    pub duty: f64,
-    /// Torque of the drive before this effect, N m.
-    pub torque_nm: f64,
-    /// Torque at full duty and standstill, N m.
-    pub full_torque_nm: f64,
-}
-
-/// How an effect's output changes: `gain` times its input's change (of duty, torque or angle, as
-/// its site has it), and what it adds of its own.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slope {
-    /// Per unit of what passes through.
-    pub gain: f64,
-    /// Torque per duty, N m.
-    pub per_duty: f64,
-    /// Torque per joint angle, N m/rad.
-    pub per_rad: f64,
-    /// Torque per joint speed, N m s/rad.
-    pub per_rad_s: f64,
-}
-
-impl Slope {
-    /// An effect that changes nothing to first order.
-    pub const NONE: Slope = Slope {
-        gain: 1.0,
-        per_duty: 0.0,
-        per_rad: 0.0,
-        per_rad_s: 0.0,
-    };
-}
-
-/// What body effects may change.
-#[derive(Debug, Clone)]
-pub struct Rig {
-    /// The rigid chain.
-    pub chain: Chain,
-    /// Angle by which gravity is turned in the rig's plane, rad, counter-clockwise.
-    pub gravity_turn_rad: f64,
-    /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
-    pub turned: bool,
-}
-
-/// The motor at an instant.
-#[derive(Debug, Clone, Copy)]
-pub struct DriveState {
-    /// Joint speed, rad/s.
-    pub speed_rad_s: f64,
-    /// Duty after the command effects, -1 to 1.
-    pub duty: f64,
-    /// Torque at full duty and standstill, N m.
-    pub full_torque_nm: f64,
-    /// Supply over nominal supply; 1 where either is unknown.
-    pub supply_ratio: f64,
-}
-
-/// A joint at an instant.
-#[derive(Debug, Clone, Copy)]
-pub struct JointState {
-    /// Angle from the previous link, rad; of the first joint from the model's zero.
-    pub angle_rad: f64,
-    /// Speed relative to the previous link, rad/s.
-    pub speed_rad_s: f64,
-    /// Torque of the drive, N m.
-    pub drive_nm: f64,
-    /// Measured speed of another moment, rad/s: what a placebo acts on.
-    pub shuffled_rad_s: f64,
-}
-
-impl JointState {
-    /// Without a drive.
-    pub fn undriven(angle_rad: f64, speed_rad_s: f64) -> Self {
-        JointState {
-            angle_rad,
-            speed_rad_s,
-            drive_nm: 0.0,
-            shuffled_rad_s: 0.0,
-        }
-    }
-}
-
-/// A joint that slides, or is about to.
-#[derive(Debug, Clone, Copy)]
-pub struct Slide {
-    /// Magnitude of the joint speed, rad/s; 0 asks for breakaway.
-    pub speed_rad_s: f64,
-    /// +1 or -1: the direction of motion, or of the push at rest.
-    pub direction: f64,
-    /// Magnitude of motor torque minus outside torque (gravity, coupling), N m: what the gear
-    /// transmits.
-    pub gear_load_nm: f64,
-    /// Torque of the motor, N m.
-    pub motor_nm: f64,
-    /// Torque from outside (gravity, coupling), N m.
-    pub outside_nm: f64,
-    /// Magnitude of the force in the bearing, N.
-    pub bearing_load_n: f64,
 }

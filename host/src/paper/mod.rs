@@ -9,8 +9,10 @@ mod checked;
 mod computed;
 mod figure;
 mod findings;
+mod identification;
 mod page;
 mod printed;
+mod pushed_servo;
 mod robot;
 mod servo;
 

@@ -1,8 +1,8 @@
 //! The servo's figures: 4, 5, 7 from a simulated servo's own logs, 9 and 10 from data made with eq.
 //! (2).
 
-use super::computed::servo_estimate;
 use super::figure::{Holds, PaperFigure};
+use super::identification::identification;
 use crate::error::Result;
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
@@ -11,7 +11,7 @@ use crate::output::plot::{Chart, Curve, Tone};
 use crate::sim::{Plant, SensorState, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
-    BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks, score,
+    BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks,
     supply_errors,
 };
 use handstand_shared::raw::Position;
@@ -49,10 +49,10 @@ pub(super) fn figures() -> Result<Vec<PaperFigure>> {
 }
 
 /// A chart, and what follows from it.
-type FittedFigure = (Chart, Holds, String);
+pub(super) type FittedFigure = (Chart, Holds, String);
 
 /// A figure that shows a fit, or that none was found.
-fn fitted(number: &'static str, drawn: Result<FittedFigure, String>) -> PaperFigure {
+pub(super) fn fitted(number: &'static str, drawn: Result<FittedFigure, String>) -> PaperFigure {
     let (charts, holds, sentence) = match drawn {
         Ok((chart, holds, sentence)) => (vec![chart], holds, sentence),
         Err(why) => {
@@ -271,54 +271,4 @@ fn torque(model: &Model) -> Result<FittedFigure, String> {
         |limit: Option<IntervalEstimate>| limit.is_some_and(|l| (l.value - 2.0).abs() < 0.02);
     let is_found = near(map.up.limit) && near(map.down.limit);
     Ok((chart, Holds::at_least_in_part(is_found), sentence))
-}
-
-/// Figures 9 and 10: data made with eq. (2), and validation on other data.
-fn identification() -> Vec<PaperFigure> {
-    let validation = |drawn| PaperFigure {
-        title: "Servo validation data",
-        claim: "the Box-Jenkins model captures the servo's dynamics on validation data",
-        ..fitted("10", drawn)
-    };
-    let (Some((training, found)), Some((fresh, _))) = (servo_estimate(1), servo_estimate(2)) else {
-        return vec![validation(Err("no model was found".to_string()))];
-    };
-    let seconds = |values: &[f64]| -> Vec<(f64, f64)> {
-        let shown = values.iter().take(600).enumerate();
-        shown.map(|(k, v)| (k as f64 * PAPER_TS_S, *v)).collect()
-    };
-    let scored = score(&found.model, std::slice::from_ref(&fresh));
-    let own = score(&found.model, std::slice::from_ref(&training));
-    let simulated = found.model.simulated(&fresh.input);
-    let passed = scored.tests.iter().all(|test| test.passed);
-    let chart = |curves| Chart::new("first 6 s", "time, s", "speed, rad/s", curves);
-    let data = PaperFigure {
-        number: "9",
-        title: "Servo identification data",
-        claim: "the commanded and the estimated speed, for identification",
-        charts: vec![chart(vec![
-            Curve::line("commanded", Tone::Grey, seconds(&training.input)),
-            Curve::line("estimated speed", Tone::Ink, seconds(&training.output)),
-        ])],
-        holds: Holds::Yes,
-        sentence: format!(
-            "{} samples at 100 Hz made with eq. (2), random steps of +-5 rad/s; the noise model is \
-             our own choice, since the paper prints none.",
-            training.count()
-        ),
-    };
-    let curves = vec![
-        Curve::line("estimated speed", Tone::Ink, seconds(&fresh.output)),
-        Curve::line("simulated by the model", Tone::Orange, seconds(&simulated)),
-    ];
-    let sentence = format!(
-        "Simulated from the input alone, the model fits the validation data to {:.1} % (training \
-         {:.1} %), one step ahead to {:.1} %; its residual {} white and independent of the input.",
-        scored.simulated_fit_percent,
-        own.simulated_fit_percent,
-        scored.predicted_fit_percent,
-        if passed { "is" } else { "is not" }
-    );
-    let drawn = (chart(curves), Holds::at_least_in_part(passed), sentence);
-    vec![data, validation(Ok(drawn))]
 }

@@ -3,7 +3,7 @@
 use super::Report;
 use super::page::{Section, table};
 use crate::diagnose::Diagnosis;
-use crate::diagnose::words::effect_name;
+use crate::diagnose::names::effect_name;
 use crate::effects::named;
 use crate::fitting::FittedValue;
 use crate::output::number::{interval, short, unit};

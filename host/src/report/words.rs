@@ -1,6 +1,7 @@
 //! Words that the page and the text share.
 
-use crate::diagnose::words::{at_joint, headline, listed};
+use crate::diagnose::names::{at_joint, listed};
+use crate::diagnose::words::headline;
 use crate::diagnose::{BudgetShare, Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::{ErrorReduction, FittedValue};

@@ -1,7 +1,7 @@
 //! Drive torque at a joint, from the drive's input, its regulator, its motor and the effects on
 //! them.
 
-use super::plant::{ActiveEffect, JointPlan};
+use super::joint_plan::{ActiveEffect, JointPlan};
 use crate::effects::{AtRest, DriveState};
 use crate::model::Drive;
 

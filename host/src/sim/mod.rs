@@ -9,6 +9,7 @@ pub mod closed_loop;
 mod drive;
 mod forces;
 mod input;
+mod joint_plan;
 mod live;
 mod plant;
 mod rows;

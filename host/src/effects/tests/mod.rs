@@ -2,6 +2,7 @@
 
 use super::signature::off_values;
 use super::*;
+use crate::dynamics::Chain;
 use crate::dynamics::ChainLink;
 use std::collections::HashSet;
 

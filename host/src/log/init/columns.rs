@@ -1,79 +1,12 @@
 //! Which column of a log is what, guessed from names and values.
 
 use super::Guess;
+use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
 use super::name::{NameGuess, Role, name_guess};
 use super::values::{angle_unit, counts, median, range, speed_fit, stands_still, time_unit};
 use crate::error::{Error, Result};
 use crate::log::RawLog;
 use crate::model::Unit;
-
-/// A column, and how it is written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColumnGuess {
-    /// Index in the log.
-    pub index: usize,
-    /// The header's name.
-    pub name: String,
-    /// Unit, by its name in model files.
-    pub unit: &'static str,
-    /// Counts per turn, where the unit is `ticks`.
-    pub ticks_per_turn: Option<f64>,
-    /// Whether it counts the other way round.
-    pub reversed: bool,
-}
-
-impl ColumnGuess {
-    /// Its values in SI.
-    pub fn si(&self, log: &RawLog) -> Vec<f64> {
-        let sign = if self.reversed { -1.0 } else { 1.0 };
-        let factor = Unit::named(self.unit, self.ticks_per_turn).map_or(1.0, |unit| unit.si);
-        let values = log.columns[self.index].iter();
-        values.map(|value| sign * factor * value).collect()
-    }
-
-    /// Name and unit as in a model file.
-    pub fn toml(&self) -> String {
-        let name = toml_edit::Value::from(self.name.as_str());
-        let mut text = format!("{{ column = {name}, unit = \"{}\"", self.unit);
-        if let Some(ticks) = self.ticks_per_turn {
-            text += &format!(", ticks_per_turn = {ticks}");
-        }
-        if self.reversed {
-            text += ", reversed = true";
-        }
-        text + " }"
-    }
-}
-
-/// The columns of one joint.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JointGuess {
-    /// What the names call it; empty where there is one joint.
-    pub name: String,
-    /// Measured angle.
-    pub position: Option<ColumnGuess>,
-    /// Measured speed.
-    pub velocity: Option<ColumnGuess>,
-    /// `passive`, `torque`, `duty`, `position` or `speed`.
-    pub drive: &'static str,
-    /// The drive's input.
-    pub input: Option<ColumnGuess>,
-}
-
-/// Every column that a model needs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LogGuess {
-    /// Time.
-    pub time: ColumnGuess,
-    /// Name of the column that marks motions.
-    pub segment: Option<String>,
-    /// Supply.
-    pub supply: Option<ColumnGuess>,
-    /// Name of the column that says whether drives are energised.
-    pub torque_on: Option<String>,
-    /// From the base outwards.
-    pub joints: Vec<JointGuess>,
-}
 
 /// Roles of a joint's columns.
 const OF_JOINTS: [Role; 7] = [
@@ -191,7 +124,7 @@ impl GuessReader<'_> {
         let why = if named.is_some() { "its name" } else { why };
         said.push(Guess::new(
             what,
-            format!("column {:?} in {}", column.name, unit_words(&column)),
+            format!("column {:?} in {}", column.name, column.unit_words()),
             why,
         ));
         column
@@ -358,18 +291,7 @@ impl GuessReader<'_> {
 
     /// Says which columns are not used.
     fn say_rest(&self, guess: &LogGuess, said: &mut Vec<Guess>) {
-        let joints = guess.joints.iter();
-        let columns = joints
-            .flat_map(|j| [&j.position, &j.velocity, &j.input])
-            .flatten();
-        let used = columns
-            .chain(&guess.supply)
-            .chain([&guess.time])
-            .map(|column| column.name.as_str());
-        let used: Vec<&str> = used
-            .chain(guess.segment.as_deref())
-            .chain(guess.torque_on.as_deref())
-            .collect();
+        let used = guess.names();
         let rest = self
             .log
             .names
@@ -388,12 +310,5 @@ impl GuessReader<'_> {
             let remedy = "payload = { column, unit, at_m } says where it is bolted";
             said.push(Guess::new("payload", "not used", remedy));
         }
-    }
-}
-
-fn unit_words(column: &ColumnGuess) -> String {
-    match column.ticks_per_turn {
-        Some(ticks) => format!("{}, {ticks} per turn", column.unit),
-        None => column.unit.to_string(),
     }
 }

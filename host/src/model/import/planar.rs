@@ -1,17 +1,14 @@
 //! A planar chain out of a robot in space: the joints chosen, the rest held, all seen along the
 //! joints' common axis.
 
+use super::frame::{Frame, wrapped};
 use super::tree::{Inertial, LeftOut, Motion, RobotTree, TreeJoint};
 use crate::error::{Error, Result};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
 
-/// Axes further apart than this are not parallel, rad; files round to six digits.
-const PARALLEL_RAD: f64 = 1e-5;
 /// Shorter, a link has no direction, m.
 const NO_LENGTH_M: f64 = 1e-12;
-/// Gravity less than this is none, m/s^2.
-const NO_GRAVITY_M_S2: f64 = 1e-6;
 
 /// A link and the joint that carries it, in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,77 +110,6 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         gravity_m_s2: frame.gravity_m_s2,
         left_out,
     })
-}
-
-/// An angle within half a turn either way.
-fn wrapped(angle_rad: f64) -> f64 {
-    let angle = angle_rad.rem_euclid(TAU);
-    if angle > PI { angle - TAU } else { angle }
-}
-
-/// The plane: x to the right, up against gravity, the axis towards the one who looks.
-struct Frame {
-    axis: Vector3<f64>,
-    right: Vector3<f64>,
-    up: Vector3<f64>,
-    gravity_m_s2: f64,
-}
-
-impl Frame {
-    fn of(
-        tree: &RobotTree,
-        chosen: &[usize],
-        poses: &[Isometry3<f64>],
-        file: &str,
-    ) -> Result<Self> {
-        let axis_of = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
-        let axis = axis_of(chosen[0]);
-        for &body in &chosen[1..] {
-            let apart = axis_of(body).cross(&axis).norm().min(1.0).asin();
-            if apart > PARALLEL_RAD {
-                let name = |body: usize| &tree.bodies[body].joints[0].name;
-                return Err(Error::usage(
-                    format!(
-                        "{file}: joints {} and {} turn about axes {:.1} degrees apart",
-                        name(chosen[0]),
-                        name(body),
-                        apart.to_degrees()
-                    ),
-                    "a chain here is planar: choose joints with parallel axes by --joints",
-                ));
-            }
-        }
-        let within = tree.gravity_m_s2 - axis * axis.dot(&tree.gravity_m_s2);
-        let gravity_m_s2 = within.norm();
-        let up = match gravity_m_s2 > NO_GRAVITY_M_S2 {
-            true => -within / gravity_m_s2,
-            // Any direction across the axis.
-            false => {
-                let other = if axis.x.abs() < 0.9 {
-                    Vector3::x()
-                } else {
-                    Vector3::y()
-                };
-                axis.cross(&other).normalize()
-            }
-        };
-        Ok(Frame {
-            axis,
-            right: up.cross(&axis),
-            up,
-            gravity_m_s2: if gravity_m_s2 > NO_GRAVITY_M_S2 {
-                gravity_m_s2
-            } else {
-                0.0
-            },
-        })
-    }
-
-    /// Length of a vector in the plane, m, and its angle from hanging, rad, counter-clockwise.
-    fn seen(&self, vector: &Vector3<f64>) -> (f64, f64) {
-        let (x, y) = (self.right.dot(vector), self.up.dot(vector));
-        (x.hypot(y), x.atan2(-y))
-    }
 }
 
 /// Whether a body has one hinge.

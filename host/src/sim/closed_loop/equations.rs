@@ -18,7 +18,7 @@ pub(super) enum Equations {
 impl Equations {
     /// The dense ones where torques are constant between commands, at most four links.
     pub(super) fn of(plant: &Plant) -> Equations {
-        let held = |joint: &crate::sim::plant::JointPlan| {
+        let held = |joint: &crate::sim::joint_plan::JointPlan| {
             !joint.has_joint_effects() && joint.follows_input
         };
         if plant.senses || !plant.joints.iter().all(held) {

@@ -1,0 +1,99 @@
+//! What acts on one joint, sorted by where it acts.
+
+use crate::effects::{Effect, Site};
+use crate::model::Drive;
+
+/// Most values an effect has.
+const MOST_VALUES: usize = 4;
+
+/// An effect with its values, stored in place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ActiveEffect {
+    pub effect: &'static dyn Effect,
+    values: [f64; MOST_VALUES],
+    count: usize,
+}
+
+impl ActiveEffect {
+    #[inline]
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+/// What acts on one joint.
+#[derive(Debug, Clone)]
+pub(super) struct JointPlan {
+    pub drive: Drive,
+    pub full_torque_nm: f64,
+    /// Whether the drive's torque follows from its input alone.
+    pub follows_input: bool,
+    pub delay_s: f64,
+    pub command: Vec<ActiveEffect>,
+    pub torque: Vec<ActiveEffect>,
+    pub friction: Vec<ActiveEffect>,
+    pub output: Vec<ActiveEffect>,
+    pub encode: Vec<ActiveEffect>,
+    pub sense: Vec<ActiveEffect>,
+}
+
+impl JointPlan {
+    pub fn ideal(drive: &Drive) -> JointPlan {
+        JointPlan {
+            drive: drive.clone(),
+            full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
+            follows_input: false,
+            delay_s: 0.0,
+            command: Vec::new(),
+            torque: Vec::new(),
+            friction: Vec::new(),
+            output: Vec::new(),
+            encode: Vec::new(),
+            sense: Vec::new(),
+        }
+    }
+
+    /// Whether friction or a torque that follows angle and speed acts on the joint.
+    pub fn has_joint_effects(&self) -> bool {
+        !self.torque.is_empty() || !self.friction.is_empty()
+    }
+
+    /// Whether nothing but its input and the direction in which it slides changes its torque.
+    pub fn torque_stays(&self) -> bool {
+        let constant = |e: &ActiveEffect| e.effect.friction_is_constant();
+        self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
+    }
+
+    /// Change of the encoder's reading per change of the joint's angle.
+    pub fn reading_slope(&self) -> f64 {
+        if self.encode.is_empty() {
+            return 1.0;
+        }
+        self.line(1.0) - self.line(0.0)
+    }
+
+    /// What the encoder reads at an angle: a straight line, so that two points tell all of it.
+    pub fn line(&self, angle_rad: f64) -> f64 {
+        let effects = self.encode.iter();
+        effects.fold(angle_rad, |angle, e| e.effect.encode(e.values(), angle))
+    }
+
+    pub fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {
+        let mut active = ActiveEffect {
+            effect,
+            values: [0.0; MOST_VALUES],
+            count: values.len(),
+        };
+        active.values[..values.len()].copy_from_slice(values);
+        match effect.info().site {
+            Site::Timing => self.delay_s += effect.delay_s(values),
+            Site::Command => self.command.push(active),
+            Site::Drive => self.output.push(active),
+            Site::Friction => self.friction.push(active),
+            Site::Joint => self.torque.push(active),
+            Site::Body => {}
+            Site::Encoder => self.encode.push(active),
+            Site::Sensor => self.sense.push(active),
+        }
+    }
+}
