@@ -1,8 +1,8 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{AnyLink, Ids, Port, id_list};
-use handstand::link::record::{Adapter, SampleSource, Stream};
-use handstand::link::{SerialLink as _, Servos, Session, SessionError};
+use handstand::link::record::{Adapter, GroupAdapter, SampleSource, Stream};
+use handstand::link::{Protocol, SerialLink as _, Session, SessionError};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -28,30 +28,49 @@ impl RobotArgs {
     /// # Errors
     /// No port, no firmware, or a rate that is none.
     pub fn open(&self) -> Result<Box<dyn SampleSource>> {
-        self.opened(self.port.open()?, self.stream)
+        Ok(self.opened(self.port.open()?, self.stream, true)?.0)
     }
 
     /// Opens it to move the robot: a CM-5 with Handstand's firmware streams unless `adapter`, for
-    /// as an adapter nothing lets the robot down when the line breaks. Also whether it streams.
+    /// as an adapter nothing lets the robot down when the line breaks. Servos of Protocol 2.0 stop by
+    /// themselves then, with their `watchdog`. Also in which way they are reached.
     ///
     /// # Errors
     /// As [`RobotArgs::open`].
-    pub fn open_to_move(&self, adapter: bool) -> Result<(Box<dyn SampleSource>, bool)> {
+    pub fn open_to_move(
+        &self,
+        adapter: bool,
+        watchdog: bool,
+    ) -> Result<(Box<dyn SampleSource>, Way)> {
         let mut link = self.port.open()?;
-        let streams = self.stream || (!adapter && is_cm5(&mut link)?);
-        Ok((self.opened(link, streams)?, streams))
+        let is_two = self.port.protocol() == Some(Protocol::Two);
+        let streams = self.stream || (!adapter && !is_two && is_cm5(&mut link)?);
+        self.opened(link, streams, watchdog)
     }
 
-    fn opened(&self, link: AnyLink, streams: bool) -> Result<Box<dyn SampleSource>> {
+    fn opened(
+        &self,
+        link: AnyLink,
+        streams: bool,
+        watchdog: bool,
+    ) -> Result<(Box<dyn SampleSource>, Way)> {
+        let ids = &self.ids.0;
         if streams {
-            return Ok(Box::new(Stream::new(link, &self.ids.0)?));
+            return Ok((Box::new(Stream::new(link, ids)?), Way::Stream));
         }
-        let mut servos = Servos::new(link);
-        let present = self.ids.0.iter().any(|id| servos.ping(*id).is_ok());
+        let mut servos = self.port.on(link);
+        let present = ids.iter().any(|id| servos.ping(*id).is_ok());
         if !present {
             return Err(handstand::link::record::no_response());
         }
-        Ok(Box::new(Adapter::new(servos, &self.ids.0, self.period()?)))
+        let period = self.period()?;
+        Ok(match servos.protocol {
+            Some(Protocol::Two) => {
+                let source = GroupAdapter::new(servos, ids, period, watchdog)?;
+                (Box::new(source), Way::Group { watchdog })
+            }
+            _ => (Box::new(Adapter::new(servos, ids, period)), Way::Adapter),
+        })
     }
 
     /// Time between two samples.
@@ -72,6 +91,20 @@ impl RobotArgs {
                 )
             })
     }
+}
+
+/// How servos are reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// A CM-5 reads them.
+    Stream,
+    /// One by one through an adapter, Protocol 1.0.
+    Adapter,
+    /// Together through an adapter, Protocol 2.0.
+    Group {
+        /// Whether their bus watchdog stops them when the line breaks.
+        watchdog: bool,
+    },
 }
 
 /// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,

@@ -18,7 +18,7 @@ const STATES: &str = "/joint_states";
 const GOALS: &str = "/joint_goals";
 const IMU: &str = "/imu";
 const HEALTH: &str = "/servo_health";
-const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]},"torque_on":{"type":["boolean","null"]}}}"#;
+const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"current_a":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]},"torque_on":{"type":["boolean","null"]}}}"#;
 
 /// Health of all servos, as JSON.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -26,6 +26,8 @@ struct Health {
     supply_v: Vec<Option<f64>>,
     temperature_celsius: Vec<Option<f64>>,
     error: Vec<Option<u8>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    current_a: Vec<Option<f64>>,
     #[serde(default)]
     gyro_code: Option<f64>,
     #[serde(default)]
@@ -169,6 +171,9 @@ impl Writer for McapWriter {
                 .map(|joint| joint.temperature_celsius)
                 .collect(),
             error: sample.joints.iter().map(|joint| joint.error).collect(),
+            current_a: (sample.joints.iter().filter(|_| sample.has_current))
+                .map(|joint| joint.current_a)
+                .collect(),
         };
         self.put(self.health, time_ns, &serde_json::to_vec(&health)?)?;
         self.count = self.count.wrapping_add(1);
@@ -259,11 +264,13 @@ fn add_health(health: &Health, samples: &mut [RobotSample]) {
         let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
         sample.gyro = GyroSample::of(values);
         sample.torque_on = health.torque_on;
+        sample.has_current = !health.current_a.is_empty();
     }
     for (at, joint) in newest(samples).iter_mut().enumerate() {
         joint.supply_v = health.supply_v.get(at).copied().flatten();
         joint.temperature_celsius = health.temperature_celsius.get(at).copied().flatten();
         joint.error = health.error.get(at).copied().flatten();
+        joint.current_a = health.current_a.get(at).copied().flatten();
     }
 }
 
@@ -291,5 +298,6 @@ fn sample(state: &JointStateMessage, time_s: f64) -> RobotSample {
         joints: joints.collect(),
         gyro: None,
         torque_on: None,
+        has_current: false,
     }
 }

@@ -6,6 +6,8 @@
 mod adapter;
 mod csv;
 mod follow;
+mod group_adapter;
+mod group_sample;
 mod latency;
 mod mcap;
 mod motion;
@@ -13,12 +15,14 @@ mod read;
 mod recorder;
 mod report_reader;
 mod sample;
+mod servo_watch;
 mod source;
 mod stream;
 mod tally;
 
 pub use adapter::Adapter;
 pub use follow::{FollowedMotion, MotionStop, follow};
+pub use group_adapter::GroupAdapter;
 pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
 pub use read::{Recording, read};
@@ -29,6 +33,9 @@ pub use source::{EmergencyOff, SampleSource};
 pub use stream::{Stream, emergency_off};
 pub use tally::{Quantiles, RecordingTally, Rms};
 
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod group_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod tests;
