@@ -210,7 +210,8 @@ impl Talk<'_> {
         let Some(length) = emit_status(&mut out, id, error, data) else {
             return;
         };
-        let Some(servo) = self.find(id) else {
+        // It may be silent from now on, as behind a write into EEPROM, but answers that.
+        let Some(servo) = self.servos.iter_mut().find(|servo| servo.id() == id) else {
             return;
         };
         let wait_ns = delay_ns(servo);

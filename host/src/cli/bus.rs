@@ -11,8 +11,8 @@
 //!
 //! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus
 //! (`--baud 1000000`), or simulated servos (`--port sim`). Registers are named as in the servo's
-//! manual; codes are the register's own. Servos of Protocol 2.0 (X series, MX with that firmware) are
-//! recognised by their answers; `--port sim:model=XL330-M288` simulates them.
+//! manual; codes are the register's own. Servos of Protocol 2.0 (X series, MX with that firmware)
+//! are recognised by their answers; `--port sim:model=XL330-M288` simulates them.
 
 mod backup;
 mod bring_up;

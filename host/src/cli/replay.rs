@@ -19,8 +19,9 @@
 //! Servos of Protocol 2.0 stop by their own bus watchdog when the line breaks, unless
 //! `--no-watchdog`.
 //!
-//! `--json` prints `way` (`stream` or `adapter`), `watchdog` (whether theirs is on), `samples`, `seconds`, `tracking_rms_rad` (to the
-//! goals sent), `repeat_rms_rad` (to the positions recorded), `stopped` (why, or null).
+//! `--json` prints `way` (`stream` or `adapter`), `watchdog` (whether theirs is on), `samples`,
+//! `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions recorded),
+//! `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;

@@ -32,8 +32,8 @@ impl RobotArgs {
     }
 
     /// Opens it to move the robot: a CM-5 with Handstand's firmware streams unless `adapter`, for
-    /// as an adapter nothing lets the robot down when the line breaks. Servos of Protocol 2.0 stop by
-    /// themselves then, with their `watchdog`. Also in which way they are reached.
+    /// as an adapter nothing lets the robot down when the line breaks. Servos of Protocol 2.0 stop
+    /// by themselves then, with their `watchdog`. Also in which way they are reached.
     ///
     /// # Errors
     /// As [`RobotArgs::open`].

@@ -61,19 +61,22 @@ impl<L: SerialLink> Servos<L> {
         }
     }
 
-    /// One try. A silent servo is asked in the other protocol as long as none has answered.
+    /// One try. A silent servo is pinged in Protocol 2.0 as long as none has answered; if it
+    /// answers, the request, whose addresses are of 1.0, is not sent again.
     pub(super) fn once(&mut self, id: u8, request: ServoRequest) -> ServoResult<Reading> {
         let answer = self.once_in(self.current(), id, request);
         match (&answer, self.protocol) {
             (Ok(_) | Err(ServoError::UnexpectedId { .. }), None) => {
                 self.protocol = Some(Protocol::One);
             }
-            // Only what reads: a write that a servo did not answer may have been obeyed.
             (Err(ServoError::NoResponse { .. }), None) => {
                 let other = self.once_in(Protocol::Two, id, ServoRequest::Ping);
                 if other.is_ok() {
                     self.protocol = Some(Protocol::Two);
-                    return self.once_in(Protocol::Two, id, request);
+                    return match request {
+                        ServoRequest::Ping => other,
+                        _ => Err(ServoError::OtherProtocol { id }),
+                    };
                 }
             }
             _ => {}

@@ -24,8 +24,8 @@ pub struct GroupItem {
 
 impl<L: SerialLink> Servos<L> {
     /// What each item says, in their order. All of one address and length are a sync read, a fast
-    /// one where every servo's firmware has it and `identify` has asked them; others a bulk read. An
-    /// id may come once.
+    /// one where every servo's firmware has it and `identify` has asked them; others a bulk read.
+    /// An id may come once.
     ///
     /// A servo that is missing may silence those behind it: the missing ones are asked again, the
     /// first of them last, [`Servos::tries`] times in all.

@@ -69,6 +69,10 @@ fn eeprom_says_torque_off_first() {
 #[test]
 fn an_alert_comes_with_good_data_and_is_named() {
     let mut servos = Servos::new(sim("model=XL330-M288,ids=1,overload=1"));
+    assert!(matches!(
+        servos.read(1, 132, 4),
+        Err(ServoError::OtherProtocol { .. })
+    ));
     let reading = servos.read(1, 132, 4).unwrap();
     assert!(reading.error.has_alert() && reading.data.len() == 4);
     assert_eq!(servos.hardware_errors(1).unwrap(), ["overload"]);

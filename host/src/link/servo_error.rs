@@ -61,6 +61,12 @@ pub enum ServoError {
         /// The register.
         name: &'static str,
     },
+    /// A request in Protocol 1.0 to a servo of 2.0, whose registers are others.
+    #[error("servo {id} speaks Protocol 2.0, and was asked in 1.0")]
+    OtherProtocol {
+        /// Id of the servo.
+        id: u8,
+    },
     /// A model whose control table is not known.
     #[error("servo {id} is of model {number}, whose control table is not known")]
     UnknownModel {
@@ -83,6 +89,7 @@ impl ServoError {
                 | ServoError::Locked { .. }
                 | ServoError::NoRegister { .. }
                 | ServoError::UnknownModel { .. }
+                | ServoError::OtherProtocol { .. }
                 | ServoError::Port(_)
         )
     }
@@ -107,6 +114,7 @@ impl From<ServoError> for Error {
             ServoError::Locked { .. } => "torque off first: handstand bus write ID torque-enable 0",
             ServoError::NoRegister { .. } => "`handstand bus read ID` lists its registers",
             ServoError::UnknownModel { .. } => "docs/servos.md lists the models that are known",
+            ServoError::OtherProtocol { .. } => "pass --protocol 2",
             _ => "`handstand bus doctor` finds the cause",
         };
         Error::device(error.to_string(), remedy)

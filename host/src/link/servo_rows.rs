@@ -110,7 +110,11 @@ impl<L: SerialLink> Servos<L> {
     pub fn reboot(&mut self, id: u8) -> ServoResult<()> {
         // How long it takes is not published.
         const PATIENCE: u32 = 20;
-        self.ask(id, ServoRequest::Reboot)?;
+        match self.once(id, ServoRequest::Reboot) {
+            Err(error) if !error.is_transient() => return Err(error),
+            // Its answer may be lost: what counts is that it comes back.
+            _ => {}
+        }
         for _ in 0..PATIENCE {
             self.link().pause(Duration::from_millis(100));
             if self.ping(id).is_ok() {

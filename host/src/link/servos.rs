@@ -90,8 +90,17 @@ impl<L: SerialLink> Servos<L> {
     /// # Errors
     /// Why there is no good answer.
     pub fn get(&mut self, id: u8, register: Register) -> ServoResult<u16> {
-        let item = self.item(id, register)?;
-        let code = self.code(id, &item)?;
+        // Before any answer, a reading in 1.0 tells as much as a ping.
+        let name = register.name;
+        let item = self.current().item(register);
+        let item = item.ok_or(ServoError::NoRegister { id, name })?;
+        let code = match self.code(id, &item) {
+            Err(ServoError::OtherProtocol { .. }) => {
+                let item = self.item(id, register)?;
+                self.code(id, &item)?
+            }
+            code => code?,
+        };
         if register == RETURN_DELAY {
             self.delays.insert(id, ReturnDelay(code as u8));
         }

@@ -1,6 +1,6 @@
-//! `bus reboot`: restarts servos of Protocol 2.0. After a shutdown by a hardware error it is the only
-//! way to torque again, besides switching the power off. RAM returns to its defaults and the turn
-//! count is forgotten.
+//! `bus reboot`: restarts servos of Protocol 2.0. After a shutdown by a hardware error it is the
+//! only way to torque again, besides switching the power off. RAM returns to its defaults and the
+//! turn count is forgotten.
 
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk};

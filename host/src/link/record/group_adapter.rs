@@ -95,11 +95,6 @@ impl<L: SerialLink> GroupAdapter<L> {
         &mut self.servos
     }
 
-    /// Whether one joint status answers for all.
-    pub fn reads_fast(&self) -> bool {
-        self.fast
-    }
-
     /// An item of each servo. Those that have been silent come last: they may silence the others.
     fn items(&self, (address, count): (u16, u16)) -> Vec<GroupItem> {
         let mut places: Vec<usize> = (0..self.ids.len()).collect();
@@ -116,11 +111,9 @@ impl<L: SerialLink> GroupAdapter<L> {
     fn read_all(&mut self, what: (u16, u16)) -> Result<Vec<ServoResult<Reading>>> {
         let items = self.items(what);
         let answers = self.servos.read_group(&items)?;
-        let mut all: Vec<_> = (items.into_iter().map(|item| item.id))
-            .zip(answers)
-            .collect();
-        let ids = &self.ids;
-        all.sort_by_key(|(id, _)| ids.iter().position(|own| own == id));
+        let ids = items.into_iter().map(|item| item.id);
+        let mut all: Vec<_> = ids.zip(answers).collect();
+        all.sort_by_key(|(id, _)| self.ids.iter().position(|own| own == id));
         Ok(all.into_iter().map(|(_, answer)| answer).collect())
     }
 
@@ -253,17 +246,15 @@ impl<L: SerialLink> SampleSource for GroupAdapter<L> {
         let modes = self.read_each(OPERATING_MODE)?;
         let positions = self.read_each(PRESENT_POSITION)?;
         let errors = self.read_each(HARDWARE_ERROR)?;
-        for (((id, mode), position), error) in
-            (self.ids.iter().zip(&modes)).zip(&positions).zip(&errors)
-        {
-            may_move(*id, *mode, *position, *error)?;
+        for (place, id) in self.ids.iter().enumerate() {
+            may_move(*id, modes[place], positions[place], errors[place])?;
         }
         // What an earlier trip left would refuse the goals.
         self.write_each(BUS_WATCHDOG, 0)?;
         self.write_each(PROFILE_ACCELERATION, 0)?;
         self.write_each(PROFILE_VELOCITY, 0)?;
         let here: Vec<f64> = positions.iter().map(|code| angle_of(*code)).collect();
-        self.stood_rad = None;
+        (self.stood_rad, self.danger) = (None, None);
         self.send_goals(&here)?;
         (self.armed, self.commanded) = (true, true);
         self.write_each(BUS_WATCHDOG, self.watch.code())?;

@@ -160,21 +160,20 @@ impl Writer for McapWriter {
             let channel = self.imu()?;
             self.put(channel, time_ns, &imu.to_bytes())?;
         }
-        let health = Health {
+        let each =
+            |value: fn(&ServoSample) -> Option<f64>| sample.joints.iter().map(value).collect();
+        let mut health = Health {
             gyro_code: sample.gyro.map(|gyro| gyro.code),
             gyro_zero: sample.gyro.and_then(|gyro| gyro.zero),
             torque_on: sample.torque_on,
-            supply_v: sample.joints.iter().map(|joint| joint.supply_v).collect(),
-            temperature_celsius: sample
-                .joints
-                .iter()
-                .map(|joint| joint.temperature_celsius)
-                .collect(),
+            supply_v: each(|joint| joint.supply_v),
+            temperature_celsius: each(|joint| joint.temperature_celsius),
             error: sample.joints.iter().map(|joint| joint.error).collect(),
-            current_a: (sample.joints.iter().filter(|_| sample.has_current))
-                .map(|joint| joint.current_a)
-                .collect(),
+            current_a: each(|joint| joint.current_a),
         };
+        if !sample.has_current {
+            health.current_a.clear();
+        }
         self.put(self.health, time_ns, &serde_json::to_vec(&health)?)?;
         self.count = self.count.wrapping_add(1);
         Ok(())
