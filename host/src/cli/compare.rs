@@ -25,7 +25,7 @@ use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
-use handstand::report::{Report, html, json};
+use handstand::report::{Report, file_name, html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
         let model = Model::load(file)?;
         // Each model names columns and zeros its own way.
         split.training = read(&args.logs, &model.log)?;
-        let name = page::file_name(file);
+        let name = file_name(file);
         let plan = args.plan.load(&model)?;
         let mut comparison = compare::compare(&model, &name, &split.training, horizon);
         comparison.closed_loop = input::closed_loop(&model, plan.as_ref(), &split.training)?;

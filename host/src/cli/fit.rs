@@ -15,6 +15,7 @@
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
+use handstand::report::{refitted_json, refitted_text};
 use handstand::{Model, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
@@ -67,14 +68,14 @@ pub fn write(
 ) -> Result<ExitStatus> {
     output::write_new(&args.output, text, args.force)?;
     if talk.json {
-        let mut data = show::refitted_json(refitted);
+        let mut data = refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());
         if !added.is_empty() {
             data["effects"] = json!(added);
         }
         talk.data(&data)?;
     } else {
-        talk.print(&show::refitted(refitted, before))?;
+        talk.print(&refitted_text(refitted, before))?;
         talk.say(&format!("wrote {}", args.output.display()));
     }
     Ok(ExitStatus::Done)

@@ -12,9 +12,10 @@
 //! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
 //! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
-use super::{ExitStatus, Talk, input, page};
+use super::{ExitStatus, Talk, input};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
+use handstand::report::file_name;
 use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
@@ -68,7 +69,7 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
                 "draw models of one chain over each other",
             ));
         }
-        let name = page::file_name(file);
+        let name = file_name(file);
         let motions = read(&args.logs, &other.log)?;
         scene.add_model(&other, &compare(&other, &name, &motions, args.run.horizon));
     }

@@ -11,6 +11,7 @@ mod parameters;
 pub mod playback;
 mod proposal;
 mod provenance;
+mod refitted;
 mod remains;
 mod signatures;
 #[cfg(test)]
@@ -23,13 +24,18 @@ mod words;
 pub use json::{diagnosis_json, json};
 pub use page::html;
 pub use proposal::proposal_text;
+pub use refitted::{refitted_json, refitted_text};
 pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
+use crate::log::{Motion, Split};
+use crate::output::number::hex;
 use crate::output::plot::Tone;
 use serde::Serialize;
+use sha2::{Digest as _, Sha256};
+use std::path::Path;
 
 /// Tone of what was measured.
 const MEASURED: Tone = Tone::Ink;
@@ -66,6 +72,45 @@ pub struct ReportProvenance {
     pub command: String,
 }
 
+impl ReportProvenance {
+    /// Of this version of the program: `command` read the files, and the logs gave these motions.
+    pub fn new(model_files: Vec<ModelFile>, split: &Split, command: impl Into<String>) -> Self {
+        let mut logs = Vec::new();
+        add_logs(&mut logs, &split.training, false);
+        add_logs(&mut logs, &split.held_out, true);
+        ReportProvenance {
+            program_version: env!("CARGO_PKG_VERSION").to_string(),
+            model_files,
+            logs,
+            command: command.into(),
+        }
+    }
+}
+
+fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
+    for motion in motions {
+        let name = file_name(&motion.source.path);
+        let same = |log: &&mut LogFile| log.name == name && log.held_out == held_out;
+        match logs.iter_mut().find(same) {
+            Some(log) => log.samples += motion.len(),
+            None => logs.push(LogFile {
+                name,
+                sha256: motion.source.sha256.clone(),
+                samples: motion.len(),
+                held_out,
+            }),
+        }
+    }
+}
+
+/// The last part of a file's path.
+pub fn file_name(file: &Path) -> String {
+    file.file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
 /// A model that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelFile {
@@ -73,6 +118,16 @@ pub struct ModelFile {
     pub name: String,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
+}
+
+impl ModelFile {
+    /// The file of this name with these contents.
+    pub fn of(name: impl Into<String>, contents: &[u8]) -> ModelFile {
+        ModelFile {
+            name: name.into(),
+            sha256: hex(Sha256::digest(contents)),
+        }
+    }
 }
 
 /// A log that was read.

@@ -113,6 +113,7 @@ pub fn run(args: &Args) {
     if !args.only_builds {
         each(|need| !need.for_builds);
         super::python::all();
+        super::python_package::install();
         super::npm::all();
     }
 }

@@ -9,6 +9,7 @@ mod lane;
 mod mutants;
 mod npm;
 mod python;
+mod python_package;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -34,6 +35,8 @@ enum Chore {
     Fuzz(fuzz::Args),
     /// Change the firmware's code, and see whether the tests notice
     Mutants(mutants::Args),
+    /// Install Python's package in an environment of its own, and run its tests
+    Python,
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(image::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         }
         Chore::Fuzz(args) => return code(fuzz::run(&args)),
         Chore::Mutants(args) => return code(mutants::run(&args)),
+        Chore::Python => return code(python_package::run()),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchRecord(words) => ("bench-record", words),

@@ -9,6 +9,7 @@
 use super::checks::CHECKS;
 use super::install;
 use super::lane::Lane;
+use super::python_package;
 use handstand_xtask::cargo;
 use handstand_xtask::firmware::Toolchain;
 use handstand_xtask::program::{self, overheard};
@@ -47,8 +48,13 @@ pub fn run(args: &Args) -> bool {
         install.end();
     }
     clock.lap("waiting for the firmware and the installation");
+    let python = python_package();
     tests(&mut tally);
     clock.lap("running the tests");
+    if let Some(python) = python {
+        tally.count(python.end(), "cargo xtask python");
+        clock.lap("waiting for Python's package and its tests");
+    }
     clock.tell();
     tally.tell();
     tally.failed == 0
@@ -66,6 +72,15 @@ fn firmware() -> Option<Lane> {
             None
         }
     }
+}
+
+/// Begins to build Python's package and to run its tests, if that can be.
+fn python_package() -> Option<Lane> {
+    if python_package::is_ready() {
+        return Some(Lane::start(&["python"]));
+    }
+    println!("SKIPPED: Python's package and its tests, for what they need is not installed");
+    None
 }
 
 /// Seconds of each phase, told at the end.

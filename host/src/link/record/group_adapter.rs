@@ -117,10 +117,7 @@ impl<L: SerialLink> GroupAdapter<L> {
         Ok(all.into_iter().map(|(_, answer)| answer).collect())
     }
 
-    /// A register of every servo.
-    ///
-    /// # Errors
-    /// One does not answer.
+    /// A register of every servo; an error if one does not answer.
     fn read_each(&mut self, item: Item) -> Result<Vec<i32>> {
         let tries = std::mem::replace(&mut self.servos.tries, 5);
         let answers = self.read_all((item.address, u16::from(item.size)));

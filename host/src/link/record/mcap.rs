@@ -162,18 +162,15 @@ impl Writer for McapWriter {
         }
         let each =
             |value: fn(&ServoSample) -> Option<f64>| sample.joints.iter().map(value).collect();
-        let mut health = Health {
+        let health = Health {
             gyro_code: sample.gyro.map(|gyro| gyro.code),
             gyro_zero: sample.gyro.and_then(|gyro| gyro.zero),
             torque_on: sample.torque_on,
             supply_v: each(|joint| joint.supply_v),
             temperature_celsius: each(|joint| joint.temperature_celsius),
             error: sample.joints.iter().map(|joint| joint.error).collect(),
-            current_a: each(|joint| joint.current_a),
+            current_a: sample.currents(),
         };
-        if !sample.has_current {
-            health.current_a.clear();
-        }
         self.put(self.health, time_ns, &serde_json::to_vec(&health)?)?;
         self.count = self.count.wrapping_add(1);
         Ok(())

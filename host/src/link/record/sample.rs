@@ -150,3 +150,11 @@ pub struct RobotSample {
     /// Whether there is a servo that measures current; a recording then has a column of each.
     pub has_current: bool,
 }
+
+impl RobotSample {
+    /// Current of each servo, A; empty where none measures it.
+    pub(super) fn currents(&self) -> Vec<Option<f64>> {
+        let joints = self.joints.iter().filter(|_| self.has_current);
+        joints.map(|joint| joint.current_a).collect()
+    }
+}

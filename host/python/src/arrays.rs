@@ -1,0 +1,71 @@
+//! Arrays in and out: a row per joint.
+
+use crate::errors::usage;
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2};
+use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
+
+/// Numbers, one after the other.
+pub fn numbers(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let array: PyArrayLike1<'_, f64, AllowTypeChange> = given.extract().map_err(|_| {
+        usage(
+            format!("`{name}` is not a row of numbers"),
+            "give a one-dimensional array or a list of numbers",
+        )
+    })?;
+    Ok(array.as_array().iter().copied().collect())
+}
+
+/// A row per joint; a single row is that of one joint.
+pub fn rows(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
+    if let Ok(array) = given.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>() {
+        let rows = array.as_array();
+        let rows = rows.outer_iter().map(|row| row.iter().copied().collect());
+        return Ok(rows.collect());
+    }
+    if let Ok(row) = numbers(name, given) {
+        return Ok(vec![row]);
+    }
+    Err(usage(
+        format!("`{name}` is neither a row of numbers nor a row per joint"),
+        "give an array of shape (samples,) or (joints, samples)",
+    ))
+}
+
+/// A row per joint, `None` for joints without; without anything no joint has one.
+pub fn rows_or_none(
+    name: &str,
+    given: Option<&Bound<'_, PyAny>>,
+    joints: usize,
+) -> PyResult<Vec<Option<Vec<f64>>>> {
+    let Some(given) = given else {
+        return Ok(vec![None; joints]);
+    };
+    let is_list = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
+    let items: Vec<Bound<'_, PyAny>> = match is_list {
+        true => given.try_iter()?.collect::<PyResult<_>>()?,
+        false => Vec::new(),
+    };
+    if !items.iter().any(|item| item.is_none()) {
+        return Ok(rows(name, given)?.into_iter().map(Some).collect());
+    }
+    let row = |item: &Bound<'_, PyAny>| match item.is_none() {
+        true => Ok(None),
+        false => numbers(name, item).map(Some),
+    };
+    items.iter().map(row).collect()
+}
+
+/// Rows of equal length as an array.
+pub fn matrix<'py>(py: Python<'py>, rows: &[Vec<f64>]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    Ok(PyArray2::from_vec2(py, rows)?)
+}
+
+/// Rows of joints, `None` for those without.
+pub fn per_joint<'py>(
+    py: Python<'py>,
+    rows: &[Option<Vec<f64>>],
+) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+    let array = |row: &Option<Vec<f64>>| row.as_ref().map(|row| PyArray1::from_slice(py, row));
+    rows.iter().map(array).collect()
+}

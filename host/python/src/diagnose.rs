@@ -1,0 +1,189 @@
+//! `diagnose`: which physical effect does the model lack?
+
+use crate::errors::exception;
+use crate::logs::{Learned, horizon, learned_and_held_out};
+use crate::model::Model;
+use crate::value::{framed, plain};
+use crate::work;
+use handstand::compare::compare;
+use handstand::diagnose::conventions::ModelFile;
+use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
+use handstand::fitting::{Horizon, effect_named, free_parameters};
+use handstand::log::{Split, split};
+use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
+use pyo3::prelude::*;
+
+/// A diagnosis: the verdict, what it rests on, and what to do next.
+#[pyclass(frozen, module = "handstand")]
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    inner: handstand::diagnose::Diagnosis,
+    model: Model,
+    split: Split,
+}
+
+/// Diagnoses what a model lacks. Files are first checked for wrong signs, zeros, units and drives
+/// (`trust_log=True` leaves that out). Without `hold_out` the last third of the motions judges.
+/// `known` names values that were measured by themselves, `without` effects to leave out;
+/// `progress(what, done, total)` is called while it works.
+#[pyfunction]
+#[pyo3(signature = (model, logs, *, hold_out=None, without=Vec::new(), known=Vec::new(),
+                    seed=None, tolerance_rad=None, horizon_s=None, trust_log=false,
+                    progress=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
+pub fn diagnose(
+    py: Python<'_>,
+    model: &Bound<'_, Model>,
+    logs: &Bound<'_, PyAny>,
+    hold_out: Option<&Bound<'_, PyAny>>,
+    without: Vec<String>,
+    known: Vec<String>,
+    seed: Option<u64>,
+    tolerance_rad: Option<f64>,
+    horizon_s: Option<&Bound<'_, PyAny>>,
+    trust_log: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Diagnosis> {
+    let model = model.get().clone();
+    for effect in &without {
+        effect_named(effect).map_err(exception)?;
+    }
+    let defaults = DiagnoseOptions::default();
+    let options = DiagnoseOptions {
+        seed: seed.unwrap_or(defaults.seed),
+        without,
+        known: match known.as_slice() {
+            [] => Vec::new(),
+            known => free_parameters(&model.inner, known).map_err(exception)?,
+        },
+        horizon: horizon(horizon_s)?,
+        tolerance_rad,
+        trust_log,
+        ..defaults
+    };
+    let logs = learned_and_held_out(logs, hold_out, &model)?;
+    let found = work::run(py, progress, move |report| {
+        let tell = |p: handstand::diagnose::Progress| report.tell(p.what, p.done, p.total);
+        found(model, logs, &options, &tell)
+    })?;
+    found.map_err(exception)
+}
+
+fn found(
+    model: Model,
+    logs: Learned,
+    options: &DiagnoseOptions,
+    tell: &(dyn Fn(handstand::diagnose::Progress) + Sync),
+) -> handstand::Result<Diagnosis> {
+    let LogDiagnosis { diagnosis, split } = match logs {
+        Learned::Files(set) => {
+            let file = ModelFile {
+                path: &model.path,
+                text: &model.text,
+            };
+            diagnose_logs(&model.inner, file, &set, options, tell)?
+        }
+        Learned::Motions(training, held_out) => {
+            let split = split(training, held_out);
+            let (training, held_out) = (split.training.clone(), split.held_out.clone());
+            let model = &model.inner;
+            LogDiagnosis {
+                diagnosis: handstand::diagnose::diagnose(model, training, held_out, options, tell),
+                split,
+            }
+        }
+    };
+    Ok(Diagnosis {
+        inner: diagnosis,
+        model,
+        split,
+    })
+}
+
+#[pymethods]
+impl Diagnosis {
+    /// `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or `unfit`.
+    #[getter]
+    fn verdict(&self) -> String {
+        let name = serde_json::to_value(self.inner.verdict).unwrap_or_default();
+        name.as_str().unwrap_or_default().to_string()
+    }
+
+    /// The effects of the best explanation, as `add` takes them.
+    #[getter]
+    fn effects(&self) -> Vec<String> {
+        self.inner
+            .effects
+            .iter()
+            .map(FittedEffect::address)
+            .collect()
+    }
+
+    /// The answer in sentences.
+    #[getter]
+    fn summary(&self) -> Vec<String> {
+        self.inner.summary.clone()
+    }
+
+    /// What to be wary of.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.inner.warnings.clone()
+    }
+
+    /// Everything, with the keys of `handstand diagnose --json`.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &diagnosis_json(&self.inner))
+    }
+
+    /// The page of `handstand diagnose --report`.
+    fn html(&self, py: Python<'_>) -> String {
+        py.detach(|| html(&self.report()))
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> String {
+        framed(&self.html(py))
+    }
+
+    fn __str__(&self) -> String {
+        diagnosis_text(&self.inner)
+    }
+
+    fn __repr__(&self) -> String {
+        let effects = self.effects().join(", ");
+        format!("<Diagnosis: {} {effects}>", self.verdict())
+    }
+}
+
+impl Diagnosis {
+    /// The model as it is and with the effects that were found, against all motions.
+    fn report(&self) -> Report {
+        let motions = [self.split.training.as_slice(), &self.split.held_out].concat();
+        let mut models = Vec::new();
+        // Logs that were refused are not simulated.
+        if !motions.is_empty() {
+            models.push(("the model as it is".to_string(), self.model.inner.clone()));
+        }
+        if !motions.is_empty() && !self.inner.effects.is_empty() {
+            let with = self.inner.applied_to(&self.model.inner);
+            models.push((format!("with {}", self.effects().join(", ")), with));
+        }
+        let mut horizon = self.inner.horizon_s.map(Horizon::Seconds);
+        let mut comparisons = Vec::new();
+        for (name, model) in &models {
+            let comparison = compare(model, name, &motions, horizon);
+            horizon = Some(Horizon::from_seconds(comparison.horizon_s));
+            comparisons.push(comparison);
+        }
+        Report {
+            title: format!("What {} is missing", self.model.inner.name),
+            comparisons,
+            diagnosis: Some(self.inner.clone()),
+            provenance: ReportProvenance::new(
+                vec![self.model.file()],
+                &self.split,
+                "handstand.diagnose",
+            ),
+        }
+    }
+}

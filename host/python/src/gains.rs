@@ -1,0 +1,231 @@
+//! `gains`: a regulator for a model, and the loop simulated with all its effects.
+
+use crate::arrays::{matrix, numbers, rows};
+use crate::errors::{HandstandError, exception, usage};
+use crate::model::Model;
+use crate::value::plain;
+use crate::work::{self, WorkReport};
+use handstand::study::{Verification, left_out, verification_steps, verify};
+use handstand::synth::export::{self, Provenance};
+use handstand::synth::{Design, Request, Time, Weight, balanced};
+use nalgebra::DMatrix;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use std::cell::Cell;
+
+/// A matrix as an array.
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Gains with the plant they were designed for, and the verification of the loop.
+#[pyclass(frozen, module = "handstand")]
+#[derive(Debug, Clone)]
+pub struct Gains {
+    design: Design,
+    made: Provenance,
+    verification: Verification,
+}
+
+/// Gains that balance a model at a pose: upright without `pose_rad`. `q` and `r` are a number, a
+/// diagonal or a matrix (100 and 1 without). `ts_s=None` designs in continuous time. The loop is
+/// then simulated with every effect of the model, those included that the design leaves out.
+#[pyfunction]
+#[pyo3(signature = (model, *, q=None, r=None, ts_s=Some(0.01), delay_s=None, pose_rad=None,
+                    balance=false, progress=None),
+       text_signature = "(model, *, q=None, r=None, ts_s=0.01, delay_s=None, pose_rad=None, \
+                          balance=False, progress=None)")]
+#[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
+pub fn gains(
+    py: Python<'_>,
+    model: &Bound<'_, Model>,
+    q: Option<&Bound<'_, PyAny>>,
+    r: Option<&Bound<'_, PyAny>>,
+    ts_s: Option<f64>,
+    delay_s: Option<f64>,
+    pose_rad: Option<&Bound<'_, PyAny>>,
+    balance: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Gains> {
+    let model = model.get().clone();
+    let standard = Request::standard(&model.inner);
+    let weight = |name, given: Option<&Bound<'_, PyAny>>, otherwise: &Weight| match given {
+        Some(given) => weight(name, given),
+        None => Ok(otherwise.clone()),
+    };
+    let mut pose_rad = match pose_rad {
+        Some(given) => numbers("pose_rad", given)?,
+        None => standard.pose_rad.clone(),
+    };
+    if balance {
+        pose_rad = balanced(&model.inner, &pose_rad).map_err(exception)?;
+    }
+    let request = Request {
+        pose_rad,
+        q: weight("q", q, &standard.q)?,
+        r: weight("r", r, &standard.r)?,
+        time: match ts_s {
+            Some(ts_s) => Time::Sampled { ts_s, delay_s },
+            None => Time::Continuous,
+        },
+        ..standard
+    };
+    let file = model.file();
+    let made = Provenance {
+        model: file.name,
+        sha256: file.sha256,
+        command: "handstand.gains".to_string(),
+    };
+    let found = work::run(py, progress, move |report| {
+        designed(&model, &request, report)
+    })?;
+    let (design, verification) = found.map_err(exception)?;
+    Ok(Gains {
+        design,
+        made,
+        verification,
+    })
+}
+
+fn designed(
+    model: &Model,
+    request: &Request,
+    report: &WorkReport,
+) -> handstand::Result<(Design, Verification)> {
+    let model = &model.inner;
+    let design = Design::of(model, request)?;
+    let left_out = left_out(model, model, &design);
+    let (total, done) = (verification_steps(&left_out), Cell::new(0));
+    let tell = || {
+        done.set(done.get() + 1);
+        report.tell("simulations of the loop", done.get(), total);
+    };
+    let verification = verify(model, &design, request, &left_out, &tell)?;
+    Ok((design, verification))
+}
+
+/// A weight: a number, a diagonal or a matrix.
+fn weight(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Weight> {
+    if let Ok(number) = given.extract::<f64>() {
+        return Ok(Weight::Scalar(number));
+    }
+    if let Ok(diagonal) = numbers(name, given) {
+        return Ok(Weight::Diagonal(diagonal));
+    }
+    let rows = rows(name, given)?;
+    let size = rows.len();
+    match rows.iter().all(|row| row.len() == size) {
+        true => Ok(Weight::Matrix(DMatrix::from_fn(size, size, |i, j| {
+            rows[i][j]
+        }))),
+        false => Err(usage(
+            format!("`{name}` has {size} rows of {} numbers", rows[0].len()),
+            "give a number, a diagonal or a square matrix",
+        )),
+    }
+}
+
+fn array<'py>(py: Python<'py>, of: &DMatrix<f64>) -> PyResult<Matrix<'py>> {
+    let rows: Vec<Vec<f64>> = of
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect();
+    matrix(py, &rows)
+}
+
+#[pymethods]
+impl Gains {
+    /// K of u = u0 - K (x - x0): shape (inputs, states).
+    #[getter]
+    fn k<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        array(py, &self.design.gains.k)
+    }
+
+    /// Names of the states that K multiplies.
+    #[getter]
+    fn states(&self) -> Vec<String> {
+        self.design
+            .states
+            .iter()
+            .map(|state| state.name.clone())
+            .collect()
+    }
+
+    /// The operating point of the states, SI.
+    #[getter]
+    fn x0(&self) -> Vec<f64> {
+        self.design.x0.clone()
+    }
+
+    /// The inputs that hold it, SI.
+    #[getter]
+    fn u0(&self) -> Vec<f64> {
+        self.design.u0.clone()
+    }
+
+    /// `(A, B)` of the plant in continuous time.
+    #[getter]
+    fn plant<'py>(&self, py: Python<'py>) -> PyResult<(Matrix<'py>, Matrix<'py>)> {
+        let plant = &self.design.plant;
+        Ok((array(py, &plant.a)?, array(py, &plant.b)?))
+    }
+
+    /// Whether the simulated loop, with every effect of the model, is stabilised.
+    #[getter]
+    fn stabilised(&self) -> bool {
+        self.verification.stabilised
+    }
+
+    /// Largest cube of starts of which 95 % are stabilised: half its edge, rad.
+    #[getter]
+    fn region_rad(&self) -> f64 {
+        self.verification.region_rad
+    }
+
+    /// The header of the fixed-point law for C.
+    fn c_header(&self) -> PyResult<String> {
+        let fixed = self.fixed()?;
+        Ok(export::c_header(&self.design, fixed, &self.made))
+    }
+
+    /// The fixed-point law for Rust.
+    fn rust_file(&self) -> PyResult<String> {
+        let fixed = self.fixed()?;
+        Ok(export::rust_file(&self.design, fixed, &self.made))
+    }
+
+    /// Everything, with the keys of `handstand gains --json`.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut value = export::json(&self.design, &self.made);
+        value["verification"] = serde_json::to_value(&self.verification).unwrap_or_default();
+        plain(py, &value)
+    }
+
+    fn _repr_html_(&self) -> String {
+        let escaped = self.__str__().replace('&', "&amp;").replace('<', "&lt;");
+        format!("<pre>{escaped}</pre>")
+    }
+
+    fn __str__(&self) -> String {
+        export::text(&self.design)
+    }
+
+    fn __repr__(&self) -> String {
+        let loop_is = match self.verification.stabilised {
+            true => "stabilised",
+            false => "NOT stabilised",
+        };
+        format!(
+            "<Gains for {:?}: the simulated loop is {loop_is}>",
+            self.design.model
+        )
+    }
+}
+
+impl Gains {
+    fn fixed(&self) -> PyResult<&handstand::synth::Fixed> {
+        self.design.fixed.as_ref().ok_or_else(|| {
+            HandstandError::new_err(
+                "gains in continuous time have no fixed-point law\nremedy: give ts_s",
+            )
+        })
+    }
+}

@@ -1,0 +1,200 @@
+//! Motions: what a log holds between two interruptions, as arrays.
+
+use crate::arrays::{matrix, numbers, per_joint, rows, rows_or_none};
+use crate::errors::usage;
+use handstand::log::{LEAST_ROWS, MotionSource};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+/// A motion, in SI and the log's convention of angles.
+#[pyclass(frozen, module = "handstand")]
+#[derive(Debug, Clone)]
+pub struct Motion {
+    pub inner: handstand::log::Motion,
+}
+
+#[pymethods]
+impl Motion {
+    /// A motion out of arrays: a row per joint, gaps as not-a-number. `input` is what each drive is
+    /// told, in SI of its kind (N m, duty, rad, rad/s), `None` for passive joints.
+    #[new]
+    #[pyo3(signature = (time_s, position_rad, *, input=None, velocity_rad_s=None, supply_v=None,
+                        torque_on=None, payload_kg=0.0, turned=false, name="motion"))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keywords of a Python constructor"
+    )]
+    fn new(
+        time_s: &Bound<'_, PyAny>,
+        position_rad: &Bound<'_, PyAny>,
+        input: Option<&Bound<'_, PyAny>>,
+        velocity_rad_s: Option<&Bound<'_, PyAny>>,
+        supply_v: Option<&Bound<'_, PyAny>>,
+        torque_on: Option<Vec<bool>>,
+        payload_kg: f64,
+        turned: bool,
+        name: &str,
+    ) -> PyResult<Motion> {
+        let time_s = numbers("time_s", time_s)?;
+        let position_rad = rows("position_rad", position_rad)?;
+        let joints = position_rad.len();
+        let inner = handstand::log::Motion {
+            name: name.to_string(),
+            source: MotionSource {
+                path: name.into(),
+                sha256: String::new(),
+                lines: (1, time_s.len()),
+            },
+            time_s,
+            position_rad,
+            velocity_rad_s: rows_or_none("velocity_rad_s", velocity_rad_s, joints)?,
+            input: rows_or_none("input", input, joints)?,
+            supply_v: supply_v
+                .map(|given| numbers("supply_v", given))
+                .transpose()?,
+            torque_on,
+            payload_kg,
+            turned,
+        };
+        Motion::of(inner)
+    }
+
+    /// What it is called in reports.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.name
+    }
+
+    /// Time of each sample, s.
+    #[getter]
+    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.time_s)
+    }
+
+    /// Measured angles, rad: shape (joints, samples), not-a-number where not measured.
+    #[getter]
+    fn position_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        matrix(py, &self.inner.position_rad)
+    }
+
+    /// Per joint: measured speeds, rad/s, where logged.
+    #[getter]
+    fn velocity_rad_s<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+        per_joint(py, &self.inner.velocity_rad_s)
+    }
+
+    /// Per joint: what the drive was told; `None` of a passive joint.
+    #[getter]
+    fn input<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+        per_joint(py, &self.inner.input)
+    }
+
+    /// Supply, V, where logged.
+    #[getter]
+    fn supply_v<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let supply = self.inner.supply_v.as_ref();
+        supply.map(|supply| PyArray1::from_slice(py, supply))
+    }
+
+    /// Known mass bolted to the last link, kg.
+    #[getter]
+    fn payload_kg(&self) -> f64 {
+        self.inner.payload_kg
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let joints = self.inner.position_rad.len();
+        format!(
+            "<Motion {:?}: {joints} joints, {} samples, {:.2} s>",
+            self.inner.name,
+            self.inner.len(),
+            self.inner.duration_s()
+        )
+    }
+}
+
+impl Motion {
+    /// A motion whose arrays belong together.
+    pub fn of(inner: handstand::log::Motion) -> PyResult<Motion> {
+        is_whole(&inner)?;
+        Ok(Motion { inner })
+    }
+}
+
+/// Refuses arrays that make no motion.
+fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
+    let samples = motion.time_s.len();
+    if samples < LEAST_ROWS {
+        return Err(usage(
+            format!("{samples} samples are no motion"),
+            format!("give at least {LEAST_ROWS}"),
+        ));
+    }
+    let increases = motion
+        .time_s
+        .windows(2)
+        .position(|pair| !(pair[0] < pair[1]));
+    if let Some(at) = increases {
+        return Err(usage(
+            format!("`time_s` does not increase after sample {at}"),
+            "sort the samples, and leave out those that stand there twice",
+        ));
+    }
+    let joints = motion.position_rad.len();
+    let per_joint = [
+        ("velocity_rad_s", &motion.velocity_rad_s),
+        ("input", &motion.input),
+    ];
+    for (name, rows) in per_joint {
+        if rows.len() != joints {
+            return Err(usage(
+                format!("`{name}` has {} rows for {joints} joints", rows.len()),
+                "give a row per joint, and None for joints without",
+            ));
+        }
+    }
+    let rows = motion.position_rad.iter().map(|row| ("position_rad", row));
+    let rows = rows
+        .chain(
+            per_joint
+                .into_iter()
+                .flat_map(|(name, rows)| rows.iter().flatten().map(move |row| (name, row))),
+        )
+        .chain(motion.supply_v.iter().map(|row| ("supply_v", row)));
+    let flags = motion
+        .torque_on
+        .as_ref()
+        .map(|flags| ("torque_on", flags.len()));
+    for (name, length) in rows.map(|(name, row)| (name, row.len())).chain(flags) {
+        if length != samples {
+            return Err(usage(
+                format!("`{name}` has {length} samples, `time_s` {samples}"),
+                "all arrays of a motion are of one length",
+            ));
+        }
+    }
+    // An input holds from its sample to the next: what a drive was told has no gap.
+    if motion
+        .input
+        .iter()
+        .flatten()
+        .flatten()
+        .any(|told| !told.is_finite())
+    {
+        return Err(usage(
+            "`input` holds what is no number",
+            "say what each drive was told at every sample, or cut the motion there",
+        ));
+    }
+    match motion.payload_kg.is_finite() && motion.payload_kg >= 0.0 {
+        true => Ok(()),
+        false => Err(usage(
+            format!("a payload of {} kg", motion.payload_kg),
+            "give 0 or more",
+        )),
+    }
+}

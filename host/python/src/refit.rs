@@ -1,0 +1,158 @@
+//! `add` and `fit`: a model with effects it lacked, or with values fitted to logs.
+
+use crate::errors::{HandstandError, exception};
+use crate::logs::{horizon, learned_and_held_out};
+use crate::model::Model;
+use crate::value::plain;
+use crate::work::{self, WorkReport};
+use handstand::fitting::{
+    Addition, FittedValue, Refitted, Undetermined, add_effects, candidates_named, free_parameters,
+    not_reduced, refit, with_refitted,
+};
+use handstand::report::{refitted_json, refitted_text};
+use pyo3::prelude::*;
+
+/// A refitted model, its values with intervals, and the error before and after.
+#[pyclass(frozen, module = "handstand")]
+#[derive(Debug, Clone)]
+pub struct Refit {
+    model: Model,
+    refitted: Refitted,
+    /// Which model left the error before.
+    before: &'static str,
+}
+
+/// Adds effects (`"coulomb@1"`, or a list) to a model and fits their values along with those that
+/// the model frees. Without `hold_out` the motions that were fitted also judge. Effects that do not
+/// lower the error are refused.
+#[pyfunction]
+#[pyo3(signature = (model, effects, logs, *, hold_out=None, horizon_s=None, progress=None))]
+pub fn add(
+    py: Python<'_>,
+    model: &Bound<'_, Model>,
+    effects: &Bound<'_, PyAny>,
+    logs: &Bound<'_, PyAny>,
+    hold_out: Option<&Bound<'_, PyAny>>,
+    horizon_s: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Refit> {
+    let model = model.get().clone();
+    let names = names(effects)?;
+    let candidates = candidates_named(&names, &model.inner).map_err(exception)?;
+    let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
+    let horizon = horizon(horizon_s)?;
+    let (text, path) = (model.text, model.path.clone());
+    let what = format!("starts of {}", names.join(", "));
+    let added = work::run(py, progress, move |report: &WorkReport| {
+        let tell = |done: usize, total: usize| report.tell(&what, done, total);
+        add_effects(&text, &path, &candidates, &split, horizon, &tell)
+    })?;
+    match added.map_err(exception)? {
+        Addition::Added { text, refitted } => Ok(Refit {
+            model: Model::of(text, model.path).map_err(exception)?,
+            refitted: *refitted,
+            before: "for the model refitted without",
+        }),
+        Addition::NotReduced(refitted) => Err(HandstandError::new_err(format!(
+            "{}\nremedy: `diagnose` says which effect the logs ask for",
+            not_reduced(&refitted, &names)
+        ))),
+        Addition::Undetermined(why) => Err(undetermined(&why)),
+    }
+}
+
+/// Fits values of a model to logs: those that it frees, or those of `free` (`"link1.com_m"`,
+/// `"coulomb@1.torque_nm"`).
+#[pyfunction]
+#[pyo3(signature = (model, logs, *, free=None, hold_out=None, horizon_s=None))]
+pub fn fit(
+    py: Python<'_>,
+    model: &Bound<'_, Model>,
+    logs: &Bound<'_, PyAny>,
+    free: Option<&Bound<'_, PyAny>>,
+    hold_out: Option<&Bound<'_, PyAny>>,
+    horizon_s: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Refit> {
+    let model = model.get().clone();
+    let named = free.map(names).transpose()?.unwrap_or_default();
+    let free = free_parameters(&model.inner, &named).map_err(exception)?;
+    let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
+    let horizon = horizon(horizon_s)?;
+    let path = model.path.clone();
+    let fitted = work::run(py, None, move |_| {
+        let refitted = match refit(&model.inner, &free, &split, horizon) {
+            Ok(refitted) => refitted,
+            Err(why) => return Err(undetermined(&why)),
+        };
+        let text = with_refitted(&model.text, &model.path, &model.inner, &refitted, &split);
+        Ok((text.map_err(exception)?, refitted))
+    })?;
+    let (text, refitted) = fitted?;
+    Ok(Refit {
+        model: Model::of(text, path).map_err(exception)?,
+        refitted,
+        before: "for the model as it was",
+    })
+}
+
+/// One name, or a list of them.
+fn names(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    match given.extract::<String>() {
+        Ok(one) => Ok(vec![one]),
+        Err(_) => given.extract(),
+    }
+}
+
+fn undetermined(why: &Undetermined) -> PyErr {
+    HandstandError::new_err(format!(
+        "{why}\nremedy: fit fewer values, or bring motions that show them"
+    ))
+}
+
+#[pymethods]
+impl Refit {
+    /// The new model.
+    #[getter]
+    fn model(&self) -> Model {
+        self.model.clone()
+    }
+
+    /// Fitted values by their addresses: `(value, low, high)`, the interval at 95 %.
+    #[getter]
+    fn values(&self) -> std::collections::BTreeMap<String, (f64, f64, f64)> {
+        let entry = |v: &FittedValue| (v.path.clone(), (v.value, v.low, v.high));
+        self.refitted.values.iter().map(entry).collect()
+    }
+
+    /// Root-mean-square error before, rad.
+    #[getter]
+    fn error_before_rad(&self) -> f64 {
+        self.refitted.error.before_rad
+    }
+
+    /// Root-mean-square error of the new model, rad.
+    #[getter]
+    fn error_after_rad(&self) -> f64 {
+        self.refitted.error.after_rad
+    }
+
+    /// Everything, with the keys of `handstand add --json`.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &refitted_json(&self.refitted))
+    }
+
+    fn _repr_html_(&self) -> String {
+        let text = self.__str__();
+        let escaped = text.replace('&', "&amp;").replace('<', "&lt;");
+        format!("<pre>{escaped}</pre>")
+    }
+
+    fn __str__(&self) -> String {
+        refitted_text(&self.refitted, self.before)
+    }
+
+    fn __repr__(&self) -> String {
+        let [before, after] = [self.error_before_rad(), self.error_after_rad()];
+        format!("<Refit: {:.2} -> {:.2} mrad>", 1e3 * before, 1e3 * after)
+    }
+}

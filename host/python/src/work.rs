@@ -1,0 +1,97 @@
+//! Work on a thread of its own, so that Python goes on: progress is told, Ctrl-C ends it.
+
+use crate::errors::HandstandError;
+use pyo3::prelude::*;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// How long the interpreter waits before it looks for Ctrl-C.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A step of the work.
+struct Step {
+    what: String,
+    done: usize,
+    total: usize,
+}
+
+/// What unwinds work that is to stop.
+struct Stopped;
+
+/// Tells how far the work is, and ends it where that was asked.
+pub struct WorkReport {
+    steps: Sender<Step>,
+    stop: Arc<AtomicBool>,
+}
+
+impl WorkReport {
+    /// Tells. Where the work is to stop it does not return: it unwinds to the end of its thread.
+    pub fn tell(&self, what: &str, done: usize, total: usize) {
+        if self.stop.load(Ordering::Relaxed) {
+            resume_unwind(Box::new(Stopped));
+        }
+        let what = what.to_string();
+        // Who no longer listens has stopped the work.
+        let _ = self.steps.send(Step { what, done, total });
+    }
+}
+
+/// Runs `work` without the interpreter's lock. `progress(what, done, total)` is called from this
+/// thread. After Ctrl-C the work ends where it next tells how far it is.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&WorkReport) -> T + Send + 'static,
+) -> PyResult<T> {
+    let (steps, told) = channel();
+    let stop = Arc::new(AtomicBool::new(false));
+    let report = WorkReport {
+        steps,
+        stop: stop.clone(),
+    };
+    let thread = std::thread::spawn(move || {
+        let report = report;
+        work(&report)
+    });
+    let watched = watch(py, progress, told);
+    if watched.is_err() {
+        stop.store(true, Ordering::Relaxed);
+    }
+    watched?;
+    match py.detach(|| thread.join()) {
+        Ok(result) => Ok(result),
+        Err(_) => Err(HandstandError::new_err(
+            "the work ended in a fault of the program; what it printed says where",
+        )),
+    }
+}
+
+/// Until the work is done: tells its steps, and looks for Ctrl-C.
+fn watch(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    told: Receiver<Step>,
+) -> PyResult<()> {
+    // Only one thread may hold the receiving end: it moves in and out of the waiting.
+    let mut told = told;
+    loop {
+        let (next, back) = py.detach(move || {
+            let next = told.recv_timeout(LOOK);
+            // Of several steps the last one says all.
+            let last = told.try_iter().last();
+            (next.map(|step| last.unwrap_or(step)), told)
+        });
+        told = back;
+        match (next, progress) {
+            (Ok(step), Some(progress)) => {
+                progress.call1((step.what, step.done, step.total))?;
+            }
+            (Err(RecvTimeoutError::Disconnected), _) => return Ok(()),
+            _ => {}
+        }
+        py.check_signals()?;
+    }
+}

@@ -1,0 +1,33 @@
+"""Gains against python-control, and what is learned reaching control."""
+
+import control
+import numpy as np
+import pytest
+
+import handstand as hs
+from conftest import HANDSTAND
+
+
+def test_continuous_gains_are_those_of_python_control() -> None:
+    model = hs.Model.load(HANDSTAND)
+    found = hs.gains(model, q=100.0, r=1.0, ts_s=None)
+    a, b = found.plant
+    k, _, _ = control.lqr(a, b, 100.0 * np.eye(a.shape[0]), np.eye(b.shape[1]))
+    np.testing.assert_allclose(found.k, k, rtol=1e-6, atol=1e-8)
+    with pytest.raises(hs.HandstandError, match="fixed-point"):
+        found.c_header()
+
+
+def test_sampled_gains_stabilise_the_simulated_loop() -> None:
+    found = hs.gains(hs.Model.load(HANDSTAND))
+    assert found.stabilised and found.region_rad > 0.0
+    assert "#include" in found.c_header()
+    assert found.k.shape[1] == len(found.states) == len(found.x0)
+
+
+def test_a_weight_of_the_wrong_size_is_refused() -> None:
+    model = hs.Model.load(HANDSTAND)
+    with pytest.raises(hs.HandstandError, match="remedy"):
+        hs.gains(model, q=[1.0, 2.0])
+    with pytest.raises(hs.UsageError, match="square"):
+        hs.gains(model, q=np.ones((2, 3)))
