@@ -25,7 +25,7 @@
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
-use super::robot::{RobotArgs, Way};
+use super::robot::{RobotArgs, SourceKind};
 use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
     FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
@@ -79,13 +79,13 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let interrupt = Interrupt::listen();
     let (mut source, way) = robot.open_to_move(args.adapter, !args.no_watchdog)?;
     talk.say(match way {
-        Way::Stream => {
+        SourceKind::Stream => {
             "The CM-5 streams: any of its buttons stops the robot, and so does a dead line."
         }
-        Way::Group { watchdog: true } => {
+        SourceKind::Group { watchdog: true } => {
             "Through an adapter: the servos' bus watchdog stops them when the line breaks."
         }
-        Way::Adapter | Way::Group { watchdog: false } => {
+        SourceKind::Adapter | SourceKind::Group { watchdog: false } => {
             "Through an adapter: nothing stops the robot when the line breaks."
         }
     });
@@ -107,15 +107,15 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     report(&followed, way, talk)
 }
 
-fn report(followed: &FollowedMotion, way: Way, talk: &Talk) -> Result<ExitStatus> {
+fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
         MotionStop::Interrupted => "Ctrl-C",
         MotionStop::Danger(why) => why,
     });
     let data = json!({
-        "way": if way == Way::Stream { "stream" } else { "adapter" },
-        "watchdog": way == Way::Group { watchdog: true },
+        "way": if way == SourceKind::Stream { "stream" } else { "adapter" },
+        "watchdog": way == SourceKind::Group { watchdog: true },
         "samples": followed.tally.samples,
         "seconds": followed.tally.seconds(),
         "tracking_rms_rad": tracking,

@@ -41,7 +41,7 @@ impl RobotArgs {
         &self,
         adapter: bool,
         watchdog: bool,
-    ) -> Result<(Box<dyn SampleSource>, Way)> {
+    ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
         let mut link = self.port.open()?;
         let is_two = self.port.protocol() == Some(Protocol::Two);
         let streams = self.stream || (!adapter && !is_two && is_cm5(&mut link)?);
@@ -53,10 +53,10 @@ impl RobotArgs {
         link: AnyLink,
         streams: bool,
         watchdog: bool,
-    ) -> Result<(Box<dyn SampleSource>, Way)> {
+    ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
         let ids = &self.ids.0;
         if streams {
-            return Ok((Box::new(Stream::new(link, ids)?), Way::Stream));
+            return Ok((Box::new(Stream::new(link, ids)?), SourceKind::Stream));
         }
         let mut servos = self.port.on(link);
         let present = ids.iter().any(|id| servos.ping(*id).is_ok());
@@ -67,9 +67,12 @@ impl RobotArgs {
         Ok(match servos.protocol {
             Some(Protocol::Two) => {
                 let source = GroupAdapter::new(servos, ids, period, watchdog)?;
-                (Box::new(source), Way::Group { watchdog })
+                (Box::new(source), SourceKind::Group { watchdog })
             }
-            _ => (Box::new(Adapter::new(servos, ids, period)), Way::Adapter),
+            _ => (
+                Box::new(Adapter::new(servos, ids, period)),
+                SourceKind::Adapter,
+            ),
         })
     }
 
@@ -95,7 +98,7 @@ impl RobotArgs {
 
 /// How servos are reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum SourceKind {
     /// A CM-5 reads them.
     Stream,
     /// One by one through an adapter, Protocol 1.0.

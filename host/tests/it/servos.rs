@@ -51,7 +51,7 @@ fn registers_have_names_units_and_refusals() {
         ("bus read 2 goal_positon", 2, "did you mean `goal position`"),
         ("bus read 9 --protocol 2", 4, "servo 9: no status packet"),
         ("bus read 2 --protocol 3", 2, "give 1 or 2"),
-        ("bus reboot 1 --protocol 1", 4, "no status packet"),
+        ("bus reboot 1 --protocol 1", 2, "cannot restart it"),
     ] {
         let ran = bench.run(&format!("{line} --port {SIM}"));
         assert_eq!(ran.code, Some(code), "{line}: {ran:?}");
@@ -127,7 +127,8 @@ fn rounds_are_judged_against_the_lines_limit() {
         let said = ran.json();
         let (round, limit) = (&said["round_us"]["median"], &said["limit_us"]);
         let share = round.as_f64().unwrap() / limit.as_f64().unwrap();
-        assert!((1.0..1.05).contains(&share), "{ran:?}");
+        // Times are sums of many bytes': equal but for their rounding.
+        assert!((0.9999..1.05).contains(&share), "{ran:?}");
     }
 }
 

@@ -26,7 +26,7 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
     for id in &args.ids.0 {
         if servos.detect(*id)? == Protocol::One {
             return Err(Error::usage(
-                format!("servo {id} speaks Protocol 1.0, which cannot restart it"),
+                format!("servo {id} is asked in Protocol 1.0, which cannot restart it"),
                 "an AX-12 recovers when its torque limit is written: docs/bus.md",
             ));
         }
