@@ -5,6 +5,7 @@ use crate::errors::usage;
 use handstand::log::{LEAST_ROWS, MotionSource};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use std::cmp::Ordering;
 
 /// A motion, in SI and the log's convention of angles.
 #[pyclass(frozen, module = "handstand")]
@@ -134,11 +135,8 @@ fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
             format!("give at least {LEAST_ROWS}"),
         ));
     }
-    let increases = motion
-        .time_s
-        .windows(2)
-        .position(|pair| !(pair[0] < pair[1]));
-    if let Some(at) = increases {
+    let increases = |pair: &[f64]| pair[0].partial_cmp(&pair[1]) == Some(Ordering::Less);
+    if let Some(at) = motion.time_s.windows(2).position(|pair| !increases(pair)) {
         return Err(usage(
             format!("`time_s` does not increase after sample {at}"),
             "sort the samples, and leave out those that stand there twice",

@@ -13,12 +13,18 @@
 //! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
+//! `--each FOLDER -o RESULT` diagnoses every log of a folder by itself, in shards if need be
+//! (`--shard 2/8`): a line of JSON per log, then a table (`logs.csv`) and a page (`logs.html`).
+//!
 //! The verdict is `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or
 //! `unfit`; exit code 1 for `unfit`, 0 for the others, which are answers. `--json` prints the
 //! diagnosis; its keys are in `docs/json.md`.
 
+mod each;
+
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
+use each::EachArgs;
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{
@@ -38,7 +44,7 @@ pub struct DiagnoseArgs {
     /// Model file
     model: PathBuf,
     /// Logs to learn from
-    #[arg(required = true, value_name = "LOG", value_parser = input::log)]
+    #[arg(required_unless_present = "each", value_name = "LOG", value_parser = input::log)]
     logs: Vec<LogRequest>,
     /// Effect to leave out of the candidates
     #[arg(long, value_name = "EFFECT")]
@@ -62,6 +68,8 @@ pub struct DiagnoseArgs {
     plan: input::PlanFile,
     #[command(flatten)]
     page: PageFile,
+    #[command(flatten)]
+    each: EachArgs,
 }
 
 impl DiagnoseArgs {
@@ -73,6 +81,9 @@ impl DiagnoseArgs {
 
 /// Diagnoses, prints, writes the page.
 pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
+    if let Some(folder) = &args.each.folder {
+        return each::run(folder, args, talk);
+    }
     let diagnosis = find(args, talk)?;
     Ok(ExitStatus::answer(diagnosis.verdict != Verdict::Unfit))
 }
@@ -80,9 +91,6 @@ pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
 /// The diagnosis itself, printed and written as by [`run`].
 pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     args.page.vacant()?;
-    for effect in &args.without {
-        effect_named(effect)?;
-    }
     let model = Model::load(&args.model)?;
     let plan = args.plan.load(&model)?;
     let LogDiagnosis { diagnosis, split } = try_all(&model, args, talk)?;
@@ -104,9 +112,13 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     Ok(diagnosis)
 }
 
-fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnosis> {
+/// What the options ask for.
+fn options(model: &Model, args: &DiagnoseArgs) -> Result<DiagnoseOptions> {
+    for effect in &args.without {
+        effect_named(effect)?;
+    }
     let defaults = DiagnoseOptions::default();
-    let options = DiagnoseOptions {
+    Ok(DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
         without: args.without.clone(),
         known: input::known(model, &args.known)?,
@@ -114,7 +126,11 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
         trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
         ..defaults
-    };
+    })
+}
+
+fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnosis> {
+    let options = options(model, args)?;
     let bar = talk.bar(0);
     let logs = args.log_set();
     let text = input::text(&args.model)?;

@@ -10,16 +10,27 @@
 //! http://127.0.0.1:40123/enter?token=...
 //! ```
 //!
+//! With `--robot PORT` the Robot page records and balances the robot at that port, live: charts and
+//! the robot's shape follow the samples. Torque comes on after a press and the questions that
+//! `balance` asks; it goes off when stop is pressed, when that page goes away and when the lab ends.
+//!
+//! ```console
+//! $ handstand lab handstand.toml --robot sim-cm5:robot=handstand.toml,start=held,lean=1/-1/1
+//! ```
+//!
 //! What is done is kept in `--session DIR`, whole after each step; the same folder opened again
 //! goes on from there. `--json` prints `address` and `session`. Ctrl-C ends it.
 
+use super::deploy::board::BoardArgs;
+use super::port::{Ids, Port, id_list};
 use super::{ExitStatus, Talk, input};
-use handstand::lab::{Given, Lab, LabOptions};
+use handstand::lab::{Given, Lab, LabOptions, RobotAccess};
 use handstand::log::LogRequest;
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 
 /// Measure, compare, diagnose and improve a model in a browser.
 #[derive(Debug, clap::Args)]
@@ -38,6 +49,40 @@ pub struct LabArgs {
     /// Open the address in the browser
     #[arg(long)]
     open: bool,
+    #[command(flatten, next_help_heading = "Robot at a port")]
+    robot: LabRobotArgs,
+}
+
+/// The robot that pages may watch, record and balance.
+#[derive(Debug, clap::Args)]
+struct LabRobotArgs {
+    /// Its port, as --port of other commands: `/dev/ttyUSB0`, `sim-cm5:robot=MODEL.toml`
+    #[arg(long, value_name = "PORT")]
+    robot: Option<String>,
+    /// Speed of its port [default: 57600]
+    #[arg(long, value_name = "BAUD", requires = "robot")]
+    baud: Option<u32>,
+    /// Its servos
+    #[arg(long, default_value = "1-18", value_parser = id_list)]
+    ids: Ids,
+    #[command(flatten)]
+    board: BoardArgs,
+}
+
+impl LabRobotArgs {
+    fn access(&self) -> Result<Option<RobotAccess>> {
+        let Some(name) = &self.robot else {
+            return Ok(None);
+        };
+        let port = Port::named(name, self.baud);
+        Ok(Some(RobotAccess {
+            port: name.clone(),
+            ids: self.ids.0.clone(),
+            board: self.board.board()?,
+            timing: self.board.timing()?,
+            open: Arc::new(move || port.open_with_attitude()),
+        }))
+    }
 }
 
 /// Serves until it is ended.
@@ -53,6 +98,7 @@ pub fn run(args: &LabArgs, talk: &Talk) -> Result<ExitStatus> {
         },
         folder,
         port: args.port,
+        robot: args.robot.access()?,
     })?;
     let address = lab.address();
     let data = json!({ "address": address, "session": lab.folder().to_string_lossy() });

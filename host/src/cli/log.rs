@@ -1,4 +1,5 @@
-//! `handstand log check MODEL LOG...`: checks logs before a model is fitted to them.
+//! `handstand log plot LOG` draws a log, `log merge` puts two together, and
+//! `handstand log check MODEL LOG...` checks logs before a model is fitted to them.
 //!
 //! Simulates the given model along the logs: where another sign, zero, unit, angle convention,
 //! drive or time lowers its error clearly, the lines of the model file to change are printed, with
@@ -14,6 +15,9 @@
 //! (`clean`, `warned`, `refused`) and `findings` (`severity`, `kind`, `file`, `line`, `column`,
 //! `what`, `remedy`, `proof`).
 
+mod merge;
+mod plot;
+
 use super::ExitStatus;
 use super::Talk;
 use super::input;
@@ -28,6 +32,19 @@ use std::path::{Path, PathBuf};
 pub enum LogCommand {
     /// Check logs before a model is fitted to them
     Check(LogCheckArgs),
+    /// Draw a log's columns as they stand in its file
+    Plot(plot::LogPlotArgs),
+    /// Put two logs of one motion together, their clocks aligned by what both hold
+    Merge(merge::LogMergeArgs),
+}
+
+/// Does it.
+pub fn run(command: &LogCommand, talk: &Talk) -> Result<ExitStatus> {
+    match command {
+        LogCommand::Check(args) => check(args, talk),
+        LogCommand::Plot(args) => plot::run(args, talk),
+        LogCommand::Merge(args) => merge::run(args, talk),
+    }
 }
 
 /// Check logs before a model is fitted to them.
@@ -41,7 +58,7 @@ pub struct LogCheckArgs {
 }
 
 /// Prints the findings.
-pub fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
+fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
     let findings = findings(&args.logs, &args.model)?;
     let (verdict, sentence) = match findings.iter().map(|finding| finding.severity).max() {
         Some(Severity::Refuse) => (

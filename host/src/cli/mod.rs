@@ -105,7 +105,7 @@ pub enum Command {
     Next(Box<next::NextArgs>),
     /// List and explain the physical effects of the library
     Effects(effects::EffectsArgs),
-    /// Check logs before a model is fitted to them
+    /// Draw, merge and check logs
     #[command(subcommand)]
     Log(log::LogCommand),
     /// Fit a model's free parameters to logs
@@ -185,7 +185,7 @@ impl Command {
             Command::Diagnose(args) => diagnose::run(args, talk),
             Command::Next(args) => next::run(args, talk),
             Command::Effects(args) => effects::run(args, talk),
-            Command::Log(log::LogCommand::Check(args)) => log::check(args, talk),
+            Command::Log(command) => log::run(command, talk),
             Command::Fit(args) => fit::run(args, talk),
             Command::Drift(args) => drift::run(args, talk),
             Command::Add(args) => add::run(args, talk),

@@ -23,6 +23,11 @@ impl PageFile {
         self.file.is_some()
     }
 
+    /// Whether files are replaced.
+    pub fn is_forced(&self) -> bool {
+        self.force
+    }
+
     /// Refuses a name that is taken before the work begins, not after it.
     ///
     /// # Errors

@@ -30,6 +30,15 @@ pub struct Port {
 pub type AnyLink = Box<dyn SerialLink>;
 
 impl Port {
+    /// The port of this name.
+    pub fn named(name: &str, baud: Option<u32>) -> Port {
+        Port {
+            port: Some(name.to_string()),
+            baud,
+            tap: None,
+        }
+    }
+
     /// Opens it.
     ///
     /// # Errors

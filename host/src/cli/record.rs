@@ -16,8 +16,8 @@
 use super::interrupt::Interrupt;
 use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
-use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read};
-use handstand::{Error, Result, output};
+use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read, record_samples};
+use handstand::{Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -51,33 +51,21 @@ pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut recorder = RobotRecorder::create(&args.file, &args.robot.ids.0, args.force)?;
     let period_s = args.robot.period().map_or(0.01, |p| p.as_secs_f64());
     let bar = talk.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
-    let mut tally = RecordingTally::default();
-    let mut silent = 0;
-    let goes_on = |tally: &RecordingTally| {
-        let within = |seconds| tally.samples == 0 || tally.seconds() < seconds;
-        !interrupt.has_come() && args.seconds.is_none_or(within)
-    };
-    while goes_on(&tally) {
-        let Some(sample) = source.sample(None)? else {
-            silent += 1;
-            if silent == 20 {
-                recorder.finish()?;
-                return Err(Error::device(
-                    "the CM-5 has sent nothing for 2 s",
-                    "is it on? what was recorded is in the file",
-                ));
+    let recorded = record_samples(
+        &mut *source,
+        &mut recorder,
+        args.seconds,
+        |sample, tally| {
+            if sample.is_some() {
+                bar.inc(1);
+                bar.set_message(format!("samples, {} answers missing", tally.missing));
             }
-            continue;
-        };
-        silent = 0;
-        recorder.write(&sample)?;
-        tally.count(&sample);
-        bar.inc(1);
-        bar.set_message(format!("samples, {} answers missing", tally.missing));
-    }
+            !interrupt.has_come()
+        },
+    );
     drop(bar);
     recorder.finish()?;
-    report(args, &tally, None, talk)
+    report(args, &recorded?, None, talk)
 }
 
 fn convert(args: &RecordArgs, from: &std::path::Path, talk: &Talk) -> Result<ExitStatus> {

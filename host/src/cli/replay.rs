@@ -25,10 +25,10 @@
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
-use super::robot::{RobotArgs, SourceKind};
+use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
-    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
+    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, SourceKind, follow, read,
 };
 use handstand::{Result, output};
 use serde_json::json;

@@ -1,10 +1,13 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{AnyLink, Ids, Port, id_list};
-use handstand::link::record::{Adapter, GroupAdapter, SampleSource, Stream};
-use handstand::link::{Protocol, SerialLink as _, Session, SessionError};
+use handstand::link::Protocol;
+use handstand::link::record::{SampleSource, SourceKind, SourceOptions, is_cm5, open_source_as};
 use handstand::{Error, Result};
 use std::time::Duration;
+
+/// Period of a CM-5's reports.
+const CM5_PERIOD: Duration = Duration::from_millis(10);
 
 /// Which servos, and how they are read.
 #[derive(Debug, Clone, clap::Args)]
@@ -54,26 +57,13 @@ impl RobotArgs {
         streams: bool,
         watchdog: bool,
     ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
-        let ids = &self.ids.0;
-        if streams {
-            return Ok((Box::new(Stream::new(link, ids)?), SourceKind::Stream));
-        }
-        let mut servos = self.port.on(link);
-        let present = ids.iter().any(|id| servos.ping(*id).is_ok());
-        if !present {
-            return Err(handstand::link::record::no_response());
-        }
-        let period = self.period()?;
-        Ok(match servos.protocol {
-            Some(Protocol::Two) => {
-                let source = GroupAdapter::new(servos, ids, period, watchdog)?;
-                (Box::new(source), SourceKind::Group { watchdog })
-            }
-            _ => (
-                Box::new(Adapter::new(servos, ids, period)),
-                SourceKind::Adapter,
-            ),
-        })
+        let options = SourceOptions {
+            streams,
+            period: if streams { CM5_PERIOD } else { self.period()? },
+            protocol: self.port.protocol(),
+            watchdog,
+        };
+        open_source_as(link, &self.ids.0, options)
     }
 
     /// Time between two samples.
@@ -82,7 +72,7 @@ impl RobotArgs {
     /// A rate that is none.
     pub fn period(&self) -> Result<Duration> {
         if self.stream {
-            return Ok(Duration::from_millis(10));
+            return Ok(CM5_PERIOD);
         }
         let sensible = (0.01..=1000.0).contains(&self.hz);
         sensible
@@ -93,33 +83,5 @@ impl RobotArgs {
                     "give 0.01 to 1000 rounds per second",
                 )
             })
-    }
-}
-
-/// How servos are reached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SourceKind {
-    /// A CM-5 reads them.
-    Stream,
-    /// One by one through an adapter, Protocol 1.0.
-    Adapter,
-    /// Together through an adapter, Protocol 2.0.
-    Group {
-        /// Whether their bus watchdog stops them when the line breaks.
-        watchdog: bool,
-    },
-}
-
-/// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,
-/// whose servos would hear what is said.
-fn is_cm5(link: &mut AnyLink) -> Result<bool> {
-    const SERVO_BUS_BAUD: u32 = 900_000;
-    if link.baud() >= SERVO_BUS_BAUD {
-        return Ok(false);
-    }
-    match Session::open(&mut *link) {
-        Ok(_) => Ok(true),
-        Err(SessionError::NoFirmware { .. }) => Ok(false),
-        Err(error) => Err(error.into()),
     }
 }

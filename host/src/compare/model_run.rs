@@ -1,7 +1,7 @@
 //! A model run along measured motions: every sample it predicts, and what it leaves.
 
 use super::predicted::{predicted, residual};
-use crate::fitting::{FitData, Horizon, Node, fit_start_states};
+use crate::fitting::{FitData, Horizon, Node, fit_start_states, fit_start_states_roughly};
 use crate::model::Model;
 
 /// A model run along motions, its start states fitted; a comparison is made of it.
@@ -24,6 +24,12 @@ impl ModelRun {
     /// Fits the start states and predicts; `data` is cut at `horizon`.
     pub fn new(model: Model, data: FitData, horizon: Horizon) -> ModelRun {
         let nodes = fit_start_states(&model, &data).nodes;
+        ModelRun::from_nodes(model, data, horizon, nodes)
+    }
+
+    /// The same with start states that are fitted roughly, for who cannot wait.
+    pub fn roughly(model: Model, data: FitData, horizon: Horizon) -> ModelRun {
+        let nodes = fit_start_states_roughly(&model, &data).nodes;
         ModelRun::from_nodes(model, data, horizon, nodes)
     }
 

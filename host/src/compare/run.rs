@@ -35,6 +35,15 @@ pub fn compare(
 impl ModelRun {
     /// What the run says of the model; `name` stands for it in reports.
     pub fn comparison(&self, name: &str) -> Comparison {
+        let mut comparison = self.at_its_horizon(name);
+        let mut shorter = horizons(&self.model, &self.data, self.horizon);
+        shorter.append(&mut comparison.horizons);
+        comparison.horizons = shorter;
+        comparison
+    }
+
+    /// The same without the errors over shorter runs, for each of which start states are fitted.
+    pub fn at_its_horizon(&self, name: &str) -> Comparison {
         let ModelRun {
             model,
             data,
@@ -48,7 +57,11 @@ impl ModelRun {
             horizon_s: horizon.seconds(),
             windows: data.motion_windows(*horizon),
             unobserved: model.log.unobserved(),
-            horizons: horizons(model, data, *horizon, pooled(data, &residuals)),
+            horizons: vec![HorizonError {
+                quantity: data.quantity(),
+                horizon_s: horizon.seconds(),
+                rms: pooled(data, &residuals),
+            }],
             failures: failing(model, &data.motions, &residuals, &signals)
                 .into_iter()
                 .map(|failing| failing.failure)
@@ -149,8 +162,8 @@ pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
     }
 }
 
-/// The error over ever longer runs, up to the horizon of the comparison, whose error is known.
-fn horizons(model: &Model, data: &FitData, horizon: Horizon, known: f64) -> Vec<HorizonError> {
+/// The error over ever longer runs, shorter than the horizon of the comparison.
+fn horizons(model: &Model, data: &FitData, horizon: Horizon) -> Vec<HorizonError> {
     let longest = data.longest_s();
     let (mut time, mut intervals) = (0.0, 0.0);
     for motion in &data.motions {
@@ -159,7 +172,7 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon, known: f64) -> Vec<
     }
     let least_s = LEAST_SAMPLES * time / f64::max(intervals, 1.0);
     let limit_s = horizon.seconds().unwrap_or(longest).min(longest);
-    let mut ladder: Vec<HorizonError> = LADDER_S
+    LADDER_S
         .into_iter()
         .filter(|s| *s >= 0.99 * least_s && *s < 0.99 * limit_s)
         .map(|s| {
@@ -173,13 +186,7 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon, known: f64) -> Vec<
                 rms: pooled(&data, &residuals),
             }
         })
-        .collect();
-    ladder.push(HorizonError {
-        quantity: data.quantity(),
-        horizon_s: horizon.seconds(),
-        rms: known,
-    });
-    ladder
+        .collect()
 }
 
 fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {

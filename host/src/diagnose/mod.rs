@@ -16,6 +16,7 @@ mod horizon;
 mod hypothesis;
 mod initial_guess;
 mod inseparable;
+mod log_outcome;
 mod logs;
 mod multistart;
 pub(crate) mod names;
@@ -40,6 +41,7 @@ pub use findings::{
     ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 pub use inseparable::how_to_measure;
+pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};
 pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use options::DiagnoseOptions;
 pub use progress::Progress;

@@ -53,7 +53,7 @@ pub use profile::profile_intervals;
 pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};
 pub use residual::{Residuals, predicted, residuals};
-pub use solve::{fit, fit_start_states, guessed_nodes};
+pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};
 pub use staged::fit_staged;
 pub(crate) use student::quantile_975;
 pub use windows::{MotionWindow, in_windows};

@@ -86,6 +86,12 @@ pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
     fit(model, &[], data, None, FitOptions::iterations(8))
 }
 
+/// The same after a single step from what the samples around each window's start suggest: nearly
+/// as good, in a fraction of the time.
+pub fn fit_start_states_roughly(model: &Model, data: &FitData) -> Fit {
+    fit(model, &[], data, None, FitOptions::iterations(1))
+}
+
 /// The start states that the samples around each window's start suggest.
 pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
     guesses(data).into_iter().map(|guess| guess.node).collect()

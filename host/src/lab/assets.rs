@@ -11,6 +11,7 @@ const VIEW: &str = include_str!("../report/playback/view.js");
 const CHART: &str = include_str!("assets/chart.js");
 const CURVES: &str = include_str!("assets/curves.js");
 const PAINT: &str = include_str!("assets/paint.js");
+const LIVE: &str = include_str!("assets/live.js");
 const LAB: &str = include_str!("assets/lab.js");
 const WHAT_IF: &str = include_str!("assets/what_if.js");
 const GAINS: &str = include_str!("assets/gains.js");
@@ -27,6 +28,7 @@ pub(super) async fn asset(Path(name): Path<String>) -> Answer {
         "chart.js" => (script, CHART.into()),
         "curves.js" => (script, CURVES.into()),
         "paint.js" => (script, PAINT.into()),
+        "live.js" => (script, LIVE.into()),
         "lab.js" => (script, LAB.into()),
         "what_if.js" => (script, WHAT_IF.into()),
         "gains.js" => (script, GAINS.into()),

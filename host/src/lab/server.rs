@@ -1,6 +1,7 @@
 //! The server: one port of the loopback interface, one token, the sessions of one folder.
 
 use super::guard::{Token, guard};
+use super::live::{LiveRobot, RobotAccess};
 use super::routes;
 use super::session::{Given, SessionStore};
 use crate::error::{Error, Result};
@@ -9,6 +10,10 @@ use axum::middleware::from_fn_with_state;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
+
+/// Longest that a robot may take to be let down softly before torque is switched off at once.
+const LET_DOWN: Duration = Duration::from_secs(3);
 
 /// What a lab is opened with.
 #[derive(Debug, Clone)]
@@ -19,6 +24,8 @@ pub struct LabOptions {
     pub folder: PathBuf,
     /// Port of the loopback interface; 0 takes a free one.
     pub port: u16,
+    /// The robot that pages may watch, if there is one.
+    pub robot: Option<RobotAccess>,
 }
 
 /// What every request sees.
@@ -27,6 +34,7 @@ pub(super) struct LabState {
     pub token: Token,
     pub port: u16,
     pub store: SessionStore,
+    pub robot: Option<Arc<LiveRobot>>,
 }
 
 impl LabState {
@@ -78,6 +86,7 @@ impl Lab {
             token: Token::random(),
             port,
             store: SessionStore::open(options.folder, options.given)?,
+            robot: options.robot.map(|robot| Arc::new(LiveRobot::new(robot))),
         };
         Ok(Lab {
             listener,
@@ -96,7 +105,7 @@ impl Lab {
         self.state.store.folder()
     }
 
-    /// Serves until Ctrl-C.
+    /// Serves until Ctrl-C or the system's wish that it ends; then lets the robot down.
     ///
     /// # Errors
     /// The system's refusal.
@@ -108,19 +117,42 @@ impl Lab {
             .enable_all()
             .build()
             .map_err(failed)?;
-        let state = self.state;
+        let (state, robot) = (self.state.clone(), self.state.robot.clone());
         let served = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
             let app = router(state);
             tokio::select! {
                 served = async { axum::serve(listener, app).await } => served,
                 pressed = tokio::signal::ctrl_c() => pressed,
+                () = told_to_end() => Ok(()),
             }
         });
+        if let Some(robot) = robot {
+            robot.stop_for_good(LET_DOWN);
+        }
         // A fit may run on; what was saved is whole already.
         runtime.shutdown_background();
         served.map_err(failed)
     }
+}
+
+/// Waits until the system tells the program to end.
+#[cfg(unix)]
+async fn told_to_end() {
+    use tokio::signal::unix::{SignalKind, signal};
+    match signal(SignalKind::terminate()) {
+        Ok(mut told) => {
+            told.recv().await;
+        }
+        // Then the system ends it at once, and the CM-5 lets the robot down by itself.
+        Err(_) => std::future::pending().await,
+    }
+}
+
+/// Waits for ever: Ctrl-C is all there is.
+#[cfg(not(unix))]
+async fn told_to_end() {
+    std::future::pending().await
 }
 
 fn router(state: Arc<LabState>) -> Router {

@@ -31,6 +31,12 @@ impl LogFormat {
     /// Endings of text in a folder of logs.
     const TEXT: [&'static str; 3] = ["csv", "tsv", "txt"];
 
+    /// Endings of files that logs are in, text first.
+    pub fn endings() -> impl Iterator<Item = &'static str> {
+        let others = Self::ENDINGS.iter().map(|(ending, _)| *ending);
+        Self::TEXT.into_iter().chain(others)
+    }
+
     /// The format of a file of this name.
     pub fn of(path: &Path) -> LogFormat {
         Self::by_ending(path).unwrap_or(LogFormat::Csv)

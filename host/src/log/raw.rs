@@ -63,6 +63,21 @@ impl RawLog {
         Ok(log)
     }
 
+    /// As CSV: what is not a number is an empty cell.
+    pub fn to_csv(&self) -> String {
+        let mut rows = ::csv::Writer::from_writer(Vec::new());
+        // Writing to memory does not fail, and every record is as long as the header.
+        let _ = rows.write_record(&self.names);
+        for row in 0..self.columns.first().map_or(0, Vec::len) {
+            let cell = |column: &Vec<f64>| match column[row] {
+                value if value.is_finite() => value.to_string(),
+                _ => String::new(),
+            };
+            let _ = rows.write_record(self.columns.iter().map(cell));
+        }
+        String::from_utf8_lossy(&rows.into_inner().unwrap_or_default()).into_owned()
+    }
+
     /// The first column that is called a time, else the first that only grows.
     pub fn time(&self) -> Option<usize> {
         let named = |name: &String| {

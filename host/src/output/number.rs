@@ -65,7 +65,7 @@ pub fn mrad_in_column(value_rad: f64) -> String {
 }
 
 /// A share of 1 as a percentage, with its sign.
-pub(crate) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match special(percent) {
         Some(text) => format!("{text} %"),

@@ -163,7 +163,10 @@ impl Design {
             let word = largest_word(format.bits);
             let step = |range: &f64| power_of_two_above(range / word);
             let input_step = format.input_step.take();
-            let input_step = input_step.unwrap_or_else(|| input.iter().map(step).collect());
+            // As states they count from zero, and so reach the operating point's input as well.
+            let past = input.iter().zip(&self.u0);
+            let past = past.map(|(range, u)| step(&(range + u.abs())));
+            let input_step = input_step.unwrap_or_else(|| past.collect());
             let reach = state.iter().zip(&self.x0);
             let own = reach.map(|(range, x)| step(&(range + x.abs())));
             let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());

@@ -151,3 +151,59 @@ fn a_robot_of_another_simulator_becomes_a_model() {
         broken.stderr
     );
 }
+
+#[test]
+fn a_log_is_drawn_before_any_model_reads_it() {
+    let bench = Bench::new();
+    let drawn = bench.run("log plot a.csv");
+    assert_eq!(drawn.code, Some(0), "{drawn:?}");
+    assert!(drawn.stdout.contains("angle_rad: "), "{drawn:?}");
+    let page = bench.run("log plot a.csv --column angle_rad --report raw.html --json");
+    assert_eq!(page.json()["columns"][1]["name"], "angle_rad", "{page:?}");
+    assert!(bench.get("raw.html").contains("<svg"));
+    assert_eq!(bench.run("log plot a.csv --report raw.html").code, Some(2));
+    let wrong = bench.run("log plot a.csv --column angel_rad");
+    assert_eq!(wrong.code, Some(2), "{wrong:?}");
+    assert!(wrong.stderr.contains("angle_rad"), "{wrong:?}");
+    bench.put("none.csv", "q\nx\n");
+    assert_eq!(bench.run("log plot none.csv").code, Some(0));
+}
+
+#[test]
+fn two_recorders_logs_become_one_that_is_compared() {
+    let bench = Bench::new();
+    let made = bench.run("challenge new --seed 5 --effect coulomb -o riddle");
+    assert_eq!(made.code, Some(0), "{made:?}");
+    // A camera saw the same motion, on a clock of its own and from the hundredth row on.
+    let camera = |text: &str| {
+        let numbers = |line: &str| -> Vec<f64> {
+            line.split(',')
+                .filter_map(|cell| cell.parse().ok())
+                .collect()
+        };
+        let rows = text.lines().map(numbers).filter(|row| row.len() > 1);
+        let rows = rows.skip(100).map(|row| {
+            let (time_s, angle_deg) = (row[0] + 71.25, row[1].to_degrees());
+            format!("{time_s},{angle_deg}\n")
+        });
+        "stamp_s,marker_deg\n".to_string() + &rows.collect::<String>()
+    };
+    bench.put("camera.csv", camera(&bench.get("riddle/a.csv")));
+    let merged = bench.run("log merge riddle/a.csv camera.csv -o both.csv --json");
+    assert_eq!(merged.code, Some(0), "{merged:?}");
+    let offset_s = merged.json()["offset_s"].as_f64().unwrap();
+    assert!((offset_s + 71.25).abs() < 2e-3, "{offset_s}");
+    assert_eq!(
+        bench.run("compare riddle/nominal.toml both.csv").code,
+        Some(0)
+    );
+    let again = "log merge riddle/a.csv camera.csv -o both.csv";
+    assert_eq!(bench.run(again).code, Some(2));
+    let far = bench.run("log merge riddle/a.csv camera.csv -o far.csv --offset 1e6");
+    assert_eq!(far.code, Some(2), "{far:?}");
+    // A swing that dies away slowly fits itself a period later.
+    bench.put("swing.csv", camera(&bench.get("a.csv")));
+    let repeats = bench.run("log merge a.csv swing.csv -o far.csv");
+    assert!(repeats.stderr.contains("repeat themselves"), "{repeats:?}");
+    assert!(!bench.path("far.csv").exists());
+}

@@ -12,6 +12,7 @@ mod controllers;
 mod deploy;
 #[cfg(unix)]
 mod dynamixel_sdk;
+mod each;
 mod examples;
 #[cfg(unix)]
 mod flash;

@@ -72,6 +72,26 @@ fn gnu_parallel_runs_the_shards() {
     assert_eq!(bench.get("shards/runs.csv"), table);
 }
 
+#[test]
+fn gnu_parallel_diagnoses_every_log() {
+    if !found("parallel") {
+        return skip("the recipe for GNU parallel", "no `parallel` on the path");
+    }
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("logs")).unwrap();
+    for name in ["a.csv", "b.csv"] {
+        bench.put(&format!("logs/{name}"), bench.get(name));
+    }
+    let mut command = Command::new(recipe("each.sh"));
+    command
+        .args(["model.toml", "logs", "result", "2", "--will-cite"])
+        .current_dir(bench.path(""))
+        .env("HANDSTAND", env!("CARGO_BIN_EXE_handstand"));
+    done(command);
+    assert!(bench.path("result/shard-2-of-2.jsonl").exists());
+    assert!(bench.get("result/logs.csv").contains("b.csv,"));
+}
+
 /// Slurm's daemons, stopped at the end whatever happens.
 struct Slurm(PathBuf);
 

@@ -2,11 +2,10 @@
 //! than a second of any.
 
 use super::page::Page;
+use super::program::built;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::kills::{Tally, kill_recorders};
 use handstand_tests::measured::Measured;
-use handstand_xtask::{cargo, program};
-use std::path::PathBuf;
 
 /// Kill recorders, and read what is left
 #[derive(Debug, clap::Args)]
@@ -80,18 +79,4 @@ fn tables(tally: &Tally) -> Measured {
     Measured::default()
         .table(table)
         .lines(tally.unreadable.iter().cloned())
-}
-
-/// The program beside this one.
-fn built() -> Option<PathBuf> {
-    let here = std::env::current_exe().ok()?;
-    let mut cargo = cargo(&[
-        "build",
-        "--release",
-        "--package",
-        "handstand",
-        "--bin",
-        "handstand",
-    ]);
-    program::run(&mut cargo).then(|| here.with_file_name("handstand"))
 }

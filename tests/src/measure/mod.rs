@@ -1,12 +1,14 @@
 //! The chores that measure. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
 mod bench_firmware;
+mod bench_lab;
 #[cfg(unix)]
 mod bench_record;
 mod hidden;
 mod next;
 mod page;
 mod peers;
+mod program;
 mod real;
 mod robot_demo;
 mod scatter;
@@ -41,6 +43,8 @@ enum Chore {
     Spoiled(spoiled::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
+    /// Measure how soon the lab answers
+    BenchLab(bench_lab::Args),
     /// Kill recorders, and read what is left of their files
     #[cfg(unix)]
     BenchRecord(bench_record::Args),
@@ -60,6 +64,7 @@ impl Chores {
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
+            Chore::BenchLab(args) => bench_lab::run(args),
             #[cfg(unix)]
             Chore::BenchRecord(args) => bench_record::run(args),
             #[cfg(unix)]

@@ -41,6 +41,8 @@ enum Chore {
     Firmware(image::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(Words),
+    /// Measure how soon the lab answers
+    BenchLab(Words),
     /// Kill recorders, and read what is left of their files
     BenchRecord(Words),
     /// Measure how often hidden effects are named, missed and invented
@@ -81,6 +83,7 @@ fn main() -> ExitCode {
         Chore::Python => return code(python_package::run()),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
+        Chore::BenchLab(words) => ("bench-lab", words),
         Chore::BenchRecord(words) => ("bench-record", words),
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),

@@ -39,17 +39,18 @@ use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
 use super::{ExitStatus, Talk};
-use handstand::deploy::balance::{BalanceEnd, BalanceOutcome, Balancer};
-use handstand::link::record::RobotRecorder;
+use handstand::deploy::balance::{
+    BalanceStatus, BalanceWatch, Balancer, Supervision, check_attitude,
+};
+use handstand::link::record::{RobotRecorder, RobotSample};
 use handstand::{Error, Result, output};
 use handstand_shared::message::ArmLimits;
 use handstand_shared::plan::Plan;
 use handstand_shared::raw::TorqueLimit;
 use indicatif::ProgressBar;
 use report::{BalanceReport, live_table};
-use source::{attitude, plan, wrong_attitude};
+use source::{attitude, plan};
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Samples between two drawings of the table: ten a second.
 const DRAW_EVERY: u64 = 10;
@@ -112,15 +113,14 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
         .transpose()?;
     let interrupt = Interrupt::listen();
     let (link, robot) = args.port.open_with_attitude()?;
-    let (source, is_gyro) = attitude(args, given.as_ref(), robot)?;
+    let source = attitude(args, given.as_ref(), robot)?;
+    let is_gyro = source.is_gyro();
     let mut balancer = Balancer::new(link, &args.ids.0, source)?;
     let plan = match given {
         Some(plan) => plan,
         None => balancer.stored_plan()?,
     };
-    if plan.gyro.from_host == is_gyro {
-        return Err(wrong_attitude(plan.gyro.from_host));
-    }
+    check_attitude(&plan, is_gyro)?;
     let mut report = BalanceReport {
         fingerprint: plan.fingerprint(),
         ..BalanceReport::default()
@@ -135,20 +135,26 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut recorder = args.record.as_ref().map(create).transpose()?;
     interrupt.at_once(balancer.emergency_off());
     let live = talk.live();
-    let outcome = balance(
-        args,
+    let how = Supervision {
+        countdown_s: args.countdown,
+        seconds: args.seconds,
         limits,
-        &mut balancer,
-        recorder.as_mut(),
-        &interrupt,
-        &live,
-    );
+    };
+    let mut terminal = Terminal {
+        interrupt: &interrupt,
+        live: &live,
+        recorder: recorder.as_mut(),
+        samples: 0,
+    };
+    let outcome = balancer.supervise(how, &mut terminal);
     live.finish_and_clear();
     if let Some(recorder) = recorder {
         report.samples = recorder.samples;
         recorder.finish()?;
     }
-    report.print(&outcome?, &balancer.status, args.record.as_deref(), talk)
+    let outcome = outcome?
+        .ok_or_else(|| Error::usage("Ctrl-C before torque came on", "nothing was moved"))?;
+    report.print(&outcome, &balancer.status, args.record.as_deref(), talk)
 }
 
 /// The limits that torque comes on with.
@@ -223,50 +229,30 @@ fn set_up(
     Ok(())
 }
 
-/// Counts down, arms, and supervises until it ends.
-fn balance(
-    args: &BalanceArgs,
-    limits: ArmLimits,
-    balancer: &mut Balancer<AnyLink>,
-    mut recorder: Option<&mut RobotRecorder>,
-    interrupt: &Interrupt,
-    live: &ProgressBar,
-) -> Result<BalanceOutcome> {
-    let armed_at = balancer.link().now() + Duration::from_secs_f64(args.countdown);
-    while balancer.link().now() < armed_at {
-        balancer.step()?;
-        if interrupt.has_come() {
-            return Err(Error::usage(
-                "Ctrl-C before torque came on",
-                "nothing was moved",
-            ));
-        }
-        let left_s = armed_at.saturating_sub(balancer.link().now()).as_secs_f64();
-        live.set_message(format!(
-            "torque in {left_s:.0} s\n{}",
-            live_table(&balancer.status)
-        ));
+/// What a terminal shows while the robot is balanced, and Ctrl-C.
+struct Terminal<'a> {
+    interrupt: &'a Interrupt,
+    live: &'a ProgressBar,
+    recorder: Option<&'a mut RobotRecorder>,
+    samples: u64,
+}
+
+impl BalanceWatch for Terminal<'_> {
+    fn counts_down(&mut self, left_s: f64, at: (&RobotSample, &BalanceStatus)) -> Result<bool> {
+        let table = live_table(at.1);
+        self.live
+            .set_message(format!("torque in {left_s:.0} s\n{table}"));
+        Ok(!self.interrupt.has_come())
     }
-    balancer.arm(limits)?;
-    let mut count = 0;
-    loop {
-        let sample = balancer.step()?;
-        if let Some(recorder) = &mut recorder {
-            recorder.write(&sample)?;
+
+    fn balances(&mut self, (sample, status): (&RobotSample, &BalanceStatus)) -> Result<bool> {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.write(sample)?;
         }
-        if let Some(outcome) = balancer.end()? {
-            return Ok(outcome);
+        self.samples += 1;
+        if self.samples.is_multiple_of(DRAW_EVERY) {
+            self.live.set_message(live_table(status));
         }
-        if interrupt.has_come() {
-            return balancer.let_down(BalanceEnd::Interrupted);
-        }
-        let is_over = |seconds| balancer.status.balanced_s >= seconds;
-        if args.seconds.is_some_and(is_over) {
-            return balancer.let_down(BalanceEnd::Finished);
-        }
-        count += 1;
-        if count % DRAW_EVERY == 0 {
-            live.set_message(live_table(&balancer.status));
-        }
+        Ok(!self.interrupt.has_come())
     }
 }

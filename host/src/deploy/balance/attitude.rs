@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Place, Result};
 use handstand_shared::message::Attitude;
+use handstand_shared::plan::Plan;
 use std::io::BufRead;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -30,9 +31,41 @@ impl AttitudeSource {
         }
     }
 
+    /// What is taken where nothing else is chosen: the gyro where the plan wants it or there is no
+    /// simulated robot, else that robot.
+    pub fn of_plan(plan: Option<&Plan>, robot: Option<AttitudeSource>) -> AttitudeSource {
+        let wants_gyro = plan.is_some_and(|plan| !plan.gyro.from_host);
+        robot
+            .filter(|_| !wants_gyro)
+            .unwrap_or(AttitudeSource::Gyro)
+    }
+
+    /// Whether it is the gyro at the CM-5's ADC.
+    pub fn is_gyro(&self) -> bool {
+        matches!(self, AttitudeSource::Gyro)
+    }
+
     /// Whether it has ended: no attitude will ever come.
     pub fn has_ended(&self) -> bool {
         matches!(self, AttitudeSource::Lines(lines) if lines.has_ended())
+    }
+}
+
+/// Whether a plan takes the attitude from where it comes from.
+///
+/// # Errors
+/// It wants the gyro and gets another source, or the other way round.
+pub fn check_attitude(plan: &Plan, is_gyro: bool) -> Result<()> {
+    match (plan.gyro.from_host, is_gyro) {
+        (true, true) => Err(Error::usage(
+            "the plan wants the first link's attitude from the PC, and none is given",
+            "--attitude lines takes it from standard input; or deploy with --gyro-per-code",
+        )),
+        (false, false) => Err(Error::usage(
+            "the plan takes the first link's rate from the CM-5's gyro",
+            "leave --attitude out, or deploy without --gyro-per-code",
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -45,8 +45,9 @@ export class ChartGroup {
       for (const { target, isIntersecting } of entries) {
         const part = this.panels.find(({ canvas }) => canvas === target);
         if (!part) continue;
+        const first = part.inSight === undefined;
         part.inSight = isIntersecting;
-        if (isIntersecting && part.stale) this.draw();
+        if (first || (isIntersecting && part.stale)) this.draw();
       }
     }, { rootMargin: "200px" });
     onLook(() => this.draw());
@@ -54,13 +55,14 @@ export class ChartGroup {
 
   // `panels` over `time`: { title, unit, scale, band, joint, curves };
   // `curves`: [{ name, tone, values, wide }].
-  show(time, panels, { marks = [] } = {}) {
-    const same = this.time && this.time.length === time.length &&
+  // With `follow` the time grows from call to call, and all of it is shown.
+  show(time, panels, { marks = [], follow = false } = {}) {
+    const same = this.time && (follow || this.time.length === time.length) &&
       this.panels.length === panels.length;
     this.time = time;
     this.marks = marks;
     const first = time.length ? time[0] : 0, last = time.length ? time[time.length - 1] : 1;
-    if (!same || !this.view) this.view = [first, last];
+    if (!same || follow || !this.view) this.view = [first, last];
     this.ends = [first, last];
     if (!same) {
       this.box.replaceChildren();
@@ -85,7 +87,7 @@ export class ChartGroup {
       textContent: panel.title }), ` ${panel.unit}`, readout);
     this.box.append(element("figure", {}, caption, canvas));
     this.listen(canvas);
-    return { panel, canvas, readout, inSight: false, stale: true };
+    return { panel, canvas, readout, inSight: undefined, stale: true };
   }
 
   names() {
@@ -198,7 +200,10 @@ export class ChartGroup {
         part.stale = !part.inSight;
         if (part.inSight) this.drawPanel(part);
       }
-      this.root.dataset.drawn = String(performance.now());
+      // Before it is known what is in sight nothing has been drawn.
+      if (this.panels.every((part) => part.inSight !== undefined)) {
+        this.root.dataset.drawn = String(performance.now());
+      }
     });
   }
 

@@ -37,8 +37,8 @@ const drawPoles = () => {
   }
 };
 const table = (head, rows) => element("table", {},
-  element("thead", {}, element("tr", {}, ...head.map((text) => element("th", {
-    textContent: text })))),
+  element("thead", {}, element("tr", {}, ...head.map((text, i) => element("th", {
+    textContent: text, className: i ? "number" : "" })))),
   element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((text, i) => element(i ?
     "td" : "th", { textContent: text, className: i ? "number" : "" }))))));
 const show = (said) => {
@@ -75,6 +75,17 @@ const show = (said) => {
       said.inputs[i]) },
   ]);
   $("gains-command").textContent = said.command;
+  $("response").dataset.answered = String(Math.round(performance.now()));
+};
+// What stands there is of another design.
+const refuse = (error) => {
+  say(error.message);
+  poles = [];
+  drawPoles();
+  $("figures").replaceChildren(element("p", { className: "bad", textContent: error.message }));
+  $("gain").replaceChildren();
+  group.show(new Float32Array(), []);
+  for (const link of document.querySelectorAll("[data-file]")) link.removeAttribute("href");
 };
 const ask = async (region) => {
   wanted = { region };
@@ -90,7 +101,7 @@ const ask = async (region) => {
     const next = wanted;
     wanted = null;
     try { show(await send("gains", asked(next.region))); say(""); } catch (error) {
-      say(error.message); }
+      refuse(error); }
   }
   busy = false;
 };

@@ -37,6 +37,7 @@ const fill = async (selector, path, otherwise) => {
   if (answer.ok) place.outerHTML = await answer.text(); else place.textContent = otherwise;
 };
 fill("#error-wanted", "error", "Error: the logs cannot be read by this model").catch(() => {});
+fill("#horizons-wanted", "horizons", "It came to no end.").catch(() => {});
 fill("#findings-wanted", "findings", "The check came to no end.").catch(() => {});
 
 // A form sends its fields as JSON; `data-number` ones as numbers.
@@ -177,7 +178,7 @@ export const panelsOf = ({ meta, data }, names) => {
     const input = data[`input_${joint}`];
     if (input) panels.push({ title:
       `Input${meta.joints > 1 ? ` of joint ${joint + 1}` : ""}: ${meta.inputs[joint].name}`, unit:
-      meta.inputs[joint].unit, small: true, curves: [{
+      meta.inputs[joint].unit.replace(/^1$/, ""), small: true, curves: [{
       name: "input", tone: "grey", values: input }] });
   }
   return panels;
@@ -201,31 +202,33 @@ if (curves && curves.dataset.kind !== "what-if") {
     group.setShade((part?.stretches_s ?? []).map(([from, to]) => ({
       from, to, joint: part.joint })));
   };
-  const load = async (horizon) => {
+  const load = async (horizon, moving) => {
     const query = new URLSearchParams({ motion: motion.value });
     if (other?.value) query.set("other", other.value);
     if (horizon) query.set("horizon", horizon);
+    if (moving) query.set("moving", "true");
     const answer = await arrays(`${base}/curves?${query}`);
     const names = [curves.dataset.name, other?.selectedOptions[0]?.textContent ?? "", "orange",
       "blue"];
     group.show(answer.data.time, panelsOf(answer, names), { marks: answer.meta.restarts_s });
+    $("#shown-about").textContent = moving ? "about " : "";
     shades = answer.meta.shades;
     shade();
     $("#shown-error").textContent = milli(answer.meta.rms, answer.meta.unit);
     $("#shown-role").textContent = answer.meta.held_out ? "held out" : "fitted";
     $("#shown-window").textContent = answer.meta.window_s ?
       `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
-    curves.dataset.loaded = "1";
+    curves.dataset.answered = String(Math.round(performance.now()));
   };
   // One request at a time: the last wish wins.
-  const ask = async (horizon) => {
-    wanted = { horizon };
+  const ask = async (horizon, moving = false) => {
+    wanted = { horizon, moving };
     if (busy) return;
     busy = true;
     while (wanted) {
       const next = wanted;
       wanted = null;
-      try { await load(next.horizon); } catch (error) { say(error.message); }
+      try { await load(next.horizon, next.moving); } catch (error) { say(error.message); }
     }
     busy = false;
   };
@@ -236,11 +239,21 @@ if (curves && curves.dataset.kind !== "what-if") {
   };
   const tell = () => { const s = seconds(); shown.textContent = s === null ? "whole motions" :
     `${s} s`; };
-  slider?.addEventListener("input", () => { tell(); ask(String(seconds() ?? "whole")); });
-  slider?.addEventListener("change", async () => {
-    const chosen = seconds();
-    try { go(await send("horizon", { window: chosen === null ? "whole" : { seconds: chosen } }));
-      } catch (error) { say(error.message); }
+  // While it moves start states are fitted roughly; what it rests on becomes the session's.
+  let rest = 0;
+  slider?.addEventListener("input", () => {
+    clearTimeout(rest);
+    tell();
+    ask(String(seconds() ?? "whole"), true);
+  });
+  slider?.addEventListener("change", () => {
+    const keep = async () => {
+      const chosen = seconds();
+      try { go(await send("horizon", { window: chosen === null ? "whole" : { seconds: chosen } }));
+        } catch (error) { say(error.message); }
+    };
+    clearTimeout(rest);
+    rest = setTimeout(keep, 500);
   });
   $("#window-automatic")?.addEventListener("click", async () => {
     try { go(await send("horizon", { window: "automatic" })); } catch (error) { say(error.message);
@@ -257,7 +270,7 @@ if (curves && curves.dataset.kind !== "what-if") {
       const { name, unit } = dots.meta.variables[Number(canvas.dataset.index)];
       const marked = chosen === null ? null : dots.data[`holds_${chosen}`];
       scatter(canvas, dots.data[name], dots.data.residual, {
-        band: dots.meta.floor, scale: 1e3, xLabel: `${name}, ${unit}`, marked });
+        band: dots.meta.floor, scale: 1e3, xLabel: unit === "1" ? name : `${name}, ${unit}`, marked });
     }
   };
   const loadDots = async () => {

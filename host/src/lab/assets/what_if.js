@@ -8,7 +8,7 @@ const root = document.getElementById("curves"), motion = document.getElementById
 const group = new ChartGroup(root);
 const library = JSON.parse(document.getElementById("library").textContent);
 const values = new Map(), added = [];
-let plain = null, wanted = null, busy = false;
+let plain = null, wanted = null, busy = false, fitting = false, overtaken = null;
 
 const draw = (changed) => {
   const data = { ...plain.data, ...(changed?.data ?? {}) };
@@ -23,24 +23,32 @@ const tried = (moving = false) => ({
   effects: added.map((effect) => effect.name), values: [...values],
 });
 const run = (moving) => arrays(`${base}/what-if`, {
-  method: "POST", headers: { "content-type": "application/json" },
+  method: "POST", signal: overtaken.signal, headers: { "content-type": "application/json" },
   body: JSON.stringify(tried(moving)),
 });
 // One request at a time: while it runs only the last wish is kept. While a slider moves, windows
-// start where they do for the model as it is; when it rests, their starts are fitted anew.
+// start where they do for the model as it is; when it has rested a moment, their starts are fitted
+// again, which a slider that moves on does not wait for.
+let rest = 0;
+const settle = () => { clearTimeout(rest); rest = setTimeout(() => ask(false), 250); };
 const ask = async (moving = false) => {
   wanted = { moving };
-  if (busy) return;
+  if (busy) {
+    if (fitting) overtaken.abort();
+    return;
+  }
   busy = true;
   while (wanted) {
     const next = wanted;
     wanted = null;
+    fitting = !next.moving;
+    overtaken = new AbortController();
     const begun = performance.now();
     try {
       draw(values.size || added.length ? await run(next.moving) : null);
       document.getElementById("error-about").textContent = next.moving ? "about " : "";
       say("");
-    } catch (error) { say(error.message); }
+    } catch (error) { if (error.name === "AbortError") continue; say(error.message); }
     root.dataset.answered = String(Math.round(performance.now() - begun));
   }
   busy = false;
@@ -63,13 +71,13 @@ const slider = ({ path, unit, low, high, value, meaning }) => {
     Number(value.toPrecision(5)) });
   number.setAttribute("aria-label", `${path}, ${unit}`);
   range.dataset.path = path;
-  const set = (v, moving) => { values.set(path, v); ask(moving); };
+  const set = (v, moving) => { clearTimeout(rest); values.set(path, v); ask(moving); };
   range.addEventListener("input", () => {
     const v = Number(from(range.value / 1000).toPrecision(4));
     number.value = v;
     set(v, true);
   });
-  range.addEventListener("change", () => ask(false));
+  range.addEventListener("change", settle);
   number.addEventListener("change", () => {
     const v = Number(number.value);
     if (!Number.isFinite(v)) return;

@@ -1,6 +1,6 @@
 //! Measured against model, and where it fails.
 
-use super::{frame, in_milli, lacking, refused, seen};
+use super::{evaluated, frame, in_milli};
 use crate::compare::{Failure, SignalError};
 use crate::lab::reply::LabError;
 use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
@@ -11,14 +11,8 @@ use maud::{Markup, html};
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(&saved, &evaluation);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, body) =
+        evaluated(session, &saved, |evaluation| Ok(shown(&saved, evaluation)))?;
     Ok(frame::page(
         session,
         &saved,
@@ -30,7 +24,7 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
 }
 
 fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
-    let comparison = evaluation.comparison();
+    let comparison = evaluation.at_its_horizon();
     html! {
         section {
             h1 { "Measured against model" }
@@ -62,7 +56,7 @@ fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
             h2 { "Figures" }
             (signals(&comparison.signals))
             h3 { "The error over ever longer runs" }
-            (horizons(evaluation))
+            p.facts #horizons-wanted { "Fitting start states …" }
             h3 { "The same on the command line" }
             (command(&saved.compare_command()))
         }
@@ -120,9 +114,9 @@ fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
                 button.small #window-automatic type="button" { "As the diagnosis has it" }
             }
         }
-        @for line in &evaluation.comparison().unobserved { p.note { (line) } }
+        @for line in &evaluation.at_its_horizon().unobserved { p.note { (line) } }
         p.facts {
-            span { "Error " b #shown-error { (in_milli(evaluation.rms(), evaluation)) } }
+            span { "Error " span #shown-about {} b #shown-error { (in_milli(evaluation.rms(), evaluation)) } }
             span { "This motion is " b #shown-role {} }
             span { "The model runs uncorrected for " b #shown-window {} }
         }
@@ -169,9 +163,11 @@ fn signals(signals: &[SignalError]) -> Markup {
     }
 }
 
-fn horizons(evaluation: &Evaluation) -> Markup {
+/// The error over ever longer runs; start states are fitted for each, so the page does not wait
+/// for it.
+pub fn horizons(evaluation: &Evaluation) -> Markup {
     html! {
-        p.facts {
+        p.facts #horizons {
             @for horizon in &evaluation.comparison().horizons {
                 span {
                     @match horizon.horizon_s {

@@ -4,7 +4,7 @@ use super::data_model;
 use super::frame;
 use crate::error::Result;
 use crate::lab::session::{EXAMPLES, LogFacts, MOST_BYTES, SavedSession, Session};
-use crate::log::{LogFinding, Severity};
+use crate::log::{LogFinding, LogFormat, Severity};
 use maud::{Markup, html};
 
 /// The page.
@@ -49,8 +49,9 @@ fn bring(number: u32) -> Markup {
             div.drop #drop {
                 h2 { "Bring a log" }
                 p { label for="files" {
-                    "Drop CSV files or JSON logs of a BAM bench here, or choose them:" } }
-                input #files type="file" multiple accept=".csv,.json" data-most=(MOST_BYTES);
+                    "Drop logs here, or choose them: CSV, MCAP, rosbag2 (db3), MATLAB (mat), JSON \
+                     of a BAM bench." } }
+                input #files type="file" multiple accept=(accepted()) data-most=(MOST_BYTES);
             }
             div {
                 h2 { "Or begin with an example" }
@@ -67,6 +68,12 @@ fn bring(number: u32) -> Markup {
             }
         }
     }
+}
+
+/// Endings that a chooser of files offers.
+fn accepted() -> String {
+    let endings = LogFormat::endings().map(|ending| format!(".{ending}"));
+    endings.collect::<Vec<_>>().join(",")
 }
 
 fn logs(facts: &[LogFacts]) -> Markup {

@@ -116,3 +116,8 @@ pub fn error(evaluation: &Evaluation) -> Markup {
         span { "Noise floor " b { (in_milli(evaluation.floor(), evaluation)) } }
     }
 }
+
+/// What stands in its place where the model does not read the logs.
+pub fn unreadable() -> Markup {
+    html! { span #error-unreadable { "Error: the logs cannot be read by this model" } }
+}

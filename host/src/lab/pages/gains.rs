@@ -17,7 +17,8 @@ const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
     let evaluation = session.known_evaluation(&saved);
-    let (script, body) = match saved.step() {
+    let (script, body) = match session.model(&saved)? {
+        Some(model) if model.driven_joints().is_empty() => ("lab.js", undriven(session.number)),
         Some(_) => ("gains.js", shown()),
         None => ("lab.js", lacking(session.number, &saved)),
     };
@@ -29,6 +30,19 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
         script,
         &body,
     ))
+}
+
+/// Says what is missing of a model without a drive.
+fn undriven(number: u32) -> Markup {
+    html! {
+        section {
+            h1 { "No joint of this model is driven" }
+            p { "Gains tell drives what to do, and every joint swings freely. Give a "
+                code { "[[joint]]" } " another drive than " code { "passive" } ": a torque, a duty, \
+                a position servo or a speed servo. " a href={ "/s/" (number) "/data" } {
+                "Edit the model" } "." }
+        }
+    }
 }
 
 fn shown() -> Markup {

@@ -3,7 +3,7 @@
 use super::compare::command;
 use super::learn_card::card;
 use super::learn_steps::steps;
-use super::{frame, in_mrad, lacking, refused, seen};
+use super::{evaluated, frame, in_mrad};
 use crate::lab::reply::LabError;
 use crate::lab::session::{Evaluation, SavedDiagnosis, SavedSession, Session};
 use maud::{Markup, html};
@@ -11,14 +11,9 @@ use maud::{Markup, html};
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(session, &saved, &evaluation)?;
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, body) = evaluated(session, &saved, |evaluation| {
+        shown(session, &saved, evaluation)
+    })?;
     Ok(frame::page(
         session,
         &saved,

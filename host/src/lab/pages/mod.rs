@@ -11,6 +11,7 @@ pub(super) mod learn;
 pub(super) mod learn_card;
 pub(super) mod learn_steps;
 pub(super) mod robot;
+mod robot_live;
 pub(super) mod what_if;
 
 use super::reply::LabError;
@@ -45,15 +46,25 @@ fn lacking(number: u32, saved: &SavedSession) -> Markup {
     }
 }
 
-/// The present evaluation, or why there is none.
-type Seen = Result<Option<Arc<Evaluation>>, (String, String)>;
-
-/// Evaluates the model in force; what is wrong with the logs becomes words.
-fn seen(session: &Session, saved: &SavedSession) -> Result<Seen, LabError> {
-    Ok(session.evaluation(saved, saved.current).map_err(|error| {
-        let remedy = error.remedy().unwrap_or_default().into_owned();
-        (session.shortened(&error.to_string()), remedy)
-    }))
+/// The body of a page that needs model and logs, drawn by `shown`, with the model in force as it
+/// was evaluated for it; what is lacking, or wrong with the logs, becomes words.
+fn evaluated(
+    session: &Session,
+    saved: &SavedSession,
+    shown: impl FnOnce(&Evaluation) -> Result<Markup, LabError>,
+) -> Result<(Option<Arc<Evaluation>>, Markup), LabError> {
+    match session.evaluation(saved, saved.current) {
+        Ok(Some(evaluation)) => {
+            let body = shown(&evaluation)?;
+            Ok((Some(evaluation), body))
+        }
+        Ok(None) => Ok((None, lacking(session.number, saved))),
+        Err(error) => {
+            let remedy = error.remedy().unwrap_or_default().into_owned();
+            let why = (session.shortened(&error.to_string()), remedy);
+            Ok((None, refused(session.number, &why)))
+        }
+    }
 }
 
 /// Says why there is nothing to show.

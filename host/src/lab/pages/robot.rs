@@ -1,28 +1,28 @@
-//! The robot that moves as the log says, the model's prediction over it.
+//! The robot that moves as the log says, the model's prediction over it; the one at a port, live.
 
-use super::{frame, lacking, refused, seen};
+use super::{evaluated, frame, robot_live};
+use crate::lab::live::LiveRobot;
 use crate::lab::reply::LabError;
 use crate::lab::session::Session;
 use crate::report::playback::{Scene, stage};
 use maud::{DOCTYPE, Markup, html};
 
 /// The page; a page of its own in a frame, so that its keys do not meet those of the lab.
-pub fn page(session: &Session) -> Result<Markup, LabError> {
+pub fn page(session: &Session, robot: Option<&LiveRobot>) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(session.number);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
+    let (evaluation, played) = evaluated(session, &saved, |_| Ok(shown(session.number)))?;
+    let model = session.model(&saved)?;
+    let script = if robot.is_some() { "live.js" } else { "lab.js" };
+    let body = html! {
+        (played)
+        section { (robot_live::section(robot, model.as_ref())) }
     };
     Ok(frame::page(
         session,
         &saved,
         "robot",
         evaluation.as_deref(),
-        "lab.js",
+        script,
         &body,
     ))
 }
@@ -30,7 +30,7 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
 fn shown(number: u32) -> Markup {
     html! {
         section {
-            h1 { "The robot" }
+            h1 { "The robot in the log" }
             p.lead { "The measurement, and dashed over it what the model predicts. Drag in the \
                       chart to move in time; Space plays." }
             iframe.stage src={ "/s/" (number) "/stage" } title="The robot, moving as the log says"
@@ -46,7 +46,7 @@ pub fn stage_page(session: &Session) -> Result<Markup, LabError> {
     let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
     let run = &evaluation.run;
     let mut scene = Scene::measured(&run.model, &run.data.motions);
-    let mut comparison = evaluation.comparison().clone();
+    let mut comparison = evaluation.at_its_horizon().clone();
     comparison.model = format!("model {}", saved.current);
     scene.add_model(&run.model, &comparison);
     let stage = stage(&scene).map_err(|why| LabError::Conflict(why.to_string()))?;

@@ -1,27 +1,20 @@
 //! Sliders for every value of the model and every effect of the library.
 
 use super::compare::motions;
-use super::{frame, in_milli, lacking, refused, seen};
+use super::{evaluated, frame, in_milli};
 use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
 use crate::lab::reply::LabError;
 use crate::lab::session::{Evaluation, Session};
-use crate::model::{JointField, LinkField, Model, ParameterPath};
+use crate::model::{JointField, Link, LinkField, Model, ParameterPath};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 /// The page.
 pub fn page(session: &Session) -> Result<Markup, LabError> {
     let saved = session.saved();
-    let (evaluation, body) = match seen(session, &saved)? {
-        Ok(Some(evaluation)) => {
-            let body = shown(&evaluation);
-            (Some(evaluation), body)
-        }
-        Ok(None) => (None, lacking(session.number, &saved)),
-        Err(why) => (None, refused(session.number, &why)),
-    };
+    let (evaluation, body) = evaluated(session, &saved, |evaluation| Ok(shown(evaluation)))?;
     let script = match evaluation {
         Some(_) => "what_if.js",
         None => "lab.js",
@@ -92,6 +85,7 @@ fn library(model: &Model, candidates: &[Candidate]) -> Value {
         let value = path.get(model).filter(|value| value.is_finite())?;
         let (low, high) = match parameter(model, path) {
             Some(parameter) => effect_range(parameter, value),
+            None if value == 0.0 => range_of_zero(model, path),
             None => (0.25 * value.abs(), 4.0 * value.abs()),
         };
         let (low, high) = match value < 0.0 && low > value {
@@ -136,6 +130,24 @@ fn entry(path: ParameterPath, value: f64, (low, high): (f64, f64), meaning: &str
     })
 }
 
+/// From a value that is zero to what a link of this rig's size and mass may have.
+fn range_of_zero(model: &Model, path: ParameterPath) -> (f64, f64) {
+    let largest = |of: fn(&Link) -> f64| model.links.iter().map(of).fold(0.0, f64::max);
+    let size_m = largest(|link| link.length_m.max(link.com_m.abs()));
+    let mass_kg = largest(|link| link.mass_kg);
+    let high = match path {
+        ParameterPath::Link { field, .. } => match field {
+            LinkField::Length | LinkField::Com => size_m,
+            LinkField::Mass => mass_kg,
+            LinkField::Inertia => mass_kg * size_m * size_m,
+        },
+        _ => Some(path.bounds(model).1)
+            .filter(|high| high.is_finite())
+            .unwrap_or(1.0),
+    };
+    (0.0, high)
+}
+
 fn own_paths(model: &Model) -> Vec<ParameterPath> {
     let links = (0..model.link_count())
         .flat_map(|index| LinkField::ALL.map(|field| ParameterPath::Link { index, field }));
@@ -178,4 +190,30 @@ fn effect_range(parameter: &Parameter, value: f64) -> (f64, f64) {
         middle + 3.0 * (high - middle),
     );
     (low.max(parameter.bounds.0), high.min(parameter.bounds.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn a_value_of_zero_can_be_moved_too() {
+        let text = "[rig]\nname = \"p\"\nangle_zero = \"hanging\"\n\
+             [[link]]\ncom_m = 0.1\nmass_kg = 0.2\ninertia_kg_m2 = 0.0\n\
+             [[joint]]\ndrive = \"passive\"\n[log]\ntime = { column = \"t\", unit = \"s\" }\n\
+             [[log.joint]]\nposition = { column = \"q\", unit = \"rad\" }\n";
+        let model = Model::parse(text, Path::new("p.toml")).unwrap();
+        let library = library(&model, &[]);
+        let values = library["values"].as_array().unwrap();
+        assert!(
+            values
+                .iter()
+                .any(|value| value["path"] == "link1.inertia_kg_m2")
+        );
+        for value in values {
+            let (low, high) = (value["low"].as_f64(), value["high"].as_f64());
+            assert!(low.unwrap() < high.unwrap(), "{value}");
+        }
+    }
 }

@@ -6,7 +6,7 @@ use crate::compare::{FailingSamples, residual_variables};
 use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{ChosenWindow, Evaluation};
+use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
 use crate::model::Drive;
 use axum::Json;
 use axum::extract::{Path, Query, State};
@@ -29,9 +29,24 @@ pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u
     let session = session(&lab, number)?;
     blocking(move || {
         let saved = session.saved();
+        Ok(page(match session.evaluation(&saved, saved.current) {
+            Ok(Some(evaluation)) => frame::error(&evaluation),
+            Ok(None) => return Err(LabError::NotFound("comparison")),
+            // Where the logs are listed it is said why.
+            Err(_) => frame::unreadable(),
+        }))
+    })
+    .await
+}
+
+/// The error over ever longer runs.
+pub(super) async fn horizons(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let saved = session.saved();
         let evaluation = session.evaluation(&saved, saved.current)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
-        Ok(page(frame::error(&evaluation)))
+        Ok(page(pages::horizons(&evaluation)))
     })
     .await
 }
@@ -45,6 +60,9 @@ pub(super) struct CurvesAsked {
     other: Option<usize>,
     /// Windows to try, s; `whole` motions, or those of the session without.
     horizon: Option<String>,
+    /// Whether the slider of `horizon` moves still: start states are then fitted roughly.
+    #[serde(default)]
+    moving: bool,
 }
 
 /// Measured and predicted angles of one motion.
@@ -61,10 +79,9 @@ pub(super) async fn curves(
             saved.window = seconds.map_or(ChosenWindow::Whole, ChosenWindow::Seconds);
         }
         let step = asked.step.unwrap_or(saved.current);
-        let made = |step| {
-            session
-                .evaluation(&saved, step)?
-                .ok_or(LabError::NotFound("step"))
+        let made = |step| match asked.moving {
+            true => roughly(&session, &saved, step),
+            false => exactly(&session, &saved, step),
         };
         let evaluation: Arc<Evaluation> = made(step)?;
         let other = asked.other.map(made).transpose()?;
@@ -81,6 +98,29 @@ pub(super) async fn curves(
         Ok(arrays.reply(&meta))
     })
     .await
+}
+
+/// A step over the session's windows.
+fn exactly(
+    session: &Session,
+    saved: &SavedSession,
+    step: usize,
+) -> Result<Arc<Evaluation>, LabError> {
+    let evaluation = session.evaluation(saved, step)?;
+    evaluation.ok_or(LabError::NotFound("step"))
+}
+
+/// A step over windows that are tried: what is known of the session's own saves most of the time.
+fn roughly(
+    session: &Session,
+    tried: &SavedSession,
+    step: usize,
+) -> Result<Arc<Evaluation>, LabError> {
+    let own = exactly(session, &session.saved(), step)?;
+    match own.run.horizon == tried.horizon() {
+        true => Ok(own),
+        false => Ok(Arc::new(own.roughly_at(tried.horizon()))),
+    }
 }
 
 /// Adds a motion's curves, and describes them.

@@ -1,7 +1,7 @@
 //! Bringing data: logs, examples, models, columns.
 
 use super::arrays::Arrays;
-use super::{act, blocking, session};
+use super::{act, blocking, said_shortly, session};
 use crate::lab::pages::data as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
@@ -59,7 +59,11 @@ pub(super) async fn upload(
         return Err(too_large());
     }
     let bytes = to_bytes(body, MOST_BYTES).await.map_err(|_| too_large())?;
-    let file = blocking(move || Ok(session.add_log(&upload.name, &bytes)?)).await?;
+    let file = blocking(move || {
+        let added = session.add_log(&upload.name, &bytes);
+        added.map_err(|error| said_shortly(&session, error))
+    })
+    .await?;
     Ok(reply(
         &json!({ "go": format!("/s/{number}/data"), "file": file }),
     ))

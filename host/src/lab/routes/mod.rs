@@ -8,6 +8,7 @@ mod download;
 mod enter;
 mod gains;
 mod learn;
+mod live;
 mod robot;
 mod what_if;
 
@@ -43,6 +44,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/raw", get(data::raw))
         .route("/s/{number}/compare", get(compare::show))
         .route("/s/{number}/error", get(compare::error))
+        .route("/s/{number}/horizons", get(compare::horizons))
         .route("/s/{number}/curves", get(compare::curves))
         .route("/s/{number}/scatter", get(compare::scatter))
         .route("/s/{number}/horizon", post(compare::horizon))
@@ -59,6 +61,11 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/keep", post(what_if::keep))
         .route("/s/{number}/robot", get(robot::show))
         .route("/s/{number}/stage", get(robot::stage))
+        .route("/s/{number}/live", get(live::events))
+        .route("/s/{number}/live/begin", post(live::begin))
+        .route("/s/{number}/live/answer", post(live::answer))
+        .route("/s/{number}/live/here", post(live::here))
+        .route("/s/{number}/live/stop", post(live::stop))
         .route("/s/{number}/gains", get(gains::show).post(gains::design))
         .route("/s/{number}/gains-file/{what}", get(gains::file))
         .route("/s/{number}/challenge", get(challenge::show))

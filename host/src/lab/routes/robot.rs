@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// The page.
 pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
-    blocking(move || Ok(page(pages::page(&session)?))).await
+    let robot = lab.robot.clone();
+    blocking(move || Ok(page(pages::page(&session, robot.as_deref())?))).await
 }
 
 /// The document in its frame.

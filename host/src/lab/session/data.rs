@@ -2,9 +2,8 @@
 
 use super::Session;
 use super::saved::{SavedLog, SavedSession, SavedStep};
-use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::{Error, Result};
-use crate::log::{LogFinding, LogRequest, LogSet, Split, split};
+use crate::log::{LogFormat, LogRequest, LogSet, RawLog, Split, split};
 use crate::model::Model;
 use crate::output::write_new_bytes;
 use std::path::{Path, PathBuf};
@@ -34,27 +33,36 @@ impl Session {
     /// Adds a log that was sent, under the last part of the name it came with.
     ///
     /// # Errors
-    /// A kind of file that is not read, too many logs, the system's refusal.
+    /// A kind of file that is not read, a table that cannot be read, too many logs, the system's
+    /// refusal.
     pub fn add_log(&self, name: &str, bytes: &[u8]) -> Result<String> {
         let file = self.keep_log(name, bytes)?;
-        let kept = file.clone();
-        self.change(|saved| {
-            saved.logs.push(SavedLog {
-                file,
-                rows: None,
-                held_out: false,
-            });
-            saved.diagnosis = None;
-            Ok(())
-        })?;
-        Ok(kept)
+        // What is wrong with text is shown beside it; a table that cannot be read has nothing to
+        // show.
+        let path = self.log_path(&file);
+        let is_text = matches!(LogFormat::of(&path), LogFormat::Csv | LogFormat::Bam);
+        if !is_text && let Err(error) = RawLog::read(&path) {
+            std::fs::remove_file(&path).map_err(|why| Error::file(&path, "remove", why))?;
+            return Err(error);
+        }
+        self.take_log(&file)?;
+        Ok(file)
     }
 
     /// Writes a log into the session's folder; the name it got.
     pub(super) fn keep_log(&self, name: &str, bytes: &[u8]) -> Result<String> {
+        let (name, path) = self.vacant_log(name)?;
+        write_new_bytes(&path, bytes, false)?;
+        Ok(name)
+    }
+
+    /// The name that a log gets which came with this one, and the path to write it to.
+    ///
+    /// # Errors
+    /// A kind of file that is not read, too many logs, the system's refusal.
+    pub fn vacant_log(&self, name: &str) -> Result<(String, PathBuf)> {
         let file = plain_name(name)?;
-        let logs = self.saved().logs;
-        if logs.len() >= MOST_LOGS {
+        if self.saved().logs.len() >= MOST_LOGS {
             return Err(Error::usage(
                 format!("the session holds {MOST_LOGS} logs already"),
                 "remove one, or begin another session",
@@ -63,15 +71,28 @@ impl Session {
         let folder = self.folder().join("logs");
         std::fs::create_dir_all(&folder).map_err(|why| Error::file(&folder, "make", why))?;
         let (stem, ending) = file.rsplit_once('.').unwrap_or((&file, ""));
-        let names = std::iter::once(file.clone())
+        let mut names = std::iter::once(file.clone())
             .chain((2..).map(|count| format!("{stem}-{count}.{ending}")));
-        for name in names {
-            if !folder.join(&name).exists() {
-                write_new_bytes(&folder.join(&name), bytes, false)?;
-                return Ok(name);
-            }
+        match names.find(|name| !folder.join(name).exists()) {
+            Some(name) => Ok((name.clone(), folder.join(name))),
+            None => unreachable!("there is no end to the names"),
         }
-        unreachable!("there is no end to the names")
+    }
+
+    /// Takes a file that was written to the path of [`Session::vacant_log`] as a log.
+    ///
+    /// # Errors
+    /// As [`Session::change`].
+    pub fn take_log(&self, file: &str) -> Result<()> {
+        self.change(|saved| {
+            saved.logs.push(SavedLog {
+                file: file.to_string(),
+                rows: None,
+                held_out: false,
+            });
+            saved.diagnosis = None;
+            Ok(())
+        })
     }
 
     /// Takes a log out; its file stays in the folder.
@@ -159,23 +180,6 @@ impl Session {
         saved.step().map(|step| parse(&step.toml)).transpose()
     }
 
-    /// What `handstand log check` finds; nothing without model or logs.
-    ///
-    /// # Errors
-    /// The system's refusal.
-    pub fn findings(&self, saved: &SavedSession) -> Result<Vec<LogFinding>> {
-        match self.model(saved)? {
-            Some(model) if !saved.logs.is_empty() => {
-                let file = ModelFile {
-                    path: &model_file(saved.current),
-                    text: saved.step().map_or("", |step| &step.toml),
-                };
-                conventions::findings(&self.log_set(saved).all(), &model, file)
-            }
-            _ => Ok(Vec::new()),
-        }
-    }
-
     /// What each log holds by the model in force.
     pub fn log_facts(&self, saved: &SavedSession, model: Option<&Model>) -> Vec<LogFacts> {
         let facts = |log: &SavedLog| {
@@ -221,10 +225,11 @@ fn plain_name(name: &str) -> Result<String> {
     let plain = plain.trim_start_matches('.');
     let (stem, ending) = plain.rsplit_once('.').unwrap_or((plain, ""));
     let ending = ending.to_ascii_lowercase();
-    if stem.is_empty() || !["csv", "json"].contains(&ending.as_str()) {
+    if stem.is_empty() || !LogFormat::is_log(Path::new(plain)) {
+        let endings: Vec<&str> = LogFormat::endings().collect();
         return Err(Error::usage(
             format!("`{last}` is no log that can be read"),
-            "bring a CSV file or a JSON log of a BAM bench",
+            format!("bring a file that ends in {}", endings.join(", ")),
         ));
     }
     let stem: String = stem.chars().take(LONGEST_NAME).collect();
@@ -243,6 +248,9 @@ mod tests {
             ("..\\..\\x.CSV", "x.csv"),
             ("<img src=x>.csv", "_img_src_x_.csv"),
             ("...hidden.json", "hidden.json"),
+            ("run.MCAP", "run.mcap"),
+            ("bag/bag_0.db3", "bag_0.db3"),
+            ("drop.mat", "drop.mat"),
         ] {
             assert_eq!(plain_name(given).unwrap(), kept, "{given}");
         }

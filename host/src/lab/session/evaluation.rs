@@ -10,8 +10,8 @@ use crate::model::{MeasuredSignal, Model};
 use std::path::Path;
 use std::sync::{Arc, MutexGuard, OnceLock, PoisonError};
 
-/// How many are kept.
-const KEPT: usize = 6;
+/// How many are kept: those of the steps and of some window lengths.
+const KEPT: usize = 24;
 
 /// A model run along all motions, as `handstand compare` runs it.
 #[derive(Debug)]
@@ -20,12 +20,45 @@ pub struct Evaluation {
     pub run: ModelRun,
     /// Motions that are fitted; those after them are held out.
     pub fitted: usize,
+    at_its_horizon: OnceLock<Comparison>,
     comparison: OnceLock<Comparison>,
     failing: OnceLock<Vec<FailingSamples>>,
     name: String,
 }
 
 impl Evaluation {
+    fn of(run: ModelRun, fitted: usize, name: String) -> Evaluation {
+        Evaluation {
+            run,
+            fitted,
+            at_its_horizon: OnceLock::new(),
+            comparison: OnceLock::new(),
+            failing: OnceLock::new(),
+            name,
+        }
+    }
+
+    /// The same model and motions in windows of another length.
+    fn at(&self, horizon: Horizon) -> Evaluation {
+        let data = self.run.data.recut(horizon);
+        let run = ModelRun::new(self.run.model.clone(), data, horizon);
+        Evaluation::of(run, self.fitted, self.name.clone())
+    }
+
+    /// The same in a fraction of the time, for a slider that moves: start states are fitted
+    /// roughly.
+    pub fn roughly_at(&self, horizon: Horizon) -> Evaluation {
+        let data = self.run.data.recut(horizon);
+        let run = ModelRun::roughly(self.run.model.clone(), data, horizon);
+        Evaluation::of(run, self.fitted, self.name.clone())
+    }
+
+    /// The comparison without the errors over shorter runs, made when it is first asked for.
+    pub fn at_its_horizon(&self) -> &Comparison {
+        self.at_its_horizon
+            .get_or_init(|| self.run.at_its_horizon(&self.name))
+    }
+
     /// The comparison, made when it is first asked for.
     pub fn comparison(&self) -> &Comparison {
         self.comparison
@@ -91,8 +124,17 @@ impl Session {
         if let Some(found) = self.kept(&wanted) {
             return Ok(Some(found));
         }
+        let making = self.evaluating.lock();
+        let _making = making.unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = self.kept(&wanted) {
+            return Ok(Some(found));
+        }
         let file = model_file(step);
-        let made = Arc::new(self.evaluate(saved, &wanted.toml, &file)?);
+        let made = match self.kept_at_another_horizon(&wanted) {
+            Some(known) => known.at(wanted.horizon),
+            None => self.evaluate(saved, &wanted.toml, &file)?,
+        };
+        let made = Arc::new(made);
         let mut known = self.known();
         known.0.insert(0, (wanted, made.clone()));
         known.0.truncate(KEPT);
@@ -111,6 +153,14 @@ impl Session {
         found.map(|(_, evaluation)| evaluation.clone())
     }
 
+    /// An evaluation of the same model and logs, whose motions need not be read again.
+    fn kept_at_another_horizon(&self, wanted: &Wanted) -> Option<Arc<Evaluation>> {
+        let known = self.known();
+        let same = |key: &Wanted| key.toml == wanted.toml && key.logs == wanted.logs;
+        let found = known.0.iter().find(|(key, _)| same(key));
+        found.map(|(_, evaluation)| evaluation.clone())
+    }
+
     fn known(&self) -> MutexGuard<'_, Evaluations> {
         self.evaluations
             .lock()
@@ -124,13 +174,8 @@ impl Session {
         let motions = [split.training, split.held_out].concat();
         let horizon = saved.horizon();
         let data = FitData::new(&model, motions, horizon);
-        Ok(Evaluation {
-            run: ModelRun::new(model, data, horizon),
-            fitted,
-            comparison: OnceLock::new(),
-            failing: OnceLock::new(),
-            name: file.display().to_string(),
-        })
+        let run = ModelRun::new(model, data, horizon);
+        Ok(Evaluation::of(run, fitted, file.display().to_string()))
     }
 }
 

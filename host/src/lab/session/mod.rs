@@ -5,6 +5,7 @@ mod commands;
 mod data;
 mod evaluation;
 mod example;
+mod findings;
 mod given;
 mod job;
 mod round;
@@ -25,6 +26,7 @@ pub(super) use store::SessionStore;
 
 use crate::error::Result;
 use evaluation::Evaluations;
+use findings::KnownFindings;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -36,6 +38,9 @@ pub(super) struct Session {
     folder: PathBuf,
     saved: Mutex<SavedSession>,
     evaluations: Mutex<Evaluations>,
+    /// Held while an evaluation is made: who wants the same one waits for it.
+    evaluating: Mutex<()>,
+    findings: Mutex<KnownFindings>,
     /// What is running.
     pub job: JobSlot,
 }
@@ -47,6 +52,8 @@ impl Session {
             folder,
             saved: Mutex::default(),
             evaluations: Mutex::default(),
+            evaluating: Mutex::default(),
+            findings: Mutex::default(),
             job: JobSlot::default(),
         }
     }

@@ -15,11 +15,23 @@ pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
+use crate::model::Unit;
 use crate::model::new_model::ModelPlan;
 use columns::log_guess;
 use evidence::Evidence;
 use serde::Serialize;
-use values::median;
+use values::{median, time_unit};
+
+/// The values of a log's time column in s, its unit guessed from its steps.
+pub(crate) fn time_si(log: &RawLog, time: usize) -> Vec<f64> {
+    let column = &log.columns[time];
+    let unit = match log.iso[time] {
+        true => "s",
+        false => time_unit(column),
+    };
+    let factor = Unit::named(unit, None).map_or(1.0, |unit| unit.si);
+    column.iter().map(|value| factor * value).collect()
+}
 
 /// Something that a log does not say, and what was taken for it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -1,8 +1,21 @@
 //! The lab: over HTTP as a program sees it, and in a browser as a person does.
 
-mod browser;
+mod bring;
+mod events;
+mod gains;
 mod http;
+mod live;
 mod pages;
 mod safety;
 mod server;
 mod speed;
+mod two_browsers;
+
+use handstand_browser::Browser;
+use std::path::Path;
+
+/// A browser whose pictures go into the target folder; `None`, and a line that says so, where
+/// there is no Chromium.
+fn browser() -> Option<Browser> {
+    Browser::start(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("lab"))
+}

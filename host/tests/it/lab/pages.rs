@@ -1,8 +1,9 @@
 //! A person with a log, from bringing it to a better model; keyboard alone.
 
-use super::browser::Browser;
+use super::browser;
 use super::server::Server;
 use crate::common::Bench;
+use handstand_browser::Browser;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -16,7 +17,7 @@ fn error_now(browser: &mut Browser) -> f64 {
 #[test]
 fn from_a_log_to_a_better_model_and_back() {
     let bench = Bench::new();
-    let Some(mut browser) = Browser::start() else {
+    let Some(mut browser) = browser() else {
         return;
     };
     let server = Server::start_alone(&bench, "");
@@ -51,7 +52,8 @@ fn from_a_log_to_a_better_model_and_back() {
     browser.open(&format!("http://127.0.0.1:{}/s/1/compare", server.port));
     browser.until(
         "document.querySelector('#curves[data-drawn]') \
-                   && document.querySelector('#scatters canvas')",
+                   && document.querySelector('#scatters canvas') \
+                   && document.getElementById('horizons')",
     );
     browser.press_on("canvas.plot", "+");
     browser.press_on("[data-condition]", "Enter");
@@ -117,5 +119,59 @@ fn from_a_log_to_a_better_model_and_back() {
     browser.press_on("#hand-in", "Enter");
     browser.until("document.getElementById('score')");
     browser.pictures("9-score");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+/// The robot at a port as a person sees it: the press, the questions, charts, stop; and the gains
+/// of the same model.
+#[test]
+fn a_robot_is_balanced_and_stopped_from_its_page() {
+    const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
+    let bench = Bench::new();
+    let Some(mut browser) = browser() else {
+        return;
+    };
+    let robot = format!("--robot sim-cm5:robot={MODEL},start=held,lean=1/-1/1");
+    let words = format!("{MODEL} {robot} --servo-lag 0 --dead-zone 0");
+    let server = Server::start_alone(&bench, &words);
+    browser.open(&server.address);
+    browser.until("document.getElementById('drop')");
+    browser.open(&format!("http://127.0.0.1:{}/s/1/robot", server.port));
+    let phase =
+        |phase: &str| format!("document.getElementById('phase').dataset.phase === '{phase}'");
+    browser.until(&phase("idle"));
+    browser.press_on("#begin-balance", "Enter");
+    browser.until(&phase("asking"));
+    assert!(browser.text("#question").contains("without power"));
+    assert_eq!(
+        browser.value("document.getElementById('live-view').hidden"),
+        json!(true)
+    );
+    browser.press_on("#agree", "Enter");
+    browser.until(
+        "document.getElementById('question').textContent.includes('upright') \
+                   && !document.getElementById('asked').hidden",
+    );
+    browser.pictures("8-robot-asked");
+    browser.press_on("#agree", "Enter");
+    browser.until("document.getElementById('phase').textContent === 'balancing'");
+    browser.until(
+        "document.querySelector('#live-charts[data-drawn]') \
+         && document.querySelector('#live-shape[data-drawn]')",
+    );
+    browser.pictures("8-robot-live");
+    browser.press_on("#stop-live", "Enter");
+    browser.until(&phase("ended"));
+    let said = browser.text("#phase");
+    assert!(
+        said.contains("balanced for") && said.contains("robot.csv"),
+        "{said}"
+    );
+
+    browser.open(&format!("http://127.0.0.1:{}/s/1/gains", server.port));
+    browser.until("document.querySelector('#response[data-drawn]')");
+    browser.press_on("#q", "ArrowRight");
+    browser.until("document.getElementById('figures').textContent.includes('fixed point')");
+    browser.pictures("8-gains-robot");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }

@@ -108,6 +108,11 @@ impl Server {
         }
     }
 
+    /// Number of its process.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Kills it as a crash would.
     pub fn kill(&mut self) {
         // It may be over before it is ended.

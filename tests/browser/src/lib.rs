@@ -1,6 +1,8 @@
-//! A headless Chromium, driven over its DevTools protocol: what is clicked, typed, seen.
+//! A headless Chromium, driven over its DevTools protocol: what is clicked, typed, seen. Tests and
+//! measurements of the lab use it. What goes wrong ends in a panic: there is no test without it.
 
-use base64::Engine as _;
+mod look;
+
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpStream;
@@ -15,6 +17,7 @@ use tungstenite::{Message, WebSocket};
 const PATIENCE: Duration = Duration::from_secs(90);
 
 /// A browser with one page.
+#[derive(Debug)]
 pub struct Browser {
     child: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
@@ -22,6 +25,8 @@ pub struct Browser {
     calls: u64,
     /// What scripts complained of, and what is wrong with pages.
     pub complaints: Vec<String>,
+    /// Where pictures go.
+    pictures: PathBuf,
     _profile: TempDir,
 }
 
@@ -31,13 +36,6 @@ impl Drop for Browser {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
-}
-
-/// Whether something is wrong with the page. A model that cannot be balanced is refused with 422,
-/// which the page shows; Chromium notes every refusal.
-fn is_complaint(entry: &Value) -> bool {
-    let text = entry["text"].as_str().unwrap_or_default();
-    entry["level"] == "error" && !(entry["source"] == "network" && text.contains("422"))
 }
 
 /// The program, if there is one.
@@ -52,8 +50,9 @@ fn chromium() -> Option<PathBuf> {
 }
 
 impl Browser {
-    /// Starts it; `None`, and a line that says so, where there is no Chromium.
-    pub fn start() -> Option<Browser> {
+    /// Starts it; `None`, and a line that says so, where there is no Chromium. Pictures go into the
+    /// folder `pictures`.
+    pub fn start(pictures: &Path) -> Option<Browser> {
         let Some(program) = chromium() else {
             println!("skipped: there is no chromium on the path");
             return None;
@@ -97,6 +96,7 @@ impl Browser {
             session: String::new(),
             calls: 0,
             complaints: Vec::new(),
+            pictures: pictures.to_path_buf(),
             _profile: profile,
         };
         let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
@@ -127,7 +127,7 @@ impl Browser {
                     self.complaints
                         .push(said["params"]["exceptionDetails"].to_string());
                 }
-                Some("Log.entryAdded") if is_complaint(&said["params"]["entry"]) => {
+                Some("Log.entryAdded") if said["params"]["entry"]["level"] == "error" => {
                     self.complaints.push(said["params"]["entry"].to_string());
                 }
                 _ => {}
@@ -166,7 +166,7 @@ impl Browser {
     }
 
     /// A number that the page has. While it loads again it has none: it is asked until it has.
-    fn number(&mut self, expression: &str) -> f64 {
+    pub fn number(&mut self, expression: &str) -> f64 {
         let begun = Instant::now();
         loop {
             if let Some(number) = self.value(expression).as_f64() {
@@ -233,79 +233,5 @@ impl Browser {
         );
         let asked = json!({ "nodeId": found["nodeId"], "files": files });
         self.call("DOM.setFileInputFiles", asked);
-    }
-
-    /// What axe-core finds wrong with the page as it is: labels, contrast, roles. Nothing where
-    /// it is not installed, and a line that says so.
-    fn judged(&mut self) -> Vec<String> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let folders = [
-            root.join("target"),
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(".."),
-        ];
-        let place = "npm/node_modules/axe-core/axe.min.js";
-        let found = folders
-            .iter()
-            .find_map(|folder| std::fs::read_to_string(folder.join(place)).ok());
-        let Some(axe) = found else {
-            println!("left out: axe-core is not here, `cargo xtask install` brings it");
-            return Vec::new();
-        };
-        self.value(&axe);
-        let found = self.value(
-            "axe.run(document, { iframes: false }).then((found) => found.violations.flatMap((v) => \
-             v.nodes.map((node) => `${v.id}: ${node.html.slice(0, 160)} ${node.failureSummary}`)))",
-        );
-        let found = found.as_array().expect("axe ran").iter();
-        found
-            .map(|each| each.as_str().unwrap().to_string())
-            .collect()
-    }
-
-    /// The page at 1280 and 800 pixels, light and dark, as pictures in the target folder.
-    /// What axe-core finds wrong with it, and what sticks out, are complaints.
-    pub fn pictures(&mut self, name: &str) {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lab");
-        std::fs::create_dir_all(&folder).unwrap();
-        for width in [1280, 800] {
-            for scheme in ["light", "dark"] {
-                self.look(width, scheme);
-                let shot = json!({ "format": "png", "captureBeyondViewport": true });
-                let picture = self.call("Page.captureScreenshot", shot);
-                let png = base64::engine::general_purpose::STANDARD
-                    .decode(picture["data"].as_str().unwrap())
-                    .unwrap();
-                assert!(png.len() > 5000, "{name} is not blank");
-                std::fs::write(folder.join(format!("{name}-{width}-{scheme}.png")), png).unwrap();
-                let wrong = self.judged();
-                let place = |wrong| format!("{name} at {width} px, {scheme}: {wrong}");
-                self.complaints.extend(wrong.into_iter().map(place));
-                let wide = self.number("document.documentElement.scrollWidth - innerWidth");
-                if wide > 0.0 {
-                    let wide = format!("{name} at {width} px is too wide by {wide} px");
-                    self.complaints.push(wide);
-                }
-            }
-        }
-        self.look(1280, "light");
-    }
-
-    fn look(&mut self, width: u32, scheme: &str) {
-        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
-        self.call(
-            "Emulation.setEmulatedMedia",
-            json!({ "features": features }),
-        );
-        self.until("document.readyState === 'complete'");
-        let height = self.number("Math.max(600, Math.min(4000, document.body.scrollHeight + 40))");
-        let size = json!({
-            "width": width, "height": height as u32, "deviceScaleFactor": 1, "mobile": false,
-        });
-        self.call("Emulation.setDeviceMetricsOverride", size);
-        // Charts are drawn again with the next frame.
-        self.value(
-            "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => \
-             setTimeout(done, 60))))",
-        );
     }
 }

@@ -1,0 +1,479 @@
+//! Two logs of one motion, by different recorders, as one: the second's clock is moved until a
+//! signal that both hold agrees best.
+
+use super::RawLog;
+use super::init::time_si;
+use crate::error::{Error, Result};
+use crate::output::number::short;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+use serde::Serialize;
+
+/// Correlations below this are chance, or another motion.
+const LEAST_CORRELATION: f64 = 0.8;
+/// Another peak this near the best one leaves the offset open.
+const AS_GOOD: f64 = 0.98;
+/// Least share of the shorter log that must overlap.
+const LEAST_OVERLAP: f64 = 0.25;
+/// Most samples of a common grid.
+const MOST_SAMPLES: usize = 1 << 20;
+/// Values further apart than so many of the log's steps are not joined.
+const GAP_STEPS: f64 = 5.0;
+
+/// How two logs are put together.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MergePlan {
+    /// Columns of the first and the second log that hold the same signal; found without.
+    pub align: Option<(String, String)>,
+    /// What is added to the second log's time, s; estimated without.
+    pub offset_s: Option<f64>,
+}
+
+/// Where the offset came from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alignment {
+    /// Column of the first log.
+    pub first: String,
+    /// Column of the second log.
+    pub second: String,
+    /// Correlation of the two at the offset, -1 to 1: negative where they count opposite ways.
+    pub correlation: f64,
+}
+
+/// Two logs as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MergedLog {
+    /// Columns of the first log, then those of the second, at the times of the first.
+    pub log: RawLog,
+    /// What was added to the second log's time, s.
+    pub offset_s: f64,
+    /// What it was estimated from; absent where it was given.
+    pub alignment: Option<Alignment>,
+    /// Rows with values of both.
+    pub rows_of_both: usize,
+}
+
+/// A log's time, s, and its columns.
+struct Timed<'a> {
+    log: &'a RawLog,
+    time: usize,
+    time_s: Vec<f64>,
+}
+
+/// Puts two logs together.
+///
+/// # Errors
+/// A log without time, columns that are not there, no signal that both hold, an offset that more
+/// than one place fits as well, or logs that do not overlap.
+pub fn merge(first: &RawLog, second: &RawLog, plan: &MergePlan) -> Result<MergedLog> {
+    let (first, second) = (Timed::of(first, "first")?, Timed::of(second, "second")?);
+    let (offset_s, alignment) = match plan.offset_s {
+        Some(offset_s) => (offset_s, None),
+        None => {
+            let found = aligned(&first, &second, plan.align.as_ref())?;
+            (found.0, Some(found.1))
+        }
+    };
+    let mut log = first.log.clone();
+    if log.iso[first.time] {
+        // Its values count in s from the first stamp.
+        log.names[first.time] = "time_s".to_string();
+        log.iso[first.time] = false;
+    }
+    let mut rows_of_both = 0;
+    for (index, name) in second.log.names.iter().enumerate() {
+        if index == second.time {
+            continue;
+        }
+        let times = first.time_s.iter().map(|time_s| time_s - offset_s);
+        let column = second.at(index, times);
+        rows_of_both = rows_of_both.max(column.iter().filter(|v| v.is_finite()).count());
+        let mut own = name.clone();
+        while log.names.contains(&own) {
+            own += "_2";
+        }
+        log.names.push(own);
+        log.columns.push(column);
+        log.iso.push(false);
+    }
+    if rows_of_both == 0 {
+        return Err(Error::usage(
+            format!(
+                "at an offset of {} s the logs do not overlap",
+                short(offset_s)
+            ),
+            "give another --offset: it is added to the second log's time",
+        ));
+    }
+    Ok(MergedLog {
+        log,
+        offset_s,
+        alignment,
+        rows_of_both,
+    })
+}
+
+impl<'a> Timed<'a> {
+    fn of(log: &'a RawLog, which: &str) -> Result<Self> {
+        let time = log.time().ok_or_else(|| {
+            Error::usage(
+                format!("no column of the {which} log is a time"),
+                "name it time_s, or merge logs that hold one",
+            )
+        })?;
+        let time_s = time_si(log, time);
+        if time_s.len() < 8
+            || time_s
+                .windows(2)
+                .any(|pair| !matches!(pair, [a, b] if a < b))
+        {
+            return Err(Error::usage(
+                format!("`{}` of the {which} log does not increase", log.names[time]),
+                "`handstand log check` says where; cut the log there",
+            ));
+        }
+        Ok(Timed { log, time, time_s })
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.time_s[self.time_s.len() - 1] - self.time_s[0]
+    }
+
+    /// Median step, s.
+    fn step_s(&self) -> f64 {
+        let mut steps: Vec<f64> = self
+            .time_s
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        steps[steps.len() / 2]
+    }
+
+    /// A column at times that grow, by straight lines; not a number outside and in gaps.
+    fn at(&self, column: usize, times: impl Iterator<Item = f64>) -> Vec<f64> {
+        let values = &self.log.columns[column];
+        let known: Vec<usize> = (0..values.len())
+            .filter(|k| values[*k].is_finite())
+            .collect();
+        let gap_s = GAP_STEPS * self.step_s();
+        let mut next = 0;
+        let value = |time_s: f64| {
+            while next < known.len() && self.time_s[known[next]] < time_s {
+                next += 1;
+            }
+            let after = *known.get(next)?;
+            if self.time_s[after] == time_s {
+                return Some(values[after]);
+            }
+            let before = *known.get(next.checked_sub(1)?)?;
+            let (from, to) = (self.time_s[before], self.time_s[after]);
+            let share = (time_s - from) / (to - from);
+            let value = values[before] + share * (values[after] - values[before]);
+            (to - from <= gap_s).then_some(value)
+        };
+        times
+            .map({
+                let mut value = value;
+                move |time_s| value(time_s).unwrap_or(f64::NAN)
+            })
+            .collect()
+    }
+
+    /// Columns that may be aligned: those that are no time and that change.
+    fn signals(&self) -> Vec<usize> {
+        let changes = |column: &Vec<f64>| {
+            let mut values = column.iter().filter(|value| value.is_finite());
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        let columns = 0..self.log.columns.len();
+        columns
+            .filter(|index| *index != self.time && changes(&self.log.columns[*index]))
+            .collect()
+    }
+
+    fn column(&self, name: &str, which: &str) -> Result<usize> {
+        let found = self.log.names.iter().position(|own| own == name);
+        found.ok_or_else(|| {
+            Error::usage(
+                format!("the {which} log has no column `{name}`"),
+                format!("it has {}", self.log.names.join(", ")),
+            )
+        })
+    }
+
+    /// A column about its mean on a grid from the log's begin, gaps as zeros.
+    fn gridded(&self, column: usize, step_s: f64, samples: usize) -> Vec<f64> {
+        let begin = self.time_s[0];
+        let mut values = self.at(column, (0..samples).map(|k| begin + k as f64 * step_s));
+        let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+        for value in &mut values {
+            *value = if value.is_finite() {
+                *value - mean
+            } else {
+                0.0
+            };
+        }
+        values
+    }
+}
+
+/// The offset at which two signals agree best, and which they are.
+fn aligned(
+    first: &Timed,
+    second: &Timed,
+    named: Option<&(String, String)>,
+) -> Result<(f64, Alignment)> {
+    let (ours, theirs) = match named {
+        Some((a, b)) => (
+            vec![first.column(a, "first")?],
+            vec![second.column(b, "second")?],
+        ),
+        None => (first.signals(), second.signals()),
+    };
+    let longest_s = first.duration_s().max(second.duration_s());
+    let step_s = first.step_s().min(second.step_s());
+    let step_s = step_s.max(longest_s / (MOST_SAMPLES / 2) as f64);
+    let samples = |log: &Timed| (log.duration_s() / step_s) as usize + 1;
+    let grids = |log: &Timed, columns: &[usize]| -> Vec<Vec<f64>> {
+        let grid = |column: &usize| log.gridded(*column, step_s, samples(log));
+        columns.iter().map(grid).collect()
+    };
+    let (own, other) = (grids(first, &ours), grids(second, &theirs));
+    let mut best: Option<(Peak, usize, usize)> = None;
+    for (i, a) in own.iter().enumerate() {
+        for (j, b) in other.iter().enumerate() {
+            let peak = peak(a, b);
+            let better = |(found, ..): &(Peak, usize, usize)| {
+                peak.correlation.abs() > found.correlation.abs()
+            };
+            if best.as_ref().is_none_or(better) {
+                best = Some((peak, ours[i], theirs[j]));
+            }
+        }
+    }
+    let remedy = "say which columns hold the same signal (--align FIRST=SECOND), or give --offset";
+    let Some((peak, a, b)) = best else {
+        return Err(Error::usage("no column of the logs changes", remedy));
+    };
+    let (a, b) = (first.log.names[a].clone(), second.log.names[b].clone());
+    let percent = |correlation: f64| short(100.0 * correlation.abs());
+    if peak.correlation.abs() < LEAST_CORRELATION {
+        let what = format!(
+            "no signal of the logs agrees: `{a}` and `{b}` correlate best, by {} %",
+            percent(peak.correlation)
+        );
+        return Err(Error::usage(what, remedy));
+    }
+    if peak.rival.abs() > AS_GOOD * peak.correlation.abs() {
+        let what = format!(
+            "`{a}` and `{b}` repeat themselves: another offset fits by {} % where the best one \
+             does by {} %",
+            percent(peak.rival),
+            percent(peak.correlation)
+        );
+        return Err(Error::usage(what, remedy));
+    }
+    let offset_s = first.time_s[0] - second.time_s[0] + peak.lag * step_s;
+    let alignment = Alignment {
+        first: a,
+        second: b,
+        correlation: peak.correlation,
+    };
+    Ok((offset_s, alignment))
+}
+
+/// Where two signals agree best.
+#[derive(Debug, Clone, Copy)]
+struct Peak {
+    /// Samples by which the second is late against the first, with a fraction.
+    lag: f64,
+    /// Correlation there, over what overlaps.
+    correlation: f64,
+    /// Largest correlation beyond the peak's own hill.
+    rival: f64,
+}
+
+/// Correlates by Fourier transforms; what overlaps too little does not count.
+fn peak(a: &[f64], b: &[f64]) -> Peak {
+    let size = (a.len() + b.len()).next_power_of_two();
+    let raw = correlated(a, b, size);
+    let (own, other) = (energies(a), energies(b));
+    let least = (LEAST_OVERLAP * a.len().min(b.len()) as f64) as usize;
+    let lags = 1 - b.len() as i64..a.len() as i64;
+    let at = |lag: i64| {
+        let (from, to) = (lag.max(0), (b.len() as i64 + lag).min(a.len() as i64));
+        if to - from < least.max(8) as i64 {
+            return 0.0;
+        }
+        let energy = |sums: &[f64], from: i64, to: i64| sums[to as usize] - sums[from as usize];
+        let scale = energy(&own, from, to) * energy(&other, from - lag, to - lag);
+        // Nothing that moves correlates with nothing.
+        let whole = own[a.len()] * other[b.len()];
+        if scale <= 1e-4 * whole {
+            return 0.0;
+        }
+        raw[lag.rem_euclid(size as i64) as usize] / scale.sqrt()
+    };
+    let values: Vec<f64> = lags.clone().map(at).collect();
+    let best = (0..values.len()).max_by(|i, j| values[*i].abs().total_cmp(&values[*j].abs()));
+    let best = best.unwrap_or_default();
+    let sign = values.get(best).copied().unwrap_or_default().signum();
+    let height = |k: usize| sign * values.get(k).copied().unwrap_or_default();
+    // The hill ends where the correlation is half as high.
+    let left = (0..best).rev().find(|k| height(*k) < 0.5 * height(best));
+    let right = (best..values.len()).find(|k| height(*k) < 0.5 * height(best));
+    let beyond = |k: &usize| left.is_some_and(|l| *k < l) || right.is_some_and(|r| *k > r);
+    let rival = (0..values.len()).filter(beyond).map(|k| values[k].abs());
+    let bend = height(best.wrapping_sub(1)) - 2.0 * height(best) + height(best + 1);
+    let fraction = match bend < 0.0 {
+        true => 0.5 * (height(best.wrapping_sub(1)) - height(best + 1)) / bend,
+        false => 0.0,
+    };
+    Peak {
+        lag: (lags.start + best as i64) as f64 + fraction.clamp(-0.5, 0.5),
+        correlation: values.get(best).copied().unwrap_or_default(),
+        rival: rival.fold(0.0, f64::max),
+    }
+}
+
+/// sum over k of a(k + lag) b(k), at `lag` modulo `size`.
+fn correlated(a: &[f64], b: &[f64], size: usize) -> Vec<f64> {
+    let mut planner = FftPlanner::new();
+    let forward = planner.plan_fft_forward(size);
+    let transformed = |values: &[f64]| {
+        let mut all: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
+        all.resize(size, Complex::default());
+        forward.process(&mut all);
+        all
+    };
+    let mut product: Vec<Complex<f64>> = transformed(a)
+        .iter()
+        .zip(transformed(b))
+        .map(|(a, b)| a * b.conj())
+        .collect();
+    planner.plan_fft_inverse(size).process(&mut product);
+    product.iter().map(|value| value.re / size as f64).collect()
+}
+
+/// Sums of squares up to each sample.
+fn energies(values: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let sums = values.iter().map(|value| {
+        sum += value * value;
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chirp from `from_s` on, on a clock of its own.
+    fn log(from_s: f64, step_s: f64, rows: usize, clock_s: f64, name: &str, scale: f64) -> RawLog {
+        let time = |k: usize| from_s + k as f64 * step_s;
+        let chirp = |t: f64| (2.0 * t + 0.15 * t * t).sin() + 0.3 * (5.0 * t).sin();
+        RawLog {
+            names: vec!["time_s".into(), name.into(), "still".into()],
+            columns: vec![
+                (0..rows).map(|k| time(k) + clock_s).collect(),
+                (0..rows).map(|k| scale * chirp(time(k))).collect(),
+                vec![1.0; rows],
+            ],
+            iso: vec![false; 3],
+        }
+    }
+
+    #[test]
+    fn the_offset_of_two_clocks_is_found_to_a_fraction_of_a_step() {
+        let first = log(0.0, 0.01, 2000, 0.0, "q", 1.0);
+        // Begins 3.1 s later, samples at another rate, counts the other way round, in degrees.
+        let second = log(3.1, 0.013, 1000, 1000.0, "angle", -57.3);
+        let merged = merge(&first, &second, &MergePlan::default()).unwrap();
+        assert!(
+            (merged.offset_s + 1000.0).abs() < 1e-3,
+            "{}",
+            merged.offset_s
+        );
+        let alignment = merged.alignment.unwrap();
+        assert_eq!(
+            (alignment.first.as_str(), alignment.second.as_str()),
+            ("q", "angle")
+        );
+        assert!(alignment.correlation < -0.99);
+        assert_eq!(
+            merged.log.names,
+            ["time_s", "q", "still", "angle", "still_2"]
+        );
+        for (k, q) in merged.log.columns[1].iter().enumerate() {
+            let angle = merged.log.columns[3][k];
+            let overlaps = (3.11..16.0).contains(&merged.log.columns[0][k]);
+            assert!(
+                !overlaps || (angle + 57.3 * q).abs() < 0.5,
+                "{k}: {angle} {q}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_given_offset_is_believed_and_gaps_stay_gaps() {
+        let first = log(0.0, 0.01, 200, 0.0, "q", 1.0);
+        let mut second = log(0.0, 0.01, 200, 5.0, "w", 2.0);
+        for value in &mut second.columns[1][50..100] {
+            *value = f64::NAN;
+        }
+        let plan = MergePlan {
+            offset_s: Some(-5.0),
+            ..MergePlan::default()
+        };
+        let merged = merge(&first, &second, &plan).unwrap();
+        assert!(merged.log.columns[3][70].is_nan());
+        assert!((merged.log.columns[3][20] - 2.0 * merged.log.columns[1][20]).abs() < 1e-9);
+        let far = MergePlan {
+            offset_s: Some(100.0),
+            ..MergePlan::default()
+        };
+        assert!(merge(&first, &second, &far).is_err());
+    }
+
+    #[test]
+    fn what_cannot_be_aligned_is_refused() {
+        let sine = |phase: f64| {
+            let mut log = log(0.0, 0.01, 3000, 0.0, "q", 1.0);
+            log.columns[1] = (0..3000)
+                .map(|k| (0.06 * f64::from(k) + phase).sin())
+                .collect();
+            log
+        };
+        let repeats = merge(&sine(0.0), &sine(1.0), &MergePlan::default()).unwrap_err();
+        assert!(
+            repeats.to_string().contains("repeat themselves"),
+            "{repeats}"
+        );
+        let chirp = log(0.0, 0.01, 2000, 0.0, "q", 1.0);
+        let mut noise = chirp.clone();
+        let mut state = 1_u64;
+        for value in &mut noise.columns[1] {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            *value = (state >> 40) as f64;
+        }
+        let other = merge(&chirp, &noise, &MergePlan::default()).unwrap_err();
+        assert!(other.to_string().contains("agrees"), "{other}");
+        let align = Some(("q".to_string(), "missing".to_string()));
+        let plan = MergePlan {
+            align,
+            offset_s: None,
+        };
+        assert!(
+            merge(&chirp, &chirp, &plan)
+                .unwrap_err()
+                .to_string()
+                .contains("missing")
+        );
+    }
+}

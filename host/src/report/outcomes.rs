@@ -1,0 +1,187 @@
+//! Many logs and what each says of one model: as text, CSV and page.
+
+use super::page::{Section, document, table};
+use crate::diagnose::{LogOutcome, OutcomeValue};
+use crate::output::number::{exact, mrad, short};
+use crate::output::plot::{Chart, Curve, Tone};
+use crate::output::table::{TableColumn, csv_of, or_empty, table_of};
+use maud::{Markup, html};
+use std::collections::BTreeSet;
+
+/// Width and height of a chart, px.
+const CHART_PX: (f64, f64) = (760.0, 240.0);
+
+/// A row per log, for people.
+pub fn outcomes_text(outcomes: &[LogOutcome]) -> String {
+    let mut table = table_of(outcomes, &columns());
+    if table.width().is_none() {
+        table.set_width(120);
+    }
+    let mut lines = vec![table.to_string(), String::new()];
+    lines.extend(counted(outcomes));
+    lines.join("\n")
+}
+
+/// A row per log and value, for programs; a log without values has one row.
+pub fn outcomes_csv(outcomes: &[LogOutcome]) -> String {
+    let rows: Vec<(&LogOutcome, Option<&OutcomeValue>)> = outcomes
+        .iter()
+        .flat_map(|outcome| match outcome.values.as_slice() {
+            [] => vec![(outcome, None)],
+            values => values.iter().map(|value| (outcome, Some(value))).collect(),
+        })
+        .collect();
+    type Row<'a> = (&'a LogOutcome, Option<&'a OutcomeValue>);
+    let columns: &[TableColumn<Row>] = &[
+        ("log", &|(outcome, _)| outcome.key.log.replace(',', "_")),
+        ("verdict", &|(outcome, _)| outcome.verdict.clone()),
+        ("effects", &|(outcome, _)| outcome.effects.join("+")),
+        ("before_rad", &|(outcome, _)| or_empty(outcome.before_rad)),
+        ("after_rad", &|(outcome, _)| or_empty(outcome.after_rad)),
+        ("floor_rad", &|(outcome, _)| or_empty(outcome.floor_rad)),
+        ("path", &|(_, value)| or_empty(value.map(|v| &v.path))),
+        ("unit", &|(_, value)| or_empty(value.map(|v| &v.unit))),
+        ("value", &|(_, value)| or_empty(value.map(|v| v.value))),
+        ("low", &|(_, value)| or_empty(value.and_then(|v| v.low))),
+        ("high", &|(_, value)| or_empty(value.and_then(|v| v.high))),
+    ];
+    csv_of(&rows, columns)
+}
+
+/// A page: the table, then how each value goes from log to log.
+pub fn outcomes_html(model: &str, outcomes: &[LogOutcome]) -> String {
+    let title = format!("What {model} lacks, log by log");
+    let header = html! {
+        header {
+            h1 { (title) }
+            @for line in counted(outcomes) { p { (line) } }
+        }
+    };
+    let mut sections = vec![Section {
+        id: "logs",
+        title: "Log by log",
+        lead: "Each log diagnosed by itself, in the order of their names; of its motions the last \
+               third judges.",
+        body: all(outcomes),
+    }];
+    let paths = paths(outcomes);
+    if !paths.is_empty() {
+        sections.push(Section {
+            id: "values",
+            title: "How the values go",
+            lead: "A value that leaves its neighbours' intervals tells which servo differs, or \
+                   since when. `handstand drift` tests whether it does by more than chance.",
+            body: html! { @for path in &paths { (course(path, outcomes)) } },
+        });
+    }
+    document(&title, &header, &sections)
+}
+
+/// How many logs end in which verdict, in a sentence each.
+fn counted(outcomes: &[LogOutcome]) -> Vec<String> {
+    let verdicts: BTreeSet<&str> = outcomes.iter().map(|o| o.verdict.as_str()).collect();
+    let count = |verdict: &str| outcomes.iter().filter(|o| o.verdict == verdict).count();
+    let mut counts: Vec<(usize, &str)> = verdicts.iter().map(|v| (count(v), *v)).collect();
+    counts.sort_by(|a, b| b.cmp(a));
+    let counts: Vec<String> = counts
+        .iter()
+        .map(|(n, verdict)| format!("{n} {verdict}"))
+        .collect();
+    let logs = match outcomes.len() {
+        1 => "1 log".to_string(),
+        logs => format!("{logs} logs"),
+    };
+    vec![format!("{logs}: {}.", counts.join(", "))]
+}
+
+fn columns<'a>() -> [TableColumn<'a, LogOutcome>; 6] {
+    [
+        ("Log", &|o| o.key.log.clone()),
+        ("Verdict", &|o| o.verdict.clone()),
+        ("Effects", &|o| o.effects.join(", ")),
+        ("Values", &|o| {
+            let values: Vec<String> = o.values.iter().map(in_words).collect();
+            values.join("\n")
+        }),
+        ("Before, mrad", &|o| {
+            o.before_rad.map_or(String::new(), mrad)
+        }),
+        ("After, mrad", &|o| o.after_rad.map_or(String::new(), mrad)),
+    ]
+}
+
+fn in_words(value: &OutcomeValue) -> String {
+    let ends = match (value.low, value.high) {
+        (Some(low), Some(high)) => format!(" ({} to {})", exact(low), exact(high)),
+        _ => String::new(),
+    };
+    format!(
+        "{} = {}{ends} {}",
+        value.path,
+        short(value.value),
+        value.unit
+    )
+}
+
+fn all(outcomes: &[LogOutcome]) -> Markup {
+    let columns = columns();
+    let heads = html! { @for (head, _) in &columns { th { (head) } } };
+    let rows = html! {
+        @for outcome in outcomes {
+            tr {
+                @for (_, cell) in &columns {
+                    td { @for line in cell(outcome).lines() { (line) br; } }
+                }
+            }
+        }
+    };
+    html! {
+        (table(&heads, &rows))
+        @for outcome in outcomes.iter().filter(|o| !o.is_usable()) {
+            p { strong { (outcome.key.log) } ": " (outcome.said) }
+        }
+    }
+}
+
+/// Addresses of all values, each once.
+fn paths(outcomes: &[LogOutcome]) -> BTreeSet<&str> {
+    let values = outcomes.iter().flat_map(|outcome| &outcome.values);
+    values.map(|value| value.path.as_str()).collect()
+}
+
+/// One value over the logs.
+fn course(path: &str, outcomes: &[LogOutcome]) -> Markup {
+    let found = |outcome: &LogOutcome| outcome.values.iter().find(|v| v.path == path).cloned();
+    let values: Vec<Option<OutcomeValue>> = outcomes.iter().map(found).collect();
+    let unit = values
+        .iter()
+        .flatten()
+        .next()
+        .map_or("", |value| &value.unit);
+    let mut curve = Curve::by_category(
+        path,
+        Tone::Blue,
+        values.iter().map(|value| value.as_ref().map(|v| v.value)),
+    );
+    curve.dots = true;
+    curve.intervals = values
+        .iter()
+        .map(|value| {
+            let ends = value.as_ref().and_then(|v| Some([v.low?, v.high?]));
+            ends.unwrap_or([f64::NAN; 2])
+        })
+        .collect();
+    let label = match unit {
+        "" => path.to_string(),
+        unit => format!("{path}, {unit}"),
+    };
+    let chart = Chart {
+        categories: outcomes
+            .iter()
+            .map(|outcome| outcome.key.log.clone())
+            .collect(),
+        ..Chart::new(path, "", &label, vec![curve])
+    };
+    let (width, height) = CHART_PX;
+    html! { figure { (chart.svg(width, height)) } }
+}

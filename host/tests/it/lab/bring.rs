@@ -1,0 +1,87 @@
+//! Logs of every format that the library reads.
+
+use super::server::Server;
+use crate::common::Bench;
+use std::path::Path;
+
+fn kept(name: &str) -> Vec<u8> {
+    let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/logs");
+    std::fs::read(logs.join(name)).unwrap()
+}
+
+#[test]
+fn the_lab_takes_whatever_the_reader_reads() {
+    let bench = Bench::new();
+    let server = Server::start(&bench, "");
+    for name in [
+        "states_zstd.mcap",
+        "states_lz4.mcap",
+        "states.db3",
+        "v7.mat",
+        "v6.mat",
+    ] {
+        let path = format!("/s/1/upload?name={name}");
+        let sent = server.post_bytes(&path, "", &kept(name));
+        assert_eq!(sent.status, 200, "{name}: {}", sent.text());
+        let (meta, arrays) = server.get(&format!("/s/1/raw?file={name}")).curves();
+        let rows = arrays[0].1.len();
+        assert!(rows > 1 && arrays.len() > 2, "{name}: {meta}, {rows} rows");
+    }
+    // A recording of this program, and the model that the command line proposes for it.
+    let record = "record run.mcap --seconds 1 --port sim:ids=1-2,delay=0 --ids 1-2";
+    assert_eq!(bench.run(record).code, Some(0));
+    let recording = std::fs::read(bench.path("run.mcap")).unwrap();
+    let sent = server.post_bytes("/s/1/upload?name=run.mcap", "", &recording);
+    assert_eq!(sent.status, 200, "{}", sent.text());
+    let (meta, _) = server.get("/s/1/raw?file=run.mcap").curves();
+    assert!(meta["names"].to_string().contains("q1_rad"), "{meta}");
+    let page = server.get("/s/1/data").text();
+    assert!(
+        page.contains(".mcap") && page.contains(".db3"),
+        "the chooser offers them"
+    );
+}
+
+#[test]
+fn a_log_of_a_robot_is_compared_as_on_the_command_line() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("states.mcap"), kept("states_zstd.mcap")).unwrap();
+    assert_eq!(bench.run("init states.mcap -o robot.toml").code, Some(0));
+    let told = bench.run("compare robot.toml states.mcap --json").json();
+    let server = Server::start(&bench, "robot.toml states.mcap");
+    let (meta, _) = server.get("/s/1/curves?motion=0").curves();
+    let signals = told["comparisons"][0]["signals"].as_array().unwrap();
+    let rms: Vec<_> = signals
+        .iter()
+        .map(|signal| signal["rms_rad"].clone())
+        .collect();
+    assert_eq!(meta["joint_rms"].as_array().unwrap(), &rms);
+}
+
+#[test]
+fn a_table_that_cannot_be_read_is_refused_with_the_remedy() {
+    let bench = Bench::new();
+    let server = Server::start(&bench, "");
+    for (name, remedy) in [
+        ("a.parquet", "to_csv"),
+        ("a.mcap", ""),
+        ("a.mat", ""),
+        ("a.db3", ""),
+    ] {
+        let path = format!("/s/1/upload?name={name}");
+        let refused = server.post_bytes(&path, "", b"PAR1 and nothing more");
+        assert_eq!(refused.status, 422, "{name}");
+        let said = refused.text();
+        assert!(said.contains(remedy), "{said}");
+        assert!(
+            !said.contains("sessions/1"),
+            "no path of this machine: {said}"
+        );
+        assert!(
+            !bench.path(&format!("sessions/1/logs/{name}")).exists(),
+            "{name}"
+        );
+    }
+    let saved = server.get("/s/1/download/session.json").json();
+    assert_eq!(saved["logs"].as_array().unwrap().len(), 0);
+}

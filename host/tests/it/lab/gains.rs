@@ -1,0 +1,73 @@
+//! The gains page answers for every model that has a drive, and says what the others lack.
+
+use super::server::{Response, Server};
+use crate::common::Bench;
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn models() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = files
+        .map(|file| file.unwrap().path().display().to_string())
+        .collect();
+    names.sort();
+    names
+}
+
+fn design(server: &Server) -> Response {
+    let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
+    server.post("/s/1/gains", &asked)
+}
+
+#[test]
+fn every_driven_model_gets_gains_and_the_others_are_told_what_they_lack() {
+    let (mut designed, mut refused) = (0, 0);
+    for model in models() {
+        let bench = Bench::new();
+        let server = Server::start(&bench, &model);
+        let page = server.get("/s/1/gains").text();
+        let answer = design(&server);
+        if page.contains("No joint of this model is driven") {
+            assert_eq!(answer.status, 422, "{model}");
+            assert!(answer.text().contains("driven"), "{}", answer.text());
+            refused += 1;
+            continue;
+        }
+        assert_eq!(answer.status, 200, "{model}: {}", answer.text());
+        let told = bench.run(&format!("gains {model} --q 100 --r 1 --ts 0.01 --json"));
+        assert_eq!(answer.json()["k"], told.json()["k"], "{model}");
+        designed += 1;
+    }
+    assert!(designed >= 10 && refused >= 5, "{designed} and {refused}");
+}
+
+/// An effect without a derivative is left out of the design, and kept in the response.
+#[test]
+fn what_a_model_has_learned_shows_in_the_response() {
+    let model = models().into_iter().find(|m| m.ends_with("bench_arm.toml"));
+    let text = std::fs::read_to_string(model.unwrap()).unwrap();
+    let [without, with] = ["0.0", "0.03"].map(|torque_nm| {
+        let bench = Bench::new();
+        let given = "torque_nm = 0.03";
+        assert!(text.contains(given));
+        bench.put(
+            "arm.toml",
+            text.replace(given, &format!("torque_nm = {torque_nm}")),
+        );
+        let answer = design(&Server::start(&bench, "arm.toml"));
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        answer.json()
+    });
+    assert_eq!(without["k"], with["k"]);
+    assert_eq!(
+        with["omitted"].as_array().unwrap().len(),
+        1,
+        "{}",
+        with["omitted"]
+    );
+    assert_ne!(
+        without["response"]["angle_rad"],
+        with["response"]["angle_rad"]
+    );
+}
