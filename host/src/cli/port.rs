@@ -35,6 +35,7 @@ impl Port {
         Port {
             port: Some(name.to_string()),
             baud,
+            protocol: None,
             tap: None,
         }
     }
