@@ -2,7 +2,8 @@
 //!
 //! A servo packet begins with `FF`, a frame of ours with the zero that ends the one before. Between
 //! packets a zero begins a frame, which ends at the next zero and goes to no servo; inside a packet
-//! every byte goes to the servos.
+//! every byte goes to the servos. `FF FF FD 00` begins a packet of Protocol 2.0: as one of
+//! Protocol 1.0 it would have the length 0, which none has.
 
 use crate::design::TICK_US;
 
@@ -26,10 +27,22 @@ enum Inside {
     Id,
     /// `FF FF ID`.
     Length,
+    /// `FF FF FD`: id 253, or Protocol 2.0.
+    LengthOfFd,
+    /// `FF FF FD 00`.
+    Id2,
+    /// `FF FF FD 00 ID`.
+    LengthLow,
+    /// The same with the low byte of its length.
+    LengthHigh(u8),
     /// So many bytes of a packet are still to come.
-    Packet(u8),
+    Packet(u16),
     Frame,
 }
+
+/// No longer packet of Protocol 2.0 is sent: a length above it is noise, which must not hide the
+/// frames that follow.
+const LONGEST_2: u16 = 1024;
 
 /// Ticks of silence after which a packet or frame that was begun is given up: 50 ms, more than a
 /// USB adapter pauses.
@@ -53,8 +66,21 @@ impl Filter {
             (Inside::Header, 0xff) => (Inside::Id, Way::Bus),
             (Inside::Header, _) => (Inside::Nothing, Way::Bus),
             (Inside::Id, 0xff) => (Inside::Id, Way::Bus),
+            (Inside::Id, 0xfd) => (Inside::LengthOfFd, Way::Bus),
             (Inside::Id, _) => (Inside::Length, Way::Bus),
-            (Inside::Length, length) => (Inside::Packet(length), Way::Bus),
+            (Inside::LengthOfFd, 0) => (Inside::Id2, Way::Bus),
+            (Inside::Length | Inside::LengthOfFd, length) => {
+                (Inside::Packet(u16::from(length)), Way::Bus)
+            }
+            (Inside::Id2, _) => (Inside::LengthLow, Way::Bus),
+            (Inside::LengthLow, low) => (Inside::LengthHigh(low), Way::Bus),
+            (Inside::LengthHigh(low), high) => {
+                let inside = match u16::from_le_bytes([low, high]) {
+                    0 | LONGEST_2.. => Inside::Nothing,
+                    length => Inside::Packet(length),
+                };
+                (inside, Way::Bus)
+            }
             (Inside::Packet(0 | 1), _) => (Inside::Nothing, Way::Bus),
             (Inside::Packet(left), _) => (Inside::Packet(left - 1), Way::Bus),
             // Zeros before a frame are idle line; the one after its first byte ends it.
@@ -93,6 +119,32 @@ mod tests {
         }
         assert_eq!(filter.push(0), Way::Frame);
         assert_eq!(filter.push(0xff), Way::Frame);
+    }
+
+    #[test]
+    fn a_packet_of_protocol_2_goes_to_the_servos_whole() {
+        let mut filter = Filter::default();
+        let ping = [0xff, 0xff, 0xfd, 0, 1, 3, 0, 1, 0x19, 0x4e];
+        let write = [
+            0xff, 0xff, 0xfd, 0, 1, 9, 0, 3, 0x74, 0, 0, 2, 0, 0, 0xca, 0x89,
+        ];
+        let sync = [0xff, 0xff, 0xfd, 0, 0xfe, 0x2c, 1];
+        let all = ping.iter().chain(&write).chain(&sync).chain(&[0; 300]);
+        for byte in all.chain(&ping) {
+            assert_eq!(filter.push(*byte), Way::Bus);
+        }
+        assert_eq!(filter.push(0), Way::Frame);
+        filter.end_frame();
+        // Protocol 1.0 to id 253 is passed as before, and a length that none has hides no frame.
+        for byte in [0xff, 0xff, 0xfd, 2, 1, 0xff] {
+            assert_eq!(filter.push(byte), Way::Bus);
+        }
+        assert_eq!(filter.push(0), Way::Frame);
+        filter.end_frame();
+        for byte in [0xff, 0xff, 0xfd, 0, 1, 0, 0x80] {
+            assert_eq!(filter.push(byte), Way::Bus);
+        }
+        assert_eq!(filter.push(0), Way::Frame);
     }
 
     #[test]

@@ -1,4 +1,16 @@
-//! The AX-12's control table, one row per register. Source: ROBOTIS AX-12 e-manual.
+//! Control tables, one row per register: the AX-12's here, those of X series and MX(2.0) in [`x`],
+//! the models that have them in [`models`]. Source: ROBOTIS AX-12 e-manual.
+//!
+//! The AX-12's rows are as narrow as its protocol, for the CM-5's firmware holds them; a program on
+//! the PC takes all rows as [`Item`]s.
+
+mod item;
+pub mod models;
+pub mod x;
+
+pub use item::{
+    Item, POSITION_CENTRE, POSITION_LSB_RAD, Presence, Quantity, SPEED_LSB_RAD_S, WATCHDOG_LSB_MS,
+};
 
 /// Who may change a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,6 +16,11 @@ impl AdapterPort {
     pub fn new(bus: Bus) -> Self {
         AdapterPort { bus, now_ns: 0 }
     }
+
+    /// The bus.
+    pub fn bus(&mut self) -> &mut Bus {
+        &mut self.bus
+    }
 }
 
 impl SimulatedPort for AdapterPort {

@@ -4,6 +4,7 @@ use super::bad_checksum::BadChecksum;
 use super::collision::{Sent, received};
 use super::robot::Robot;
 use super::servo::Servo;
+use super::x_line::XLine;
 use handstand_shared::control_table::TORQUE_ENABLE;
 use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS, REPLY_NS, byte_start_ns};
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
@@ -14,6 +15,8 @@ use std::collections::VecDeque;
 pub struct Bus {
     /// The servos, in any order.
     pub servos: Vec<Servo>,
+    /// Those of Protocol 2.0.
+    pub x: XLine,
     robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
     bad_checksum: BadChecksum,
@@ -41,6 +44,7 @@ impl Bus {
         }
         Bus {
             servos,
+            x: XLine::default(),
             robot: None,
             parser: Box::default(),
             bad_checksum: BadChecksum::default(),
@@ -94,15 +98,21 @@ impl Bus {
             for servo in &mut self.servos {
                 servo.step(STEP_NS as f64 * 1e-9);
             }
+            for servo in &mut self.x.servos {
+                servo.step(self.now_ns, STEP_NS as f64 * 1e-9);
+            }
         }
     }
 
     /// Receive a byte from the controller, whose stop bit ended at `now_ns`.
     pub fn receive(&mut self, now_ns: u64, byte: u8) {
         self.advance(now_ns);
-        if self.servos.iter().any(|servo| servo.faults.echo) {
+        let mut faults = (self.servos.iter().map(|servo| &servo.faults))
+            .chain(self.x.servos.iter().map(|servo| &servo.faults));
+        if faults.any(|faults| faults.echo) {
             self.line.push_back((now_ns, byte));
         }
+        self.x.receive(now_ns, byte, self.line_baud, &mut self.line);
         if let Some(id) = self.bad_checksum.push(byte) {
             self.reply(now_ns + REPLY_NS, |servo| servo.reject_checksum(id));
         }
@@ -175,6 +185,7 @@ impl Bus {
     /// Whether any servo's torque is on.
     pub fn any_torque(&self) -> bool {
         self.servos.iter().any(Servo::torque_is_on)
+            || self.x.servos.iter().any(|servo| servo.torque_is_on())
     }
 
     /// Send a request and return the parameters of its reply, without time passing: for setting up.

@@ -43,18 +43,29 @@ impl Faults {
     }
 
     /// Apply the faults to a reply: its bytes and extra delay, ns; `None` when it is lost.
-    pub fn pass(&mut self, mut answer: Vec<u8>) -> Option<(Vec<u8>, u64)> {
-        if self.dead || self.happens(self.drop) {
-            return None;
-        }
-        if self.happens(self.wrong_id) {
-            // Another servo's answer is a sound packet: its checksum fits.
+    pub fn pass(&mut self, answer: Vec<u8>) -> Option<(Vec<u8>, u64)> {
+        self.pass_as(answer, |answer| {
             answer[2] = answer[2].wrapping_add(1) % 254;
             let last = answer.len() - 1;
             let sum = answer[2..last]
                 .iter()
                 .fold(0u8, |sum, byte| sum.wrapping_add(*byte));
             answer[last] = !sum;
+        })
+    }
+
+    /// The same with `another`, which gives the reply another servo's id: a sound packet, whose
+    /// check fits.
+    pub(super) fn pass_as(
+        &mut self,
+        mut answer: Vec<u8>,
+        another: impl Fn(&mut Vec<u8>),
+    ) -> Option<(Vec<u8>, u64)> {
+        if self.dead || self.happens(self.drop) {
+            return None;
+        }
+        if self.happens(self.wrong_id) {
+            another(&mut answer);
         }
         if self.happens(self.flip) {
             let bit = self.rng.random_range(0..answer.len() * 8);

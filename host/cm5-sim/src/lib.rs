@@ -1,4 +1,5 @@
-//! Simulated CM-5: AX-12 servos, their half-duplex bus, and the firmware's logic on a host board.
+//! Simulated CM-5: AX-12 servos, servos of Protocol 2.0, their half-duplex bus, and the firmware's
+//! logic on a host board.
 //!
 //! Simulated time only, in nanoseconds since power-on: nothing here reads a clock. [`Bus`] takes
 //! the controller's bytes with the end of their stop bits and returns the servos' bytes the same
@@ -24,6 +25,13 @@ mod robot;
 mod servo;
 mod shaft;
 mod spec;
+mod spec_error;
+mod x_line;
+mod x_requests;
+mod x_servo;
+mod x_spec;
+#[cfg(test)]
+mod x_tests;
 
 pub use adapter::AdapterPort;
 pub use bus::Bus;
@@ -38,7 +46,10 @@ pub use regulator::Regulator;
 pub use robot::{DrivenJoint, Robot, RobotState};
 pub use servo::Servo;
 pub use shaft::Shaft;
-pub use spec::{BusSpec, GyroSpec, RobotSpec, SpecError};
+pub use spec::{BusSpec, GyroSpec, RobotSpec};
+pub use spec_error::SpecError;
+pub use x_line::XLine;
+pub use x_servo::XServo;
 
 #[cfg(test)]
 mod tests;

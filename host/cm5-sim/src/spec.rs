@@ -4,8 +4,10 @@
 use super::bus::Bus;
 use super::fault::Faults;
 use super::plant::Start;
+use super::spec_error::SpecError;
+use super::x_spec::XSpec;
 use handstand_shared::control_table::{BAUD, RETURN_DELAY, Register, STATUS_LEVEL};
-use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
+use handstand_shared::dynamixel::ids;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -18,6 +20,7 @@ pub struct BusSpec {
     /// The robot on them.
     pub robot: Option<RobotSpec>,
     registers: Vec<(Register, u16)>,
+    x: Option<XSpec>,
     drop: f64,
     flip: f64,
     late: f64,
@@ -28,7 +31,7 @@ pub struct BusSpec {
     overload: Vec<u8>,
     jam: Vec<u8>,
     corrupt_request: f64,
-    supply_v: f64,
+    supply_v: Option<f64>,
     seed: u64,
 }
 
@@ -69,39 +72,13 @@ impl Default for GyroSpec {
     }
 }
 
-/// Text that describes no simulated bus.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum SpecError {
-    /// A key that does not exist.
-    #[error("`{0}` is no key of a simulated bus; there are: {KEYS}")]
-    UnknownKey(String),
-    /// A list of ids that names none.
-    #[error("`{0}` names no ids: {ID_LIST_SYNTAX}")]
-    Ids(String),
-    /// A value outside its range.
-    #[error("{key}={value}: give {expected}")]
-    Value {
-        /// The key.
-        key: String,
-        /// The value found.
-        value: String,
-        /// What the key takes.
-        expected: String,
-    },
-    /// Keys of a robot without its model.
-    #[error("joints, start, lean, lag and gyro are a robot's: name its model, robot=MODEL.toml")]
-    NoModel,
-}
-
-const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
-                    dead, hot, overload, jam, supply, robot, joints, start, lean, lag, gyro, seed";
-
 impl Default for BusSpec {
     fn default() -> Self {
         BusSpec {
             ids: (1..=18).collect(),
             robot: None,
             registers: vec![(RETURN_DELAY, RETURN_DELAY.default)],
+            x: None,
             drop: 0.0,
             flip: 0.0,
             late: 0.0,
@@ -112,7 +89,7 @@ impl Default for BusSpec {
             overload: Vec::new(),
             jam: Vec::new(),
             corrupt_request: 0.0,
-            supply_v: 11.1,
+            supply_v: None,
             seed: 1,
         }
     }
@@ -121,22 +98,17 @@ impl Default for BusSpec {
 impl BusSpec {
     /// The bus it describes, without the robot.
     pub fn bus(&self) -> Bus {
+        if let Some(x) = &self.x {
+            return self.x_bus(x);
+        }
         let mut bus = Bus::new(self.ids.iter().copied());
         for (place, servo) in (0..).zip(&mut bus.servos) {
             let id = servo.id();
             for (register, code) in &self.registers {
                 servo.set(*register, *code);
             }
-            let mut faults = Faults::none(self.seed << 8 | place);
-            faults.dead = self.dead.contains(&id);
-            faults.drop = self.drop;
-            faults.flip = self.flip;
-            faults.late = self.late;
-            faults.wrong_id = self.wrong_id;
-            faults.corrupt_request = self.corrupt_request;
-            faults.echo = self.echo;
-            servo.faults = faults;
-            servo.supply_v = self.supply_v;
+            servo.faults = self.faults(id, place);
+            servo.supply_v = self.supply_v.unwrap_or(11.1);
             servo.jammed = self.jam.contains(&id);
             if self.overload.contains(&id) {
                 servo.overload();
@@ -148,12 +120,39 @@ impl BusSpec {
         bus
     }
 
+    fn faults(&self, id: u8, place: u64) -> Faults {
+        let mut faults = Faults::none(self.seed << 8 | place);
+        faults.dead = self.dead.contains(&id);
+        faults.drop = self.drop;
+        faults.flip = self.flip;
+        faults.late = self.late;
+        faults.wrong_id = self.wrong_id;
+        faults.corrupt_request = self.corrupt_request;
+        faults.echo = self.echo;
+        faults
+    }
+
+    /// The same servos with Protocol 2.0.
+    fn x_bus(&self, x: &XSpec) -> Bus {
+        let mut bus = Bus::new([]);
+        for (place, id) in (0..).zip(&self.ids) {
+            let mut servo = x.servo(*id, &self.registers);
+            servo.faults = self.faults(*id, place);
+            servo.jammed = self.jam.contains(id);
+            servo.supply_v = self.supply_v.unwrap_or(servo.supply_v);
+            if self.hot.contains(id) {
+                servo.temperature = 85.0;
+            }
+            if self.overload.contains(id) {
+                servo.overload();
+            }
+            bus.x.servos.push(servo);
+        }
+        bus
+    }
+
     fn set(&mut self, key: &str, value: &str) -> Result<(), SpecError> {
-        let wrong = |expected: &str| SpecError::Value {
-            key: key.into(),
-            value: value.into(),
-            expected: expected.into(),
-        };
+        let wrong = |expected: &str| SpecError::value(key, value, expected);
         let number = |most: f64| {
             let number = value.parse().ok();
             let number = number.filter(|number| (0.0..=most).contains(number));
@@ -178,7 +177,12 @@ impl BusSpec {
             "hot" => self.hot = id_list(value)?,
             "overload" => self.overload = id_list(value)?,
             "jam" => self.jam = id_list(value)?,
-            "supply" => self.supply_v = number(20.0)?,
+            "supply" => self.supply_v = Some(number(20.0)?),
+            "model" => self.x = Some(XSpec::of(value)?),
+            "firmware" | "mode" | "turns" | "turnaround" => match &mut self.x {
+                Some(x) => x.set(key, value)?,
+                None => return Err(SpecError::NoServoModel),
+            },
             "seed" => self.seed = value.parse().map_err(|_| wrong("a whole number"))?,
             "robot" => self.robot.get_or_insert_default().model = value.into(),
             "joints" => {
@@ -245,6 +249,7 @@ impl BusSpec {
             spec.robot.get_or_insert_default().model = model.into();
         }
         match &spec.robot {
+            Some(_) if spec.x.is_some() => Err(SpecError::RobotOnX),
             Some(robot) if robot.model.as_os_str().is_empty() => Err(SpecError::NoModel),
             _ => Ok(spec),
         }

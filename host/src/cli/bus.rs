@@ -10,8 +10,9 @@
 //! ```
 //!
 //! Over a CM-5 with its firmware as an adapter (57600 baud), any adapter on the servos' bus
-//! (`--baud 1000000`), or simulated servos (`--port sim`). Registers are named as in the AX-12's
-//! manual; codes are the register's own.
+//! (`--baud 1000000`), or simulated servos (`--port sim`). Registers are named as in the servo's
+//! manual; codes are the register's own. Servos of Protocol 2.0 (X series, MX with that firmware)
+//! are recognised by their answers; `--port sim:model=XL330-M288` simulates them.
 
 mod backup;
 mod bring_up;
@@ -19,6 +20,7 @@ mod changes;
 mod doctor;
 mod log;
 mod monitor;
+mod reboot;
 mod registers;
 mod scan;
 mod setup;
@@ -39,6 +41,8 @@ pub enum BusCommand {
     Setup(setup::SetupArgs),
     /// Monitor position, load, supply and temperature
     Monitor(monitor::MonitorArgs),
+    /// Restart servos of Protocol 2.0, as after a hardware error
+    Reboot(reboot::RebootArgs),
     /// Back up the servos' settings to a file
     Backup(backup::BackupArgs),
     /// Restore saved settings to the servos
@@ -57,6 +61,7 @@ pub fn run(command: &BusCommand, talk: &Talk) -> Result<ExitStatus> {
         BusCommand::Write(args) => registers::write(args, talk),
         BusCommand::Setup(args) => setup::run(args, talk),
         BusCommand::Monitor(args) => monitor::run(args, talk),
+        BusCommand::Reboot(args) => reboot::run(args, talk),
         BusCommand::Backup(args) => backup::backup(args, talk),
         BusCommand::Restore(args) => backup::restore(args, talk),
         BusCommand::Doctor(args) => doctor::run(args, talk),

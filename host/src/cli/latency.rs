@@ -10,11 +10,13 @@
 //! 1: it does not.
 //!
 //! `--json` prints `round_trip_us`, `line_us`, `bus_us`, `rest_us`, `round_us`, `period_us`,
-//! `fits`, `missing`; each measured time with `min`, `median`, `p99`, `max`.
+//! `fits`, `missing`, and of Protocol 2.0 `limit_us`: the time of a round's bytes on the line. Each
+//! measured time with `min`, `median`, `p99`, `max`.
 
 use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, interrupt::Interrupt};
-use handstand::link::record::{Adapter, LatencyBudget, Quantiles, RoundTrip, Stream};
+use handstand::link::Protocol;
+use handstand::link::record::{Adapter, GroupAdapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -54,8 +56,18 @@ pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
     } else {
         let mut servos = args.robot.port.servos()?;
         let trip = RoundTrip::of_adapter(&mut servos, ids)?;
-        let mut adapter = Adapter::new(servos, ids, Duration::ZERO);
-        trip.budget(&mut adapter, rounds, period_us, goes_on)
+        if servos.protocol == Some(Protocol::Two) {
+            let mut adapter = GroupAdapter::new(servos, ids, Duration::ZERO, false)?;
+            let limit_us = adapter.limit_us();
+            let budget = trip.budget(&mut adapter, rounds, period_us, goes_on);
+            budget.map(|budget| LatencyBudget {
+                limit_us: Some(limit_us),
+                ..budget
+            })
+        } else {
+            let mut adapter = Adapter::new(servos, ids, Duration::ZERO);
+            trip.budget(&mut adapter, rounds, period_us, goes_on)
+        }
     };
     drop(bar);
     let answer = budget?;
@@ -80,13 +92,16 @@ fn text(answer: &LatencyBudget, args: &LatencyArgs) -> String {
             "the rest (adapter, USB, drivers)",
         ),
     };
+    let limit = answer.limit_us.map_or(String::new(), |limit_us| {
+        format!("; the line's limit is {limit_us:.0} us")
+    });
     let verdict = match answer.fits {
         true => "fits".to_string(),
         false => format!("does not fit: {}", remedy(answer, args)),
     };
     format!(
         "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\n\
-         round of {} servos: {}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
+         round of {} servos: {}{limit}\nmissing answers: {}\nsampling time {:.1} ms: {verdict}",
         times(&answer.round_trip_us),
         answer.line_us,
         answer.bus_us,

@@ -2,7 +2,7 @@
 
 use super::simulated;
 use handstand::deploy::balance::AttitudeSource;
-use handstand::link::{Serial, SerialLink, Servos, Tap, ports};
+use handstand::link::{Protocol, Serial, SerialLink, Servos, Tap, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
 use std::path::PathBuf;
@@ -18,6 +18,9 @@ pub struct Port {
     /// have their own
     #[arg(long, value_name = "BAUD")]
     baud: Option<u32>,
+    /// Dynamixel protocol, 1 or 2; that of the first servo that answers without
+    #[arg(long, value_name = "1|2", value_parser = protocol)]
+    protocol: Option<Protocol>,
     /// Write down all bytes that pass
     #[arg(long, value_name = "FILE")]
     tap: Option<PathBuf>,
@@ -32,6 +35,7 @@ impl Port {
         Port {
             port: Some(name.to_string()),
             baud,
+            protocol: None,
             tap: None,
         }
     }
@@ -66,7 +70,19 @@ impl Port {
     /// # Errors
     /// As [`Port::open`].
     pub fn servos(&self) -> Result<Servos<AnyLink>> {
-        Ok(Servos::new(self.open()?))
+        Ok(self.on(self.open()?))
+    }
+
+    /// Servos on this line, of the protocol that was asked for.
+    pub fn on(&self, link: AnyLink) -> Servos<AnyLink> {
+        let mut servos = Servos::new(link);
+        servos.protocol = self.protocol;
+        servos
+    }
+
+    /// The protocol that was asked for.
+    pub fn protocol(&self) -> Option<Protocol> {
+        self.protocol
     }
 
     fn untapped(&self) -> Result<(AnyLink, Option<AttitudeSource>)> {
@@ -101,6 +117,14 @@ fn only_port() -> Result<String> {
             format!("there are several serial ports: {}", several.join(", ")),
             "choose one with --port",
         )),
+    }
+}
+
+fn protocol(text: &str) -> Result<Protocol, String> {
+    match text {
+        "1" | "1.0" => Ok(Protocol::One),
+        "2" | "2.0" => Ok(Protocol::Two),
+        _ => Err("give 1 or 2".to_string()),
     }
 }
 

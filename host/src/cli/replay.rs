@@ -16,15 +16,19 @@
 //! without being told): a line that breaks lets the robot down, and any of its buttons stops it.
 //! `--adapter` passes the packets through it instead, and neither does.
 //!
-//! `--json` prints `way` (`stream` or `adapter`), `samples`, `seconds`, `tracking_rms_rad` (to the
-//! goals sent), `repeat_rms_rad` (to the positions recorded), `stopped` (why, or null).
+//! Servos of Protocol 2.0 stop by their own bus watchdog when the line breaks, unless
+//! `--no-watchdog`.
+//!
+//! `--json` prints `way` (`stream` or `adapter`), `watchdog` (whether theirs is on), `samples`,
+//! `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions recorded),
+//! `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
 use handstand::link::record::{
-    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, follow, read,
+    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, SourceKind, follow, read,
 };
 use handstand::{Result, output};
 use serde_json::json;
@@ -41,6 +45,10 @@ pub struct ReplayArgs {
     /// the line breaks
     #[arg(long, conflicts_with = "stream")]
     adapter: bool,
+    /// Leave the bus watchdog of servos of Protocol 2.0 off: nothing stops them then when the line
+    /// breaks
+    #[arg(long)]
+    no_watchdog: bool,
     /// Record what happens
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -69,10 +77,17 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     ));
     agreed(args.yes, "Is there room around it?")?;
     let interrupt = Interrupt::listen();
-    let (mut source, streams) = robot.open_to_move(args.adapter)?;
-    talk.say(match streams {
-        true => "The CM-5 streams: any of its buttons stops the robot, and so does a dead line.",
-        false => "Through an adapter: nothing stops the robot when the line breaks.",
+    let (mut source, way) = robot.open_to_move(args.adapter, !args.no_watchdog)?;
+    talk.say(match way {
+        SourceKind::Stream => {
+            "The CM-5 streams: any of its buttons stops the robot, and so does a dead line."
+        }
+        SourceKind::Group { watchdog: true } => {
+            "Through an adapter: the servos' bus watchdog stops them when the line breaks."
+        }
+        SourceKind::Adapter | SourceKind::Group { watchdog: false } => {
+            "Through an adapter: nothing stops the robot when the line breaks."
+        }
     });
     let create = |file: &PathBuf| RobotRecorder::create(file, &recording.ids, args.force);
     let mut recorder = args.record.as_ref().map(create).transpose()?;
@@ -89,17 +104,18 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    report(&followed, streams, talk)
+    report(&followed, way, talk)
 }
 
-fn report(followed: &FollowedMotion, streams: bool, talk: &Talk) -> Result<ExitStatus> {
+fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
         MotionStop::Interrupted => "Ctrl-C",
         MotionStop::Danger(why) => why,
     });
     let data = json!({
-        "way": if streams { "stream" } else { "adapter" },
+        "way": if way == SourceKind::Stream { "stream" } else { "adapter" },
+        "watchdog": way == SourceKind::Group { watchdog: true },
         "samples": followed.tally.samples,
         "seconds": followed.tally.seconds(),
         "tracking_rms_rad": tracking,

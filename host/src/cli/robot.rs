@@ -1,7 +1,8 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
 use super::port::{AnyLink, Ids, Port, id_list};
-use handstand::link::record::{SampleSource, is_cm5, open_source};
+use handstand::link::Protocol;
+use handstand::link::record::{SampleSource, SourceKind, SourceOptions, is_cm5, open_source_as};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -30,23 +31,39 @@ impl RobotArgs {
     /// # Errors
     /// No port, no firmware, or a rate that is none.
     pub fn open(&self) -> Result<Box<dyn SampleSource>> {
-        self.opened(self.port.open()?, self.stream)
+        Ok(self.opened(self.port.open()?, self.stream, true)?.0)
     }
 
     /// Opens it to move the robot: a CM-5 with Handstand's firmware streams unless `adapter`, for
-    /// as an adapter nothing lets the robot down when the line breaks. Also whether it streams.
+    /// as an adapter nothing lets the robot down when the line breaks. Servos of Protocol 2.0 stop
+    /// by themselves then, with their `watchdog`. Also in which way they are reached.
     ///
     /// # Errors
     /// As [`RobotArgs::open`].
-    pub fn open_to_move(&self, adapter: bool) -> Result<(Box<dyn SampleSource>, bool)> {
+    pub fn open_to_move(
+        &self,
+        adapter: bool,
+        watchdog: bool,
+    ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
         let mut link = self.port.open()?;
-        let streams = self.stream || (!adapter && is_cm5(&mut link)?);
-        Ok((self.opened(link, streams)?, streams))
+        let is_two = self.port.protocol() == Some(Protocol::Two);
+        let streams = self.stream || (!adapter && !is_two && is_cm5(&mut link)?);
+        self.opened(link, streams, watchdog)
     }
 
-    fn opened(&self, link: AnyLink, streams: bool) -> Result<Box<dyn SampleSource>> {
-        let period = if streams { CM5_PERIOD } else { self.period()? };
-        open_source(link, &self.ids.0, streams, period)
+    fn opened(
+        &self,
+        link: AnyLink,
+        streams: bool,
+        watchdog: bool,
+    ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
+        let options = SourceOptions {
+            streams,
+            period: if streams { CM5_PERIOD } else { self.period()? },
+            protocol: self.port.protocol(),
+            watchdog,
+        };
+        open_source_as(link, &self.ids.0, options)
     }
 
     /// Time between two samples.

@@ -2,7 +2,7 @@
 //!
 //! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a
 //! [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel
-//! packets, [`Session`] in frames with the CM-5. Read downward: `port` -> ports -> `servos`,
+//! packets of either protocol, [`Session`] in frames with the CM-5. Read downward: `port` -> ports -> `servos`,
 //! `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind a port like a
 //! real one, so that `settings`, which open ports, know it.
 
@@ -10,9 +10,12 @@ mod account;
 pub mod boot_loader;
 pub mod bring_up;
 pub mod doctor;
+mod exchange;
 mod fault_log;
 mod faulty;
+mod group_read;
 pub(crate) mod port;
+mod protocol;
 #[cfg(unix)]
 mod pty;
 pub mod record;
@@ -20,10 +23,12 @@ mod replay;
 mod reply;
 mod serial;
 mod servo_error;
+mod servo_rows;
 mod servos;
 mod session;
 mod session_error;
 mod settings;
+mod status_error;
 mod tap;
 #[cfg(feature = "virtual-cm5")]
 pub mod virtual_cm5;
@@ -31,19 +36,27 @@ pub mod virtual_cm5;
 pub use account::{account_words, is_let_down};
 pub use fault_log::{cause_words, fault_log};
 pub use faulty::Faulty;
+pub use group_read::{GroupItem, group_read_bytes};
 pub use port::{LineWriter, SerialLink, read_some};
+pub use protocol::Protocol;
+use protocol::emergency_packet;
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;
 pub use reply::Reading;
 pub use serial::{PERMISSION_REMEDY, Serial, may_open, ports};
 pub use servo_error::{ServoError, ServoResult};
+pub use servo_rows::Identity;
 pub use servos::Servos;
 pub use session::Session;
 pub use session_error::{SessionError, condition_words, refusal_words};
 pub use settings::Settings;
+pub use status_error::StatusError;
 pub use tap::{Exchange, Tap, Way};
 
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod group_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod tests;

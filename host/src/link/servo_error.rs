@@ -1,7 +1,7 @@
 //! Errors of communicating with a servo.
 
+use super::status_error::StatusError;
 use crate::error::Error;
-use handstand_shared::dynamixel::ErrorBits;
 
 /// Result of a request to a servo.
 pub type ServoResult<T> = std::result::Result<T, ServoError>;
@@ -38,12 +38,42 @@ pub enum ServoError {
         from: u8,
     },
     /// The servo refused the request.
-    #[error("servo {id} refuses: {}", names(*flags))]
+    #[error("servo {id} refuses: {}", error.names().join(", "))]
     Refused {
         /// Id of the servo.
         id: u8,
-        /// Its error flags.
-        flags: ErrorBits,
+        /// What it complains of.
+        error: StatusError,
+    },
+    /// A register in EEPROM while torque is on.
+    #[error("servo {id} does not take `{name}` while its torque is on")]
+    Locked {
+        /// Id of the servo.
+        id: u8,
+        /// The register.
+        name: &'static str,
+    },
+    /// The servo's control table has no such register.
+    #[error("servo {id} has no register `{name}`")]
+    NoRegister {
+        /// Id of the servo.
+        id: u8,
+        /// The register.
+        name: &'static str,
+    },
+    /// A request in Protocol 1.0 to a servo of 2.0, whose registers are others.
+    #[error("servo {id} speaks Protocol 2.0, and was asked in 1.0")]
+    OtherProtocol {
+        /// Id of the servo.
+        id: u8,
+    },
+    /// A model whose control table is not known.
+    #[error("servo {id} is of model {number}, whose control table is not known")]
+    UnknownModel {
+        /// Id of the servo.
+        id: u8,
+        /// Its model number.
+        number: u16,
     },
     /// The port failed.
     #[error(transparent)]
@@ -53,7 +83,15 @@ pub enum ServoError {
 impl ServoError {
     /// Whether another try may succeed.
     pub fn is_transient(&self) -> bool {
-        !matches!(self, ServoError::Refused { .. } | ServoError::Port(_))
+        !matches!(
+            self,
+            ServoError::Refused { .. }
+                | ServoError::Locked { .. }
+                | ServoError::NoRegister { .. }
+                | ServoError::UnknownModel { .. }
+                | ServoError::OtherProtocol { .. }
+                | ServoError::Port(_)
+        )
     }
 
     /// The port's error, if that is what failed; everything else is about the servo.
@@ -73,12 +111,12 @@ impl From<ServoError> for Error {
         let remedy = match error {
             ServoError::Port(error) => return error,
             ServoError::Refused { .. } => "see the error bits in docs/bus.md",
+            ServoError::Locked { .. } => "torque off first: handstand bus write ID torque-enable 0",
+            ServoError::NoRegister { .. } => "`handstand bus read ID` lists its registers",
+            ServoError::UnknownModel { .. } => "docs/servos.md lists the models that are known",
+            ServoError::OtherProtocol { .. } => "pass --protocol 2",
             _ => "`handstand bus doctor` finds the cause",
         };
         Error::device(error.to_string(), remedy)
     }
-}
-
-fn names(flags: ErrorBits) -> String {
-    flags.names().collect::<Vec<_>>().join(", ")
 }

@@ -1,42 +1,49 @@
 //! Communicate with servos: requests, replies in bounded time, retries.
 
 use super::port::{SerialLink, read_some};
-use super::reply::{Reading, is_answer, status};
+use super::protocol::{Protocol, ServoRequest, emergency_packet};
+use super::reply::Reading;
 use super::servo_error::{ServoError, ServoResult};
-use handstand_shared::control_table::{RETURN_DELAY, Register, TORQUE_ENABLE};
-use handstand_shared::dynamixel::{BROADCAST, ErrorBits, MAX_PACKET, Request, status_length};
+use super::servo_rows::Identity;
+use super::status_error::StatusError;
+use handstand_shared::control_table::{Item, RETURN_DELAY, Register};
+use handstand_shared::dynamixel::{BROADCAST, ErrorBits};
+use handstand_shared::dynamixel2::ErrorByte;
 use handstand_shared::raw::ReturnDelay;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// From the end of a request to an answer's first byte beside the return delay, and stalls inside
-/// it (measured: 22 us and a motor interrupt of 130 us).
-const PROCESSING: Duration = Duration::from_micros(600);
 /// How late an answer may be that was given up.
-const LATE: Duration = Duration::from_millis(2);
+pub(super) const LATE: Duration = Duration::from_millis(2);
 /// EEPROM makes a servo deaf for about 6 ms per byte.
 const EEPROM_BYTE: Duration = Duration::from_millis(7);
 
-/// Servos behind a line that passes Dynamixel packets.
+/// Servos behind a line that passes Dynamixel packets, all of one protocol.
 pub struct Servos<L> {
     link: L,
     /// How often a request is sent at most.
     pub tries: u8,
     /// Requests sent again so far.
     pub retries: u64,
-    delays: BTreeMap<u8, ReturnDelay>,
+    /// The servos' protocol; none until it is set or a servo has answered.
+    pub protocol: Option<Protocol>,
+    pub(super) delays: BTreeMap<u8, ReturnDelay>,
+    pub(super) identities: BTreeMap<u8, Identity>,
     /// Whether the adapter hears itself; unknown before the first request.
     echo: Option<bool>,
 }
 
 impl<L: SerialLink> Servos<L> {
-    /// Over this line, three tries each.
+    /// Over this line, three tries each. The protocol is the first servo's that answers: it is asked
+    /// in 1.0, and in 2.0 where it is silent.
     pub fn new(link: L) -> Self {
         Servos {
             link,
             tries: 3,
             retries: 0,
+            protocol: None,
             delays: BTreeMap::new(),
+            identities: BTreeMap::new(),
             echo: None,
         }
     }
@@ -46,39 +53,67 @@ impl<L: SerialLink> Servos<L> {
         &mut self.link
     }
 
-    /// Ping the servo; returns its error flags.
+    /// Ping the servo; returns what it complains of.
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn ping(&mut self, id: u8) -> ServoResult<ErrorBits> {
-        self.ask(id, &Request::Ping, 0).map(|reading| reading.error)
+    pub fn ping(&mut self, id: u8) -> ServoResult<StatusError> {
+        self.ask(id, ServoRequest::Ping)
+            .map(|reading| reading.error)
     }
 
     /// `count` bytes from `address` on.
     ///
     /// # Errors
     /// Why there is no good answer.
-    pub fn read(&mut self, id: u8, address: u8, count: u8) -> ServoResult<Reading> {
-        let reading = self.ask(id, &Request::Read { address, count }, count)?;
+    pub fn read(&mut self, id: u8, address: u16, count: u16) -> ServoResult<Reading> {
+        let reading = self.ask(id, ServoRequest::Read { address, count })?;
+        let error = reading.error;
         match reading.data.len() == usize::from(count) {
             true => Ok(reading),
-            false => Err(ServoError::Refused {
-                id,
-                flags: reading.error,
-            }),
+            false => Err(ServoError::Refused { id, error }),
         }
     }
 
-    /// A register's code.
+    /// The row of an AX-12's register in servo `id`'s table.
+    ///
+    /// # Errors
+    /// [`ServoError::NoRegister`], or why the servo's protocol is not known.
+    pub fn item(&mut self, id: u8, register: Register) -> ServoResult<Item> {
+        let name = register.name;
+        let item = self.detect(id)?.item(register);
+        item.ok_or(ServoError::NoRegister { id, name })
+    }
+
+    /// Code of a register that all servos have.
     ///
     /// # Errors
     /// Why there is no good answer.
     pub fn get(&mut self, id: u8, register: Register) -> ServoResult<u16> {
-        let code = self.read(id, register.address, register.size)?.code();
+        // Before any answer, a reading in 1.0 tells as much as a ping.
+        let name = register.name;
+        let item = self.current().item(register);
+        let item = item.ok_or(ServoError::NoRegister { id, name })?;
+        let code = match self.code(id, &item) {
+            Err(ServoError::OtherProtocol { .. }) => {
+                let item = self.item(id, register)?;
+                self.code(id, &item)?
+            }
+            code => code?,
+        };
         if register == RETURN_DELAY {
             self.delays.insert(id, ReturnDelay(code as u8));
         }
-        Ok(code)
+        Ok(code as u16)
+    }
+
+    /// Sets a register that all servos have, as [`Servos::set_code`] does.
+    ///
+    /// # Errors
+    /// As [`Servos::set_code`].
+    pub fn set(&mut self, id: u8, register: Register, code: u16) -> ServoResult<()> {
+        let item = self.item(id, register)?;
+        self.set_code(id, &item, i32::from(code))
     }
 
     /// Sets a register and reads it back, whatever the status level says; waits while EEPROM is
@@ -86,26 +121,31 @@ impl<L: SerialLink> Servos<L> {
     ///
     /// # Errors
     /// Why there is no good answer, or [`ServoError::Refused`] if the register kept another code.
-    pub fn set(&mut self, id: u8, register: Register, code: u16) -> ServoResult<()> {
+    pub fn set_code(&mut self, id: u8, item: &Item, code: i32) -> ServoResult<()> {
         let mut left = self.tries;
         loop {
-            let error = self.write(id, register, code)?;
+            let error = self.write(id, item, code)?;
             // Its id is what it is asked by.
-            let now = if register == handstand_shared::control_table::ID {
+            let now = if item.is_named(handstand_shared::control_table::ID.name) {
                 code as u8
             } else {
                 id
             };
-            let kept = self.get(now, register);
+            let kept = self.code(now, item);
             left -= 1;
             match kept {
                 Ok(kept) if kept == code => return Ok(()),
-                Ok(_) if error != ErrorBits(0) => {
-                    return Err(ServoError::Refused { id, flags: error });
+                Ok(_) if error.is_access() && item.is_eeprom => {
+                    let name = item.name;
+                    return Err(ServoError::Locked { id, name });
                 }
+                Ok(_) if error.may_refuse() => return Err(ServoError::Refused { id, error }),
                 Ok(_) if left == 0 => {
-                    let flags = ErrorBits::RANGE;
-                    return Err(ServoError::Refused { id, flags });
+                    let error = match error {
+                        StatusError::Flags(_) => StatusError::Flags(ErrorBits::RANGE),
+                        StatusError::Byte(_) => StatusError::Byte(ErrorByte(4)),
+                    };
+                    return Err(ServoError::Refused { id, error });
                 }
                 Err(failure) if left == 0 || !failure.is_transient() => return Err(failure),
                 Ok(_) | Err(_) => self.retries += 1,
@@ -113,49 +153,62 @@ impl<L: SerialLink> Servos<L> {
         }
     }
 
-    /// Sends a register once without expecting an answer; the error bits if one comes.
+    /// Sends a register once without expecting an answer; what the servo complains of if one comes.
     ///
     /// # Errors
     /// [`ServoError::Port`] only.
-    pub fn write(&mut self, id: u8, register: Register, code: u16) -> ServoResult<ErrorBits> {
-        let bytes = code.to_le_bytes();
-        let data = &bytes[..usize::from(register.size)];
-        let request = Request::Write {
-            address: register.address,
-            data,
-        };
+    pub fn write(&mut self, id: u8, item: &Item, code: i32) -> ServoResult<StatusError> {
+        let bytes = item.bytes(code);
+        let data = &bytes[..usize::from(item.size)];
+        let address = item.address;
+        let request = ServoRequest::Write { address, data };
         let answer = if id == BROADCAST {
-            self.tell(&request)
+            self.tell(request)
         } else {
-            self.once(id, &request, 0).map(|reading| reading.error)
+            self.once(id, request).map(|reading| reading.error)
         };
-        if register.is_eeprom() {
-            self.link.pause(EEPROM_BYTE * u32::from(register.size));
+        if item.is_eeprom {
+            self.link.pause(EEPROM_BYTE * u32::from(item.size));
         }
         match answer {
             Ok(error) => Ok(error),
             Err(ServoError::Port(error)) => Err(ServoError::Port(error)),
-            Err(_) => Ok(ErrorBits(0)),
+            Err(_) => Ok(self.no_error()),
         }
     }
 
-    /// Set a register of several servos in one packet, which is not answered.
+    /// Set a register that all servos have of several of them in one packet, which is not answered.
+    ///
+    /// # Errors
+    /// [`ServoError::Port`] only, or [`ServoError::NoRegister`].
+    pub fn sync_write(&mut self, register: Register, codes: &[(u8, u16)]) -> ServoResult<()> {
+        let Some((id, _)) = codes.first() else {
+            return Ok(());
+        };
+        let item = self.item(*id, register)?;
+        let codes: Vec<(u8, i32)> = (codes.iter())
+            .map(|(id, code)| (*id, i32::from(*code)))
+            .collect();
+        self.sync_write_codes(&item, &codes)
+    }
+
+    /// Set a row of several servos in one packet, which is not answered.
     ///
     /// # Errors
     /// [`ServoError::Port`] only.
-    pub fn sync_write(&mut self, register: Register, codes: &[(u8, u16)]) -> ServoResult<()> {
-        let width = register.size;
-        let block = |(id, code): &(u8, u16)| {
-            let bytes = code.to_le_bytes();
+    pub fn sync_write_codes(&mut self, item: &Item, codes: &[(u8, i32)]) -> ServoResult<()> {
+        let width = item.size;
+        let block = |(id, code): &(u8, i32)| {
+            let bytes = item.bytes(*code);
             std::iter::once(*id)
                 .chain(bytes.into_iter().take(usize::from(width)))
                 .collect::<Vec<_>>()
         };
-        // A packet's length is one byte.
+        // The length of a packet of Protocol 1.0 is one byte.
         for codes in codes.chunks(60) {
             let blocks: Vec<u8> = codes.iter().flat_map(block).collect();
-            self.tell(&Request::SyncWrite {
-                address: register.address,
+            self.tell(ServoRequest::SyncWrite {
+                address: item.address,
                 width,
                 blocks: &blocks,
             })?;
@@ -168,38 +221,15 @@ impl<L: SerialLink> Servos<L> {
     /// # Errors
     /// [`ServoError::Port`] only.
     pub fn torque_off(&mut self) -> ServoResult<()> {
-        for _ in 0..2 {
-            self.write(BROADCAST, TORQUE_ENABLE, 0)?;
+        // Without an answer so far either protocol may be the servos'.
+        let protocols = match self.protocol {
+            Some(protocol) => vec![protocol],
+            None => vec![Protocol::One, Protocol::Two],
+        };
+        for protocol in protocols.iter().cycle().take(2 * protocols.len()) {
+            self.link.send(&emergency_packet(*protocol))?;
         }
         Ok(())
-    }
-
-    fn tell(&mut self, request: &Request) -> ServoResult<ErrorBits> {
-        self.send(BROADCAST, request)?;
-        Ok(ErrorBits(0))
-    }
-
-    fn ask(&mut self, id: u8, request: &Request, count: u8) -> ServoResult<Reading> {
-        let mut left = self.tries.max(1);
-        loop {
-            let answer = self.once(id, request, count);
-            left -= 1;
-            match answer {
-                Err(failure) if left > 0 && failure.is_transient() => {
-                    self.retries += 1;
-                    // What is late must not be taken for the next answer.
-                    self.link.pause(LATE);
-                }
-                answer => return answer,
-            }
-        }
-    }
-
-    fn send(&mut self, id: u8, request: &Request) -> ServoResult<Vec<u8>> {
-        let mut out = [0; MAX_PACKET];
-        let length = request.emit(id, &mut out).unwrap_or(0);
-        self.link.send(&out[..length])?;
-        Ok(out[..length].to_vec())
     }
 
     /// Whether the adapter sends back what it is sent. A PING and the answer of a servo with a
@@ -225,43 +255,8 @@ impl<L: SerialLink> Servos<L> {
     /// # Errors
     /// The port failed.
     pub fn stragglers(&mut self) -> ServoResult<usize> {
-        let deadline = self.link.now() + LATE + self.link.line_time(status_length(0));
+        let length = self.current().status_length(0);
+        let deadline = self.link.now() + LATE + self.link.line_time(length);
         Ok(read_some(&mut self.link, deadline, |_| false)?.len())
-    }
-
-    /// One request and its answer: waits as long as line, return delay and lengths say, and no
-    /// longer.
-    fn once(&mut self, id: u8, request: &Request, count: u8) -> ServoResult<Reading> {
-        let echoes = self.echoes()?;
-        self.link.clear()?;
-        let sent = self.send(id, request)?;
-        let echo = if echoes { sent.len() } else { 0 };
-        let delay = self
-            .delays
-            .get(&id)
-            .copied()
-            .unwrap_or(ReturnDelay::FACTORY);
-        let delay = Duration::from_micros(u64::from(delay.to_us()));
-        let line = self
-            .link
-            .line_time(sent.len() + echo + status_length(count));
-        let deadline = self.link.now() + line + delay + PROCESSING + self.link.latency();
-        let mut found = None;
-        let bytes = read_some(&mut self.link, deadline, |bytes| {
-            found = status(bytes.get(echo..).unwrap_or(&[]), id);
-            matches!(&found, Some((from, reading)) if *from == id && is_answer(reading, count))
-        })?;
-        match found {
-            Some((from, reading)) if from == id && reading.error.has(ErrorBits::CHECKSUM) => {
-                Err(ServoError::CorruptedRequest { id })
-            }
-            Some((from, reading)) if from == id && is_answer(&reading, count) => Ok(reading),
-            Some((from, _)) if from != id => Err(ServoError::UnexpectedId { id, from }),
-            _ if bytes.len() <= echo => Err(ServoError::NoResponse { id }),
-            _ => {
-                let bytes = bytes.len();
-                Err(ServoError::Garbled { id, bytes })
-            }
-        }
     }
 }

@@ -4,17 +4,18 @@ use super::port::SerialLink;
 use super::servo_error::ServoResult;
 use super::servos::Servos;
 use crate::error::{Error, Place, Result};
-use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
+use handstand_shared::control_table::models::ServoModel;
+use handstand_shared::control_table::{self as ct, Access, Item, REGISTERS, Register};
 use std::fmt::Write as _;
 use std::path::Path;
-use toml_edit::{Document, Item, TableLike};
+use toml_edit::{Document, TableLike};
 
 /// Settings of one servo.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
     /// Its id.
     pub id: u8,
-    codes: Vec<(Register, u16)>,
+    codes: Vec<(Item, i32)>,
 }
 
 impl Settings {
@@ -24,41 +25,47 @@ impl Settings {
     /// Why there is no good answer.
     pub fn read<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> ServoResult<Settings> {
         let mut codes = Vec::new();
-        for register in REGISTERS.iter().filter(|register| register.is_eeprom()) {
-            codes.push((*register, servos.get(id, *register)?));
+        for item in servos.items(id)?.iter().filter(|item| item.is_eeprom) {
+            codes.push((*item, servos.code(id, item)?));
         }
         Ok(Settings { id, codes })
     }
 
-    /// Code of a register.
-    pub fn get(&self, register: Register) -> Option<u16> {
-        self.codes
-            .iter()
-            .find(|(own, _)| *own == register)
+    /// Code of a register by its name.
+    pub fn code(&self, name: &str) -> Option<i32> {
+        let mut codes = self.codes.iter();
+        codes
+            .find(|(item, _)| item.is_named(name))
             .map(|(_, code)| *code)
     }
 
-    /// What can be written back: all but id and baud rate, by which the servo is spoken to.
-    pub fn restorable(&self) -> impl Iterator<Item = (Register, u16)> {
-        let fixed = |register: &Register| {
-            *register == ct::ID || *register == ct::BAUD || register.access == Access::Read
+    /// Code of a register that all servos have.
+    pub fn get(&self, register: Register) -> Option<i32> {
+        self.code(register.name)
+    }
+
+    /// What can be written back: all but id, baud rate and protocol, by which the servo is spoken to.
+    pub fn restorable(&self) -> impl Iterator<Item = (Item, i32)> {
+        let fixed = |item: &Item| {
+            let named = [ct::ID.name, ct::BAUD.name, ct::x::PROTOCOL.name];
+            named.contains(&item.name) || item.access == Access::Read
         };
         self.codes
             .iter()
             .copied()
-            .filter(move |(register, _)| !fixed(register))
+            .filter(move |(item, _)| !fixed(item))
     }
 
     /// The text of a file that [`Settings::load`] reads.
     pub fn to_toml(servos: &[Settings]) -> String {
         let mut text = String::from(
-            "# Settings of servos: codes of the AX-12's control table, EEPROM area.\n",
+            "# Settings of servos: codes of the EEPROM area of their control tables.\n",
         );
         for servo in servos {
             text += "\n[[servo]]\n";
-            for (register, code) in &servo.codes {
+            for (item, code) in &servo.codes {
                 // Writing to a string does not fail.
-                let _ = writeln!(text, "{} = {code}", key(register));
+                let _ = writeln!(text, "{} = {code}", key(item.name));
             }
         }
         text
@@ -85,7 +92,9 @@ impl Settings {
             let at = error.span().map_or(0, |span| span.start);
             file.error(at, format!("not TOML: {}", error.message().trim()))
         })?;
-        let servos = document.get("servo").and_then(Item::as_array_of_tables);
+        let servos = document
+            .get("servo")
+            .and_then(toml_edit::Item::as_array_of_tables);
         let servos = servos.ok_or_else(|| file.error(0, "there is no [[servo]]"))?;
         let settings: Vec<Settings> = servos
             .iter()
@@ -100,8 +109,20 @@ impl Settings {
     }
 }
 
-fn key(register: &Register) -> String {
-    register.name.replace(' ', "_")
+fn key(name: &str) -> String {
+    name.replace(' ', "_")
+}
+
+/// What a servo of this model number keeps without power; the AX-12's of a number that is not of
+/// Protocol 2.0.
+fn kept(model: Option<i64>) -> Vec<Item> {
+    let model = model.and_then(|number| u16::try_from(number).ok());
+    let model = model.and_then(ServoModel::of);
+    let items: Vec<Item> = match model {
+        Some(model) => model.items().copied().collect(),
+        None => REGISTERS.iter().map(Item::of_register).collect(),
+    };
+    items.into_iter().filter(|item| item.is_eeprom).collect()
 }
 
 struct Text<'a> {
@@ -111,41 +132,40 @@ struct Text<'a> {
 
 impl Text<'_> {
     fn servo(&self, table: &dyn TableLike, at: usize) -> Result<Settings> {
-        let mut codes = Vec::new();
+        let mut codes: Vec<(Item, i32)> = Vec::new();
+        let model = table
+            .get(&key(ct::MODEL.name))
+            .and_then(toml_edit::Item::as_integer);
+        let rows = kept(model);
         for (name, item) in table.iter() {
             let at = table
                 .key(name)
                 .and_then(toml_edit::Key::span)
                 .map_or(at, |span| span.start);
-            let register = Register::named(name).filter(|register| register.is_eeprom());
-            let register = register.ok_or_else(|| {
+            let row = rows.iter().find(|row| row.is_named(name));
+            let row = row.ok_or_else(|| {
                 self.error(at, format!("`{name}` is no register that a servo keeps"))
             })?;
-            let code = item.as_integer().and_then(|code| u16::try_from(code).ok());
-            let code = code.filter(|code| (register.min..=register.max).contains(code));
+            let code = item.as_integer().and_then(|code| i32::try_from(code).ok());
+            let code = code.filter(|code| (row.min..=row.max).contains(code));
             let code = code.ok_or_else(|| {
                 let what = format!(
                     "`{name}` cannot be {}: it goes from {} to {}",
                     item.to_string().trim(),
-                    register.min,
-                    register.max
+                    row.min,
+                    row.max
                 );
                 self.error(at, what)
             })?;
-            codes.push((*register, code));
+            codes.push((*row, code));
         }
-        let has = |register: Register| codes.iter().any(|(own, _)| *own == register);
-        if let Some(missing) = REGISTERS
-            .iter()
-            .find(|register| register.is_eeprom() && !has(**register))
-        {
-            return Err(self.error(at, format!("`{}` is missing", key(missing))));
+        let has = |row: &Item| codes.iter().any(|(own, _)| own == row);
+        if let Some(missing) = rows.iter().find(|row| !has(row)) {
+            return Err(self.error(at, format!("`{}` is missing", key(missing.name))));
         }
-        let id = codes
-            .iter()
-            .find(|(register, _)| *register == ct::ID)
-            .map_or(0, |(_, code)| *code as u8);
-        Ok(Settings { id, codes })
+        let mut settings = Settings { id: 0, codes };
+        settings.id = settings.get(ct::ID).map_or(0, |code| code as u8);
+        Ok(settings)
     }
 
     fn error(&self, at: usize, what: impl Into<String>) -> Error {
@@ -183,6 +203,20 @@ mod tests {
             Settings::parse(&text, Path::new("a.toml")).unwrap(),
             saved()
         );
+    }
+
+    #[test]
+    fn servos_of_protocol_2_keep_signs_and_their_own_rows() {
+        let mut servos = Servos::new(SimLink::adapter("model=XM430-W350,ids=3").unwrap());
+        servos.set_code(3, &ct::x::HOMING_OFFSET, -100).unwrap();
+        let saved = vec![Settings::read(&mut servos, 3).unwrap()];
+        let text = Settings::to_toml(&saved);
+        assert!(text.contains("\nhoming_offset = -100\n"), "{text}");
+        assert!(text.contains("\ncurrent_limit = 1193\n"), "{text}");
+        assert_eq!(Settings::parse(&text, Path::new("a.toml")).unwrap(), saved);
+        let fixed = ["id", "baud rate", "protocol type", "model number"];
+        let mut restored = saved[0].restorable();
+        assert!(restored.all(|(item, _)| !fixed.contains(&item.name)));
     }
 
     #[test]

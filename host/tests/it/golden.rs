@@ -75,6 +75,26 @@ fn bus() {
 }
 
 #[test]
+fn servos() {
+    golden(
+        &bench(),
+        "servos",
+        &[
+            "bus scan --port sim:model=XL330-M288,ids=1-3 --ids 1-4",
+            "bus read 2 operating-mode current-limit bus-watchdog present-position --port sim:model=XM430-W350",
+            "bus write 2 profile_velocity 100 --port sim:model=XL330-M288",
+            "bus doctor --port sim:model=XL330-M288,ids=1-3,delay=0,overload=2 --ids 1-3",
+            "bus reboot 2 --port sim:model=XL330-M288,ids=1-3,overload=2",
+            "bus monitor --ids 1-2 --rounds 1 --port sim:model=XL330-M288,ids=1-3",
+            "latency --port sim:model=XL330-M288,delay=0,turnaround=0,baud=3 --baud 1000000",
+            "latency --port sim:model=XL330-M288,delay=0,turnaround=0,baud=6 --baud 4000000",
+            "latency --port sim:model=XL330-M288,delay=0,firmware=45,baud=6 --baud 4000000",
+            "latency --port sim:model=XL330-M288,delay=250,firmware=45",
+        ],
+    );
+}
+
+#[test]
 fn effects() {
     golden(&bench(), "effects", &["effects", "effects coulomb"]);
 }

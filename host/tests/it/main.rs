@@ -30,6 +30,7 @@ mod render;
 mod riccati;
 mod robot_demo;
 mod rounds;
+mod servos;
 mod study;
 mod sysid;
 mod twins;

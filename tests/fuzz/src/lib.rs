@@ -23,6 +23,7 @@ pub const TARGETS: &[Target] = &[
     target("arguments", targets::arguments::run),
     target("draft", targets::files::draft),
     target("dynamixel", targets::wire::dynamixel),
+    target("dynamixel2", targets::wire::dynamixel2),
     target("exchange", targets::wire::exchange),
     target("frame", targets::wire::frame),
     target("gain_table", targets::wire::gain_table),

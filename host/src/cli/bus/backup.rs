@@ -91,17 +91,17 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         let differing = servo
             .restorable()
-            .filter(|(register, code)| now.get(*register) != Some(*code));
+            .filter(|(register, code)| now.code(register.name) != Some(*code));
         changes.extend(differing.map(|(register, code)| RegisterChange {
             id,
             register,
-            before: now.get(register).unwrap_or(0),
+            before: now.code(register.name).unwrap_or(0),
             code,
         }));
     }
     let bar = talk.bar(changes.len() as u64);
     for change in changes.iter().filter(|_| !args.dry_run) {
-        servos.set(change.id, change.register, change.code)?;
+        servos.set_code(change.id, &change.register, change.code)?;
         bar.inc(1);
     }
     drop(bar);

@@ -2,7 +2,7 @@
 
 use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
-use handstand_shared::control_table::Register;
+use handstand_shared::control_table::Item;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
@@ -13,14 +13,14 @@ pub struct RegisterChange {
     pub id: u8,
     /// The register.
     #[serde(serialize_with = "name")]
-    pub register: Register,
+    pub register: Item,
     /// What was in it.
-    pub before: u16,
+    pub before: i32,
     /// What comes in.
-    pub code: u16,
+    pub code: i32,
 }
 
-fn name<S: Serializer>(register: &Register, serializer: S) -> Result<S::Ok, S::Error> {
+fn name<S: Serializer>(register: &Item, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(register.name)
 }
 

@@ -44,7 +44,7 @@ pub fn run(args: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
         return bring_up::run(link, &args.ids.0, report, args.yes, talk);
     }
     let bar = talk.bar(0);
-    let diagnosis = examine(link, &args.ids.0, |step| {
+    let diagnosis = examine(link, &args.ids.0, args.port.protocol(), |step| {
         bar.set_message(step.to_string());
         bar.tick();
     })?;

@@ -1,12 +1,12 @@
 //! `bus monitor`: rounds of readings, until Ctrl-C or `--rounds`. Nothing is written to the servos.
 
 use super::scan::degrees;
-use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::port::{AnyLink, Ids, Port, id_list};
 use crate::cli::show::{or_dash, table_of};
 use crate::cli::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::Result;
-use handstand::link::Reading;
 use handstand::link::record::ServoSample;
+use handstand::link::{Protocol, ServoResult, Servos};
 use handstand::output::table::TableColumn;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
@@ -34,6 +34,8 @@ struct ServoReading {
     position_rad: Option<f64>,
     speed_rad_s: Option<f64>,
     load_share: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    current_a: Option<f64>,
     supply_v: Option<f64>,
     temperature_celsius: Option<u8>,
     error_flags: Vec<&'static str>,
@@ -58,9 +60,8 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
         let time_s = servos.link().now().as_secs_f64();
         let mut seen = Vec::new();
         for id in &args.ids.0 {
-            // Registers 36 to 43: position, speed, load, supply, temperature.
-            seen.push(match servos.read(*id, PRESENT_POSITION.address, 8) {
-                Ok(reading) => ServoReading::of(*id, &reading),
+            seen.push(match ServoReading::ask(&mut servos, *id) {
+                Ok(reading) => reading,
                 Err(error) => {
                     error.port()?;
                     ServoReading {
@@ -92,16 +93,27 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
 }
 
 impl ServoReading {
-    fn of(id: u8, reading: &Reading) -> Self {
-        let joint = ServoSample::of_reading(reading).unwrap_or_default();
+    fn ask(servos: &mut Servos<AnyLink>, id: u8) -> ServoResult<Self> {
+        if servos.detect(id)? == Protocol::Two {
+            let (joint, errors) = ServoSample::ask(servos, id)?;
+            return Ok(Self::of(id, &joint, errors));
+        }
+        // Registers 36 to 43: position, speed, load, supply, temperature.
+        let reading = servos.read(id, u16::from(PRESENT_POSITION.address), 8)?;
+        let joint = ServoSample::of_reading(&reading).unwrap_or_default();
+        Ok(Self::of(id, &joint, reading.error.names()))
+    }
+
+    fn of(id: u8, joint: &ServoSample, error_flags: Vec<&'static str>) -> Self {
         ServoReading {
             id,
             position_rad: joint.position_rad,
             speed_rad_s: joint.speed_rad_s,
             load_share: joint.load,
+            current_a: joint.current_a,
             supply_v: joint.supply_v,
             temperature_celsius: joint.temperature_celsius.map(|celsius| celsius as u8),
-            error_flags: reading.error.names().collect(),
+            error_flags,
         }
     }
 }
@@ -113,8 +125,9 @@ fn text(seen: &[ServoReading]) -> String {
         ("Speed", &|s| {
             or_dash(s.speed_rad_s, |w| format!("{w:.2} rad/s"))
         }),
-        ("Load", &|s| {
-            or_dash(s.load_share, |share| format!("{:.0} %", 100.0 * share))
+        ("Load", &|s| match s.current_a {
+            Some(current_a) => format!("{current_a:.3} A"),
+            None => or_dash(s.load_share, |share| format!("{:.0} %", 100.0 * share)),
         }),
         ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
         ("Temp", &|s| {

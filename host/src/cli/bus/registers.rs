@@ -1,10 +1,12 @@
 //! `bus read`, `bus write`: single registers.
 
-use crate::cli::{ExitStatus, Talk, port::Port, show::table_of};
+use crate::cli::port::{AnyLink, Port};
+use crate::cli::{ExitStatus, Talk, show::table_of};
+use handstand::link::{Protocol, Servos};
 use handstand::model::suggest::suggest;
 use handstand::output::table::{TableColumn, or_empty};
 use handstand::{Error, Result};
-use handstand_shared::control_table::{self as ct, Access, REGISTERS, Register};
+use handstand_shared::control_table::{self as ct, Access, Item, Register, x};
 use handstand_shared::raw::{MovingSpeed, Position, Signed};
 use serde::Serialize;
 use serde_json::json;
@@ -15,8 +17,7 @@ pub struct ReadArgs {
     /// Id of the servo
     id: u8,
     /// Registers by name or address; all without
-    #[arg(value_parser = register)]
-    registers: Vec<Register>,
+    registers: Vec<String>,
     #[command(flatten)]
     port: Port,
 }
@@ -27,10 +28,10 @@ pub struct WriteArgs {
     /// Id of the servo
     id: u8,
     /// Register by name or address
-    #[arg(value_parser = register)]
-    register: Register,
+    register: String,
     /// Its new code
-    code: u16,
+    #[arg(allow_negative_numbers = true)]
+    code: i32,
     #[command(flatten)]
     port: Port,
 }
@@ -38,44 +39,45 @@ pub struct WriteArgs {
 /// What a register of a servo holds.
 #[derive(Serialize)]
 struct RegisterContent {
-    address: u8,
+    address: u16,
     register: &'static str,
-    code: u16,
+    code: i32,
     means: String,
+    /// In SI, where the register has a unit (Protocol 2.0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
     #[serde(skip)]
     default: Option<u16>,
 }
 
-/// A register by name, however spelt, or by address.
-pub fn register(text: &str) -> Result<Register, String> {
-    let found = match text.parse() {
-        Ok(address) => Register::at(address),
-        Err(_) => Register::named(text),
+/// A row by name, however spelt, or by address.
+fn row(items: &[Item], text: &str) -> Result<Item> {
+    let found = match text.parse::<u16>() {
+        Ok(address) => items.iter().find(|item| item.address == address),
+        Err(_) => items.iter().find(|item| item.is_named(text)),
     };
     found.copied().ok_or_else(|| {
-        let names: Vec<&str> = REGISTERS.iter().map(|r| r.name).collect();
-        format!("no such register; {}", suggest(text, &names))
+        let names: Vec<&str> = items.iter().map(|item| item.name).collect();
+        Error::usage(
+            format!("there is no register `{text}`"),
+            suggest(text, &names),
+        )
     })
 }
 
 /// Reads, shows.
 pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
-    let wanted = if args.registers.is_empty() {
-        REGISTERS
-    } else {
-        &args.registers
-    };
+    let items = servos.items(args.id)?;
+    let named = args.registers.iter().map(|text| row(&items, text));
+    let named = named.collect::<Result<Vec<_>>>()?;
+    let wanted = if named.is_empty() { &items } else { &named };
     let mut contents = Vec::new();
-    for register in wanted {
-        let code = servos.get(args.id, *register)?;
-        contents.push(RegisterContent {
-            address: register.address,
-            register: register.name,
-            code,
-            means: meaning(*register, code),
-            default: (register.access == Access::Write).then_some(register.default),
-        });
+    for item in wanted {
+        let code = servos.code(args.id, item)?;
+        contents.push(content(&mut servos, args.id, item, code)?);
     }
     talk.result(&contents, || {
         let columns: &[TableColumn<RegisterContent>] = &[
@@ -90,30 +92,99 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
     Ok(ExitStatus::Done)
 }
 
+fn content(
+    servos: &mut Servos<AnyLink>,
+    id: u8,
+    item: &Item,
+    code: i32,
+) -> Result<RegisterContent> {
+    let (address, register) = (item.address, item.name);
+    if servos.detect(id)? == Protocol::Two {
+        let si = item.quantity.si(code, servos.model(id)?.current_lsb_a);
+        return Ok(RegisterContent {
+            address,
+            register,
+            code,
+            means: x_meaning(item, code, si),
+            value: si.map(|(value, _)| value),
+            unit: si.map(|(_, unit)| unit),
+            default: None,
+        });
+    }
+    let row = u8::try_from(address).ok().and_then(Register::at);
+    Ok(RegisterContent {
+        address,
+        register,
+        code,
+        means: row.map_or(String::new(), |row| meaning(*row, code as u16)),
+        value: None,
+        unit: None,
+        default: (row.filter(|row| row.access == Access::Write)).map(|row| row.default),
+    })
+}
+
 /// Writes, reads back, shows.
 pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
-    let WriteArgs {
-        id, register, code, ..
-    } = args;
-    if register.access == Access::Read {
+    let (id, code) = (args.id, args.code);
+    let mut servos = args.port.servos()?;
+    let item = row(&servos.items(id)?, &args.register)?;
+    if item.access == Access::Read {
         return Err(Error::usage(
-            format!("`{}` can only be read", register.name),
+            format!("`{}` can only be read", item.name),
             "the servo measures it",
         ));
     }
-    if !(register.min..=register.max).contains(code) {
+    if !(item.min..=item.max).contains(&code) {
         return Err(Error::usage(
-            format!("{code} is no code of `{}`", register.name),
-            format!("give {} to {}", register.min, register.max),
+            format!("{code} is no code of `{}`", item.name),
+            format!("give {} to {}", item.min, item.max),
         ));
     }
-    let mut servos = args.port.servos()?;
-    let before = servos.get(*id, *register)?;
-    servos.set(*id, *register, *code)?;
-    let name = register.name;
+    let before = servos.code(id, &item)?;
+    servos.set_code(id, &item, code)?;
+    let name = item.name;
     let data = json!({ "id": id, "register": name, "before": before, "code": code });
     talk.result(&data, || format!("servo {id}: {name} {before} -> {code}"))?;
     Ok(ExitStatus::Done)
+}
+
+/// A code of a servo of Protocol 2.0 in words.
+fn x_meaning(item: &Item, code: i32, si: Option<(f64, &str)>) -> String {
+    let of_bits = |code| {
+        x::hardware_errors(code as u8)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    match (*item, si) {
+        (x::PROFILE_VELOCITY | x::PROFILE_ACCELERATION, _) if code == 0 => "no limit".to_string(),
+        (x::BUS_WATCHDOG, _) if code == 0 => "off".to_string(),
+        (x::BUS_WATCHDOG, _) if code < 0 => "tripped: write 0 to clear it".to_string(),
+        (_, Some((angle_rad, "rad"))) => format!("{:.1} deg", angle_rad.to_degrees()),
+        (_, Some((value, "degC"))) => format!("{value:.0} C"),
+        (_, Some((share, "of full output"))) => format!("{:.1} % of full output", share * 100.0),
+        (x::RETURN_DELAY, Some((value_s, _))) => format!("{:.0} us", value_s * 1e6),
+        (_, Some((value, unit))) => format!("{value:.3} {unit}"),
+        (x::BAUD, _) => x::baud_of(code as u8).map_or(String::new(), |b| format!("{b} baud")),
+        (x::SHUTDOWN | x::HARDWARE_ERROR, _) => of_bits(code),
+        (x::OPERATING_MODE, _) => match code {
+            0 => "current",
+            1 => "velocity",
+            3 => "position",
+            4 => "extended position",
+            5 => "current-based position",
+            16 => "PWM",
+            _ => "",
+        }
+        .to_string(),
+        (x::STATUS_LEVEL, _) => level(code),
+        _ => String::new(),
+    }
+}
+
+fn level(code: i32) -> String {
+    let words = ["answers PING only", "answers reading", "answers all"];
+    let word = usize::try_from(code).ok().and_then(|code| words.get(code));
+    word.unwrap_or(&"").to_string()
 }
 
 /// A code in words.
@@ -142,10 +213,7 @@ pub fn meaning(register: Register, code: u16) -> String {
         ct::RETURN_DELAY => format!("{} us", 2 * code),
         ct::BAUD => format!("{} baud", ct::baud_of(code as u8)),
         ct::MAX_TORQUE | ct::TORQUE_LIMIT => format!("{:.0} %", f64::from(code) / 10.23),
-        ct::STATUS_LEVEL => ["answers PING only", "answers reading", "answers all"]
-            .get(usize::from(code))
-            .unwrap_or(&"")
-            .to_string(),
+        ct::STATUS_LEVEL => level(i32::from(code)),
         _ => String::new(),
     }
 }

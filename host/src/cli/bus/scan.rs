@@ -1,13 +1,15 @@
-//! `bus scan`: pings every id and reads what answers.
+//! `bus scan`: pings every id in Protocol 1.0, all at once in 2.0, and reads what answers.
+//!
+//! `--protocol` leaves the other one out.
 
 use crate::cli::port::{AnyLink, Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk, show::table_of};
 use handstand::Result;
 use handstand::link::record::no_response;
-use handstand::link::{ServoError, ServoResult, Servos};
+use handstand::link::{Protocol, ServoError, ServoResult, Servos, StatusError};
 use handstand::output::table::TableColumn;
-use handstand_shared::control_table as ct;
-use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::control_table::models::ServoModel;
+use handstand_shared::control_table::{self as ct, Quantity, x};
 use handstand_shared::raw::Position;
 use serde::Serialize;
 
@@ -25,6 +27,7 @@ pub struct ScanArgs {
 #[derive(Debug, Serialize)]
 pub struct Found {
     pub id: u8,
+    pub protocol: Protocol,
     pub model: u16,
     pub firmware: u16,
     pub return_delay_us: u16,
@@ -51,7 +54,8 @@ pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
 fn table(found: &[Found]) -> String {
     let columns: &[TableColumn<Found>] = &[
         ("Id", &|s| s.id.to_string()),
-        ("Model", &|s| model(s.model)),
+        ("Protocol", &|s| s.protocol.to_string()),
+        ("Model", &|s| model(s)),
         ("Firmware", &|s| s.firmware.to_string()),
         ("Return delay", &|s| format!("{} us", s.return_delay_us)),
         ("Status level", &|s| s.status_level.to_string()),
@@ -80,8 +84,37 @@ pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Resul
     }
 }
 
-/// Pings these ids and reads what answers.
+/// Pings these ids and reads what answers, in both protocols unless one was asked for. The servos
+/// are left with the protocol that more of them speak.
 pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
+    let asked = servos.protocol;
+    let mut found = Vec::new();
+    if asked != Some(Protocol::Two) {
+        servos.protocol = Some(Protocol::One);
+        found = scan_one(servos, ids, talk)?;
+    }
+    if asked != Some(Protocol::One) {
+        servos.protocol = Some(Protocol::Two);
+        let ones = found.len();
+        // A servo that did not hear the broadcast, or was not heard, is asked by itself.
+        let all = servos.ping_all()?;
+        for id in ids {
+            let is_there = all.contains(id) || (ids.len() <= FEW && servos.ping(*id).is_ok());
+            if is_there && let Ok(error) = servos.ping(*id) {
+                found.push(read(servos, *id, error)?);
+            }
+        }
+        if asked.is_none() && 2 * ones >= found.len() {
+            servos.protocol = Some(Protocol::One);
+        }
+    }
+    Ok(found)
+}
+
+/// So many ids are pinged one by one even where a broadcast did not find them.
+const FEW: usize = 20;
+
+fn scan_one(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
     let bar = talk.bar(ids.len() as u64);
     let mut found = Vec::new();
     for id in ids {
@@ -109,22 +142,43 @@ pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
     Ok(found)
 }
 
-fn read(servos: &mut Servos<AnyLink>, id: u8, error: ErrorBits) -> ServoResult<Found> {
+fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult<Found> {
+    let protocol = servos.detect(id)?;
+    let (position_rad, error_flags) = match protocol {
+        Protocol::One => {
+            let code = servos.get(id, ct::PRESENT_POSITION)?;
+            (Position(code).to_rad(), error.names())
+        }
+        Protocol::Two => {
+            let code = servos.code(id, &x::PRESENT_POSITION)?;
+            let position = Quantity::Position.si(code, None);
+            let names = match error.has_alert() {
+                true => servos.hardware_errors(id)?,
+                false => Vec::new(),
+            };
+            (position.map_or(0.0, |(rad, _)| rad), names)
+        }
+    };
     Ok(Found {
         id,
+        protocol,
         model: servos.get(id, ct::MODEL)?,
         firmware: servos.get(id, ct::FIRMWARE)?,
         return_delay_us: 2 * servos.get(id, ct::RETURN_DELAY)?,
         status_level: servos.get(id, ct::STATUS_LEVEL)?,
-        position_rad: Position(servos.get(id, ct::PRESENT_POSITION)?).to_rad(),
+        position_rad,
         supply_v: f64::from(servos.get(id, ct::PRESENT_SUPPLY)?) * 0.1,
         temperature_celsius: servos.get(id, ct::PRESENT_TEMPERATURE)?,
-        error_flags: error.names().collect(),
+        error_flags,
     })
 }
 
-fn model(number: u16) -> String {
-    match number {
+fn model(servo: &Found) -> String {
+    if servo.protocol == Protocol::Two {
+        let model = ServoModel::of(servo.model);
+        return model.map_or_else(|| servo.model.to_string(), |model| model.name.to_string());
+    }
+    match servo.model {
         12 => "AX-12".to_string(),
         18 => "AX-18".to_string(),
         300 => "AX-12W".to_string(),

@@ -2,7 +2,8 @@
 //!
 //! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms;
 //! status level 1 spares the answers to writes. A new id is given only while a single servo is
-//! connected: two of one id cannot be told apart.
+//! connected: two of one id cannot be told apart. Servos of Protocol 2.0 take these settings with
+//! torque off, and no id above 252.
 
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
@@ -53,9 +54,9 @@ pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
             servos.set(only, ID, u16::from(new))?;
             changes.push(RegisterChange {
                 id: new,
-                register: ID,
-                before: u16::from(only),
-                code: u16::from(new),
+                register: servos.item(new, ID)?,
+                before: i32::from(only),
+                code: i32::from(new),
             });
         }
         ids = vec![new];
@@ -71,9 +72,9 @@ pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
                 servos.set(*id, register, code)?;
                 changes.push(RegisterChange {
                     id: *id,
-                    register,
-                    before,
-                    code,
+                    register: servos.item(*id, register)?,
+                    before: i32::from(before),
+                    code: i32::from(code),
                 });
             }
         }

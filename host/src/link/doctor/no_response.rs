@@ -10,7 +10,9 @@ use crate::error::Result;
 use handstand_shared::message::Condition;
 
 /// Speeds servos are found at, likeliest first.
-const BAUDS: [u32; 6] = [1_000_000, 57_600, 115_200, 500_000, 200_000, 9_600];
+const BAUDS: [u32; 9] = [
+    1_000_000, 57_600, 115_200, 500_000, 200_000, 9_600, 2_000_000, 3_000_000, 4_000_000,
+];
 
 /// No servo responds: another speed, a controller that is no adapter now, no power, or the line is
 /// not connected.
@@ -24,6 +26,22 @@ pub(super) fn no_response<L: SerialLink>(
     if let Some(found) = firmware(servos, step)? {
         causes.push(found);
         return Ok(());
+    }
+    if let Some(asked) = servos.protocol.take() {
+        step("the other protocol");
+        let there = ids.iter().any(|id| servos.ping(*id).is_ok());
+        match servos.protocol {
+            Some(found) if there && found != asked => {
+                causes.push(cause(
+                    1.0,
+                    format!("the protocol is wrong: servos answer in Protocol {found}"),
+                    format!("silent in Protocol {asked}"),
+                    "leave --protocol out",
+                ));
+                return Ok(());
+            }
+            _ => servos.protocol = None,
+        }
     }
     let own = servos.link().baud();
     for baud in BAUDS.into_iter().filter(|baud| *baud != own) {

@@ -1,6 +1,7 @@
 //! Causes where some servos respond.
 
 use super::super::port::SerialLink;
+use super::super::protocol::Protocol;
 use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
 use super::disturbance::{disturbances, is_twice};
@@ -25,7 +26,7 @@ pub(super) fn partial_response<L: SerialLink>(
     causes.extend(disturbances(pings));
     for test in pings.iter().filter(|test| !test.error_flags.is_empty()) {
         let supply = servos.get(test.id, PRESENT_SUPPLY).ok();
-        causes.push(error_flags(test, supply));
+        causes.push(error_flags(test, supply, servos.protocol));
     }
     let mut delays = BTreeMap::<u16, Vec<u8>>::new();
     for test in pings.iter().filter(|test| test.answered > 0) {
@@ -105,10 +106,13 @@ fn missing(test: &PingTest) -> Cause {
     )
 }
 
-fn error_flags(test: &PingTest, supply: Option<u16>) -> Cause {
+fn error_flags(test: &PingTest, supply: Option<u16>, protocol: Option<Protocol>) -> Cause {
     let (id, errors) = (test.id, test.error_flags.join(", "));
     let has = |bits: ErrorBits| bits.names().any(|name| test.error_flags.contains(&name));
-    let remedy = if has(ErrorBits::OVERLOAD) {
+    let reboot = format!("remove the cause, then: handstand bus reboot {id}");
+    let remedy = if protocol == Some(Protocol::Two) {
+        reboot.as_str()
+    } else if has(ErrorBits::OVERLOAD) {
         "take the load off it; it recovers when its torque limit is written, then torque enable"
     } else if has(ErrorBits::OVERHEAT) {
         "let it cool down"

@@ -5,7 +5,6 @@ use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
 use crate::error::Result;
 use handstand_shared::control_table::RETURN_DELAY;
-use handstand_shared::dynamixel::ErrorBits;
 use serde::Serialize;
 
 /// How often each servo is pinged.
@@ -43,22 +42,24 @@ pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result
     if let Err(error) = servos.get(id, RETURN_DELAY) {
         error.port()?;
     }
-    let mut flags = ErrorBits(0);
+    let mut alert = false;
     for round in 0..PINGS {
         match servos.ping(id) {
             Ok(error) => {
                 test.answered += 1;
-                flags = flags.with(error);
+                add(&mut test.error_flags, error.names());
+                alert |= error.has_alert();
                 test.doubled += usize::from(servos.stragglers()? > 0);
             }
             Err(ServoError::NoResponse { .. }) => match servos.stragglers()? {
                 0 => test.silent += 1,
                 _ => test.late += 1,
             },
-            Err(ServoError::Garbled { .. } | ServoError::Refused { .. }) => test.garbled += 1,
+            Err(ServoError::Port(error)) => return Err(error),
             Err(ServoError::UnexpectedId { .. }) => test.unexpected_ids += 1,
             Err(ServoError::CorruptedRequest { .. }) => test.corrupted_requests += 1,
-            Err(ServoError::Port(error)) => return Err(error),
+            // What is left is an answer that says nothing.
+            Err(_) => test.garbled += 1,
         }
         // An absent servo need not be asked so often.
         if round == 2 && test.silent == 3 {
@@ -66,6 +67,21 @@ pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result
             break;
         }
     }
-    test.error_flags = flags.names().collect();
+    if alert {
+        // The alert says no more than that there is one; it comes with good data.
+        match servos.hardware_errors(id) {
+            Ok(names) => test.error_flags = names,
+            Err(error) => drop(error.port()?),
+        }
+    }
     Ok(test)
+}
+
+/// Adds the names that are not there.
+fn add(names: &mut Vec<&'static str>, more: Vec<&'static str>) {
+    for name in more {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::link::virtual_cm5::SimLink;
 
 fn diagnose(words: &str, ids: &[u8]) -> BusDiagnosis {
-    examine(SimLink::adapter(words).unwrap(), ids, |_| ()).unwrap()
+    examine(SimLink::adapter(words).unwrap(), ids, None, |_| ()).unwrap()
 }
 
 /// The likeliest cause named for each fault that can be put into the bus.
@@ -40,6 +40,23 @@ fn every_fault_is_named_first() {
         ("ids=1-4,delay=0,supply=5", "reports: voltage"),
         ("ids=1-4,delay=0,level=0", "has status level 0"),
         ("ids=1-4,delay=250", "servos 1-4 wait 500 us"),
+        (
+            "model=XL330-M288,ids=1-4,delay=0,dead=3",
+            "servo 3 is not there",
+        ),
+        (
+            "model=XL330-M288,ids=1-4,delay=0,baud=6",
+            "servos answer at 4000000 baud",
+        ),
+        (
+            "model=XL330-M288,ids=1-4,delay=0,flip=0.2",
+            "bits are wrong on the way from the servos",
+        ),
+        (
+            "model=XL330-M288,ids=1-4,delay=0,overload=2",
+            "servo 2 reports: overload",
+        ),
+        ("model=XL330-M288,ids=1-4", "servos 1-4 wait 500 us"),
         ("ids=1-4,dead=1-4", "the servos have no power"),
         (
             "ids=1-4,dead=1-4,echo",
@@ -54,6 +71,17 @@ fn every_fault_is_named_first() {
             .cause;
         assert!(first.contains(said), "{words}: {:?}", diagnosis.causes);
     }
+}
+
+#[test]
+fn a_shutdown_is_mended_by_a_reboot_and_a_wrong_protocol_named() {
+    let diagnosis = diagnose("model=XL330-M288,ids=1-4,delay=0,hot=2", &[1, 2, 3, 4]);
+    assert!(diagnosis.causes[0].remedy.contains("bus reboot 2"));
+    assert_eq!(diagnosis.protocol, Some(Protocol::Two));
+    let link = SimLink::adapter("model=XL330-M288,ids=1-4,delay=0").unwrap();
+    let wrong = examine(link, &[1, 2], Some(Protocol::One), |_| ()).unwrap();
+    let first = &wrong.causes[0].cause;
+    assert!(first.contains("Protocol 2.0"), "{first}");
 }
 
 #[test]

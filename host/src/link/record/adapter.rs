@@ -1,17 +1,17 @@
-//! Servos read one by one, through an adapter.
+//! Servos of Protocol 1.0 read one by one, through an adapter.
 
 use super::sample::{RobotSample, ServoSample};
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::Result;
-use crate::link::{SerialLink, Servos};
+use crate::link::{Protocol, SerialLink, Servos, StatusError, emergency_packet};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
-use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request};
+use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::raw::{Position, TorqueLimit};
 use std::time::Duration;
 
-/// Servos behind an adapter, read one by one.
+/// Servos of Protocol 1.0 behind an adapter, read one by one.
 pub struct Adapter<L: SerialLink> {
     servos: Servos<L>,
     ids: Vec<u8>,
@@ -47,7 +47,7 @@ impl<L: SerialLink> Adapter<L> {
     fn read(&mut self, place: usize) -> Result<ServoSample> {
         let id = self.ids[place];
         let goal_rad = self.goals[place].map(Position::to_rad);
-        let joint = match self.servos.read(id, PRESENT_POSITION.address, 8) {
+        let joint = match self.servos.read(id, u16::from(PRESENT_POSITION.address), 8) {
             Ok(reading) => {
                 self.danger = self.danger.take().or_else(|| danger(id, reading.error));
                 ServoSample::of_reading(&reading).unwrap_or_default()
@@ -95,6 +95,7 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
             joints,
             gyro: None,
             torque_on: self.commanded.then_some(self.armed),
+            has_current: false,
         }))
     }
 
@@ -118,14 +119,8 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
     }
 
     fn emergency_off(&mut self) -> Option<EmergencyOff> {
-        let mut packet = [0; 16];
-        let off = Request::Write {
-            address: TORQUE_ENABLE.address,
-            data: &[0],
-        };
-        let length = off.emit(BROADCAST, &mut packet)?;
         let voice = self.servos.link().second_writer()?;
-        Some(send_twice(voice, packet[..length].to_vec()))
+        Some(send_twice(voice, emergency_packet(Protocol::One)))
     }
 
     fn danger(&self) -> Option<String> {
@@ -142,7 +137,10 @@ impl<L: SerialLink> Drop for Adapter<L> {
     }
 }
 
-fn danger(id: u8, error: ErrorBits) -> Option<String> {
+fn danger(id: u8, error: StatusError) -> Option<String> {
+    let StatusError::Flags(error) = error else {
+        return None;
+    };
     let grave = [ErrorBits::OVERLOAD, ErrorBits::OVERHEAT, ErrorBits::VOLTAGE];
     let is_grave = grave.into_iter().any(|bits| error.has(bits));
     is_grave.then(|| {

@@ -1,5 +1,5 @@
 //! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`,
-//! `supply1_v`, `temperature1_celsius`, `error1`; where a CM-5 reads the servos, `gyro_code`,
+//! `supply1_v`, `temperature1_celsius`, `error1`, and `current1_a` where servos measure it; where a CM-5 reads the servos, `gyro_code`,
 //! `gyro_zero`, `gyro_rad_s` behind them; and `torque_on`, where that is known. What a servo did
 //! not say is an empty field.
 //!
@@ -14,13 +14,21 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
+/// Columns that not every recording has.
+#[derive(Debug, Clone, Copy, Default)]
+struct Columns {
+    current: bool,
+    gyro: bool,
+    torque: bool,
+}
+
 /// Writes row by row, each with one call to the system: a killed program leaves whole rows.
 pub(super) struct CsvWriter {
     file: File,
     row: String,
     ids: Vec<u8>,
-    /// Whether there are columns of a gyro and of torque, once the header is written.
-    has: Option<(bool, bool)>,
+    /// Which columns there are besides, once the header is written.
+    has: Option<Columns>,
 }
 
 impl CsvWriter {
@@ -34,40 +42,44 @@ impl CsvWriter {
         }
     }
 
-    fn begin(&mut self, has_gyro: bool, has_torque: bool) -> std::io::Result<()> {
+    fn begin(&mut self, has: Columns) -> std::io::Result<()> {
         let mut header = String::from("time_s");
         for id in &self.ids {
-            for (before, behind) in ServoSample::NAMES {
+            for (before, behind) in of_servo(ServoSample::NAMES, has) {
                 // Writing to a string does not fail.
                 let _ = write!(header, ",{before}{id}{behind}");
             }
         }
-        for name in GyroSample::NAMES.iter().filter(|_| has_gyro) {
+        for name in GyroSample::NAMES.iter().filter(|_| has.gyro) {
             let _ = write!(header, ",{name}");
         }
-        header += if has_torque { ",torque_on\n" } else { "\n" };
-        self.has = Some((has_gyro, has_torque));
+        header += if has.torque { ",torque_on\n" } else { "\n" };
+        self.has = Some(has);
         self.file.write_all(header.as_bytes())
     }
 }
 
 impl Writer for CsvWriter {
     fn write(&mut self, sample: &RobotSample) -> std::io::Result<()> {
-        let has = (sample.gyro.is_some(), sample.torque_on.is_some());
+        let has = Columns {
+            current: sample.has_current,
+            gyro: sample.gyro.is_some(),
+            torque: sample.torque_on.is_some(),
+        };
         if self.has.is_none() {
-            self.begin(has.0, has.1)?;
+            self.begin(has)?;
         }
-        let (has_gyro, has_torque) = self.has.unwrap_or(has);
+        let has = self.has.unwrap_or(has);
         let gyro = sample.gyro.map_or([None; 3], |gyro| gyro.values());
-        let gyro = gyro.into_iter().filter(|_| has_gyro);
+        let gyro = gyro.into_iter().filter(|_| has.gyro);
         let torque = sample.torque_on.map(|on| f64::from(u8::from(on)));
-        let torque = std::iter::once(torque).filter(|_| has_torque);
+        let torque = std::iter::once(torque).filter(|_| has.torque);
         self.row.clear();
         let _ = write!(self.row, "{:.6}", sample.time_s);
         for value in sample
             .joints
             .iter()
-            .flat_map(ServoSample::values)
+            .flat_map(|joint| of_servo(joint.values(), has))
             .chain(gyro)
             .chain(torque)
         {
@@ -89,9 +101,14 @@ impl Writer for CsvWriter {
     fn finish(&mut self) -> std::io::Result<()> {
         match self.has {
             Some(_) => Ok(()),
-            None => self.begin(false, false),
+            None => self.begin(Columns::default()),
         }
     }
+}
+
+/// Those of a servo's columns that the recording has: current comes last.
+fn of_servo<T>(all: [T; 8], has: Columns) -> impl Iterator<Item = T> {
+    all.into_iter().take(if has.current { 8 } else { 7 })
 }
 
 /// Where each quantity stands in a row.
@@ -100,7 +117,7 @@ struct RecordingLayout {
     time: usize,
     ids: Vec<u8>,
     /// Per servo, in the order of [`ServoSample::NAMES`].
-    joints: Vec<[Option<usize>; 7]>,
+    joints: Vec<[Option<usize>; 8]>,
     gyro: [Option<usize>; 3],
     torque_on: Option<usize>,
 }
@@ -139,6 +156,7 @@ impl RecordingLayout {
             joints: joints.map(|own| ServoSample::of(own.map(value))).collect(),
             gyro: GyroSample::of(self.gyro.map(value)),
             torque_on: value(self.torque_on).map(|on| on != 0.0),
+            has_current: self.joints.iter().any(|own| own[7].is_some()),
         }
     }
 

@@ -4,7 +4,7 @@
 use super::tally::{Quantiles, RecordingTally};
 use super::{SampleSource, Stream};
 use crate::error::{Error, Result};
-use crate::link::{SerialLink, Servos};
+use crate::link::{Protocol, SerialLink, Servos};
 use handstand_shared::control_table::RETURN_DELAY;
 use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS};
 use handstand_shared::frame::wire_length;
@@ -29,6 +29,9 @@ pub struct LatencyBudget {
     pub rest_us: f64,
     /// From sample to sample, as fast as possible; of a stream as the CM-5 sends them.
     pub round_us: Quantiles,
+    /// Time of a round's bytes on the line, where all servos are read at once (Protocol 2.0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit_us: Option<f64>,
     /// Sampling time that is wanted.
     pub period_us: f64,
     /// Whether 99 % of the rounds fit it.
@@ -47,8 +50,9 @@ pub struct RoundTrip {
 }
 
 impl RoundTrip {
-    /// Ping servos behind an adapter, at least 50 times. A ping and its reply are 6 bytes each, on
-    /// the line and, where the line is not the bus itself, on the bus again.
+    /// Ping servos behind an adapter, at least 50 times. A ping and its reply are 6 bytes each (10
+    /// and 14 in Protocol 2.0), on the line and, where the line is not the bus itself, on the bus
+    /// again.
     ///
     /// # Errors
     /// No servo answers, or the port fails.
@@ -64,15 +68,19 @@ impl RoundTrip {
                 }
             }
         }
+        let bytes = match servos.protocol {
+            Some(Protocol::Two) => 24,
+            _ => 12,
+        };
         let is_bus = servos.link().baud() >= 900_000;
         let bytes_us = if is_bus {
             0.0
         } else {
-            12.0 * 1e-3 * BYTE_NS as f64
+            f64::from(bytes) * 1e-3 * BYTE_NS as f64
         };
         Ok(RoundTrip {
             times_us: Quantiles::of(times_us).ok_or_else(no_response)?,
-            line_us: micros(servos.link().line_time(12)),
+            line_us: micros(servos.link().line_time(bytes as usize)),
             bus_us: delay_us + 1e-3 * PING_REPLY_NS as f64 + bytes_us,
             jitter_us: 0.0,
         })
@@ -133,6 +141,7 @@ impl RoundTrip {
             line_us: self.line_us,
             bus_us: self.bus_us,
             round_us,
+            limit_us: None,
             period_us,
             missing: tally.missing,
         })

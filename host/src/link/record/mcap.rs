@@ -18,7 +18,7 @@ const STATES: &str = "/joint_states";
 const GOALS: &str = "/joint_goals";
 const IMU: &str = "/imu";
 const HEALTH: &str = "/servo_health";
-const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]},"torque_on":{"type":["boolean","null"]}}}"#;
+const HEALTH_SCHEMA: &str = r#"{"type":"object","properties":{"supply_v":{"type":"array","items":{"type":["number","null"]}},"temperature_celsius":{"type":"array","items":{"type":["number","null"]}},"error":{"type":"array","items":{"type":["number","null"]}},"current_a":{"type":"array","items":{"type":["number","null"]}},"gyro_code":{"type":["number","null"]},"gyro_zero":{"type":["number","null"]},"torque_on":{"type":["boolean","null"]}}}"#;
 
 /// Health of all servos, as JSON.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -26,6 +26,8 @@ struct Health {
     supply_v: Vec<Option<f64>>,
     temperature_celsius: Vec<Option<f64>>,
     error: Vec<Option<u8>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    current_a: Vec<Option<f64>>,
     #[serde(default)]
     gyro_code: Option<f64>,
     #[serde(default)]
@@ -158,17 +160,16 @@ impl Writer for McapWriter {
             let channel = self.imu()?;
             self.put(channel, time_ns, &imu.to_bytes())?;
         }
+        let each =
+            |value: fn(&ServoSample) -> Option<f64>| sample.joints.iter().map(value).collect();
         let health = Health {
             gyro_code: sample.gyro.map(|gyro| gyro.code),
             gyro_zero: sample.gyro.and_then(|gyro| gyro.zero),
             torque_on: sample.torque_on,
-            supply_v: sample.joints.iter().map(|joint| joint.supply_v).collect(),
-            temperature_celsius: sample
-                .joints
-                .iter()
-                .map(|joint| joint.temperature_celsius)
-                .collect(),
+            supply_v: each(|joint| joint.supply_v),
+            temperature_celsius: each(|joint| joint.temperature_celsius),
             error: sample.joints.iter().map(|joint| joint.error).collect(),
+            current_a: sample.currents(),
         };
         self.put(self.health, time_ns, &serde_json::to_vec(&health)?)?;
         self.count = self.count.wrapping_add(1);
@@ -259,11 +260,13 @@ fn add_health(health: &Health, samples: &mut [RobotSample]) {
         let values = [health.gyro_code, health.gyro_zero, rate_rad_s];
         sample.gyro = GyroSample::of(values);
         sample.torque_on = health.torque_on;
+        sample.has_current = !health.current_a.is_empty();
     }
     for (at, joint) in newest(samples).iter_mut().enumerate() {
         joint.supply_v = health.supply_v.get(at).copied().flatten();
         joint.temperature_celsius = health.temperature_celsius.get(at).copied().flatten();
         joint.error = health.error.get(at).copied().flatten();
+        joint.current_a = health.current_a.get(at).copied().flatten();
     }
 }
 
@@ -291,5 +294,6 @@ fn sample(state: &JointStateMessage, time_s: f64) -> RobotSample {
         joints: joints.collect(),
         gyro: None,
         torque_on: None,
+        has_current: false,
     }
 }

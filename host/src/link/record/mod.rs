@@ -6,6 +6,8 @@
 mod adapter;
 mod csv;
 mod follow;
+mod group_adapter;
+mod group_sample;
 mod latency;
 mod mcap;
 mod motion;
@@ -15,15 +17,17 @@ mod recorder;
 mod report_reader;
 mod run;
 mod sample;
+mod servo_watch;
 mod source;
 mod stream;
 mod tally;
 
 pub use adapter::Adapter;
 pub use follow::{FollowedMotion, MotionStop, follow};
+pub use group_adapter::GroupAdapter;
 pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
-pub use open::{is_cm5, open_source};
+pub use open::{SourceKind, SourceOptions, is_cm5, open_source, open_source_as};
 pub use read::{Recording, read};
 pub use recorder::{FileFormat, RobotRecorder};
 pub use report_reader::ReportReader;
@@ -33,6 +37,9 @@ pub use source::{EmergencyOff, SampleSource};
 pub use stream::{Stream, emergency_off};
 pub use tally::{Quantiles, RecordingTally, Rms};
 
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod group_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod tests;

@@ -1,18 +1,46 @@
 //! Which way servos behind a link are sampled: through a CM-5 that streams, or as an adapter.
 
 use super::adapter::Adapter;
+use super::group_adapter::GroupAdapter;
 use super::latency::no_response;
 use super::source::SampleSource;
 use super::stream::Stream;
 use crate::error::Result;
-use crate::link::{SerialLink, Servos, Session, SessionError};
+use crate::link::{Protocol, SerialLink, Servos, Session, SessionError};
 use std::time::Duration;
 
 /// A line at least as fast as this is an adapter's on the servos' bus, baud.
 const SERVO_BUS_BAUD: u32 = 900_000;
 
-/// Opens servos to be sampled: from a CM-5 that `streams` them, 100 times a second; else one by one
-/// through an adapter, every `period`.
+/// How servos are reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SourceKind {
+    /// A CM-5 reads them.
+    Stream,
+    /// One by one through an adapter, Protocol 1.0.
+    Adapter,
+    /// Together through an adapter, Protocol 2.0.
+    Group {
+        /// Whether their bus watchdog stops them when the line breaks.
+        watchdog: bool,
+    },
+}
+
+/// How servos are to be reached.
+#[derive(Debug, Clone, Copy)]
+pub struct SourceOptions {
+    /// A CM-5 streams them, 100 times a second.
+    pub streams: bool,
+    /// Time from one round to the next through an adapter.
+    pub period: Duration,
+    /// The servos' protocol; that of the first which answers without.
+    pub protocol: Option<Protocol>,
+    /// Whether servos of Protocol 2.0 are moved under their bus watchdog.
+    pub watchdog: bool,
+}
+
+/// Opens servos to be sampled: from a CM-5 that `streams` them, 100 times a second; else through an
+/// adapter, every `period`. Servos of Protocol 2.0 are moved under their bus watchdog.
 ///
 /// # Errors
 /// No firmware, or no servo answers.
@@ -22,14 +50,39 @@ pub fn open_source<L: SerialLink + 'static>(
     streams: bool,
     period: Duration,
 ) -> Result<Box<dyn SampleSource>> {
-    if streams {
-        return Ok(Box::new(Stream::new(link, ids)?));
+    let options = SourceOptions {
+        streams,
+        period,
+        protocol: None,
+        watchdog: true,
+    };
+    Ok(open_source_as(link, ids, options)?.0)
+}
+
+/// The same with all that can be chosen; also how the servos are reached.
+///
+/// # Errors
+/// As [`open_source`]; of Protocol 2.0, a servo that does not answer or lacks the bus watchdog.
+pub fn open_source_as<L: SerialLink + 'static>(
+    link: L,
+    ids: &[u8],
+    options: SourceOptions,
+) -> Result<(Box<dyn SampleSource>, SourceKind)> {
+    let (period, watchdog) = (options.period, options.watchdog);
+    if options.streams {
+        return Ok((Box::new(Stream::new(link, ids)?), SourceKind::Stream));
     }
     let mut servos = Servos::new(link);
-    match ids.iter().any(|id| servos.ping(*id).is_ok()) {
-        true => Ok(Box::new(Adapter::new(servos, ids, period))),
-        false => Err(no_response()),
+    servos.protocol = options.protocol;
+    if !ids.iter().any(|id| servos.ping(*id).is_ok()) {
+        return Err(no_response());
     }
+    if servos.protocol == Some(Protocol::Two) {
+        let source = GroupAdapter::new(servos, ids, period, watchdog)?;
+        return Ok((Box::new(source), SourceKind::Group { watchdog }));
+    }
+    let source = Adapter::new(servos, ids, period);
+    Ok((Box::new(source), SourceKind::Adapter))
 }
 
 /// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,

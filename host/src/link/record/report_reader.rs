@@ -65,6 +65,7 @@ impl ReportReader {
                 rate_rad_s: self.gyro.map(rate),
             }),
             torque_on: torque(report.condition),
+            has_current: false,
         }
     }
 }

@@ -20,6 +20,8 @@ pub struct ServoSample {
     pub temperature_celsius: Option<f64>,
     /// Error bits of its answer.
     pub error: Option<u8>,
+    /// Current, A, where it measures one.
+    pub current_a: Option<f64>,
 }
 
 impl ServoSample {
@@ -48,13 +50,13 @@ impl ServoSample {
                 word(l0, l1),
                 supply,
                 temperature,
-                reading.error.0,
+                reading.error.byte(),
             )
         })
     }
 
     /// Its values in the order of [`ServoSample::NAMES`].
-    pub fn values(&self) -> [Option<f64>; 7] {
+    pub fn values(&self) -> [Option<f64>; 8] {
         [
             self.position_rad,
             self.speed_rad_s,
@@ -63,11 +65,12 @@ impl ServoSample {
             self.supply_v,
             self.temperature_celsius,
             self.error.map(f64::from),
+            self.current_a,
         ]
     }
 
     /// The inverse of [`ServoSample::values`].
-    pub fn of(values: [Option<f64>; 7]) -> Self {
+    pub fn of(values: [Option<f64>; 8]) -> Self {
         let [
             position_rad,
             speed_rad_s,
@@ -76,6 +79,7 @@ impl ServoSample {
             supply_v,
             temperature_celsius,
             error,
+            current_a,
         ] = values;
         ServoSample {
             position_rad,
@@ -85,11 +89,12 @@ impl ServoSample {
             supply_v,
             temperature_celsius,
             error: error.map(|bits| bits as u8),
+            current_a,
         }
     }
 
     /// Column of each value, before and behind the servo's id: `q3_rad`.
-    pub const NAMES: [(&str, &str); 7] = [
+    pub const NAMES: [(&str, &str); 8] = [
         ("q", "_rad"),
         ("dq", "_rad_s"),
         ("load", ""),
@@ -97,6 +102,7 @@ impl ServoSample {
         ("supply", "_v"),
         ("temperature", "_celsius"),
         ("error", ""),
+        ("current", "_a"),
     ];
 }
 
@@ -141,4 +147,14 @@ pub struct RobotSample {
     pub gyro: Option<GyroSample>,
     /// Whether torque is on, where the source knows.
     pub torque_on: Option<bool>,
+    /// Whether there is a servo that measures current; a recording then has a column of each.
+    pub has_current: bool,
+}
+
+impl RobotSample {
+    /// Current of each servo, A; empty where none measures it.
+    pub(super) fn currents(&self) -> Vec<Option<f64>> {
+        let joints = self.joints.iter().filter(|_| self.has_current);
+        joints.map(|joint| joint.current_a).collect()
+    }
 }

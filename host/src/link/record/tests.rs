@@ -134,6 +134,7 @@ fn the_gyro_is_recorded_in_both_formats() {
                         rate_rad_s: scale.map(|scale| scale * f64::from(at - 12)),
                     }),
                     torque_on: scale.map(|_| at > 20),
+                    has_current: false,
                 })
                 .collect();
             let mut recorder = RobotRecorder::create(&path, &[1], false).unwrap();

@@ -3,6 +3,7 @@
 use super::text;
 use handstand::link::Exchange;
 use handstand_shared::dynamixel::{Parser, Request, Status};
+use handstand_shared::dynamixel2;
 use handstand_shared::frame::{Decoder, MAX_FRAME, encode};
 use handstand_shared::gains::GainTable;
 use handstand_shared::message::{self, Command, Message, Report};
@@ -25,6 +26,40 @@ pub(crate) fn dynamixel(bytes: &[u8]) {
             && let Some(length) = request.emit(packet.id(), &mut out)
         {
             assert_eq!(&out[..length], packet.bytes(), "{request:?}");
+        }
+    }
+}
+
+/// The same of Protocol 2.0. A sender that stuffs otherwise may be read, so what is read is written
+/// and read again. Parts of a joint status lie within it.
+pub(crate) fn dynamixel2(bytes: &[u8]) {
+    let mut receiver = dynamixel2::Receiver::<256>::default();
+    for byte in bytes {
+        let mut packet = receiver.push(*byte);
+        while let Some(found) = packet {
+            let (id, instruction) = (found.id(), found.instruction());
+            let parameters: Vec<u8> = found.parameters().collect();
+            let lengths = [2, 4, 10].into_iter().cycle().take(8);
+            for part in dynamixel2::fast_parts(found.bytes(), lengths) {
+                assert!(part.data.len() < found.bytes().len());
+            }
+            let mut out = [0; 512];
+            if let Ok(request) = dynamixel2::Request::parse(instruction, &parameters) {
+                let length = request.emit(id, &mut out).expect("it fits twice over");
+                let again = dynamixel2::Packet::new(&out[..length]).expect("a sound packet");
+                assert!(
+                    again.parameters().eq(parameters.iter().copied()),
+                    "{request:?}"
+                );
+            }
+            if let Some((error, data)) = found.status() {
+                let data: Vec<u8> = data.collect();
+                let length = dynamixel2::emit_status(&mut out, id, error, &data);
+                let length = length.expect("it fits twice over");
+                let again = dynamixel2::Packet::new(&out[..length]).expect("a sound packet");
+                assert_eq!(again.status().map(|(_, data)| data.collect()), Some(data));
+            }
+            packet = receiver.next_packet();
         }
     }
 }
