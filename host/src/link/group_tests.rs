@@ -91,6 +91,7 @@ fn a_disturbed_line_is_asked_again_and_never_believed() {
     }
     assert!(servos.retries > 50, "{}", servos.retries);
     let mut servos = Servos::new(Faulty::new(sim("model=xl430,ids=1"), 0.01, 0.001, 5));
+    servos.protocol = Some(Protocol::Two);
     servos.tries = 10;
     assert!((0..500).all(|_| servos.code(1, &x::PRESENT_POSITION).unwrap() == 2048));
     assert!(servos.retries > 10);
