@@ -167,7 +167,9 @@ fn column(text: &str) -> Result<Column, String> {
             resolution: (unit.name == "ticks").then_some(unit.si),
             shift_s: 0.0,
         }),
-        Some(_) if !name.is_empty() => Err("say how many make a turn: ticks/1228.8".to_string()),
+        Some(unit) if !name.is_empty() && unit.name == "ticks" => {
+            Err("say how many make a turn: ticks/1228.8".to_string())
+        }
         _ => Err(format!(
             "{}; units are those of a model file's [log]: rad deg turn rad/s deg/s rpm, N m, V, 1, \
              % and so on",

@@ -61,6 +61,12 @@ impl Dimension {
         }
     }
 
+    /// Units that measure this and are one size in all logs.
+    pub fn plain_units(self) -> impl Iterator<Item = Unit> {
+        let units = self.unit_names().filter_map(|name| Unit::named(name, None));
+        units.filter(|unit| unit.si.is_finite())
+    }
+
     /// Names of the units that measure this, for error messages.
     pub fn unit_names(self) -> impl Iterator<Item = &'static str> {
         UNITS
@@ -70,7 +76,7 @@ impl Dimension {
     }
 }
 
-/// Name, dimension, and how many SI units one is. Ticks need their count per turn.
+/// Name, dimension, and how many SI units one is: not a number where a column has to say it.
 const UNITS: &[(&str, Dimension, f64)] = &[
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),
@@ -88,6 +94,9 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("N m", Dimension::Torque, 1.0),
     ("mN m", Dimension::Torque, 1e-3),
     ("kgf cm", Dimension::Torque, 0.098_066_5),
+    // Currents of a motor, which are torques by its constant.
+    ("A", Dimension::Torque, f64::NAN),
+    ("mA", Dimension::Torque, f64::NAN),
     ("V", Dimension::Voltage, 1.0),
     ("mV", Dimension::Voltage, 1e-3),
     ("kg", Dimension::Mass, 1.0),
@@ -108,11 +117,14 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// The unit of this name; `ticks` needs `ticks_per_turn`.
-    pub fn named(name: &str, ticks_per_turn: Option<f64>) -> Option<Unit> {
+    /// The unit of this name; `scale` is what a column says under [`Unit::scale_key`]: counts per
+    /// turn, or N m per ampere.
+    pub fn named(name: &str, scale: Option<f64>) -> Option<Unit> {
         let (name, dimension, factor) = UNITS.iter().find(|(known, _, _)| *known == name)?;
-        let si = match ticks_per_turn {
-            Some(ticks) if *name == "ticks" => TAU / ticks,
+        let si = match (*name, scale) {
+            ("ticks", Some(ticks)) => TAU / ticks,
+            ("A", Some(constant)) => constant,
+            ("mA", Some(constant)) => 1e-3 * constant,
             _ => *factor,
         };
         Some(Unit {
@@ -120,6 +132,25 @@ impl Unit {
             dimension: *dimension,
             si,
         })
+    }
+
+    /// The key under which a column says the size of a unit of this name, where it has to.
+    pub fn scale_key(name: &str) -> Option<&'static str> {
+        match name {
+            "ticks" => Some("ticks_per_turn"),
+            "A" | "mA" => Some("torque_constant_nm_a"),
+            _ => None,
+        }
+    }
+
+    /// What a column says under [`Unit::scale_key`] of a unit of this size.
+    pub fn scale(self) -> Option<f64> {
+        match self.name {
+            "ticks" => Some(TAU / self.si),
+            "A" => Some(self.si),
+            "mA" => Some(1e3 * self.si),
+            _ => None,
+        }
     }
 
     /// Scales a written number to SI.

@@ -50,10 +50,7 @@ fn of_joint(bench: &Bench, joint: usize) -> Vec<Remedy> {
             .first()
             .is_some_and(|drive| drive.name() != given.name())
         {
-            let units = dimension
-                .unit_names()
-                .filter_map(|name| Unit::named(name, None));
-            let units: Vec<Unit> = units.filter(|u| u.si.is_finite() && fits(*u)).collect();
+            let units: Vec<Unit> = dimension.plain_units().filter(|unit| fits(*unit)).collect();
             let pairs = units
                 .iter()
                 .flat_map(|unit| drives.iter().map(|d| (d.clone(), *unit)));

@@ -250,8 +250,7 @@ fn other_units(model: &Model, quantity: Quantity) -> Vec<Unit> {
         return Vec::new();
     };
     let dimension = column.unit.dimension;
-    let plain = dimension.unit_names().filter(|name| *name != "ticks");
-    let mut units: Vec<Unit> = plain.filter_map(|name| Unit::named(name, None)).collect();
+    let mut units: Vec<Unit> = dimension.plain_units().collect();
     if dimension == Dimension::Angle {
         let ticks = TICKS_PER_TURN.into_iter();
         units.extend(ticks.filter_map(|ticks| Unit::named("ticks", Some(ticks))));
@@ -269,8 +268,7 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
     }
     let declared = model.log.time.unit;
     Dimension::Time
-        .unit_names()
-        .filter_map(|name| Unit::named(name, None))
+        .plain_units()
         .filter(|unit| unit.name != declared.name)
         .filter(|unit| plausible.contains(&(spacing_s / declared.si * unit.si)))
         .map(|unit| Remedy::Unit(vec![(Quantity::Time, unit)]))

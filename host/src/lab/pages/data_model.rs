@@ -122,11 +122,8 @@ fn column(
     };
     let name = column.map(|column| column.name.as_str());
     let unit = column.map(|column| column.unit.name);
-    // Ticks need their count per turn, which stands in the model's text.
-    let units: Vec<&str> = dimension
-        .unit_names()
-        .filter(|known| *known != "ticks")
-        .collect();
+    // The size of the others stands in the model's text.
+    let units: Vec<&str> = dimension.plain_units().map(|unit| unit.name).collect();
     let missing = name.filter(|name| !names.iter().any(|known| known == name));
     html! {
         tr data-quantity=(quantity) {

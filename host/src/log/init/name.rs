@@ -120,7 +120,9 @@ fn bracketed(name: &str) -> (&str, Option<&str>) {
 /// The unit, and of how many words at the end it is made.
 fn unit(words: &[String], bracketed: Option<&str>) -> (Option<(&'static str, Option<f64>)>, usize) {
     if let Some(text) = bracketed {
+        // What a motor's ampere is in N m no header says.
         let known = Unit::named(text, Some(1.0)).map(|unit| unit.name);
+        let known = known.filter(|name| !["A", "mA"].contains(name));
         let known = known.or_else(|| unit_word(&self::words(text).join("_")));
         return (known.map(|unit| (unit, None)), 0);
     }

@@ -2,7 +2,7 @@
 
 use super::{checked, document, misfit, number, put, tables};
 use crate::error::Result;
-use crate::model::{AngleZero, Angles, Column, Drive, Model, Motor};
+use crate::model::{AngleZero, Angles, Column, Drive, Model, Motor, Unit};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -127,8 +127,16 @@ fn set_columns_of(item: &mut Item, old: &[Column], new: &[Column]) -> Option<()>
 fn set_column(table: &mut dyn TableLike, old: &Column, new: &Column) {
     if old.unit != new.unit {
         put(table, "unit", new.unit.name.into());
-        let ticks = (new.unit.name == "ticks").then(|| std::f64::consts::TAU / new.unit.si);
-        put_or_remove(table, "ticks_per_turn", ticks.map(number));
+        for unit in ["ticks", "A"] {
+            let key = Unit::scale_key(unit);
+            let own = new
+                .unit
+                .scale()
+                .filter(|_| Unit::scale_key(new.unit.name) == key);
+            if let Some(key) = key {
+                put_or_remove(table, key, own.map(number));
+            }
+        }
     }
     if old.reversed != new.reversed {
         put_or_remove(table, "reversed", new.reversed.then(|| true.into()));

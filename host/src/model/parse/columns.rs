@@ -11,6 +11,8 @@ use crate::error::Result;
 
 /// Counts per turn; more than 2^32 is no encoder.
 const TICKS: Limits = Limits::within(1.0, 4_294_967_296.0);
+/// Torque of a drive per ampere of its motor, gear included, N m/A.
+const TORQUE_CONSTANT_NM_A: Limits = Limits::within(1e-6, 1e4);
 
 /// Columns whose samples may have been taken at another time than the row's.
 const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
@@ -132,9 +134,7 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     if MOVABLE.contains(&quantity) {
         known.push("shift_s");
     }
-    if table.text("unit")? == Some("ticks") {
-        known.push("ticks_per_turn");
-    }
+    known.extend(table.text("unit")?.and_then(Unit::scale_key));
     if quantity == "payload" {
         known.push("at_m");
     }
@@ -155,8 +155,12 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
 
 fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit> {
     let name = table.required_text("unit")?;
-    let ticks = table.number("ticks_per_turn", TICKS)?;
-    let Some(unit) = Unit::named(name, ticks) else {
+    let scale = match Unit::scale_key(name) {
+        Some(key @ "ticks_per_turn") => table.number(key, TICKS)?,
+        Some(key) => table.number(key, TORQUE_CONSTANT_NM_A)?,
+        None => None,
+    };
+    let Some(unit) = Unit::named(name, scale) else {
         let unit = name.to_string();
         return Err(table.bad("unit", ModelReason::UnknownUnit { unit, wanted }));
     };
@@ -169,8 +173,8 @@ fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit
         };
         return Err(table.bad("unit", reason));
     }
-    match unit.si.is_nan() {
-        true => Err(table.lacks("ticks_per_turn")),
-        false => Ok(unit),
+    match Unit::scale_key(name).filter(|_| unit.si.is_nan()) {
+        Some(key) => Err(table.lacks(key)),
+        None => Ok(unit),
     }
 }

@@ -314,3 +314,48 @@ proptest! {
         let _ = parse(&text.join("\n"));
     }
 }
+
+#[test]
+fn a_current_is_a_torque_by_its_constant() {
+    let text = |unit: &str| {
+        format!(
+            r#"
+[rig]
+name = "arm"
+angle_zero = "hanging"
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 1e-4
+[[joint]]
+drive = "torque"
+[log]
+time = {{ column = "t", unit = "s" }}
+[[log.joint]]
+position = {{ column = "q", unit = "rad" }}
+input = {{ column = "i", {unit} }}
+"#
+        )
+    };
+    for (unit, si) in [("A", 1.8), ("mA", 1.8e-3)] {
+        let model = parse(&text(&format!(
+            "unit = \"{unit}\", torque_constant_nm_a = 1.8"
+        )));
+        let input = model.unwrap().log.joints[0].input.clone().unwrap();
+        let found = input.columns()[0].unit;
+        assert!((found.si - si).abs() < 1e-15, "{found:?}");
+        assert!((found.scale().unwrap() - 1.8).abs() < 1e-12);
+    }
+    let lacks = parse(&text("unit = \"A\"")).unwrap_err();
+    assert!(
+        lacks.to_string().contains("lacks `torque_constant_nm_a`"),
+        "{lacks}"
+    );
+    let beside = "unit = \"N m\", torque_constant_nm_a = 1.8";
+    assert!(
+        parse(&text(beside))
+            .unwrap_err()
+            .to_string()
+            .contains("unknown key")
+    );
+}
