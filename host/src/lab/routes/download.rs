@@ -4,11 +4,9 @@ use super::{blocking, session};
 use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
 use crate::lab::session::{SavedSession, Session};
-use crate::log::Motion;
-use crate::output::number::hex;
-use crate::report::{LogFile, ModelFile, Report, ReportProvenance, html};
+use crate::log::Split;
+use crate::report::{ModelFile, Report, ReportProvenance, html};
 use axum::extract::{Path, State};
-use sha2::{Digest as _, Sha256};
 use std::sync::Arc;
 
 /// A file by what it is.
@@ -42,38 +40,26 @@ pub(super) async fn download(
 fn report(session: &Session, saved: &SavedSession) -> Result<String, LabError> {
     let mut comparisons = Vec::new();
     let mut model_files = Vec::new();
-    let mut logs = Vec::new();
+    let mut split = Split::default();
     for step in 0..=saved.current {
         let evaluation = session.evaluation(saved, step)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         comparisons.push(evaluation.comparison().clone());
-        model_files.push(ModelFile {
-            name: format!("model-{step}.toml"),
-            sha256: hex(Sha256::digest(&saved.steps[step].toml)),
-        });
-        let motions = evaluation.run.data.motions.iter().enumerate();
-        logs = motions
-            .map(|(i, motion)| log_file(motion, evaluation.is_held_out(i)))
-            .collect();
+        let text = saved.steps[step].toml.as_bytes();
+        model_files.push(ModelFile::of(format!("model-{step}.toml"), text));
+        split = Split::default();
+        for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
+            let side = match evaluation.is_held_out(index) {
+                true => &mut split.held_out,
+                false => &mut split.training,
+            };
+            side.push(motion.clone());
+        }
     }
     Ok(html(&Report {
         title: format!("{} against measured motions", comparisons[0].model),
         comparisons,
         diagnosis: None,
-        provenance: ReportProvenance {
-            program_version: env!("CARGO_PKG_VERSION").to_string(),
-            model_files,
-            logs,
-            command: saved.compare_command(),
-        },
+        provenance: ReportProvenance::new(model_files, &split, saved.compare_command()),
     }))
-}
-
-fn log_file(motion: &Motion, held_out: bool) -> LogFile {
-    LogFile {
-        name: motion.name.clone(),
-        sha256: motion.source.sha256.clone(),
-        samples: motion.len(),
-        held_out,
-    }
 }
