@@ -85,16 +85,7 @@ impl Evaluator<'_> {
                 share: guess.gain / target.size(),
             })
         });
-        let single = self.open_values().into_iter().map(|path| vec![path]);
-        let mut values: Vec<Vec<ParameterPath>> = single.collect();
-        values.extend(kinds_of_values(&self.start));
-        values.retain(|paths| {
-            let is_free = |path: &ParameterPath| rest.free.contains(path);
-            !paths
-                .iter()
-                .any(|path| is_free(path) || self.known.contains(path))
-                && Part::Values(paths.clone()) != *part
-        });
+        let values = self.replacing_values(part, rest);
         let by_values = values.into_par_iter().filter_map(|paths| {
             let (moves, share) = self.moves(&paths, &local.fit, &little)?;
             let mut model = rest.model.clone();
@@ -121,6 +112,21 @@ impl Evaluator<'_> {
         others.retain(|other| other.share >= LEAST_SHARE);
         others.sort_by(|a, b| b.share.total_cmp(&a.share));
         others
+    }
+
+    /// Values, alone and as kinds, that may stand for a part: those that are not free already.
+    fn replacing_values(&self, part: &Part, rest: &Fit) -> Vec<Vec<ParameterPath>> {
+        let single = self.open_values().into_iter().map(|path| vec![path]);
+        let mut values: Vec<Vec<ParameterPath>> = single.collect();
+        values.extend(kinds_of_values(&self.start));
+        values.retain(|paths| {
+            let is_free = |path: &ParameterPath| rest.free.contains(path);
+            !paths
+                .iter()
+                .any(|path| is_free(path) || self.known.contains(path))
+                && Part::Values(paths.clone()) != *part
+        });
+        values
     }
 
     /// A small share of a part taken out where the explanation stands: there the derivatives of

@@ -7,7 +7,7 @@ use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Motion, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
-use crate::model::{AngleZero, Angles, Model};
+use crate::model::{AngleZero, Angles, Model, Unit};
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.
@@ -99,20 +99,9 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             )
         }
         Remedy::Unit(columns) => {
-            let each = columns.iter().map(|(quantity, unit)| {
-                let declared = quantity
-                    .column(model)
-                    .map_or("?", |column| column.unit.name);
-                let ticks = match unit.name {
-                    "ticks" => format!(" of {:.0} a turn", std::f64::consts::TAU / unit.si),
-                    _ => String::new(),
-                };
-                let name = name(*quantity, model);
-                format!(
-                    "{name} is written in {}{ticks}, not in {declared}",
-                    unit.name
-                )
-            });
+            let each = columns
+                .iter()
+                .map(|(column, unit)| written_in(*column, unit, model));
             each.collect::<Vec<_>>().join(", ")
         }
         Remedy::Angles(angles) => {
@@ -145,6 +134,22 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             )
         }
     }
+}
+
+/// In which unit a column is written, and in which the model says it is.
+fn written_in(quantity: Quantity, unit: &Unit, model: &Model) -> String {
+    let declared = quantity
+        .column(model)
+        .map_or("?", |column| column.unit.name);
+    let ticks = match unit.name {
+        "ticks" => format!(" of {:.0} a turn", std::f64::consts::TAU / unit.si),
+        _ => String::new(),
+    };
+    let name = name(quantity, model);
+    format!(
+        "{name} is written in {}{ticks}, not in {declared}",
+        unit.name
+    )
 }
 
 /// "as given the model leaves 83 % of the motion unexplained, 512 mrad; so read, 4 %, 21 mrad".

@@ -82,15 +82,9 @@ pub(super) fn judged(law: &str, parameters: &[&str]) -> Result<String, Misplaced
             }
             (Token::Name(name), true) if is_function(name) => written.push_str(name),
             (Token::Name(name), true) => {
-                let variable = VARIABLES.iter().any(|(known, _)| known == name);
-                if CONSTANTS.contains(&name.as_str()) {
-                    written.push_str(name);
-                } else if variable || parameters.contains(&name.as_str()) {
-                    let _ = write!(written, "{{{name}}}");
-                } else {
-                    let known = parameters.iter().map(ToString::to_string).collect();
-                    let name = name.clone();
-                    return misplaced(at, ExpressionReason::UnknownName { name, known });
+                match known(name, parameters) {
+                    Ok(name) => written += &name,
+                    Err(reason) => return misplaced(at, reason),
                 }
                 operand = false;
             }
@@ -119,6 +113,21 @@ pub(super) fn judged(law: &str, parameters: &[&str]) -> Result<String, Misplaced
         Some(at) => misplaced(at, ExpressionReason::Unclosed),
         None => Ok(written),
     }
+}
+
+/// A name as the evaluator reads it: constants as they are, variables and parameters in braces.
+fn known(name: &str, parameters: &[&str]) -> Result<String, ExpressionReason> {
+    let is_variable = VARIABLES.iter().any(|(known, _)| *known == name);
+    if CONSTANTS.contains(&name) {
+        return Ok(name.to_string());
+    }
+    if is_variable || parameters.contains(&name) {
+        return Ok(format!("{{{name}}}"));
+    }
+    Err(ExpressionReason::UnknownName {
+        name: name.to_string(),
+        known: parameters.iter().map(ToString::to_string).collect(),
+    })
 }
 
 fn tokens(law: &str) -> Result<Vec<(usize, Token)>, Misplaced> {

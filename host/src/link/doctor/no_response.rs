@@ -27,21 +27,9 @@ pub(super) fn no_response<L: SerialLink>(
         causes.push(found);
         return Ok(());
     }
-    if let Some(asked) = servos.protocol.take() {
-        step("the other protocol");
-        let there = ids.iter().any(|id| servos.ping(*id).is_ok());
-        match servos.protocol {
-            Some(found) if there && found != asked => {
-                causes.push(cause(
-                    1.0,
-                    format!("the protocol is wrong: servos answer in Protocol {found}"),
-                    format!("silent in Protocol {asked}"),
-                    "leave --protocol out",
-                ));
-                return Ok(());
-            }
-            _ => servos.protocol = None,
-        }
+    if let Some(found) = other_protocol(servos, ids, step) {
+        causes.push(found);
+        return Ok(());
     }
     let own = servos.link().baud();
     for baud in BAUDS.into_iter().filter(|baud| *baud != own) {
@@ -92,6 +80,29 @@ pub(super) fn no_response<L: SerialLink>(
     }
     causes.extend(silence(servos.echoes().unwrap_or(false)));
     Ok(())
+}
+
+/// Whether servos that were asked in one protocol answer in the other.
+fn other_protocol<L: SerialLink>(
+    servos: &mut Servos<L>,
+    ids: &[u8],
+    step: &mut impl FnMut(&str),
+) -> Option<Cause> {
+    let asked = servos.protocol.take()?;
+    step("the other protocol");
+    let there = ids.iter().any(|id| servos.ping(*id).is_ok());
+    match servos.protocol {
+        Some(found) if there && found != asked => Some(cause(
+            1.0,
+            format!("the protocol is wrong: servos answer in Protocol {found}"),
+            format!("silent in Protocol {asked}"),
+            "leave --protocol out",
+        )),
+        _ => {
+            servos.protocol = None;
+            None
+        }
+    }
 }
 
 /// Whether a CM-5 with our firmware is there, but in a mode in which it is no adapter.

@@ -92,14 +92,8 @@ impl JointStates {
     pub fn table(mut self, file: TableFile) -> Result<Table> {
         let most = |topic: &&String| self.topics[*topic].stamp_ns.len();
         let longest = self.topics.keys().rev().max_by_key(most).cloned();
-        let name = self
-            .topics
-            .contains_key(STATES)
-            .then(|| STATES.to_string())
-            .or(longest);
-        let Some((name, rows)) =
-            name.and_then(|name| Some((name.clone(), self.topics.remove(&name)?)))
-        else {
+        let own = self.topics.remove(STATES);
+        let Some(rows) = own.or_else(|| self.topics.remove(&longest?)) else {
             return Err(file.wrong(
                 "no message of type sensor_msgs/msg/JointState",
                 "record the topic of the joints' states",
@@ -123,7 +117,6 @@ impl JointStates {
             .map(|(name, topic)| (prefix(&name), topic));
         let count = stamps.len();
         let own_stamps = rows.stamp_ns.clone();
-        let _ = name;
         for (prefix, topic) in std::iter::once((String::new(), rows)).chain(others) {
             let places = match prefix.is_empty() {
                 true => (0..count).map(Some).collect(),

@@ -50,10 +50,8 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
     held(tree, &chosen, &mut left_out);
     let (base, masses) = masses(tree, &chosen, &poses);
     if base.mass_kg > 0.0 {
-        let why = format!(
-            "{} kg stand before the first joint, which does not move",
-            base.mass_kg
-        );
+        let still = base.mass_kg;
+        let why = format!("{still} kg stand before the first joint, which does not move");
         left_out.push(LeftOut::new("base", None, why));
     }
     let mut links: Vec<PlanarLink> = Vec::new();
@@ -65,12 +63,7 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             .get(index + 1)
             .map(|&next| poses[next] * tree.bodies[next].joints[0].anchor_m);
         let mass = &masses[index];
-        if mass.mass_kg <= 0.0 {
-            return Err(Error::usage(
-                format!("{file}: nothing behind joint {} has a mass", joint.name),
-                "give its link an <inertial>, or choose other joints with --joints",
-            ));
-        }
+        with_mass(mass, joint, file)?;
         let com = frame.seen(&(mass.com_m - anchor));
         let along = next.map_or(com, |next| frame.seen(&(next - anchor)));
         let before_rad = direction_rad;
@@ -110,6 +103,17 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         gravity_m_s2: frame.gravity_m_s2,
         left_out,
     })
+}
+
+/// Refuses a link that would turn without inertia.
+fn with_mass(mass: &Inertial, joint: &TreeJoint, file: &str) -> Result<()> {
+    match mass.mass_kg > 0.0 {
+        true => Ok(()),
+        false => Err(Error::usage(
+            format!("{file}: nothing behind joint {} has a mass", joint.name),
+            "give its link an <inertial>, or choose other joints with --joints",
+        )),
+    }
 }
 
 /// Whether a body has one hinge.

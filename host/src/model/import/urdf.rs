@@ -31,26 +31,7 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
             return Err(link.wrong("a second link of this name", "give each link its own name"));
         }
     }
-    let mut carried: Vec<Option<(usize, Element)>> = vec![None; links.len()];
-    let mut seen = HashMap::new();
-    for joint in robot.all("joint") {
-        if seen.insert(joint.required("name")?, ()).is_some() {
-            return Err(joint.wrong(
-                "a second joint of this name",
-                "give each joint its own name",
-            ));
-        }
-        let end = |tag: &'static str| {
-            let lacks = || joint.wrong(format!("the joint lacks <{tag}>"), "name both its links");
-            let name = joint.first(tag).ok_or_else(lacks)?.required("link")?;
-            let unknown = || joint.wrong(format!("there is no link \"{name}\""), "mend the name");
-            index_of.get(name).copied().ok_or_else(unknown)
-        };
-        let (parent, child) = (end("parent")?, end("child")?);
-        if carried[child].replace((parent, joint)).is_some() {
-            return Err(joint.wrong("its child has a second joint", "a link hangs on one joint"));
-        }
-    }
+    let carried = carried(robot, &index_of)?;
     for skipped in robot
         .elements()
         .filter(|e| !["link", "joint", "material"].contains(&e.tag()))
@@ -86,6 +67,34 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         gravity_m_s2: Vector3::new(0.0, 0.0, -GRAVITY_M_S2),
         left_out,
     })
+}
+
+/// Of each link: the link and the joint that carry it.
+fn carried<'a>(
+    robot: Element<'a>,
+    index_of: &HashMap<&str, usize>,
+) -> Result<Vec<Option<(usize, Element<'a>)>>> {
+    let mut carried = vec![None; index_of.len()];
+    let mut seen = HashMap::new();
+    for joint in robot.all("joint") {
+        if seen.insert(joint.required("name")?, ()).is_some() {
+            return Err(joint.wrong(
+                "a second joint of this name",
+                "give each joint its own name",
+            ));
+        }
+        let end = |tag: &'static str| {
+            let lacks = || joint.wrong(format!("the joint lacks <{tag}>"), "name both its links");
+            let name = joint.first(tag).ok_or_else(lacks)?.required("link")?;
+            let unknown = || joint.wrong(format!("there is no link \"{name}\""), "mend the name");
+            index_of.get(name).copied().ok_or_else(unknown)
+        };
+        let (parent, child) = (end("parent")?, end("child")?);
+        if carried[child].replace((parent, joint)).is_some() {
+            return Err(joint.wrong("its child has a second joint", "a link hangs on one joint"));
+        }
+    }
+    Ok(carried)
 }
 
 /// Links, each behind the one that carries it.
