@@ -6,7 +6,7 @@ use crate::compare::{FailingSamples, residual_variables};
 use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
+use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session, aside};
 use crate::model::Drive;
 use axum::Json;
 use axum::extract::{Path, Query, State};
@@ -46,7 +46,7 @@ pub(super) async fn horizons(State(lab): State<Arc<LabState>>, Path(number): Pat
         let saved = session.saved();
         let evaluation = session.evaluation(&saved, saved.current)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
-        Ok(page(pages::horizons(&evaluation)))
+        Ok(page(aside(|| pages::horizons(&evaluation))))
     })
     .await
 }

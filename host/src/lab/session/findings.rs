@@ -2,6 +2,7 @@
 //! pages ask for it again and again.
 
 use super::Session;
+use super::aside::aside;
 use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::diagnose::conventions::{self, ModelFile};
@@ -49,16 +50,5 @@ impl Session {
         let found = Arc::new(found);
         known.0 = Some((asked, found.clone()));
         Ok(found)
-    }
-}
-
-/// Does what takes long on half of the processors: pages are answered by the rest.
-fn aside<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads((all / 2).max(1));
-    match pool.build() {
-        Ok(pool) => pool.install(work),
-        // Without threads of its own it takes those of the others.
-        Err(_) => work(),
     }
 }

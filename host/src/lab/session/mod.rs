@@ -1,5 +1,6 @@
 //! A session: the logs, the models one after the other, and what is running.
 
+mod aside;
 mod card;
 mod commands;
 mod data;
@@ -14,6 +15,7 @@ mod steps;
 mod store;
 mod work;
 
+pub use aside::aside;
 pub(super) use card::{CardRole, SavedCard, SavedDiagnosis};
 pub(super) use data::{LogFacts, MOST_BYTES};
 pub(super) use evaluation::{Evaluation, pooled_rms};
