@@ -5,8 +5,9 @@ use super::{act, blocking, said_shortly, session};
 use crate::lab::pages::data as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{EXAMPLES, MOST_BYTES, SavedStep};
+use crate::lab::session::{EXAMPLES, MOST_BYTES, SavedSession, SavedStep, Session};
 use crate::log::RawLog;
+use crate::log::init::Draft;
 use crate::model::edit::{ColumnChoice, set_log_columns};
 use crate::model::new_model::{ModelPlan, new_model_toml};
 use axum::Json;
@@ -146,10 +147,27 @@ pub(super) async fn new_model(
     Path(number): Path<u32>,
     Json(plan): Json<ModelPlan>,
 ) -> Answer {
-    act(lab, number, "data", move |session, _| {
-        Ok(session.begin_model("made from the form", &new_model_toml(&plan)?)?)
+    act(lab, number, "data", move |session, saved| {
+        let toml = match with_columns(session, saved, &plan) {
+            Some(toml) => toml,
+            None => new_model_toml(&plan)?,
+        };
+        Ok(session.begin_model("made from the form", &toml)?)
     })
     .await
+}
+
+/// The model of a form with the columns of the first log, where its names and values say which is
+/// what.
+fn with_columns(session: &Session, saved: &SavedSession, plan: &ModelPlan) -> Option<String> {
+    let log = saved.logs.first()?;
+    let raw = RawLog::read(&session.log_path(&log.file)).ok()?;
+    let mut drives = plan.links.iter().map(|link| link.drive.as_str());
+    let driven = drives.find(|drive| *drive != "passive");
+    let draft = Draft::of(&raw, &log.file, driven).ok()?;
+    let head = "# Written from a form, with the columns that a log seems to have: pick others where \
+                they are wrong.\n\n";
+    draft.toml_of(plan, head).ok()
 }
 
 /// Picks columns, units, signs and zeros for the model in force.

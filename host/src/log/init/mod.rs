@@ -16,7 +16,7 @@ pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 use crate::error::{Error, Result};
 use crate::log::RawLog;
 use crate::model::Unit;
-use crate::model::new_model::ModelPlan;
+use crate::model::new_model::{ModelPlan, model_toml};
 use columns::log_guess;
 use evidence::Evidence;
 use serde::Serialize;
@@ -100,6 +100,22 @@ impl Draft {
             guesses,
             split_at_gap_s,
         })
+    }
+
+    /// A model file of these figures, whose `[log]` is as guessed; `head` are comments.
+    ///
+    /// # Errors
+    /// Figures that make no model, or another number of joints than the log has.
+    pub fn toml_of(&self, plan: &ModelPlan, head: &str) -> Result<String> {
+        let (joints, links) = (self.columns.joints.len(), plan.links.len());
+        if joints != links {
+            return Err(Error::usage(
+                format!("the log has columns of {joints} joints, the model {links} links"),
+                "give a link per joint",
+            ));
+        }
+        let drives: Vec<&str> = plan.links.iter().map(|link| link.drive.as_str()).collect();
+        model_toml(plan, head, &write::log_table(self, &drives))
     }
 
     /// Takes an answer of the user's: `name`, `angle zero` or `angles`.

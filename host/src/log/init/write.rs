@@ -20,15 +20,23 @@ pub(super) fn toml(draft: &Draft) -> Result<String> {
 }
 
 fn tail(draft: &Draft) -> String {
+    let drives: Vec<&str> = draft.plan.links.iter().map(|l| l.drive.as_str()).collect();
     let free: Vec<String> = free(draft)
         .iter()
         .map(|path| format!("    {path:?},\n"))
         .collect();
     let mut text = format!(
         "\n# Guesses that a fit may change. What the logs do not determine, it says: take that off.\n\
-         [fit]\nfree = [\n{}]\n\n[log]\n",
+         [fit]\nfree = [\n{}]\n",
         free.concat()
     );
+    text += &log_table(draft, &drives);
+    text
+}
+
+/// The `[log]` of joints that are driven so.
+pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
+    let mut text = String::from("\n[log]\n");
     let columns = &draft.columns;
     let quoted = |text: &str| toml_edit::Value::from(text).to_string();
     let _ = writeln!(text, "time = {}", columns.time.toml());
@@ -48,13 +56,13 @@ fn tail(draft: &Draft) -> String {
     if let Some(torque_on) = &columns.torque_on {
         let _ = writeln!(text, "torque_on = {}", quoted(torque_on));
     }
-    for (joint, plan) in columns.joints.iter().zip(&draft.plan.links) {
+    for (joint, drive) in columns.joints.iter().zip(drives) {
         let _ = writeln!(
             text,
             "\n[[log.joint]] # {}",
             joint.name.replace(char::is_control, " ")
         );
-        let input = joint.input.as_ref().filter(|_| plan.drive != "passive");
+        let input = joint.input.as_ref().filter(|_| *drive != "passive");
         let own: [(&str, Option<&ColumnGuess>); 3] = [
             ("position", joint.position.as_ref()),
             ("velocity", joint.velocity.as_ref()),

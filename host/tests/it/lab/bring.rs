@@ -2,6 +2,7 @@
 
 use super::server::Server;
 use crate::common::Bench;
+use serde_json::{Value, json};
 use std::path::Path;
 
 fn kept(name: &str) -> Vec<u8> {
@@ -84,4 +85,40 @@ fn a_table_that_cannot_be_read_is_refused_with_the_remedy() {
     }
     let saved = server.get("/s/1/download/session.json").json();
     assert_eq!(saved["logs"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn a_model_from_the_form_takes_the_columns_of_the_log() {
+    let bench = Bench::new();
+    let server = Server::start(&bench, "");
+    // Two swings one after the other, each with a clock that begins at 0.
+    let row = |segment: u32, k: u32| {
+        let t = 0.01 * f64::from(k);
+        let (angle, speed) = (3.1 + 0.4 * (6.0 * t).cos(), -2.4 * (6.0 * t).sin());
+        format!("{segment},{t:.2},{angle:.5},{speed:.5}\n")
+    };
+    let swings = (0..2).flat_map(|segment| (0..200).map(move |k| row(segment, k)));
+    let log = "segment,t,theta1,dtheta1\n".to_string() + &swings.collect::<String>();
+    let sent = server.post_bytes("/s/1/upload?name=odd.csv", "", log.as_bytes());
+    assert_eq!(sent.status, 200, "{}", sent.text());
+    let link = json!({ "length_m": 0.3, "com_m": 0.15, "mass_kg": 0.15, "drive": "passive" });
+    let plan = |links: Vec<Value>| json!({ "name": "arm", "angle_zero": "upright", "angles": "relative", "links": links });
+    let made = server.post("/s/1/new-model", &plan(vec![link.clone()]));
+    assert_eq!(made.status, 200, "{}", made.text());
+    let toml = server.get("/s/1/download/model.toml").text();
+    for part in [
+        "column = \"t\"",
+        "segment = \"segment\"",
+        "position = { column = \"theta1\", unit = \"rad\"",
+        "velocity = { column = \"dtheta1\"",
+        "mass_kg = 0.15",
+    ] {
+        assert!(toml.contains(part), "{part}:\n{toml}");
+    }
+    assert_eq!(server.get("/s/1/error").status, 200);
+    // The log tells no columns of a second joint: names to pick stand there.
+    let made = server.post("/s/1/new-model", &plan(vec![link.clone(), link]));
+    assert_eq!(made.status, 200, "{}", made.text());
+    let toml = server.get("/s/1/download/model.toml").text();
+    assert!(toml.contains("column = \"q2_rad\""), "{toml}");
 }
