@@ -175,3 +175,78 @@ fn a_robot_is_balanced_and_stopped_from_its_page() {
     browser.pictures("8-gains-robot");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
+
+/// The swings of a public pendulum, thinned to 50 Hz, the first 2 s of them, where they are here.
+fn public_swings() -> Option<String> {
+    let Some(data) = std::env::var_os("HANDSTAND_DATA") else {
+        println!("left out: HANDSTAND_DATA is not set");
+        return None;
+    };
+    let file = PathBuf::from(data).join("multiarm/single_id.csv");
+    let log = std::fs::read_to_string(file).unwrap();
+    let early = |line: &&str| {
+        let time = line
+            .split(',')
+            .nth(1)
+            .and_then(|cell| cell.parse::<f64>().ok());
+        time.is_none_or(|time_s| time_s < 2.0)
+    };
+    let mut lines = log.lines();
+    let head = lines.next().unwrap();
+    let rows = lines.step_by(10).filter(early);
+    Some(
+        std::iter::once(head)
+            .chain(rows)
+            .map(|line| format!("{line}\n"))
+            .collect(),
+    )
+}
+
+#[test]
+fn a_public_log_becomes_a_better_model_by_the_pages_alone() {
+    let Some(log) = public_swings() else {
+        return;
+    };
+    let bench = Bench::new();
+    bench.put("single.csv", log);
+    let Some(mut browser) = browser() else {
+        return;
+    };
+    let server = Server::start_alone(&bench, "");
+    browser.open(&server.address);
+    browser.until("location.pathname === '/s/1/data' && document.getElementById('drop')");
+    browser.choose_files("#files", &[bench.path("single.csv").as_path()]);
+    browser.until("document.querySelector('#raw[data-drawn]')");
+    // What is written on the rig: zero upright, a link of this length and mass.
+    for (field, value) in [
+        ("angle_zero", "upright"),
+        ("length_m", "0.3"),
+        ("com_m", "0.14775"),
+        ("mass_kg", "0.14758"),
+        ("inertia_kg_m2", "1.0912e-4"),
+    ] {
+        browser.value(&format!(
+            "{{ const field = document.querySelector('#new-model [name={field}], \
+             #new-model [data-field={field}]'); field.value = '{value}'; \
+             field.dispatchEvent(new Event('input', {{ bubbles: true }})); }}"
+        ));
+    }
+    browser.press_on("#new-model button", "Enter");
+    let before = error_now(&mut browser);
+    browser.until("document.getElementById('findings')");
+    browser.pictures("10-public-model");
+
+    browser.open(&format!("http://127.0.0.1:{}/s/1/learn", server.port));
+    browser.press_on("#diagnose", "Enter");
+    browser.until("document.getElementById('verdict')");
+    browser.pictures("11-public-diagnosed");
+    browser.press_on(".card button", "Enter");
+    browser.until("document.querySelector('[data-step-error=\"1\"]')");
+    let after = error_now(&mut browser);
+    assert!(after < 0.5 * before, "{before} -> {after}");
+    browser.press_on("#undo", "Enter");
+    browser.until("document.getElementById('redo')");
+    assert_eq!(error_now(&mut browser), before);
+    let toml = server.get("/s/1/download/model.toml").text();
+    assert!(toml.contains("segment = \"segment\""), "{toml}");
+}
