@@ -14,7 +14,7 @@ use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
 /// Longer than anything here takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(90);
+const PATIENCE: Duration = Duration::from_secs(240);
 
 /// A browser with one page.
 #[derive(Debug)]
@@ -188,6 +188,8 @@ impl Browser {
 
     /// Focuses an element, and presses a key there: the keyboard alone must suffice.
     pub fn press_on(&mut self, selector: &str, key: &str) {
+        // Before its scripts run, a page does not notice what is pressed.
+        self.until("document.readyState === 'complete'");
         self.until(&format!(
             "document.querySelector('{selector}')?.disabled === false \
                              || document.querySelector('{selector}')?.disabled === undefined \
