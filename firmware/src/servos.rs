@@ -88,8 +88,8 @@ impl Servos {
         }
     }
 
-    /// Forgets all but the ids of this list. Apart, so that what calls it does not hold a second one
-    /// on the stack.
+    /// Forgets all but the ids of this list. Apart, so that what calls it does not hold a second
+    /// one on the stack.
     #[inline(never)]
     pub fn start_over(&mut self, list: &ServoList) {
         *self = Servos::new(list);

@@ -1,8 +1,9 @@
 //! What host and firmware agree on: the servo's registers and packets, and the frames and messages
 //! of the PC line.
 //!
-//! Read downward only: `raw` -> `control_table`; `dynamixel` -> `dynamixel2`; `crc` -> `frame`, `image`; `packed`
-//! -> `message`; `fixed` -> `gains` -> `law` -> `observer`; `velocity`; all of these -> `plan`.
+//! Read downward only: `raw` -> `control_table`; `dynamixel` -> `dynamixel2`; `crc` -> `frame`,
+//! `image`; `packed` -> `message`; `fixed` -> `gains` -> `law` -> `observer`; `velocity`; all of
+//! these -> `plan`.
 #![no_std]
 #![cfg_attr(not(target_arch = "avr"), forbid(unsafe_code))]
 #![cfg_attr(target_arch = "avr", deny(unsafe_code))]

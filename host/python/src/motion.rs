@@ -175,6 +175,19 @@ fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
             ));
         }
     }
+    let infinite = |row: &Vec<f64>| row.iter().any(|value| value.is_infinite());
+    let measured = motion
+        .position_rad
+        .iter()
+        .chain(motion.velocity_rad_s.iter().flatten());
+    if motion.time_s.iter().any(|time| !time.is_finite())
+        || measured.chain(&motion.supply_v).any(infinite)
+    {
+        return Err(usage(
+            format!("motion {:?} holds infinite values", motion.name),
+            "give numbers; what was not measured is not-a-number",
+        ));
+    }
     // An input holds from its sample to the next: what a drive was told has no gap.
     if motion
         .input

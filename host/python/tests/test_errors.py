@@ -43,6 +43,9 @@ def test_nothing_is_overwritten_unasked(model: hs.Model, tmp_path: Path) -> None
         ({"input": np.full(100, np.nan)}, "no number"),
         ({"input": [None, None]}, "2 rows for 1 joints"),
         ({"payload_kg": float("inf")}, "payload"),
+        ({"time_s": [*range(99), float("inf")]}, "infinite"),
+        ({"position_rad": np.full(100, np.inf)}, "infinite"),
+        ({"supply_v": np.full(100, -np.inf)}, "infinite"),
     ],
 )
 def test_arrays_that_make_no_motion_are_refused(change: dict[str, object], said: str) -> None:

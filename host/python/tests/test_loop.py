@@ -6,27 +6,8 @@ import pytest
 import handstand as hs
 
 
-def test_simulation_follows_the_pendulum_s_equation() -> None:
+def test_simulation_follows_the_pendulum_s_equation(model: hs.Model) -> None:
     """Against Runge-Kutta written out here, of (I + m c^2) q'' = -m g c sin q + tau."""
-    model = hs.Model.parse(
-        """
-        [rig]
-        name = "arm"
-        angle_zero = "hanging"
-        [[link]]
-        length_m = 0.25
-        com_m = 0.125
-        mass_kg = 0.3
-        inertia_kg_m2 = 1.6e-3
-        [[joint]]
-        drive = "torque"
-        [log]
-        time = { column = "t", unit = "s" }
-        [[log.joint]]
-        position = { column = "q", unit = "rad" }
-        input = { column = "tau", unit = "N m" }
-        """
-    )
     time_s = 0.01 * np.arange(300)
     torque_nm = 0.2 * np.sin(3 * time_s)
     found = hs.simulate(model, time_s, input=torque_nm, angle_rad=0.4, speed_rad_s=-1.0)

@@ -12,7 +12,8 @@
 //!
 //! With `--robot PORT` the Robot page records and balances the robot at that port, live: charts and
 //! the robot's shape follow the samples. Torque comes on after a press and the questions that
-//! `balance` asks; it goes off when stop is pressed, when that page goes away and when the lab ends.
+//! `balance` asks; it goes off when stop is pressed, when that page goes away and when the lab
+//! ends.
 //!
 //! ```console
 //! $ handstand lab handstand.toml --robot sim-cm5:robot=handstand.toml,start=held,lean=1/-1/1

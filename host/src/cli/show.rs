@@ -11,7 +11,7 @@ use handstand::{Model, Result};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    within_width(plain_table(header))
+    table::within_width(plain_table(header), 100)
 }
 
 /// A plain table, a line for each of `rows`.
@@ -19,14 +19,7 @@ pub fn table_of<'r, T: 'r>(
     rows: impl IntoIterator<Item = &'r T>,
     columns: &[TableColumn<T>],
 ) -> Table {
-    within_width(table::table_of(rows, columns))
-}
-
-fn within_width(mut table: Table) -> Table {
-    if table.width().is_none() {
-        table.set_width(100);
-    }
-    table
+    table::within_width(table::table_of(rows, columns), 100)
 }
 
 /// A table of many narrow columns, as wide as it needs.

@@ -3,8 +3,8 @@
 //! It holds no mathematics of its own: every number comes from the functions that the command line
 //! calls, on the same files. `server` listens on the loopback interface, `guard` refuses whoever
 //! does not know the token or comes from another page, `session` keeps what a person did (whole on
-//! disk after every step), `live` watches and balances a robot at a port, `routes` answer requests, `pages` draw them. Pages are made here; the
-//! scripts under `assets` draw curves and move sliders.
+//! disk after every step), `live` watches and balances a robot at a port, `routes` answer requests,
+//! `pages` draw them. Pages are made here; the scripts under `assets` draw curves and move sliders.
 
 mod assets;
 mod guard;

@@ -2,9 +2,9 @@
 //!
 //! A [`SerialLink`] is a line of bytes with a clock. [`Serial`] is a real one, [`Replay`] what a
 //! [`Tap`] recorded; [`Tap`] and [`Faulty`] wrap any other. [`Servos`] communicates in Dynamixel
-//! packets of either protocol, [`Session`] in frames with the CM-5. Read downward: `port` -> ports -> `servos`,
-//! `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind a port like a
-//! real one, so that `settings`, which open ports, know it.
+//! packets of either protocol, [`Session`] in frames with the CM-5. Read downward: `port` -> ports
+//! -> `servos`, `session` -> `doctor`, `boot_loader`, [`record`]. The simulated CM-5 stands behind
+//! a port like a real one, so that `settings`, which open ports, know it.
 
 mod account;
 pub mod boot_loader;

@@ -34,8 +34,8 @@ pub struct Servos<L> {
 }
 
 impl<L: SerialLink> Servos<L> {
-    /// Over this line, three tries each. The protocol is the first servo's that answers: it is asked
-    /// in 1.0, and in 2.0 where it is silent.
+    /// Over this line, three tries each. The protocol is the first servo's that answers: it is
+    /// asked in 1.0, and in 2.0 where it is silent.
     pub fn new(link: L) -> Self {
         Servos {
             link,

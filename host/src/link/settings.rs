@@ -44,7 +44,8 @@ impl Settings {
         self.code(register.name)
     }
 
-    /// What can be written back: all but id, baud rate and protocol, by which the servo is spoken to.
+    /// What can be written back: all but id, baud rate and protocol, by which the servo is spoken
+    /// to.
     pub fn restorable(&self) -> impl Iterator<Item = (Item, i32)> {
         let fixed = |item: &Item| {
             let named = [ct::ID.name, ct::BAUD.name, ct::x::PROTOCOL.name];

@@ -29,6 +29,14 @@ pub fn table_of<'r, T: 'r>(
     table
 }
 
+/// The table as wide as the terminal; where there is none, at most so many characters.
+pub fn within_width(mut table: Table, most: u16) -> Table {
+    if table.width().is_none() {
+        table.set_width(most);
+    }
+    table
+}
+
 /// CSV: the headings, then a line for each of `rows`. No cell holds a comma.
 pub fn csv_of<'r, T: 'r>(
     rows: impl IntoIterator<Item = &'r T>,

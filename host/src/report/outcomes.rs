@@ -4,7 +4,7 @@ use super::page::{Section, document, table};
 use crate::diagnose::{LogOutcome, OutcomeValue};
 use crate::output::number::{exact, mrad, short};
 use crate::output::plot::{Chart, Curve, Tone};
-use crate::output::table::{TableColumn, csv_of, or_empty, table_of};
+use crate::output::table::{TableColumn, csv_of, or_empty, table_of, within_width};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
@@ -13,10 +13,7 @@ const CHART_PX: (f64, f64) = (760.0, 240.0);
 
 /// A row per log, for people.
 pub fn outcomes_text(outcomes: &[LogOutcome]) -> String {
-    let mut table = table_of(outcomes, &columns());
-    if table.width().is_none() {
-        table.set_width(120);
-    }
+    let table = within_width(table_of(outcomes, &columns()), 120);
     let mut lines = vec![table.to_string(), String::new()];
     lines.extend(counted(outcomes));
     lines.join("\n")

@@ -2,7 +2,7 @@
 
 use crate::fitting::{FittedValue, Refitted, in_windows};
 use crate::output::number::exact;
-use crate::output::table::{TableColumn, table_of};
+use crate::output::table::{TableColumn, table_of, within_width};
 use serde_json::{Value, json};
 
 /// A refitted model for people: its values, then its errors; `before` says which model left the
@@ -18,10 +18,7 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
         ("Unit", &|v| v.unit.clone()),
         ("", &|v| on_bound(v.on_bound).to_string()),
     ];
-    let mut table = table_of(&refitted.values, columns);
-    if table.width().is_none() {
-        table.set_width(100);
-    }
+    let table = within_width(table_of(&refitted.values, columns), 100);
     let error = &refitted.error;
     let motions = if error.held_out { "held out" } else { "fitted" };
     let [old, new, floor] =

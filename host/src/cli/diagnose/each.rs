@@ -5,8 +5,8 @@
 //! `logs.csv` and `logs.html`. An outcome counts as long as log, model, options and program are the
 //! same.
 //!
-//! `--json` prints `complete` and `outcomes`; for a shard `complete`, `file` and `logs`. Exit code 1
-//! when no log could be learned from.
+//! `--json` prints `complete` and `outcomes`; for a shard `complete`, `file` and `logs`. Exit code
+//! 1 when no log could be learned from.
 
 use super::{DiagnoseArgs, options};
 use crate::cli::{ExitStatus, Talk, input};

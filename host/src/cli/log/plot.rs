@@ -1,5 +1,5 @@
-//! `handstand log plot LOG [--column NAME]... [--report PAGE.html]`: a log as it stands in its file,
-//! before any model reads it.
+//! `handstand log plot LOG [--column NAME]... [--report PAGE.html]`: a log as it stands in its
+//! file, before any model reads it.
 //!
 //! Each column with its range and its course, as text or as a page. `--json` prints `columns`
 //! (`name`, `rows`, `gaps`, `low`, `high`) and `time`, the column taken for it. Exit code 0.

@@ -1,7 +1,8 @@
 //! Balance a robot through the CM-5's firmware: set its servos up, arm, supervise, let it down.
 //!
 //! `attitude` (where the first link's attitude comes from), `wheel_mode` (servos that turn without
-//! end) -> [`Balancer`], which talks with the firmware -> `outcome` (how it ended). `supervise` is the whole of it.
+//! end) -> [`Balancer`], which talks with the firmware -> `outcome` (how it ended). `supervise` is
+//! the whole of it.
 
 mod attitude;
 mod balancer;

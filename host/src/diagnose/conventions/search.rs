@@ -162,8 +162,8 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
 /// Joints that travel further than this are likelier read in a wrong unit, rad.
 const DOUBTFUL_RAD: f64 = 30.0;
 
-/// Joints that travel less than this are likelier read in a wrong unit, rad: any model that is linear
-/// near its rest predicts so small a motion.
+/// Joints that travel less than this are likelier read in a wrong unit, rad: any model that is
+/// linear near its rest predicts so small a motion.
 const STILL_RAD: f64 = 0.1;
 
 /// Whether one of the columns is an angle that hardly moves as the remedy reads it.

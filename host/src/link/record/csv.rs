@@ -1,7 +1,7 @@
 //! Recordings as text: `time_s`, then per servo `q1_rad`, `dq1_rad_s`, `load1`, `goal1_rad`,
-//! `supply1_v`, `temperature1_celsius`, `error1`, and `current1_a` where servos measure it; where a CM-5 reads the servos, `gyro_code`,
-//! `gyro_zero`, `gyro_rad_s` behind them; and `torque_on`, where that is known. What a servo did
-//! not say is an empty field.
+//! `supply1_v`, `temperature1_celsius`, `error1`, and `current1_a` where servos measure it; where a
+//! CM-5 reads the servos, `gyro_code`, `gyro_zero`, `gyro_rad_s` behind them; and `torque_on`,
+//! where that is known. What a servo did not say is an empty field.
 //!
 //! Columns are read by name, in any order; others are left alone. So any table with `time_s` and
 //! `goal1_rad` is a motion.

@@ -292,7 +292,7 @@ impl<L: SerialLink> SampleSource for GroupAdapter<L> {
 impl<L: SerialLink> Drop for GroupAdapter<L> {
     fn drop(&mut self) {
         if self.armed {
-            // Nobody is left who could be told that it failed.
+            // It is too late to tell that it failed.
             let _ = self.disarm();
         }
     }

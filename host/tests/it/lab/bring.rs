@@ -102,7 +102,10 @@ fn a_model_from_the_form_takes_the_columns_of_the_log() {
     let sent = server.post_bytes("/s/1/upload?name=odd.csv", "", log.as_bytes());
     assert_eq!(sent.status, 200, "{}", sent.text());
     let link = json!({ "length_m": 0.3, "com_m": 0.15, "mass_kg": 0.15, "drive": "passive" });
-    let plan = |links: Vec<Value>| json!({ "name": "arm", "angle_zero": "upright", "angles": "relative", "links": links });
+    let plan = |links: Vec<Value>| {
+        let zero = "upright";
+        json!({ "name": "arm", "angle_zero": zero, "angles": "relative", "links": links })
+    };
     let made = server.post("/s/1/new-model", &plan(vec![link.clone()]));
     assert_eq!(made.status, 200, "{}", made.text());
     let toml = server.get("/s/1/download/model.toml").text();

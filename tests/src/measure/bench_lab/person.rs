@@ -23,8 +23,8 @@ const PAGES: [(&str, &str); 7] = [
     ("challenge", ""),
 ];
 
-/// Moves a slider by a share of its length, and gives the time until the charts in `root` were drawn from
-/// the answer, ms.
+/// Moves a slider by a share of its length, and gives the time until the charts in `root` were
+/// drawn from the answer, ms.
 const SLIDE: &str = "\
 new Promise((done) => {
   const slider = document.querySelector(SLIDER), root = document.querySelector(ROOT);

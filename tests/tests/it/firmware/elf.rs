@@ -83,7 +83,8 @@ fn the_elf_balances_by_the_plan_compiled_in() {
     let with_plan = build(&toolchain, Some(&file)).unwrap();
     let mut rig = ElfCm5::new(&with_plan.elf).unwrap();
     it_stands(&mut rig, 5.0);
-    // Nothing was uploaded: beside the fault log one byte of EEPROM is written, the counter of starts.
+    // Nothing was uploaded: beside the fault log one byte of EEPROM is written, the counter of
+    // starts.
     let bytes = rig.core.eeprom().iter().enumerate();
     let bytes = bytes.filter(|(at, _)| !(0x700..0x800).contains(at));
     let written: Vec<(usize, &u8)> = bytes.filter(|(_, byte)| **byte != 0xff).collect();
