@@ -154,7 +154,7 @@ impl Item {
 
 #[cfg(test)]
 mod tests {
-    use super::super::models::{MODELS, X_ITEMS};
+    use super::super::models::MODELS;
     use super::super::{REGISTERS, x};
     use super::*;
 
@@ -185,6 +185,19 @@ mod tests {
         assert!((si(Quantity::Acceleration, 1) - 0.3745).abs() < 1e-4);
         assert!((si(Quantity::Current, -100) + 0.269).abs() < 1e-12);
         assert_eq!(si(Quantity::Pwm, 885), 1.0);
+        // A whole turn, 50 %, 12 V, 40 degrees, 2 s, 500 us, 200 ms.
+        assert!((si(Quantity::Angle, -4096) + 2.0 * PI).abs() < 1e-12);
+        assert!((si(Quantity::Load, -500) + 0.5).abs() < 1e-12);
+        assert!((si(Quantity::Voltage, 120) - 12.0).abs() < 1e-12);
+        assert_eq!(si(Quantity::Temperature, 40), 40.0);
+        assert!((si(Quantity::Milliseconds, 2000) - 2.0).abs() < 1e-12);
+        assert!((si(Quantity::ReturnDelay, 250) - 500e-6).abs() < 1e-12);
+        assert!((si(Quantity::Watchdog, 10) - 0.2).abs() < 1e-12);
+        let unit = |quantity: Quantity| quantity.si(1, Some(1.0)).unwrap().1;
+        assert_eq!(unit(Quantity::Position), "rad");
+        assert_eq!(unit(Quantity::Acceleration), "rad/s^2");
+        assert_eq!(unit(Quantity::Load), "of full output");
+        assert_eq!(unit(Quantity::Watchdog), "s");
         assert_eq!(Quantity::Current.si(1, None), None);
         assert_eq!(Quantity::Code.si(1, None), None);
     }
@@ -201,7 +214,11 @@ mod tests {
                 free = item.address + u16::from(item.size);
             }
         }
-        assert!(X_ITEMS.iter().any(|item| item.is_named("Present_Position")));
+        assert!(x::PRESENT_POSITION.is_named("Present_Position"));
+        assert!(x::PRESENT_POSITION.is_named("present-position"));
+        for other in ["present positio", "present positions", "goal position", ""] {
+            assert!(!x::PRESENT_POSITION.is_named(other), "{other}");
+        }
     }
 
     #[test]
@@ -213,6 +230,11 @@ mod tests {
                 7
             );
             assert!(item.is_named(register.name));
+            assert_eq!(item.address, u16::from(register.address));
+            assert_eq!(item.is_eeprom, register.address < 24, "{}", item.name);
+            assert_eq!(item.access, register.access);
+            let bounds = [register.min, register.max].map(i32::from);
+            assert_eq!([item.min, item.max], bounds, "{}", item.name);
         }
     }
 }

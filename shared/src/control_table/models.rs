@@ -138,6 +138,8 @@ mod tests {
         assert_eq!(name("xl430"), Some(1060));
         assert_eq!(name("mx-28"), Some(30));
         assert_eq!(name("XL330"), None);
+        assert_eq!(name("XL330-M288-T"), None);
+        assert_eq!(ServoModel::of(1061), None);
         assert_eq!(name(""), None);
     }
 
@@ -160,5 +162,21 @@ mod tests {
         let xl430 = ServoModel::named("xl430").unwrap();
         assert!(!xl430.has_fast_read(44) && xl430.has_fast_read(45));
         assert!(!xl430.has_watchdog(37) && xl430.has_watchdog(38));
+    }
+
+    #[test]
+    fn each_family_has_its_own() {
+        let [x330, mx] = ["xl330-m288", "mx-64"].map(|name| ServoModel::named(name).unwrap());
+        assert!(!x330.has_fast_read(45) && x330.has_fast_read(46));
+        assert!(x330.has_watchdog(0));
+        assert!(!mx.has_fast_read(255));
+        assert!(!mx.has_watchdog(37) && mx.has_watchdog(38));
+        let has = |item: Item| [x330, mx].map(|model| model.has(&item));
+        assert_eq!(has(x::PWM_SLOPE), [true, false]);
+        assert_eq!(has(x::ACCELERATION_LIMIT), [false, true]);
+        assert_eq!(has(x::GOAL_POSITION), [true, true]);
+        let listed = |item: Item| [x330, mx].map(|model| model.items().any(|it| *it == item));
+        assert_eq!(listed(x::PWM_SLOPE), [true, false]);
+        assert_eq!(x330.current_lsb_a, Some(1e-3));
     }
 }

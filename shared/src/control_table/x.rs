@@ -106,3 +106,34 @@ pub fn hardware_errors(status: u8) -> impl Iterator<Item = &'static str> {
     let is_set = move |(bit, _): &(u8, &str)| status >> bit & 1 == 1;
     NAMES.into_iter().filter(is_set).map(|(_, name)| name)
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use std::vec::Vec;
+
+    /// As the manual lists them.
+    #[test]
+    fn baud_rates_have_codes() {
+        let rates = [
+            9_600, 57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000,
+        ];
+        for (code, rate) in (0..).zip(rates) {
+            assert_eq!(baud_of(code), Some(rate));
+            assert_eq!(baud_code(rate), Some(code));
+        }
+        assert_eq!((baud_of(8), baud_of(255)), (None, None));
+        assert_eq!((baud_code(57_601), baud_code(0)), (None, None));
+    }
+
+    #[test]
+    fn bits_of_the_hardware_error_have_names() {
+        let names = |status| hardware_errors(status).collect::<Vec<_>>();
+        assert_eq!(names(0b1100_0010), [""; 0]);
+        assert_eq!(names(0b0000_0001), ["input voltage"]);
+        assert_eq!(names(0b0010_0100), ["overheating", "overload"]);
+        assert_eq!(names(0b0001_1000), ["motor encoder", "electrical shock"]);
+    }
+}

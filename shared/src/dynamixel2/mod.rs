@@ -14,6 +14,8 @@ mod fast_status;
 mod noise_tests;
 mod packet;
 mod receiver;
+#[cfg(test)]
+mod refusal_tests;
 mod request;
 mod stuffing;
 #[cfg(test)]
