@@ -127,10 +127,10 @@ impl Item {
         if bytes.len() != usize::from(self.size) {
             return None;
         }
-        let (low, bits) = bytes.iter().fold((0u32, 0), |(code, bits), byte| {
-            (code | u32::from(*byte) << bits, bits + 8)
-        });
-        let unused = 32 - bits;
+        let mut four = [0; 4];
+        four.get_mut(..bytes.len())?.copy_from_slice(bytes);
+        let low = u32::from_le_bytes(four);
+        let unused = 32 - 8 * u32::from(self.size);
         Some(match self.is_signed {
             true => ((low << unused) as i32) >> unused,
             false => i32::try_from(low).unwrap_or(i32::MAX),
