@@ -6,9 +6,10 @@ use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Progress, diagnose_logs};
 use crate::effects::EFFECTS;
 use crate::error::{Error, Result};
-use crate::fitting::{Addition, Horizon, add_effects, candidates_named};
+use crate::fitting::{Addition, Candidate, Horizon, add_effects, candidates_named};
 use crate::log::LogSet;
-use crate::model::Model;
+use crate::model::edit::add_effect;
+use crate::model::{EffectInstance, Model};
 use handstand_shared::plan::Plan;
 use std::path::Path;
 
@@ -25,8 +26,9 @@ const MOST_DELAY_S: f64 = 0.020;
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
 /// same files.
 const TRIED: [&str; 4] = ["delay", "dead_zone", "coulomb", "mass"];
-/// Length of the windows that are judged, s.
-const HORIZON: Horizon = Horizon::Seconds(0.4);
+/// Length of the windows that are judged, s: dry friction of the bar, which has no encoder, shows in
+/// how a swing dies down, and in shorter windows their start states take it up.
+const HORIZON: Horizon = Horizon::Seconds(0.6);
 
 /// What the recordings taught.
 #[derive(Debug, Clone)]
@@ -74,7 +76,8 @@ impl Learned {
                     add_effects(text, file, &candidates, &found.split, horizon, &|_, _| {})?;
                 match addition {
                     Addition::Added { text, .. } => text,
-                    Addition::NotReduced(_) | Addition::Undetermined(_) => text.to_string(),
+                    Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,
+                    Addition::NotReduced(_) => text.to_string(),
                 }
             }
         };
@@ -84,6 +87,21 @@ impl Learned {
             model_toml,
         })
     }
+}
+
+/// The model file with the effects and values of the diagnosis itself: where a dead zone takes away
+/// as much as it is wide, no motion tells a smaller width, and a fit of all values is refused.
+fn as_diagnosed(text: &str, file: &Path, diagnosis: &Diagnosis) -> Result<String> {
+    let add = |text: String, fitted: &FittedEffect| {
+        let candidate = Candidate::named(&fitted.address(), &Model::parse(&text, file)?)?;
+        let instance = EffectInstance {
+            effect: candidate.effect,
+            joint: candidate.joint,
+            values: fitted.parameters.iter().map(|it| it.value).collect(),
+        };
+        add_effect(&text, file, &instance, None)
+    };
+    diagnosis.effects.iter().try_fold(text.to_string(), add)
 }
 
 /// The plan for a model: its links, smooth friction and back-EMF in the gains, its drives' delay in
@@ -100,9 +118,9 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
         values.fold(0.0, f64::max)
     };
     let delay_s = largest("delay", &|values| values[0]);
-    // What a command loses on its way is jumped over, not the width below which it does nothing.
-    // Dry friction costs it as much again.
-    let dead_zone = largest("dead_zone", &|values| (-values[1]).clamp(0.0, values[0]));
+    // What a command loses on its way is jumped over, not the width below which it does nothing: of
+    // a width below the loss a command shows nothing. Dry friction costs it as much again.
+    let dead_zone = largest("dead_zone", &|values| (-values[1]).max(0.0));
     let friction_nm = largest("coulomb", &|values| values[0]);
     let mut timing = BoardTiming::HOST_ATTITUDE;
     timing.effect_s += (delay_s - PATH_DELAY_S).clamp(0.0, MOST_DELAY_S);

@@ -3,20 +3,54 @@
 use super::hidden::HiddenRobot;
 use crate::error::Result;
 use crate::experiment::excite::{ExcitationKind, ExcitePlan, JointLimits, excite};
-use crate::link::record::{GoalMotion, RobotRecorder, Stream, follow, read};
+use crate::link::record::{GoalMotion, Recording, RobotRecorder, Stream, follow, read};
 use crate::link::virtual_cm5::{Cm5Port, SimLink, set_up_model, spec_with_robot};
 use crate::log::{LogRequest, LogSet};
 use crate::output::write_new;
 use std::path::Path;
 
-/// The motions: name, what it holds, and whether it is held out.
-pub const MOTIONS: [(&str, ExcitationKind, bool); 3] = [
-    ("a", ExcitationKind::Multisine, false),
-    ("b", ExcitationKind::Drop, false),
-    ("c", ExcitationKind::Multisine, true),
+/// A motion of the hanging robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RecordedMotion {
+    /// Name of its files.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: ExcitationKind,
+    /// Largest angle of shoulder and hip, rad: a drop is let go there.
+    pub high_rad: [f64; 2],
+    /// Whether it is held out.
+    pub is_held_out: bool,
+}
+
+/// The motions. Lag and dead zone show under way, friction of the bar and masses in a free swing; so
+/// those that are held out are of both kinds, and the drops of poses that differ.
+pub const MOTIONS: [RecordedMotion; 5] = [
+    motion("a", ExcitationKind::Multisine, [0.6, 0.6], false),
+    motion("b", ExcitationKind::Drop, [0.6, 0.6], false),
+    motion("c", ExcitationKind::Drop, [0.6, 0.2], false),
+    motion("d", ExcitationKind::Multisine, [0.6, 0.6], true),
+    motion("e", ExcitationKind::Drop, [0.6, 0.4], true),
 ];
 /// Duration of each, s.
-const EACH_S: f64 = 5.0;
+const EACH_S: f64 = 6.5;
+/// Rows at the begin of a motion, and behind the moment at which torque goes off, that are left out.
+/// When it went off is known within a tick only, and until then the servos hold the raised pose with
+/// all they have.
+const SETTLING_ROWS: usize = 12;
+
+const fn motion(
+    name: &'static str,
+    kind: ExcitationKind,
+    high_rad: [f64; 2],
+    is_held_out: bool,
+) -> RecordedMotion {
+    RecordedMotion {
+        name,
+        kind,
+        high_rad,
+        is_held_out,
+    }
+}
 
 /// Records all motions into a folder, and what each is for.
 ///
@@ -27,17 +61,17 @@ pub fn record(robot: &HiddenRobot, dir: &Path) -> Result<LogSet> {
         training: Vec::new(),
         held_out: Vec::new(),
     };
-    for (number, (name, kind, is_held_out)) in (1..).zip(MOTIONS) {
-        let goals = dir.join(format!("goals_{name}.csv"));
-        let log = dir.join(format!("{name}.csv"));
-        let excitation = excite(&plan(kind, 10 * robot.answer.seed + number))?;
+    for (number, motion) in (1..).zip(MOTIONS) {
+        let goals = dir.join(format!("goals_{}.csv", motion.name));
+        let log = dir.join(format!("{}.csv", motion.name));
+        let excitation = excite(&plan(&motion, 10 * robot.answer.seed + number))?;
         write_new(&goals, &excitation.to_csv(), false)?;
         play(robot, &goals, &log)?;
         let request = LogRequest {
+            rows: Some(rows(&read(&log)?)),
             path: log,
-            rows: Some(rows(kind)),
         };
-        match is_held_out {
+        match motion.is_held_out {
             true => logs.held_out.push(request),
             false => logs.training.push(request),
         }
@@ -45,24 +79,31 @@ pub fn record(robot: &HiddenRobot, dir: &Path) -> Result<LogSet> {
     Ok(logs)
 }
 
-/// First and last row that is learned from or judged by: 3 s of a multisine, the lift and the drop.
-fn rows(kind: ExcitationKind) -> (usize, usize) {
-    match kind {
-        ExcitationKind::Drop => (50, 400),
-        _ => (50, 350),
-    }
+/// First and last row that is learned from or judged by: of a drop the free swing, of all others
+/// the whole motion.
+fn rows(recording: &Recording) -> (usize, usize) {
+    let samples = &recording.samples;
+    let off = samples.iter().position(|it| it.torque_on == Some(false));
+    let first = off.unwrap_or(0) + SETTLING_ROWS;
+    (
+        first,
+        samples.len().saturating_sub(SETTLING_ROWS).max(first),
+    )
 }
 
-fn plan(kind: ExcitationKind, seed: u64) -> ExcitePlan {
-    let joint = |servos: [u8; 2]| JointLimits {
+fn plan(motion: &RecordedMotion, seed: u64) -> ExcitePlan {
+    let joint = |(servos, high_rad): ([u8; 2], f64)| JointLimits {
         servos: servos.to_vec(),
         low_rad: -0.6,
-        high_rad: 0.6,
+        high_rad,
         speed_rad_s: 2.5,
     };
+    let [shoulder_rad, hip_rad] = motion.high_rad;
     ExcitePlan {
-        joints: [[1, 2], [11, 12]].map(joint).to_vec(),
-        kinds: vec![kind],
+        joints: [([1, 2], shoulder_rad), ([11, 12], hip_rad)]
+            .map(joint)
+            .to_vec(),
+        kinds: vec![motion.kind],
         each_s: EACH_S,
         hz: 100.0,
         band_hz: (0.8, 3.0),
