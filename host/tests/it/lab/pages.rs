@@ -9,9 +9,7 @@ use std::path::PathBuf;
 
 /// The error in force, rad.
 fn error_now(browser: &mut Browser) -> f64 {
-    browser.until("document.getElementById('error-now')");
-    let rad = browser.value("Number(document.getElementById('error-now').dataset.error)");
-    rad.as_f64().unwrap()
+    browser.number("Number(document.getElementById('error-now').dataset.error)")
 }
 
 #[test]
