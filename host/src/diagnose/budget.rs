@@ -19,7 +19,7 @@ pub(super) const BEAM: usize = 5;
 pub(super) const PARTNERS: usize = 5;
 /// Fewer training samples than this are few.
 pub(super) const FEW_SAMPLES: usize = 1500;
-/// Random starts of each candidate where samples are few, and their iterations.
+/// Random starts of each candidate where samples are few, at most, and their iterations.
 pub(super) const STARTS: usize = 100;
 pub(super) const START_ITERATIONS: usize = 30;
 
