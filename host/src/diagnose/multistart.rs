@@ -1,6 +1,6 @@
 //! Fits of one model from random starts.
 
-use super::budget::STARTS;
+use super::budget::{START_SAMPLES, STARTS};
 use crate::fitting::{Fit, FitData, FitOptions, fit};
 use crate::model::{Model, ParameterPath};
 use rand::{Rng, SeedableRng};
@@ -14,13 +14,23 @@ const ALIKE: f64 = 0.01;
 /// Starts go on until it is unlikely that there are valleys which none ended in: after n starts
 /// and w valleys w (n - 1) / (n - w - 2) are expected in all (Boender, Rinnooy Kan: Bayesian
 /// stopping rules for multistart global optimization methods, Mathematical Programming 37, 1987).
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Valleys {
     costs: Vec<f64>,
     starts: usize,
+    most_starts: usize,
 }
 
 impl Valleys {
+    /// None yet. The fewer the samples, the more starts may be made: they cost as much in all.
+    pub fn of_samples(samples: usize) -> Valleys {
+        Valleys {
+            costs: Vec::new(),
+            starts: 0,
+            most_starts: (START_SAMPLES / samples.max(1)).clamp(1, STARTS),
+        }
+    }
+
     /// Notes where a fit ended.
     pub fn note(&mut self, cost: f64) {
         self.starts += 1;
@@ -35,7 +45,7 @@ impl Valleys {
         let (valleys, starts) = (self.costs.len(), self.starts);
         let expected = |left: usize| (valleys * (starts - 1)) as f64 / left as f64;
         let left = starts.saturating_sub(valleys + 2);
-        starts >= STARTS || left > 0 && expected(left) < valleys as f64 + 0.5
+        starts >= self.most_starts || left > 0 && expected(left) < valleys as f64 + 0.5
     }
 }
 
@@ -44,7 +54,7 @@ pub(super) fn base_fit(model: &Model, data: &FitData, few: bool, seed: u64) -> F
     let fitted = |start: &Model| fit(start, &model.free, data, None, FitOptions::default());
     let cost = |fit: &Fit| fit.residuals.cost();
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut valleys = Valleys::default();
+    let mut valleys = Valleys::of_samples(data.samples());
     let mut best = fitted(model);
     valleys.note(cost(&best));
     while few && !valleys.are_found() {
@@ -77,7 +87,7 @@ mod tests {
     use super::{STARTS, Valleys};
 
     fn starts_until_found(costs: impl Iterator<Item = f64>) -> usize {
-        let mut valleys = Valleys::default();
+        let mut valleys = Valleys::of_samples(100);
         let mut costs = costs.into_iter();
         while !valleys.are_found() {
             valleys.note(costs.next().unwrap());

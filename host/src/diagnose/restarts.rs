@@ -24,7 +24,8 @@ impl Evaluator<'_> {
         start.effects.push(guess.candidate.instance(&guess.values));
         let mut free = from.search.free.clone();
         free.extend(guess.candidate.paths());
-        let (mut fits, mut valleys) = (Vec::new(), Valleys::default());
+        let mut valleys = Valleys::of_samples(self.search.samples());
+        let mut fits = Vec::new();
         while !valleys.are_found() {
             let model = scattered(&start, &free, &mut random);
             let options = FitOptions::iterations(START_ITERATIONS);
