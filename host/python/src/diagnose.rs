@@ -5,7 +5,7 @@ use crate::logs::{Learned, horizon, learned_and_held_out};
 use crate::model::Model;
 use crate::value::{framed, plain};
 use crate::work;
-use handstand::compare::compare;
+use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
 use handstand::fitting::{Horizon, effect_named, free_parameters};
@@ -159,25 +159,16 @@ impl Diagnosis {
     /// The model as it is and with the effects that were found, against all motions.
     fn report(&self) -> Report {
         let motions = [self.split.training.as_slice(), &self.split.held_out].concat();
-        let mut models = Vec::new();
+        let mut models = self.inner.models(&self.model.inner);
         // Logs that were refused are not simulated.
-        if !motions.is_empty() {
-            models.push(("the model as it is".to_string(), self.model.inner.clone()));
-        }
-        if !motions.is_empty() && !self.inner.effects.is_empty() {
-            let with = self.inner.applied_to(&self.model.inner);
-            models.push((format!("with {}", self.effects().join(", ")), with));
-        }
-        let mut horizon = self.inner.horizon_s.map(Horizon::Seconds);
-        let mut comparisons = Vec::new();
-        for (name, model) in &models {
-            let comparison = compare(model, name, &motions, horizon);
-            horizon = Some(Horizon::from_seconds(comparison.horizon_s));
-            comparisons.push(comparison);
-        }
+        models.retain(|_| !motions.is_empty());
+        let compared = models
+            .iter()
+            .map(|(name, model)| (name.as_str(), model, motions.as_slice()));
+        let horizon = self.inner.horizon_s.map(Horizon::Seconds);
         Report {
             title: format!("What {} is missing", self.model.inner.name),
-            comparisons,
+            comparisons: compare_all(compared, horizon),
             diagnosis: Some(self.inner.clone()),
             provenance: ReportProvenance::new(
                 vec![self.model.file()],

@@ -5,6 +5,7 @@ use crate::errors::{HandstandError, exception, usage};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
+use handstand::report::gains_json;
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Request, Time, Weight, balanced};
@@ -194,9 +195,10 @@ impl Gains {
 
     /// Everything, with the keys of `handstand gains --json`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let mut value = export::json(&self.design, &self.made);
-        value["verification"] = serde_json::to_value(&self.verification).unwrap_or_default();
-        plain(py, &value)
+        plain(
+            py,
+            &gains_json(&self.design, &self.made, &self.verification),
+        )
     }
 
     fn _repr_html_(&self) -> String {

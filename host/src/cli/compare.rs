@@ -23,7 +23,6 @@
 
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
-use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, Split, read};
 use handstand::report::{Report, file_name, html, json};
 use handstand::{Model, Result, compare};
@@ -51,21 +50,28 @@ pub struct CompareArgs {
 /// Compares, prints, writes the page.
 pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
-    let mut horizon = args.run.horizon;
-    let mut comparisons = Vec::new();
-    let mut split = Split::default();
     let files: Vec<&PathBuf> = std::iter::once(&args.model).chain(&args.others).collect();
+    let mut models = Vec::new();
+    let mut closed_loops = Vec::new();
     for file in &files {
         let model = Model::load(file)?;
         // Each model names columns and zeros its own way.
-        split.training = read(&args.logs, &model.log)?;
-        let name = file_name(file);
+        let motions = read(&args.logs, &model.log)?;
         let plan = args.plan.load(&model)?;
-        let mut comparison = compare::compare(&model, &name, &split.training, horizon);
-        comparison.closed_loop = input::closed_loop(&model, plan.as_ref(), &split.training)?;
-        horizon = Some(Horizon::from_seconds(comparison.horizon_s));
-        comparisons.push(comparison);
+        closed_loops.push(input::closed_loop(&model, plan.as_ref(), &motions)?);
+        models.push((file_name(file), model, motions));
     }
+    let compared = models
+        .iter()
+        .map(|(name, model, motions)| (name.as_str(), model, motions.as_slice()));
+    let mut comparisons = compare::compare_all(compared, args.run.horizon);
+    for (comparison, closed_loop) in comparisons.iter_mut().zip(closed_loops) {
+        comparison.closed_loop = closed_loop;
+    }
+    let split = Split {
+        training: models.pop().map_or(Vec::new(), |(_, _, motions)| motions),
+        held_out: Vec::new(),
+    };
     let text = compare::text(&comparisons);
     let report = Report {
         title: format!("{} against measured motions", comparisons[0].model),

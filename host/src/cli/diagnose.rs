@@ -25,11 +25,9 @@ mod each;
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use each::EachArgs;
-use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare};
+use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare_all};
 use handstand::diagnose::conventions::ModelFile;
-use handstand::diagnose::{
-    DiagnoseOptions, Diagnosis, FittedEffect, LogDiagnosis, Verdict, diagnose_logs,
-};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
 use handstand::fitting::{Horizon, effect_named};
 use handstand::log::{LogRequest, LogSet, Motion, read};
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
@@ -177,14 +175,8 @@ impl Compared {
         args: &DiagnoseArgs,
     ) -> Result<Compared> {
         let motions = read(&args.log_set().all(), &model.log)?;
-        let mut named = vec![("the model as it is".to_string(), model.clone())];
-        if !diagnosis.effects.is_empty() {
-            let effects = diagnosis.effects.iter().map(FittedEffect::address);
-            let effects = effects.collect::<Vec<String>>().join(", ");
-            named.push((format!("with {effects}"), diagnosis.applied_to(model)));
-        }
         let mut models = Vec::new();
-        for (name, model) in named {
+        for (name, model) in diagnosis.models(model) {
             let closed_loop = input::closed_loop(&model, plan, &motions)?;
             models.push((name, model, closed_loop));
         }
@@ -201,13 +193,11 @@ impl Compared {
     /// The comparisons of the page, all over the first one's horizon.
     fn comparisons(&self, judged_over_s: Option<f64>, args: &DiagnoseArgs) -> Vec<Comparison> {
         let judged_over = judged_over_s.map(Horizon::Seconds);
-        let mut horizon = args.judging.run.horizon.or(judged_over);
-        let mut comparisons = Vec::new();
-        for (name, model, closed_loop) in &self.models {
-            let mut comparison = compare(model, name, &self.motions, horizon);
-            horizon = Some(Horizon::from_seconds(comparison.horizon_s));
+        let models = self.models.iter();
+        let named = models.map(|(name, model, _)| (name.as_str(), model, self.motions.as_slice()));
+        let mut comparisons = compare_all(named, args.judging.run.horizon.or(judged_over));
+        for (comparison, (_, _, closed_loop)) in comparisons.iter_mut().zip(&self.models) {
             comparison.closed_loop = closed_loop.clone();
-            comparisons.push(comparison);
         }
         comparisons
     }

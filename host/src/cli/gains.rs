@@ -23,6 +23,7 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk, page};
 use handstand::model::Model;
+use handstand::report::gains_json;
 use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, Format, Request, Sensors, Time, balanced, upright};
@@ -140,8 +141,7 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     bar.set_message("simulations of the loop");
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
-    let mut data = export::json(&design, &made);
-    data["verification"] = serde_json::to_value(&verified).unwrap_or_default();
+    let data = gains_json(&design, &made, &verified);
     talk.result(&data, || {
         let design = export::text(&design);
         format!("{}\n{}", design.trim_end(), verification::text(&verified))

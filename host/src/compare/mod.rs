@@ -25,6 +25,6 @@ pub use model_run::ModelRun;
 pub(crate) use residual_tests::{independence, whiteness};
 pub use residual_variables::{ResidualVariable, residual_variables};
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
-pub use run::compare;
 pub(crate) use run::fit_percent;
+pub use run::{compare, compare_all};
 pub use text::{text, waterfall};

@@ -32,6 +32,19 @@ pub fn compare(
     ModelRun::new(model.clone(), data, horizon).comparison(name)
 }
 
+/// Compares several models, each with its name and motions, all over the first one's horizon.
+pub fn compare_all<'a>(
+    models: impl IntoIterator<Item = (&'a str, &'a Model, &'a [Motion])>,
+    mut horizon: Option<Horizon>,
+) -> Vec<Comparison> {
+    let compared = models.into_iter().map(|(name, model, motions)| {
+        let comparison = compare(model, name, motions, horizon);
+        horizon = Some(Horizon::from_seconds(comparison.horizon_s));
+        comparison
+    });
+    compared.collect()
+}
+
 impl ModelRun {
     /// What the run says of the model; `name` stands for it in reports.
     pub fn comparison(&self, name: &str) -> Comparison {

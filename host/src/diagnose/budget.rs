@@ -19,8 +19,10 @@ pub(super) const BEAM: usize = 5;
 pub(super) const PARTNERS: usize = 5;
 /// Fewer training samples than this are few.
 pub(super) const FEW_SAMPLES: usize = 1500;
-/// Random starts of each candidate where samples are few, and their iterations.
+/// Random starts of each candidate where samples are few, at most, and their iterations.
 pub(super) const STARTS: usize = 100;
+/// Samples times random starts of one candidate, at most.
+pub(super) const START_SAMPLES: usize = 20_000;
 pub(super) const START_ITERATIONS: usize = 30;
 
 /// Steps of progress are short fits. To evaluate a hypothesis takes as long as so many:

@@ -221,6 +221,19 @@ impl Diagnosis {
         model
     }
 
+    /// The model as it is and, where anything was found, with it; each with a name.
+    pub fn models(&self, model: &Model) -> Vec<(String, Model)> {
+        let mut models = vec![("the model as it is".to_string(), model.clone())];
+        let effects = self.effects.iter().map(FittedEffect::address);
+        let wrong = self.wrong_values.iter();
+        let corrected = wrong.map(|wrong| format!("{} corrected", wrong.fitted.path));
+        let parts: Vec<String> = effects.chain(corrected).collect();
+        if !parts.is_empty() {
+            models.push((format!("with {}", parts.join(", ")), self.applied_to(model)));
+        }
+        models
+    }
+
     /// The diagnosis of logs that were refused: the findings say why.
     pub fn unfit(findings: &[LogFinding]) -> Diagnosis {
         let refused = || findings.iter().filter(|f| f.severity == Severity::Refuse);

@@ -11,12 +11,10 @@ use crate::error::{Error, Place, Result};
 use crate::fitting::FittedValue;
 use crate::log::{LogRequest, LogSet};
 use crate::model::Model;
+use crate::output::append_file::AppendFile;
 use crate::output::number::hex;
-use fs4::fs_std::FileExt as _;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
-use std::fs::File;
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 
 /// What decides an outcome beside the log: equal where it is equal.
@@ -154,7 +152,7 @@ impl LogOutcome {
 /// A file of outcomes, to which this program alone appends.
 #[derive(Debug)]
 pub struct OutcomeFile {
-    file: File,
+    file: AppendFile,
     path: std::path::PathBuf,
 }
 
@@ -164,22 +162,14 @@ impl OutcomeFile {
     /// # Errors
     /// A file that another program writes, and what the system refuses.
     pub fn open(path: &Path) -> Result<OutcomeFile> {
-        let refused = |error| Error::file(path, "write", error);
-        let mut options = File::options();
-        options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(refused)?;
-        if !file.try_lock_exclusive().map_err(refused)? {
+        let Some((mut file, bytes)) = AppendFile::open(path)? else {
             return Err(Error::usage(
                 format!("another program writes {}", path.display()),
                 "let it end, or give this one another shard or folder",
             ));
-        }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(refused)?;
+        };
         let whole = bytes.iter().rposition(|byte| *byte == b'\n');
-        let whole = whole.map_or(0, |end| end + 1) as u64;
-        file.set_len(whole).map_err(refused)?;
-        file.seek(SeekFrom::Start(whole)).map_err(refused)?;
+        file.cut(whole.map_or(0, |end| end + 1) as u64)?;
         Ok(OutcomeFile {
             file,
             path: path.to_path_buf(),
@@ -191,10 +181,9 @@ impl OutcomeFile {
     /// # Errors
     /// What the system refuses.
     pub fn append(&mut self, outcome: &LogOutcome) -> Result<()> {
-        let refused = |error| Error::file(&self.path, "write", error);
-        let line = serde_json::to_string(outcome).map_err(|error| refused(error.into()))? + "\n";
-        self.file.write_all(line.as_bytes()).map_err(refused)?;
-        self.file.sync_data().map_err(refused)
+        let line = serde_json::to_string(outcome)
+            .map_err(|error| Error::file(&self.path, "write", error.into()))?;
+        self.file.append(&(line + "\n"))
     }
 }
 

@@ -1,23 +1,70 @@
 //! Fits of one model from random starts.
 
-use super::budget::STARTS;
+use super::budget::{START_SAMPLES, STARTS};
 use crate::fitting::{Fit, FitData, FitOptions, fit};
 use crate::model::{Model, ParameterPath};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
-/// The base model fitted; from many starts on few samples.
+/// Two fits whose costs differ by less than this share ended in one valley.
+const ALIKE: f64 = 0.01;
+
+/// The valleys that fits from random starts ended in.
+///
+/// Starts go on until it is unlikely that there are valleys which none ended in: after n starts
+/// and w valleys w (n - 1) / (n - w - 2) are expected in all (Boender, Rinnooy Kan: Bayesian
+/// stopping rules for multistart global optimization methods, Mathematical Programming 37, 1987).
+#[derive(Debug)]
+pub(super) struct Valleys {
+    costs: Vec<f64>,
+    starts: usize,
+    most_starts: usize,
+}
+
+impl Valleys {
+    /// None yet. The fewer the samples, the more starts may be made: they cost as much in all.
+    pub fn of_samples(samples: usize) -> Valleys {
+        Valleys {
+            costs: Vec::new(),
+            starts: 0,
+            most_starts: (START_SAMPLES / samples.max(1)).clamp(1, STARTS),
+        }
+    }
+
+    /// Notes where a fit ended.
+    pub fn note(&mut self, cost: f64) {
+        self.starts += 1;
+        let alike = |known: &f64| cost == *known || (cost - known).abs() <= ALIKE * known.abs();
+        if !self.costs.iter().any(alike) {
+            self.costs.push(cost);
+        }
+    }
+
+    /// Whether less than half a valley is expected beyond those found, or the starts are spent.
+    pub fn are_found(&self) -> bool {
+        let (valleys, starts) = (self.costs.len(), self.starts);
+        let expected = |left: usize| (valleys * (starts - 1)) as f64 / left as f64;
+        let left = starts.saturating_sub(valleys + 2);
+        starts >= self.most_starts || left > 0 && expected(left) < valleys as f64 + 0.5
+    }
+}
+
+/// The base model fitted; from several starts on few samples.
 pub(super) fn base_fit(model: &Model, data: &FitData, few: bool, seed: u64) -> Fit {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let starts = if few { STARTS } else { 0 };
-    let others = (0..starts).map(|_| scattered(model, &model.free, &mut random));
-    let models: Vec<Model> = std::iter::once(model.clone()).chain(others).collect();
     let fitted = |start: &Model| fit(start, &model.free, data, None, FitOptions::default());
-    let fits: Vec<Fit> = models.par_iter().map(fitted).collect();
     let cost = |fit: &Fit| fit.residuals.cost();
-    let best = fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
-    best.unwrap_or_else(|| fitted(model))
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut valleys = Valleys::of_samples(data.samples());
+    let mut best = fitted(model);
+    valleys.note(cost(&best));
+    while few && !valleys.are_found() {
+        let found = fitted(&scattered(model, &model.free, &mut random));
+        valleys.note(cost(&found));
+        if cost(&found) < cost(&best) {
+            best = found;
+        }
+    }
+    best
 }
 
 /// The model with every free value that can't be negative multiplied by a random factor up to about
@@ -33,4 +80,29 @@ pub(super) fn scattered(model: &Model, free: &[ParameterPath], random: &mut ChaC
         }
     }
     scattered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STARTS, Valleys};
+
+    fn starts_until_found(costs: impl Iterator<Item = f64>) -> usize {
+        let mut valleys = Valleys::of_samples(100);
+        let mut costs = costs.into_iter();
+        while !valleys.are_found() {
+            valleys.note(costs.next().unwrap());
+        }
+        valleys.starts
+    }
+
+    #[test]
+    fn one_valley_is_believed_after_eight_starts_and_more_take_more() {
+        assert_eq!(starts_until_found(std::iter::repeat(1.0)), 8);
+        let two = (0..).map(|k| if k % 5 == 0 { 1.0 } else { 2.0 });
+        assert_eq!(starts_until_found(two), 17);
+        let late = (0..).map(|k| if k < 5 { 2.0 } else { 1.0 });
+        assert_eq!(starts_until_found(late), 17);
+        assert_eq!(starts_until_found((1..).map(f64::from)), STARTS);
+        assert_eq!(starts_until_found(std::iter::repeat(f64::INFINITY)), 8);
+    }
 }

@@ -1,11 +1,11 @@
 //! Fits of candidates from other starts, where false valleys are many: few samples, or a law that
 //! jumps.
 
-use super::budget::{FINISH, START_ITERATIONS, STARTS};
+use super::budget::{FINISH, START_ITERATIONS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
-use super::multistart::scattered;
+use super::multistart::{Valleys, scattered};
 use crate::fitting::{Candidate, FitOptions, fit};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -24,13 +24,17 @@ impl Evaluator<'_> {
         start.effects.push(guess.candidate.instance(&guess.values));
         let mut free = from.search.free.clone();
         free.extend(guess.candidate.paths());
-        let fits = (0..STARTS).map(|_| {
+        let mut valleys = Valleys::of_samples(self.search.samples());
+        let mut fits = Vec::new();
+        while !valleys.are_found() {
             let model = scattered(&start, &free, &mut random);
             let options = FitOptions::iterations(START_ITERATIONS);
             let found = fit(&model, &free, &self.search, None, options);
-            Hypothesis::new(from.set_with(guess.candidate), found)
-        });
-        fits.collect()
+            let found = Hypothesis::new(from.set_with(guess.candidate), found);
+            valleys.note(found.search_mean);
+            fits.push(found);
+        }
+        fits
     }
 
     /// Fits candidates whose law jumps from the values the model came with, and from each of the

@@ -83,8 +83,8 @@ impl Signs {
         match (self.kind, self.held_out) {
             (Kind::Given, _) => self.left.sqrt() > MOST_NOMINAL || self.is_structured(),
             (_, true) => self.is_structured() || self.leaves_much() || self.values_vary(),
-            // The motions that were fitted prove nothing about what is left.
-            (_, false) => false,
+            // Motions that were fitted show too little of what is left; what they show is there.
+            (_, false) => self.leaves_much(),
         }
     }
 
@@ -268,6 +268,12 @@ mod tests {
         };
         assert_eq!(left(4.9).verdict(), Verdict::Named);
         assert_eq!(left(5.1).verdict(), Verdict::Unexplained);
+        // What is left of the motions that were fitted is left of others too.
+        let fitted = Signs {
+            held_out: false,
+            ..left(5.1)
+        };
+        assert_eq!(fitted.verdict(), Verdict::Unexplained);
     }
 
     #[test]
@@ -285,7 +291,7 @@ mod tests {
             .verdict(),
             Verdict::Named
         );
-        // Fitted motions prove nothing about what is left.
+        // Motions that were fitted show too little of it.
         assert_eq!(
             Signs {
                 held_out: false,

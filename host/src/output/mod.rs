@@ -1,6 +1,7 @@
 //! Files this program makes: whole or not at all, and never over another's work unasked. Numbers
 //! for people: [`number`].
 
+pub mod append_file;
 pub mod number;
 pub mod plot;
 pub mod table;

@@ -2,6 +2,9 @@
 
 use super::Report;
 use crate::diagnose::Diagnosis;
+use crate::study::Verification;
+use crate::synth::Design;
+use crate::synth::export::{self, Provenance};
 use serde_json::{Map, Value};
 
 /// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number
@@ -23,6 +26,13 @@ pub fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
     for alternative in value["alternatives"].as_array_mut().into_iter().flatten() {
         key_effects(alternative);
     }
+    value
+}
+
+/// Gains as [`export::json`] writes them, and the simulated loop's `verification`.
+pub fn gains_json(design: &Design, made: &Provenance, verification: &Verification) -> Value {
+    let mut value = export::json(design, made);
+    value["verification"] = plain(verification);
     value
 }
 

@@ -23,7 +23,7 @@ mod traces;
 mod waterfall;
 mod words;
 
-pub use json::{diagnosis_json, json};
+pub use json::{diagnosis_json, gains_json, json};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
 pub use proposal::proposal_text;

@@ -8,14 +8,12 @@ use super::error::StudyError;
 use super::monte_carlo::{CHUNK, columns};
 use super::parse::Study;
 use crate::error::{Error, Place, Result};
+use crate::output::append_file::AppendFile;
 use crate::output::number::hex;
-use fs4::fs_std::FileExt as _;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Which study a journal belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,8 +69,7 @@ pub(super) struct Content {
 /// An open journal.
 #[derive(Debug)]
 pub struct Journal {
-    path: PathBuf,
-    file: File,
+    file: AppendFile,
     /// Chunks it holds already.
     pub done: BTreeSet<usize>,
     /// Bytes of a torn chunk that were cut off on opening.
@@ -85,27 +82,21 @@ impl Journal {
     /// # Errors
     /// A journal of another study, one that another program is writing, or what the system refuses.
     pub fn open(path: &Path, header: &Header) -> Result<Journal> {
-        let refused = |error| Error::file(path, "write", error);
-        let mut options = File::options();
-        options.read(true).write(true).create(true).truncate(false);
-        let file = options.open(path).map_err(refused)?;
-        if !file.try_lock_exclusive().map_err(refused)? {
+        let Some((file, bytes)) = AppendFile::open(path)? else {
             let locked = StudyError::Locked(path.to_path_buf());
             return Err(Error::Usage(Box::new(locked)));
-        }
+        };
         let mut journal = Journal {
-            path: path.to_path_buf(),
             done: BTreeSet::new(),
             torn_bytes: 0,
             file,
         };
-        let mut bytes = Vec::new();
-        journal.file.read_to_end(&mut bytes).map_err(refused)?;
         if !bytes.contains(&b'\n') {
             // New, or killed before the first line was whole.
-            journal.cut(0).map_err(refused)?;
-            let line = serde_json::to_string(header).map_err(|error| refused(error.into()))?;
-            journal.append(&(line + "\n"))?;
+            journal.file.cut(0)?;
+            let line = serde_json::to_string(header)
+                .map_err(|error| Error::file(path, "write", error.into()))?;
+            journal.file.append(&(line + "\n"))?;
             return Ok(journal);
         }
         let found = content(&bytes, path)?;
@@ -114,13 +105,8 @@ impl Journal {
         }
         journal.torn_bytes = found.length - found.whole;
         journal.done = found.rows.into_keys().collect();
-        journal.cut(found.whole).map_err(refused)?;
+        journal.file.cut(found.whole)?;
         Ok(journal)
-    }
-
-    fn cut(&mut self, length: u64) -> std::io::Result<()> {
-        self.file.set_len(length)?;
-        self.file.seek(SeekFrom::End(0)).map(|_| ())
     }
 
     /// Adds a finished chunk, safe on disk when this returns.
@@ -133,16 +119,9 @@ impl Journal {
             rows.len(),
             sum(rows)
         );
-        self.append(&text)?;
+        self.file.append(&text)?;
         self.done.insert(chunk);
         Ok(())
-    }
-
-    fn append(&mut self, text: &str) -> Result<()> {
-        self.file
-            .write_all(text.as_bytes())
-            .and_then(|()| self.file.sync_data())
-            .map_err(|error| Error::file(&self.path, "write", error))
     }
 }
 

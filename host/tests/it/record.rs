@@ -176,7 +176,7 @@ mod killed {
             while !bench.path(file).exists() {
                 std::thread::sleep(Duration::from_millis(5));
                 assert!(
-                    began.elapsed() < Duration::from_secs(20),
+                    began.elapsed() < Duration::from_secs(60),
                     "{file} does not appear"
                 );
             }
@@ -247,50 +247,62 @@ mod killed {
             ),
             (&["--cm5", "ids=1-2,delay=0"], &["--stream"], 57_600),
         ] {
-            let bench = Bench::new();
-            bench.put("motion.csv", super::motion(0.4));
-            let serve = ["virtual", "--pty", "--seconds", "60"];
-            let mut robot = spawn(&bench, &[&serve, words].concat());
-            let port = port_of(&mut robot);
-            let follow = [
-                "replay",
-                "motion.csv",
-                "--yes",
-                "--record",
-                "out.csv",
-                "--port",
-                &port,
-            ];
-            let mut replay = spawn(&bench, &[&follow, options].concat());
-            while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
-                let ended = replay.try_wait().unwrap();
-                assert!(ended.is_none(), "{words:?}: it ended early, {ended:?}");
-                std::thread::sleep(Duration::from_millis(20));
-            }
-            signal("-STOP", &robot);
-            std::thread::sleep(Duration::from_millis(30));
-            signal("-INT", &replay);
-            std::thread::sleep(Duration::from_millis(5));
-            signal("-INT", &replay);
-            assert_eq!(replay.wait().unwrap().code(), Some(5), "{words:?}");
-            signal("-CONT", &robot);
-            std::thread::sleep(Duration::from_millis(500));
-            if baud == 57_600 {
-                // It may have found the line silent, and stopped: greeted again it is an adapter
-                // again.
-                let line =
-                    format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");
-                assert_eq!(bench.run(&line).code, Some(0));
-            }
-            for id in 1..=2 {
-                let line =
-                    format!("bus read {id} torque-enable --port {port} --baud {baud} --json");
-                let read = bench.run(&line);
-                assert_eq!(read.json()[0]["code"], 0, "{words:?}: {read:?}");
-            }
+            let counted = (0..10).any(|_| second_ctrl_c(words, options, baud));
+            assert!(counted, "{words:?}: the keys never came first");
+        }
+    }
+
+    /// One such try; false where the program found the servos silent before the keys came, as it
+    /// does on a busy machine.
+    fn second_ctrl_c(words: &[&str], options: &[&str], baud: u32) -> bool {
+        let bench = Bench::new();
+        bench.put("motion.csv", super::motion(0.4));
+        let serve = ["virtual", "--pty", "--seconds", "60"];
+        let mut robot = spawn(&bench, &[&serve, words].concat());
+        let port = port_of(&mut robot);
+        let follow = [
+            "replay",
+            "motion.csv",
+            "--yes",
+            "--record",
+            "out.csv",
+            "--port",
+            &port,
+        ];
+        let mut replay = spawn(&bench, &[&follow, options].concat());
+        while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
+            let ended = replay.try_wait().unwrap();
+            assert!(ended.is_none(), "{words:?}: it ended early, {ended:?}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        signal("-STOP", &robot);
+        std::thread::sleep(Duration::from_millis(30));
+        signal("-INT", &replay);
+        std::thread::sleep(Duration::from_millis(5));
+        signal("-INT", &replay);
+        let code = replay.wait().unwrap().code();
+        signal("-CONT", &robot);
+        if code == Some(4) {
             robot.kill().unwrap();
             robot.wait().unwrap();
+            return false;
         }
+        assert_eq!(code, Some(5), "{words:?}");
+        std::thread::sleep(Duration::from_millis(500));
+        if baud == 57_600 {
+            // It may have found the line silent, and stopped: greeted again it is an adapter
+            // again.
+            let line = format!("record after.csv --stream --seconds 0.1 --ids 1-2 --port {port}");
+            assert_eq!(bench.run(&line).code, Some(0));
+        }
+        for id in 1..=2 {
+            let line = format!("bus read {id} torque-enable --port {port} --baud {baud} --json");
+            let read = bench.run(&line);
+            assert_eq!(read.json()[0]["code"], 0, "{words:?}: {read:?}");
+        }
+        robot.kill().unwrap();
+        robot.wait().unwrap();
+        true
     }
 
     fn signal(name: &str, child: &Child) {

@@ -151,7 +151,7 @@ fn a_wrong_value_is_named_before_any_missing_effect() {
         "[[effect]]\nkind = \"viscous\"\njoint = 1\ncoefficient_nm_s_rad = 0.00017\n\n[log]",
     );
     bench.put("sixth.toml", model);
-    let ran = bench.run("diagnose sixth.toml a.csv --holdout b.csv --json");
+    let ran = bench.run("diagnose sixth.toml a.csv --holdout b.csv --report page.html --json");
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
     assert_eq!(data["verdict"], "wrong_value", "{data}");
@@ -163,6 +163,9 @@ fn a_wrong_value_is_named_before_any_missing_effect() {
         (wrong["value"].as_f64().unwrap() / 0.001 - 1.0).abs() < 0.02,
         "{wrong}"
     );
+    // The page shows what it would mend.
+    let page = bench.get("page.html");
+    assert!(page.contains("with viscous@1.coefficient_nm_s_rad corrected"));
     // What is printed to mend it does.
     let fit = data["next"][0]
         .as_str()

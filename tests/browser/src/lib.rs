@@ -16,6 +16,17 @@ use tungstenite::{Message, WebSocket};
 /// Longer than anything here takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(240);
 
+/// Between two questions to a page that is not there yet.
+const POLL: Duration = Duration::from_millis(40);
+
+/// Whether a call failed because its page gave way to another.
+fn has_left(error: &Value) -> bool {
+    let text = error["message"].as_str().unwrap_or_default();
+    ["navigated", "context was destroyed", "Cannot find context"]
+        .iter()
+        .any(|sign| text.contains(sign))
+}
+
 /// A browser with one page.
 #[derive(Debug)]
 pub struct Browser {
@@ -111,6 +122,12 @@ impl Browser {
 
     /// A call of the protocol; complaints that come meanwhile are kept.
     pub fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.try_call(method, parameters)
+            .unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
+    /// A call of the protocol, or the browser's own error.
+    fn try_call(&mut self, method: &str, parameters: Value) -> Result<Value, Value> {
         self.calls += 1;
         let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
         if !self.session.is_empty() {
@@ -133,8 +150,10 @@ impl Browser {
                 _ => {}
             }
             if said["id"] == self.calls {
-                assert!(said["error"].is_null(), "{method}: {said}");
-                return said["result"].clone();
+                return match said["error"].is_null() {
+                    true => Ok(said["result"].clone()),
+                    false => Err(said["error"].clone()),
+                };
             }
         }
     }
@@ -145,12 +164,23 @@ impl Browser {
         self.until("document.readyState === 'complete'");
     }
 
-    /// The value of an expression of the page; a promise is waited for.
+    /// The value of an expression of the page; a promise is waited for. A page that gives way to
+    /// another meanwhile cannot answer: then the next one is asked.
     pub fn value(&mut self, expression: &str) -> Value {
         let asked = json!({
             "expression": expression, "returnByValue": true, "awaitPromise": true,
         });
-        self.call("Runtime.evaluate", asked)["result"]["value"].clone()
+        let begun = Instant::now();
+        loop {
+            match self.try_call("Runtime.evaluate", asked.clone()) {
+                Ok(answer) => return answer["result"]["value"].clone(),
+                Err(error) => assert!(
+                    has_left(&error) && begun.elapsed() < PATIENCE,
+                    "{expression}: {error}"
+                ),
+            }
+            std::thread::sleep(POLL);
+        }
     }
 
     /// Waits until an expression holds.
@@ -161,7 +191,7 @@ impl Browser {
                 let message = self.value("document.getElementById('message')?.textContent");
                 panic!("not in {PATIENCE:?}: {expression}; the page says {message}");
             }
-            std::thread::sleep(Duration::from_millis(40));
+            std::thread::sleep(POLL);
         }
     }
 
@@ -176,7 +206,7 @@ impl Browser {
                 begun.elapsed() < PATIENCE,
                 "no number in {PATIENCE:?}: {expression}"
             );
-            std::thread::sleep(Duration::from_millis(40));
+            std::thread::sleep(POLL);
         }
     }
 

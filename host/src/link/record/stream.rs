@@ -165,6 +165,7 @@ impl<L: SerialLink> Drop for Stream<L> {
         if self.armed {
             let _ = self.disarm();
         }
-        let _ = self.session.send(&Command::Mode(Mode::Bridge));
+        // Waited for: whoever opens the line next would hear reports instead of servos.
+        let _ = self.session.obey(&Command::Mode(Mode::Bridge), "stop");
     }
 }

@@ -8,8 +8,8 @@ mod live;
 mod pages;
 mod safety;
 mod server;
-mod speed;
 mod two_browsers;
+mod wide_log;
 
 use handstand_browser::Browser;
 use std::path::Path;

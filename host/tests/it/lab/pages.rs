@@ -9,9 +9,7 @@ use std::path::PathBuf;
 
 /// The error in force, rad.
 fn error_now(browser: &mut Browser) -> f64 {
-    browser.until("document.getElementById('error-now')");
-    let rad = browser.value("Number(document.getElementById('error-now').dataset.error)");
-    rad.as_f64().unwrap()
+    browser.number("Number(document.getElementById('error-now').dataset.error)")
 }
 
 #[test]
@@ -55,6 +53,7 @@ fn from_a_log_to_a_better_model_and_back() {
                    && document.querySelector('#scatters canvas') \
                    && document.getElementById('horizons')",
     );
+    zooms_all_curves(&mut browser);
     browser.press_on("canvas.plot", "+");
     browser.press_on("[data-condition]", "Enter");
     browser.until("document.querySelector('[aria-pressed=true]')");
@@ -120,6 +119,21 @@ fn from_a_log_to_a_better_model_and_back() {
     browser.until("document.getElementById('score')");
     browser.pictures("9-score");
     assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+/// One chart is zoomed and panned: all follow, and go back to what they were.
+fn zooms_all_curves(browser: &mut Browser) {
+    let drawn = "Array.from(document.querySelectorAll('#curves canvas'), (c) => c.toDataURL())";
+    let all = |test: &str| format!("{drawn}.every((picture, i) => {test})");
+    assert!(browser.number(&format!("{drawn}.length")) >= 2.0);
+    browser.value(&format!("{{ window.whole = {drawn}; }}"));
+    browser.press_on("#curves canvas", "+");
+    browser.until(&all("picture !== whole[i]"));
+    browser.value(&format!("{{ window.zoomed = {drawn}; }}"));
+    browser.press("ArrowRight");
+    browser.until(&all("picture !== zoomed[i] && picture !== whole[i]"));
+    browser.press("0");
+    browser.until(&all("picture === whole[i]"));
 }
 
 /// The robot at a port as a person sees it: the press, the questions, charts, stop; and the gains

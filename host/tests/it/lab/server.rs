@@ -19,8 +19,6 @@ pub struct Server {
     pub port: u16,
     /// Cookies of a browser that came in.
     pub cookies: String,
-    /// From the start to the address on stdout.
-    pub started_in: Duration,
 }
 
 impl Drop for Server {
@@ -82,7 +80,6 @@ impl Server {
 
     /// The same before anyone came in.
     pub fn start_alone(bench: &Bench, words: &str) -> Server {
-        let begun = Instant::now();
         let mut child = Command::new(env!("CARGO_BIN_EXE_handstand"))
             .arg("lab")
             .args(words.split_whitespace())
@@ -96,7 +93,6 @@ impl Server {
         let mut address = String::new();
         let mut out = BufReader::new(child.stdout.take().unwrap());
         out.read_line(&mut address).unwrap();
-        let started_in = begun.elapsed();
         let address = address.trim().to_string();
         let port = address.split([':', '/']).find_map(|part| part.parse().ok());
         Server {
@@ -104,7 +100,6 @@ impl Server {
             port: port.unwrap_or_else(|| panic!("no address: {address:?}")),
             address,
             cookies: String::new(),
-            started_in,
         }
     }
 
