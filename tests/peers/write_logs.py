@@ -3,8 +3,8 @@
     python write_logs.py FOLDER
 
 Needs numpy, scipy, mcap, mcap-ros2-support, rosbags, pyarrow and polars (PyPI). `expected.json`
-holds what every file says, by column: numbers as their shortest decimal, which is read back to the last bit, or null
-where nothing was measured.
+holds what every file says, by column: numbers as their shortest decimal, which is read back to the
+last bit, or null where nothing was measured.
 """
 
 import json
@@ -153,7 +153,8 @@ def write_parquet(folder):
     def write(name, table=table, **options):
         parquet.write_table(table, folder / f"{name}.parquet", **options)
 
-    integers = ["time", "time_us", "time_ms", "stamp", "small", "large", "largest", "count", "level"]
+    integers = ["time", "time_us", "time_ms", "stamp", "small", "large", "largest", "count",
+                "level"]
     encodings = {name: "DELTA_BINARY_PACKED" for name in integers}
     encodings |= {name: "BYTE_STREAM_SPLIT" for name in ["q", "dq", "single"]}
     encodings |= {"torque_on": "RLE"}
