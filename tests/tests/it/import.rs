@@ -3,25 +3,16 @@
 //! The robots are drawn: axes and frames turned in space, centres of mass beside the plane, joints
 //! that count either way, links of several fixed bodies, branches.
 
+use crate::simulators::{answers, python};
 use handstand::Model;
 use handstand::dynamics::Workspace;
 use handstand::model::import::{ImportPlan, import};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 const ROBOTS: u64 = 24;
 const STATES: usize = 10;
-
-/// The environment that `cargo xtask hidden --truth mujoco` and `cargo xtask peers` install.
-fn python() -> Option<PathBuf> {
-    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/peers/venv/bin/python");
-    let works = Command::new(&python).args(["-c", "import numpy"]).output();
-    works
-        .is_ok_and(|output| output.status.success())
-        .then_some(python)
-}
 
 /// Splitmix64: numbers between -1 and 1.
 struct Draws(u64);
@@ -255,7 +246,6 @@ fn accelerations(model: &Model, q: &[f64], dq: &[f64], tau: &[f64]) -> Vec<f64> 
 #[test]
 fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
     let Some(python) = python() else {
-        println!("numpy is not installed in target/peers/venv: nothing compared");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -298,28 +288,10 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
         cases.push(json!({ "file": file, "joints": names, "states": written }));
         models.push((model, states));
     }
-    let path = folder.path().join("cases.json");
-    std::fs::write(&path, serde_json::to_string(&cases).unwrap()).unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/forward_dynamics.py");
-    let output = Command::new(python)
-        .arg(script)
-        .arg(&path)
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let theirs: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let theirs = answers(&python, "forward_dynamics.py", &cases);
     let (mut compared, mut worst) = ([0, 0], 0.0f64);
-    for (robot, ((model, states), theirs)) in
-        models.iter().zip(theirs.as_array().unwrap()).enumerate()
-    {
-        let Ok(theirs) = serde_json::from_value::<Vec<Vec<f64>>>(theirs.clone()) else {
-            println!("robot {robot}: its simulator is not installed");
-            continue;
-        };
+    for (robot, ((model, states), theirs)) in models.iter().zip(theirs).enumerate() {
+        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();
         compared[robot % 2] += 1;
         for ([q, dq, tau], theirs) in states.iter().zip(theirs) {
             let ours = accelerations(model, q, dq, tau);
@@ -335,4 +307,5 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
         "{} by Pinocchio, {} by MuJoCo, largest difference {worst:.1e}",
         compared[0], compared[1]
     );
+    assert_eq!(compared.iter().sum::<u64>(), ROBOTS);
 }

@@ -14,4 +14,5 @@ mod intervals;
 mod kills;
 mod mjcf;
 mod next;
+mod simulators;
 mod spoiled;

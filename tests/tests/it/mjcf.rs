@@ -1,25 +1,16 @@
 //! Exported models move in MuJoCo as they do here.
 
+use crate::simulators::{answers, python};
 use handstand::Model;
 use handstand::challenge::{KINDS, Motions, bench};
 use handstand::log::Motion;
 use handstand::model::export::mjcf;
 use handstand::sim::{Plant, SensorState, Start, predict};
-use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use serde_json::json;
+use std::path::Path;
 
 const PERIOD_S: f64 = 0.01;
 const PERIODS: usize = 200;
-
-/// The environment that `cargo xtask hidden --truth mujoco` and `cargo xtask peers` install.
-fn python() -> Option<PathBuf> {
-    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/peers/venv/bin/python");
-    let works = Command::new(&python).args(["-c", "import mujoco"]).output();
-    works
-        .is_ok_and(|output| output.status.success())
-        .then_some(python)
-}
 
 /// A true model of the benchmark, in the units of its drives' motors and without a sensor's
 /// rounding.
@@ -87,7 +78,6 @@ fn ours(model: &Model, motion: &Motion, start: &Start) -> Vec<Vec<f64>> {
 #[test]
 fn exported_models_move_in_mujoco_as_here() {
     let Some(python) = python() else {
-        println!("MuJoCo is not installed in target/peers/venv: nothing compared");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -128,22 +118,9 @@ fn exported_models_move_in_mujoco_as_here() {
         }));
         expected.push((format!("{kind} {seed}"), ours(&model, &motion, &start)));
     }
-    let path = folder.path().join("cases.json");
-    std::fs::write(&path, serde_json::to_string(&cases).unwrap()).unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/mjcf_trajectories.py");
-    let output = Command::new(python)
-        .arg(script)
-        .arg(&path)
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let theirs: Value = serde_json::from_slice(&output.stdout).unwrap();
-    for ((name, ours), theirs) in expected.iter().zip(theirs.as_array().unwrap()) {
-        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs.clone()).unwrap();
+    let theirs = answers(&python, "mjcf_trajectories.py", &cases);
+    for ((name, ours), theirs) in expected.iter().zip(theirs) {
+        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();
         for joint in 0..ours[0].len() {
             let column = || ours.iter().map(|row| row[joint]);
             let low = column().fold(f64::INFINITY, f64::min);
