@@ -2,21 +2,25 @@
 
     python write_logs.py FOLDER
 
-Needs numpy, scipy, mcap, mcap-ros2-support and rosbags (PyPI). `expected.json` holds what every
-file says, by column: numbers as their shortest decimal, which is read back to the last bit, or null
-where nothing was measured.
+Needs numpy, scipy, mcap, mcap-ros2-support, rosbags, pyarrow and polars (PyPI). `expected.json`
+holds what every file says, by column: numbers as their shortest decimal, which is read back to the
+last bit, or null where nothing was measured.
 """
 
 import json
 import math
 import sys
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
+import polars
+import pyarrow
 from mcap.writer import CompressionType
 from mcap_ros2.writer import Writer as McapWriter
 from rosbags.rosbag2 import Writer as BagWriter
 from rosbags.rosbag2 import StoragePlugin
+from pyarrow import parquet
 from rosbags.typesys import Stores, get_typestore
 from scipy.io import savemat
 
@@ -109,6 +113,86 @@ def write_mat(file, compressed):
     savemat(file, columns, do_compression=compressed, oned_as="column")
 
 
+def parquet_columns():
+    """Every kind of column, each with its type; a gap in some."""
+    rows = range(ROWS)
+    stamp = pyarrow.timestamp
+    state = [[value(joint, row) for joint in range(2)] for row in rows]
+    return {
+        "time": (stamps(), stamp("ns")),
+        "time_us": ([ns // 1000 for ns in stamps()], stamp("us", tz="UTC")),
+        "time_ms": ([None if row == 3 else ns // 10**6 for row, ns in enumerate(stamps())],
+                    stamp("ms")),
+        "clock": ([row * 1001 for row in rows], pyarrow.time64("us")),
+        "stamp": (stamps(), pyarrow.int64()),
+        "q": ([value(0, row) for row in rows], pyarrow.float64()),
+        "dq": ([None if row == 7 else speed(1, row) for row in rows], pyarrow.float64()),
+        "single": ([value(0, row) for row in rows], pyarrow.float32()),
+        "small": ([row * 7 - 200 for row in rows], pyarrow.int16()),
+        "large": ([2**31 + row * 1000 for row in rows], pyarrow.uint32()),
+        "largest": ([2**64 - 100 + row for row in rows], pyarrow.uint64()),
+        "count": ([None if row == 0 else row for row in rows], pyarrow.int64()),
+        "torque_on": ([row % 5 != 0 for row in rows], pyarrow.bool_()),
+        "level": ([row // 20 for row in rows], pyarrow.int32()),
+        "goal": ([Decimal(row * 125) / 1000 for row in rows], pyarrow.decimal128(9, 3)),
+        "state": (state, pyarrow.list_(pyarrow.float64())),
+        "action": (state, pyarrow.list_(pyarrow.float32(), 2)),
+        "imu": ([{"x": value(0, row), "y": row} for row in rows],
+                pyarrow.struct({"x": pyarrow.float64(), "y": pyarrow.int32()})),
+        "note": (["a text"] * ROWS, pyarrow.string()),
+        "ragged": ([[1.0] * (row % 3) for row in rows], pyarrow.list_(pyarrow.float64())),
+        "grid": ([[[1.0], [2.0]]] * ROWS, pyarrow.list_(pyarrow.list_(pyarrow.float64()))),
+        "by_name": ([[("a", 1.0)]] * ROWS, pyarrow.map_(pyarrow.string(), pyarrow.float64())),
+    }
+
+
+def write_parquet(folder):
+    columns = {name: pyarrow.array(values, of) for name, (values, of) in parquet_columns().items()}
+    table = pyarrow.table(columns)
+
+    def write(name, table=table, **options):
+        parquet.write_table(table, folder / f"{name}.parquet", **options)
+
+    integers = ["time", "time_us", "time_ms", "stamp", "small", "large", "largest", "count",
+                "level"]
+    encodings = {name: "DELTA_BINARY_PACKED" for name in integers}
+    encodings |= {name: "BYTE_STREAM_SPLIT" for name in ["q", "dq", "single"]}
+    encodings |= {"torque_on": "RLE"}
+    write("arrow", compression="snappy", row_group_size=25, store_decimal_as_integer=True)
+    write("arrow_v2", compression="gzip", data_page_version="2.0", use_dictionary=False,
+          column_encoding=encodings, store_decimal_as_integer=True)
+    write("arrow_old", compression="none", version="1.0", use_deprecated_int96_timestamps=True,
+          store_decimal_as_integer=True)
+    write("arrow_lz4", compression="lz4", store_decimal_as_integer=True, data_page_size=64,
+          write_batch_size=8)
+    write("brotli", table.select(["q"]), compression="brotli")
+    polars.from_arrow(table.drop_columns(["by_name", "goal"])).write_parquet(
+        folder / "polars.parquet")
+
+
+def expected_parquet():
+    rows = range(ROWS)
+    exact = {name: values for name, (values, _) in parquet_columns().items()}
+
+    def since(name, per_s):
+        first = next(value for value in exact[name] if value is not None)
+        return [None if value is None else (value - first) / per_s for value in exact[name]]
+
+    of = {name: [None if value is None else float(value) for value in exact[name]]
+          for name in ["q", "small", "large", "count", "torque_on", "level", "goal"]}
+    of["dq"] = plain(math.nan if value is None else value for value in exact["dq"])
+    of["time"], of["time_us"] = since("time", 1e9), since("time_us", 1e6)
+    of["time_ms"] = since("time_ms", 1e3)
+    of["clock"] = [row * 1001 / 1e6 for row in rows]
+    of["stamp"], of["largest"] = since("stamp", 1), since("largest", 1)
+    of["single"] = [float(np.float32(value(0, row))) for row in rows]
+    for joint in range(2):
+        of[f"state_{joint + 1}"] = [value(joint, row) for row in rows]
+        of[f"action_{joint + 1}"] = [float(np.float32(value(joint, row))) for row in rows]
+    of["imu.x"], of["imu.y"] = of["q"], [float(row) for row in rows]
+    return of
+
+
 def plain(numbers):
     return [None if math.isnan(number) else number for number in numbers]
 
@@ -122,7 +206,7 @@ def expected():
     mat = {"t": of["time_s"], "q_1": of["shoulder.position"], "q_2": of["elbow.position"],
            "data.dq": of["elbow.velocity"], "count": [float(row * 7) for row in rows],
            "single": [float(np.float32(value(0, row))) for row in rows]}
-    return {"states": of, "mat": mat}
+    return {"states": of, "mat": mat, "parquet": expected_parquet()}
 
 
 def main():
@@ -138,6 +222,7 @@ def main():
         (folder / name).rmdir()
     write_mat(folder / "v7.mat", True)
     write_mat(folder / "v6.mat", False)
+    write_parquet(folder)
     with open(folder / "expected.json", "w", encoding="utf-8") as file:
         json.dump(expected(), file)
 

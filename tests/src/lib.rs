@@ -9,4 +9,5 @@ pub mod hidden;
 pub mod kills;
 pub mod measured;
 pub mod peers;
+pub mod reading;
 pub mod spoiled;

@@ -20,6 +20,8 @@ pub(super) struct LogHeader {
     line: usize,
     /// `# key = value` before the names, with their line.
     constants: Vec<(String, f64, usize)>,
+    /// Columns of a table that hold no numbers a row, and what they hold.
+    left_out: Vec<(String, &'static str)>,
 }
 
 /// Where a quantity's value comes from.
@@ -77,6 +79,7 @@ impl LogHeader {
                 names: self::names(&names),
                 line,
                 constants,
+                left_out: Vec::new(),
             };
             return Ok((header, first));
         }
@@ -93,6 +96,7 @@ impl LogHeader {
             constants: constants
                 .map(|(name, value)| (name.clone(), *value, 1))
                 .collect(),
+            left_out: table.left_out.clone(),
         }
     }
 
@@ -119,6 +123,9 @@ impl LogHeader {
     fn missing(&self, name: &str) -> Error {
         let place = Place::at(&self.path, self.line, 1);
         let column = name.to_string();
+        if let Some((_, holds)) = self.left_out.iter().find(|(left_out, _)| left_out == name) {
+            return Error::refused(place, LogReason::ColumnLeftOut { column, holds });
+        }
         let is_number = |name: &String| number(name, self.separator).is_some();
         if self.names.iter().all(is_number) {
             return Error::refused(place, LogReason::NoNames { column });

@@ -40,6 +40,14 @@ pub enum LogReason {
         /// The log's columns.
         found: Vec<String>,
     },
+    /// A column that holds something else than a number a row.
+    #[error("column '{column}' holds {holds}")]
+    ColumnLeftOut {
+        /// Its name.
+        column: String,
+        /// What it holds.
+        holds: &'static str,
+    },
     /// A column that the log has twice.
     #[error("column '{column}' stands there twice")]
     ColumnTwice {
@@ -205,6 +213,7 @@ impl Reason for LogReason {
                 )
                 .into();
             }
+            ColumnLeftOut { .. } => "name a column of numbers, or save this one as numbers",
             ColumnTwice { .. } => "rename one of them, so that it is clear which is meant",
             FieldCount { .. } => {
                 "the line is broken off or joined with another: delete it, or record again"

@@ -1,4 +1,4 @@
-//! The recipes of `docs/recipes`, run as they are: a study's shards by Slurm and by GNU parallel.
+//! The recipes of `docs/recipes` and the docs, run as they are: shards by Slurm and GNU parallel.
 //!
 //! Without these programs (Slurm needs root too) they are skipped, and stderr says so even when
 //! tests pass.
@@ -114,6 +114,22 @@ impl Slurm {
             .env("SLURM_CONF", self.0.join("slurm.conf"));
         command
     }
+
+    /// Submits a job by a command that prints its number, and waits until it has ended.
+    fn finish(&self, submit: Command) {
+        let said = done(submit).stdout;
+        let job = String::from_utf8(said).unwrap().trim().to_string();
+        let begun = Instant::now();
+        loop {
+            let mut squeue = self.command("squeue");
+            squeue.args(["--noheader", "--jobs", &job]);
+            if done(squeue).stdout.trim_ascii().is_empty() {
+                break;
+            }
+            assert!(begun.elapsed() < PATIENCE, "job {job} does not end");
+            std::thread::sleep(Duration::from_millis(200));
+        }
+    }
 }
 
 impl Drop for Slurm {
@@ -139,8 +155,15 @@ fn a_slurm_job_array_runs_the_shards() {
             "only root may start Slurm's daemons",
         );
     }
+    // Both under the same daemons: two of them would want the same port.
+    let folder = tempfile::tempdir().unwrap();
+    let slurm = Slurm::start(folder.path().join("slurm"));
+    slurm_runs_a_study(&slurm);
+    slurm_diagnoses_every_log(&slurm);
+}
+
+fn slurm_runs_a_study(slurm: &Slurm) {
     let (bench, table) = bench();
-    let slurm = Slurm::start(bench.path("slurm"));
     let mut sbatch = slurm.command("sbatch");
     sbatch
         .args(["--parsable", "--array=1-3"])
@@ -148,26 +171,70 @@ fn a_slurm_job_array_runs_the_shards() {
         .arg(recipe("study.sbatch"))
         .current_dir(bench.path(""))
         .env("HANDSTAND", env!("CARGO_BIN_EXE_handstand"));
-    let said = done(sbatch).stdout;
-    let job = String::from_utf8(said).unwrap().trim().to_string();
-    let begun = Instant::now();
-    loop {
-        let mut squeue = slurm.command("squeue");
-        squeue.args(["--noheader", "--jobs", &job]);
-        if done(squeue).stdout.trim_ascii().is_empty() {
-            break;
-        }
-        assert!(begun.elapsed() < PATIENCE, "job {job} does not end");
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    slurm.finish(sbatch);
     let merged = bench.run("study merge shards -o merged");
-    let logs = || {
-        let files = std::fs::read_dir(bench.path("")).unwrap().flatten();
-        let logs = files.filter(|file| file.file_name().to_string_lossy().starts_with("slurm-"));
-        let texts = logs.filter_map(|file| std::fs::read_to_string(file.path()).ok());
-        texts.collect::<String>()
-    };
-    assert_eq!(merged.code, Some(0), "{merged:?}\n{}", logs());
+    assert_eq!(
+        merged.code,
+        Some(0),
+        "{merged:?}\n{}",
+        said_by_tasks(&bench)
+    );
     assert!(bench.path("shards/shard-2-of-3.journal").exists());
     assert_eq!(bench.get("merged/runs.csv"), table);
+}
+
+/// The line of the docs, as it stands there.
+fn slurm_diagnoses_every_log(slurm: &Slurm) {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("logs")).unwrap();
+    bench.put("arm.toml", bench.get("model.toml"));
+    for name in ["a.csv", "b.csv"] {
+        bench.put(&format!("logs/{name}"), bench.get(name));
+    }
+    let docs = include_str!("../../../docs/diagnosis.md").lines();
+    let lines: Vec<&str> = docs.filter(|line| line.starts_with("sbatch ")).collect();
+    let [line] = lines[..] else {
+        panic!("one line for Slurm: {lines:?}")
+    };
+    let program = Path::new(env!("CARGO_BIN_EXE_handstand"));
+    let path = std::env::var("PATH").unwrap_or_default();
+    let path = format!(
+        "{}:{path}:/usr/sbin:/sbin",
+        program.parent().unwrap().display()
+    );
+    let mut shell = slurm.command("sh");
+    shell
+        .args(["-c", &format!("{line} --parsable")])
+        .current_dir(bench.path(""))
+        .env("PATH", path);
+    slurm.finish(shell);
+    let merged = bench.run("diagnose arm.toml --each logs -o result");
+    assert_eq!(
+        merged.code,
+        Some(0),
+        "{merged:?}\n{}",
+        said_by_tasks(&bench)
+    );
+    for log in ["a.csv", "b.csv"] {
+        assert!(
+            bench.get("result/logs.csv").contains(&format!("{log},")),
+            "{log}"
+        );
+    }
+    // Tasks 1 and 2 had a log each; whoever puts them together diagnoses none again.
+    for shard in ["shard-1-of-8.jsonl", "shard-2-of-8.jsonl"] {
+        assert_eq!(
+            bench.get(&format!("result/{shard}")).lines().count(),
+            1,
+            "{shard}"
+        );
+    }
+}
+
+/// What the tasks wrote, for failures.
+fn said_by_tasks(bench: &Bench) -> String {
+    let files = std::fs::read_dir(bench.path("")).unwrap().flatten();
+    let logs = files.filter(|file| file.file_name().to_string_lossy().starts_with("slurm-"));
+    let texts = logs.filter_map(|file| std::fs::read_to_string(file.path()).ok());
+    texts.collect()
 }

@@ -2,6 +2,7 @@
 
 mod bench_firmware;
 mod bench_lab;
+mod bench_read;
 #[cfg(unix)]
 mod bench_record;
 mod hidden;
@@ -45,6 +46,8 @@ enum Chore {
     BenchFirmware(bench_firmware::Args),
     /// Measure how soon the lab answers
     BenchLab(bench_lab::Args),
+    /// Measure how soon an hour's logs are read, and in how much memory
+    BenchRead(bench_read::Args),
     /// Kill recorders, and read what is left of their files
     #[cfg(unix)]
     BenchRecord(bench_record::Args),
@@ -65,6 +68,7 @@ impl Chores {
             Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             Chore::BenchLab(args) => bench_lab::run(args),
+            Chore::BenchRead(args) => bench_read::run(args),
             #[cfg(unix)]
             Chore::BenchRecord(args) => bench_record::run(args),
             #[cfg(unix)]

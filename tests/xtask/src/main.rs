@@ -43,6 +43,8 @@ enum Chore {
     BenchFirmware(Words),
     /// Measure how soon the lab answers
     BenchLab(Words),
+    /// Measure how soon an hour's logs are read, and in how much memory
+    BenchRead(Words),
     /// Kill recorders, and read what is left of their files
     BenchRecord(Words),
     /// Measure how often hidden effects are named, missed and invented
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchLab(words) => ("bench-lab", words),
+        Chore::BenchRead(words) => ("bench-read", words),
         Chore::BenchRecord(words) => ("bench-record", words),
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),

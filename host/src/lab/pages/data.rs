@@ -49,8 +49,8 @@ fn bring(number: u32) -> Markup {
             div.drop #drop {
                 h2 { "Bring a log" }
                 p { label for="files" {
-                    "Drop logs here, or choose them: CSV, MCAP, rosbag2 (db3), MATLAB (mat), JSON \
-                     of a BAM bench." } }
+                    "Drop logs here, or choose them: CSV, MCAP, rosbag2 (db3), MATLAB (mat), \
+                     Parquet, JSON of a BAM bench." } }
                 input #files type="file" multiple accept=(accepted()) data-most=(MOST_BYTES);
             }
             div {

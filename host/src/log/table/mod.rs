@@ -8,6 +8,7 @@ mod joint_states;
 mod mat;
 mod mat_element;
 mod mcap;
+mod parquet;
 mod rosbag;
 mod sqlite;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod tests;
 use super::format::LogFormat;
 use crate::error::{Error, Place, Result};
 use crate::output::number::hex;
+use bytes::Bytes;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -33,6 +35,8 @@ pub(super) struct Table {
     pub columns: Vec<Vec<f64>>,
     /// Numbers for the whole file.
     pub constants: Vec<(String, f64)>,
+    /// Columns that hold no numbers a row, and what they hold.
+    pub left_out: Vec<(String, &'static str)>,
     /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
 }
@@ -49,26 +53,22 @@ impl Table {
         if length > LARGEST {
             return Err(file.wrong("more than 4 GiB", "cut the log into shorter ones"));
         }
-        let bytes = std::fs::read(path).map_err(refused)?;
-        let mut table = Self::of(&bytes, file, format)?;
-        table.sha256 = hex(Sha256::digest(&bytes));
-        Ok(table)
+        let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
+        let digest = || hex(Sha256::digest(&bytes));
+        let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format), digest);
+        Ok(Table { sha256, ..table? })
     }
 
     /// Reads the bytes of a file.
     ///
     /// # Errors
     /// What is no such file.
-    pub fn of(bytes: &[u8], file: TableFile, format: LogFormat) -> Result<Table> {
+    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<Table> {
         match format {
-            LogFormat::Mcap => mcap::read(bytes, file),
-            LogFormat::Mat => mat::read(bytes, file),
-            LogFormat::Rosbag => rosbag::read(bytes, file),
-            LogFormat::Parquet => Err(file.wrong(
-                "Parquet is not read",
-                "write it as CSV, in Python: pandas.read_parquet(\"a.parquet\").to_csv(\"a.csv\", \
-                 index=False)",
-            )),
+            LogFormat::Mcap => mcap::read(&bytes, file),
+            LogFormat::Mat => mat::read(&bytes, file),
+            LogFormat::Rosbag => rosbag::read(&bytes, file),
+            LogFormat::Parquet => parquet::read(bytes, file),
             LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),
         }
     }

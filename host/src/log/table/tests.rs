@@ -5,7 +5,7 @@ use super::*;
 use serde_json::Value;
 use std::path::PathBuf;
 
-const FILES: [&str; 7] = [
+const FILES: [&str; 12] = [
     "states_none.mcap",
     "states_lz4.mcap",
     "states_zstd.mcap",
@@ -13,6 +13,11 @@ const FILES: [&str; 7] = [
     "many.db3",
     "v6.mat",
     "v7.mat",
+    "arrow.parquet",
+    "arrow_v2.parquet",
+    "arrow_old.parquet",
+    "arrow_lz4.parquet",
+    "polars.parquet",
 ];
 
 fn path(name: &str) -> PathBuf {
@@ -27,7 +32,11 @@ fn table(name: &str) -> Table {
 
 fn of(name: &str, bytes: &[u8]) -> Result<Table> {
     let path = path(name);
-    Table::of(bytes, TableFile { path: &path }, LogFormat::of(&path))
+    Table::of(
+        Bytes::copy_from_slice(bytes),
+        TableFile { path: &path },
+        LogFormat::of(&path),
+    )
 }
 
 /// What a file must say, by column.
@@ -96,6 +105,92 @@ fn matlab_files_are_read_to_the_last_bit() {
         assert_eq!(table.names.len(), expected.len(), "{:?}", table.names);
         assert_eq!(table.constants, [("supply_v".to_string(), 11.7)]);
     }
+}
+
+#[test]
+fn parquet_files_are_read_to_the_last_bit() {
+    let expected = expected("parquet");
+    let left_out = [
+        "note",
+        "ragged",
+        "grid",
+        "by_name.key_value.key",
+        "by_name.key_value.value",
+    ];
+    for name in FILES.iter().filter(|name| name.ends_with(".parquet")) {
+        let table = table(name);
+        // Polars knows neither maps nor decimals that are whole numbers.
+        let is_polars = *name == "polars.parquet";
+        let wanted = |column: &&(String, Vec<f64>)| !(is_polars && column.0 == "goal");
+        for (column, values) in expected.iter().filter(wanted) {
+            assert_bits(&table, column, values);
+        }
+        let count = expected.iter().filter(wanted).count();
+        assert_eq!(table.names.len(), count, "{name}: {:?}", table.names);
+        let names = table.left_out.iter().map(|(name, _)| name.as_str());
+        let maps = |name: &&str| !(is_polars && name.starts_with("by_name"));
+        assert!(names.eq(left_out.into_iter().filter(maps)), "{name}");
+    }
+}
+
+#[test]
+fn what_is_not_read_of_parquet_is_said() {
+    let said = |bytes: &[u8]| of("a.parquet", bytes).unwrap_err().to_string();
+    let brotli = std::fs::read(path("brotli.parquet")).unwrap();
+    assert!(
+        said(&brotli).contains("compressed by BROTLI"),
+        "{}",
+        said(&brotli)
+    );
+    let torn = &brotli[..brotli.len() - 1];
+    assert!(
+        said(torn).contains("not a whole Parquet file"),
+        "{}",
+        said(torn)
+    );
+    let encrypted = [&brotli[..brotli.len() - 1], b"E"].concat();
+    assert!(
+        said(&encrypted).contains("encrypted"),
+        "{}",
+        said(&encrypted)
+    );
+    let columns = crate::log::header::LogHeader::of_table(&path("a"), &table("arrow.parquet"));
+    let missing = columns.cell("ragged").unwrap_err().to_string();
+    assert!(
+        missing.contains("'ragged' holds lists of different lengths"),
+        "{missing}"
+    );
+}
+
+/// A file of no rows whose schema's elements state so many children.
+fn schema(children: &[u32]) -> Vec<u8> {
+    // Version 2, then a list of structures: name "q", children, repetition "required".
+    let mut metadata = vec![0x15, 0x04, 0x19, 0xfc, children.len() as u8];
+    for count in children {
+        metadata.extend([0x48, 1, b'q', 0x15]);
+        let mut zigzag = 2 * u64::from(*count);
+        while zigzag > 0x7f {
+            metadata.push(0x80 | (zigzag & 0x7f) as u8);
+            zigzag >>= 7;
+        }
+        metadata.extend([zigzag as u8, 0x05, 6, 0, 0]);
+    }
+    metadata.push(0);
+    let length = (metadata.len() as u32).to_le_bytes();
+    [b"PAR1", &metadata[..], &length, b"PAR1"].concat()
+}
+
+#[test]
+fn schemas_that_no_file_bears_are_refused() {
+    let said = |children: &[u32]| {
+        let refused = of("a.parquet", &schema(children));
+        refused.unwrap_err().to_string()
+    };
+    // Two to the power of 31 children would reserve 16 GB; groups are entered by recursion.
+    let wide = said(&[i32::MAX as u32]);
+    assert!(wide.contains("more columns than it names"), "{wide}");
+    let deep = said(&[1; 100]);
+    assert!(deep.contains("too deeply"), "{deep}");
 }
 
 #[test]

@@ -63,6 +63,10 @@ pub(crate) fn log_mat(bytes: &[u8]) {
     raw("log.mat", bytes);
 }
 
+pub(crate) fn log_parquet(bytes: &[u8]) {
+    raw("log.parquet", bytes);
+}
+
 pub(crate) fn log_rosbag(bytes: &[u8]) {
     raw("log.db3", bytes);
 }

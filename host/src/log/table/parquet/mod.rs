@@ -1,0 +1,109 @@
+//! Apache Parquet, as pandas, polars, Arrow and data sets of robots write it.
+//!
+//! Numbers and truth values are columns of their names, lists of one length `NAME_1`, `NAME_2`, ..,
+//! fields of a structure `NAME.FIELD`; moments count in s from the first. A null is a gap. Text,
+//! bytes, maps, lists within lists and lists of different lengths are left out.
+
+mod decode;
+mod footer;
+mod leaf;
+mod pages;
+mod series;
+
+use super::{MOST_CELLS, Table, TableFile};
+use crate::error::Result;
+use bytes::Bytes;
+use leaf::{ParquetLeaf, leaves};
+use pages::JudgedBytes;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::ParquetMetaDataReader;
+use rayon::prelude::*;
+use series::{ParquetSource, columns};
+use std::sync::Arc;
+
+/// At both ends of a file.
+const MAGIC: &[u8] = b"PAR1";
+/// In its place at the end of an encrypted one.
+const ENCRYPTED: &[u8] = b"PARE";
+/// Numbers that any file may hold, and that it may hold per byte: runs of one value take few bytes.
+const FEW_CELLS: usize = 1_000_000;
+const CELLS_PER_BYTE: usize = 1024;
+
+pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<Table> {
+    let remedy = "write it again, or as CSV, in Python: \
+                  pandas.read_parquet(\"a.parquet\").to_csv(\"a.csv\", index=False)";
+    let metadata = metadata(&bytes).map_err(|what| file.wrong(what, remedy))?;
+    let broken = |why: &dyn std::fmt::Display| file.wrong(format!("broken: {why}"), remedy);
+    footer::judge(metadata).map_err(|why| broken(&why))?;
+    let metadata =
+        ParquetMetaDataReader::decode_metadata(metadata).map_err(|error| broken(&said(&error)))?;
+    let leaves = leaves(metadata.file_metadata().schema());
+    let cells = FEW_CELLS.saturating_add(bytes.len().saturating_mul(CELLS_PER_BYTE));
+    let source = ParquetSource {
+        bytes: Arc::new(JudgedBytes(bytes)),
+        metadata,
+        cells_left: cells.min(MOST_CELLS).into(),
+    };
+    let read: Vec<_> = leaves
+        .par_iter()
+        .enumerate()
+        .map(|(index, leaf)| columns(&source, leaf, index))
+        .collect();
+    let mut table = Table::default();
+    for (
+        ParquetLeaf {
+            name,
+            element_level,
+            ..
+        },
+        columns,
+    ) in leaves.into_iter().zip(read)
+    {
+        match columns.map_err(|error| broken(&said(&error)))? {
+            Err(why) => table.left_out.push((name, why)),
+            Ok(columns) => {
+                let numbered = element_level.is_some();
+                for (place, column) in columns.into_iter().enumerate() {
+                    table.names.push(match numbered {
+                        true => format!("{name}_{}", place + 1),
+                        false => name.clone(),
+                    });
+                    table.columns.push(column);
+                }
+            }
+        }
+    }
+    let rows = table.rows();
+    if table.columns.iter().any(|column| column.len() != rows) {
+        return Err(broken(&"its columns hold different counts of rows"));
+    }
+    match table.names.is_empty() {
+        true => Err(file.wrong("no column holds numbers", "save time and angles as numbers")),
+        false => Ok(table),
+    }
+}
+
+/// What the end of a file says of it.
+fn metadata(bytes: &[u8]) -> std::result::Result<&[u8], &'static str> {
+    let tail = bytes.split_last_chunk::<4>();
+    let (rest, magic) = tail.ok_or("not a Parquet file")?;
+    if magic == ENCRYPTED {
+        return Err("an encrypted Parquet file");
+    }
+    if magic != MAGIC || !bytes.starts_with(MAGIC) {
+        return Err("not a whole Parquet file");
+    }
+    let (rest, length) = rest.split_last_chunk::<4>().ok_or("not a Parquet file")?;
+    let start = rest.len().checked_sub(u32::from_le_bytes(*length) as usize);
+    start
+        .map(|start| &rest[start..])
+        .ok_or("a Parquet file that is cut short")
+}
+
+/// What is wrong, without the kind of error before it.
+fn said(error: &ParquetError) -> String {
+    match error {
+        ParquetError::General(why) | ParquetError::EOF(why) => why.clone(),
+        other => other.to_string(),
+    }
+}
