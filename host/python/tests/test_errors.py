@@ -87,7 +87,10 @@ def test_an_exception_of_the_progress_ends_the_work(
 def test_ctrl_c_ends_a_diagnosis(model_file: str, logs: list[str]) -> None:
     program = textwrap.dedent(
         f"""
+        import signal
         import handstand as hs
+        # A shell that started the tests in the background leaves Ctrl-C ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         model = hs.Model.load({model_file!r})
         print("begun", flush=True)
         while True:
@@ -100,7 +103,10 @@ def test_ctrl_c_ends_a_diagnosis(model_file: str, logs: list[str]) -> None:
     assert child.stdout is not None and child.stdout.readline() == "begun\n"
     time.sleep(0.3)
     child.send_signal(signal.SIGINT)
-    _, said = child.communicate(timeout=60)
+    try:
+        _, said = child.communicate(timeout=60)
+    finally:
+        child.kill()
     assert "KeyboardInterrupt" in said
     assert child.returncode != 0
 
