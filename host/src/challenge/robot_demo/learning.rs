@@ -60,6 +60,8 @@ impl Learned {
                 .collect(),
             horizon: Some(HORIZON),
             most_effects: 2,
+            // Columns and drives are the recorder's own: what makes others look better is missing.
+            trust_log: true,
             ..DiagnoseOptions::default()
         };
         let named = ModelFile { path: file, text };
