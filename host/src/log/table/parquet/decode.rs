@@ -2,6 +2,7 @@
 //! streams of bytes. Here and not in the library, which panics on damaged runs and trusts counts.
 
 use super::pages::broken;
+use super::varint::{varint, zigzag};
 use parquet::basic::Encoding;
 use parquet::errors::Result;
 
@@ -184,7 +185,7 @@ pub(super) fn runs(bytes: &[u8], width: usize, count: usize) -> Result<Vec<u32>>
     let mut values = Vec::with_capacity(count);
     while values.len() < count {
         let wanted = count - values.len();
-        let head = varint(&mut left)?;
+        let head = varint(&mut left).map_err(broken)?;
         let length = usize::try_from(head >> 1).unwrap_or(usize::MAX);
         if head & 1 == 1 {
             let wanted = wanted.min(length.saturating_mul(8));
@@ -206,9 +207,12 @@ pub(super) fn runs(bytes: &[u8], width: usize, count: usize) -> Result<Vec<u32>>
 /// `count` whole numbers that are stored as differences.
 fn differences(bytes: &[u8], count: usize) -> Result<Vec<i64>> {
     let mut left = bytes;
-    let (block, parts) = (varint(&mut left)?, varint(&mut left)?);
-    let stated = varint(&mut left)?;
-    let mut last = zigzag(&mut left)?;
+    let (block, parts) = (
+        varint(&mut left).map_err(broken)?,
+        varint(&mut left).map_err(broken)?,
+    );
+    let stated = varint(&mut left).map_err(broken)?;
+    let mut last = zigzag(&mut left).map_err(broken)?;
     if block > LARGEST_BLOCK || parts == 0 || block % parts != 0 || stated < count as u64 {
         return Err(broken("blocks of differences that no file has"));
     }
@@ -216,11 +220,14 @@ fn differences(bytes: &[u8], count: usize) -> Result<Vec<i64>> {
     let mut values = Vec::with_capacity(count);
     values.push(last);
     while values.len() < count {
-        let least = zigzag(&mut left)?;
+        let least = zigzag(&mut left).map_err(broken)?;
         let (widths, rest) = left.split_at_checked(parts as usize).ok_or_else(few)?;
         left = rest;
         for width in widths.iter().map(|width| usize::from(*width)) {
             let wanted = length.min(count - values.len());
+            if wanted == 0 {
+                break;
+            }
             let part = packed(left, width, wanted).ok_or_else(few)?;
             values.extend(part.map(|step| {
                 last = last.wrapping_add(least).wrapping_add(step as i64);
@@ -255,20 +262,17 @@ fn few() -> parquet::errors::ParquetError {
     broken("a page holds fewer values than it says")
 }
 
-fn varint(left: &mut &[u8]) -> Result<u64> {
-    let mut value = 0;
-    for shift in (0..64).step_by(7) {
-        let (byte, rest) = left.split_first().ok_or_else(few)?;
-        *left = rest;
-        value |= u64::from(byte & 0x7f) << shift;
-        if byte & 0x80 == 0 {
-            return Ok(value);
-        }
-    }
-    Err(broken("a page holds a count longer than 64 bits"))
-}
+#[cfg(test)]
+mod tests {
+    use super::differences;
 
-fn zigzag(left: &mut &[u8]) -> Result<i64> {
-    let value = varint(left)?;
-    Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+    /// The format lets the widths of parts that hold no value be anything.
+    #[test]
+    fn widths_of_parts_without_values_do_not_count() {
+        let head = [0x80, 0x01, 4, 2, 2];
+        let block = [0, 1, 255, 255, 255, 0b1, 0, 0, 0];
+        let page = [head.as_slice(), &block].concat();
+        assert_eq!(differences(&page, 2).unwrap(), [1, 2]);
+        assert!(differences(&page[..9], 2).is_err());
+    }
 }

@@ -4,6 +4,7 @@
 //! recursion, and passes over as many truth values as a list states: a few bytes could ask for
 //! gigabytes, overflow the stack or take seconds.
 
+use super::varint::{varint, zigzag};
 use crate::log::table::mat_element::Broken;
 
 /// Deepest nesting of groups; lists of structures of lists take six.
@@ -106,7 +107,7 @@ impl Footer<'_> {
     fn list(&mut self) -> Result<(u8, u64), Broken> {
         let head = self.byte()?;
         let count = match head >> 4 {
-            15 => self.varint()?,
+            15 => varint(&mut self.left)?,
             count => u64::from(count),
         };
         match count <= self.left.len() as u64 {
@@ -120,7 +121,7 @@ impl Footer<'_> {
         while let Some(kind) = self.field(&mut id)? {
             // The library does not look at the type of a field that it knows.
             match (id, kind) {
-                (CHILDREN, I32) => children = self.zigzag()?.max(children),
+                (CHILDREN, I32) => children = zigzag(&mut self.left)?.max(children),
                 (NAME, BINARY) | (LOGICAL, STRUCTURE) => self.skip(kind, 0)?,
                 (1..LOGICAL, I32) if id != NAME => self.skip(kind, 0)?,
                 (1..=LOGICAL, _) => return Err("a column is described by other types of fields"),
@@ -137,7 +138,7 @@ impl Footer<'_> {
             return Ok(None);
         }
         *id = match head >> 4 {
-            0 => self.zigzag()?,
+            0 => zigzag(&mut self.left)?,
             step => id.saturating_add(i64::from(step)),
         };
         Ok(Some(head & 0xf))
@@ -147,10 +148,10 @@ impl Footer<'_> {
         match kind {
             TRUE | FALSE => Ok(()),
             BYTE => self.byte().map(drop),
-            I16 | I32 | I64 => self.varint().map(drop),
+            I16 | I32 | I64 => varint(&mut self.left).map(drop),
             DOUBLE => self.bytes(8),
             BINARY => {
-                let length = self.varint()?;
+                let length = varint(&mut self.left)?;
                 self.bytes(length)
             }
             STRUCTURE if depth < DEEPEST => {
@@ -184,22 +185,5 @@ impl Footer<'_> {
             .get(count..)
             .ok_or("its description is cut short")?;
         Ok(())
-    }
-
-    fn varint(&mut self) -> Result<u64, Broken> {
-        let mut value = 0;
-        for shift in (0..64).step_by(7) {
-            let byte = self.byte()?;
-            value |= u64::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                return Ok(value);
-            }
-        }
-        Err("its description holds a number longer than 64 bits")
-    }
-
-    fn zigzag(&mut self) -> Result<i64, Broken> {
-        let value = self.varint()?;
-        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
     }
 }

@@ -9,6 +9,7 @@ mod footer;
 mod leaf;
 mod pages;
 mod series;
+mod varint;
 
 use super::{MOST_CELLS, Table, TableFile};
 use crate::error::Result;
