@@ -83,7 +83,8 @@ fn headers_that_no_packet_has_are_refused() {
     assert!(Packet::new(&ping).unwrap().status().is_none());
 }
 
-/// A packet of exactly the receiver's size is received, one that is a byte longer is not waited for.
+/// A packet of exactly the receiver's size is received; one that is a byte longer is not waited
+/// for.
 #[test]
 fn a_receiver_takes_what_it_has_room_for() {
     let mut out = [0; 16];

@@ -26,8 +26,8 @@ const MOST_DELAY_S: f64 = 0.020;
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
 /// same files.
 const TRIED: [&str; 4] = ["delay", "dead_zone", "coulomb", "mass"];
-/// Length of the windows that are judged, s: dry friction of the bar, which has no encoder, shows in
-/// how a swing dies down, and in shorter windows their start states take it up.
+/// Length of the windows that are judged, s: dry friction of the bar, which has no encoder, shows
+/// in how a swing dies down, and in shorter windows their start states take it up.
 const HORIZON: Horizon = Horizon::Seconds(0.6);
 
 /// What the recordings taught.

@@ -22,8 +22,8 @@ pub struct RecordedMotion {
     pub is_held_out: bool,
 }
 
-/// The motions. Lag and dead zone show under way, friction of the bar and masses in a free swing; so
-/// those that are held out are of both kinds, and the drops of poses that differ.
+/// The motions. Lag and dead zone show under way, friction of the bar and masses in a free swing;
+/// so those that are held out are of both kinds, and the drops of poses that differ.
 pub const MOTIONS: [RecordedMotion; 5] = [
     motion("a", ExcitationKind::Multisine, [0.6, 0.6], false),
     motion("b", ExcitationKind::Drop, [0.6, 0.6], false),
@@ -33,9 +33,9 @@ pub const MOTIONS: [RecordedMotion; 5] = [
 ];
 /// Duration of each, s.
 const EACH_S: f64 = 6.5;
-/// Rows at the begin of a motion, and behind the moment at which torque goes off, that are left out.
-/// When it went off is known within a tick only, and until then the servos hold the raised pose with
-/// all they have.
+/// Rows at the begin of a motion, and behind the moment at which torque goes off, that are left
+/// out. When it went off is known within a tick only, and until then the servos hold the raised
+/// pose with all they have.
 const SETTLING_ROWS: usize = 12;
 
 const fn motion(

@@ -64,8 +64,8 @@ pub struct ScoredEffect {
 }
 
 /// Runs the whole circle with the robot of this seed; everything is written to `dir`, which must be
-/// there and hold none of it: `nominal.toml`, `answer.sealed`, `goals_a.csv` and `a.csv` to `e.csv`,
-/// `learned.toml`, `page.html`.
+/// there and hold none of it: `nominal.toml`, `answer.sealed`, `goals_a.csv` and `a.csv` to
+/// `e.csv`, `learned.toml`, `page.html`.
 ///
 /// # Errors
 /// A file that cannot be written, a firmware that refuses, a model that cannot be balanced.

@@ -165,8 +165,8 @@ fn with_columns(session: &Session, saved: &SavedSession, plan: &ModelPlan) -> Op
     let mut drives = plan.links.iter().map(|link| link.drive.as_str());
     let driven = drives.find(|drive| *drive != "passive");
     let draft = Draft::of(&raw, &log.file, driven).ok()?;
-    let head = "# Written from a form, with the columns that a log seems to have: pick others where \
-                they are wrong.\n\n";
+    let head = "# Written from a form, with the columns that a log seems to have: pick others \
+                where they are wrong.\n\n";
     draft.toml_of(plan, head).ok()
 }
 
