@@ -9,3 +9,4 @@ mod joints;
 mod life;
 mod rig;
 mod start;
+mod supply;
