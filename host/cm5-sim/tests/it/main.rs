@@ -10,3 +10,4 @@ mod life;
 mod rig;
 mod start;
 mod supply;
+mod torque;
