@@ -61,7 +61,6 @@ impl<L: SerialLink> Stream<L> {
             _ => None,
         })?;
         let begun = session.link().now();
-        session.keeps_ticks = true;
         Ok(Stream {
             reader: ReportReader::new(ids.len(), begun, &telemetry),
             session,
@@ -141,7 +140,11 @@ impl<L: SerialLink> SampleSource for Stream<L> {
 
     fn disarm(&mut self) -> Result<()> {
         self.armed = false;
-        Ok(self.session.obey(&Command::Disarm, "switch torque off")?)
+        // The ticks in which torque goes off are part of a recording.
+        self.session.keeps_ticks = true;
+        let obeyed = self.session.obey(&Command::Disarm, "switch torque off");
+        self.session.keeps_ticks = false;
+        Ok(obeyed?)
     }
 
     fn emergency_off(&mut self) -> Option<EmergencyOff> {
