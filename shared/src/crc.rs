@@ -158,4 +158,11 @@ mod tests {
     fn crc16_of_a_single_one_is_the_polynomial() {
         assert_eq!(crc16(0, &[1]), 0xa2eb);
     }
+
+    /// From all ones, zeros before a frame's content are not mistaken for none.
+    #[test]
+    fn crc16_begins_with_ones() {
+        assert_eq!(crc16(START_16, b"123456789"), 0x9db1);
+        assert_ne!(crc16(START_16, &[0]), crc16(START_16, &[0, 0]));
+    }
 }

@@ -5,7 +5,7 @@ use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 use handstand_shared::control_table::{MOVING_SPEED, RETURN_DELAY, TORQUE_LIMIT};
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::{MovingSpeed, TorqueLimit};
+use handstand_shared::raw::{MovingSpeed, Position, TorqueLimit};
 
 #[test]
 fn a_token_arms_once() {
@@ -190,4 +190,28 @@ fn nothing_is_kept_at_the_first_bytes_of_eeprom() {
     }
     assert!(cm5.board.eeprom[..16].iter().all(|byte| *byte == 0xff));
     assert!(cm5.board.eeprom[0xcf8..].iter().all(|byte| *byte == 0xff));
+}
+
+/// Ten degrees from the pose that the gains are for; a joint's mirror turns the other way.
+#[test]
+fn a_robot_far_from_its_pose_is_not_balanced() {
+    for ids in [[1, 2], [11, 12]] {
+        for (away, outcome) in [
+            (34, Ok(())),
+            (-34, Ok(())),
+            (35, Err(Refusal::Pose)),
+            (-35, Err(Refusal::Pose)),
+        ] {
+            let mut cm5 = with_wheels();
+            let token = ready_to_balance(&mut cm5, &plan());
+            for (id, code) in ids.into_iter().zip([512 + away, 512 - away]) {
+                let servo = cm5.bus().servo(id).unwrap();
+                servo.shaft.angle_rad = Position(code as u16).to_rad();
+            }
+            say(&mut cm5, &UPRIGHT, 50);
+            let asked = ask_upright(&mut cm5, &arm_with(token));
+            assert_eq!(asked, Some(outcome), "servo {} by {away}", ids[0]);
+            assert_eq!(cm5.bus().any_torque(), outcome.is_ok());
+        }
+    }
 }

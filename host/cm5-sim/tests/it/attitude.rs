@@ -2,8 +2,10 @@
 
 use super::rig::*;
 use handstand_cm5_sim::SimulatedCm5;
+use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::message::*;
 use handstand_shared::plan::{Gyro, Plan};
+use handstand_shared::raw::Signed;
 
 #[test]
 fn nothing_balances_without_a_new_attitude() {
@@ -99,4 +101,34 @@ fn reports_hold_the_gyro_and_telemetry_its_zero_and_scale() {
     upload(&mut cm5, &plan());
     let after = telemetry(&mut cm5);
     assert_eq!((after.gyro_zero, after.gyro_scale), (510, 279));
+}
+
+/// Turning the same way, the gyro and the host's attitude command the same way.
+#[test]
+fn the_gyro_s_sign_is_that_of_the_attitude() {
+    let turning = |from_host: bool, sign: i16| {
+        let mut cm5 = with_wheels();
+        let own = plan();
+        let gyro = Gyro {
+            from_host,
+            ..own.gyro
+        };
+        cm5.set_gyro(510);
+        let token = ready_to_balance(&mut cm5, &Plan { gyro, ..own });
+        assert_eq!(ask_upright(&mut cm5, &arm_with(token)), Some(Ok(())));
+        let attitude = Attitude {
+            angle: 200 * sign,
+            rate: 200 * sign,
+        };
+        // 12 codes of 279/16 mrad/s each.
+        cm5.set_gyro((510 + 12 * sign) as u16);
+        say(&mut cm5, &Command::Attitude(attitude), 100);
+        let commands = [1, 11].map(|id| cm5.bus().servo(id).unwrap().get(MOVING_SPEED));
+        commands.map(|code| i32::from(Signed(code).get()).signum())
+    };
+    for sign in [1, -1] {
+        let host = turning(true, sign);
+        assert!(host.iter().all(|way| *way != 0), "{host:?}");
+        assert_eq!(turning(false, sign), host);
+    }
 }
