@@ -1,6 +1,7 @@
 //! Files of version 7.3 that hdf5storage and h5py wrote (`tests/peers/write_logs.py`), read to the
 //! last bit, and what is left of them after damage.
 
+use super::variables::MatVariables;
 use crate::log::header::LogHeader;
 use crate::log::table::tests::{assert_bits, expected, of, path, table};
 use rand::{Rng as _, SeedableRng as _};
@@ -71,6 +72,17 @@ fn what_is_not_read_of_a_matlab_file_is_said() {
     let count = |name: &str| table(name).left_out.len();
     // What cells refer to is no variable.
     assert_eq!(FILES.map(count), [6, 3, 3]);
+}
+
+#[test]
+fn a_wide_matrix_takes_no_more_memory_than_its_numbers() {
+    let mut found = MatVariables::default();
+    found.push("wide".into(), 3, 4096, vec![1.0; 3 * 4096]);
+    found.push("wider".into(), 3, 4097, vec![1.0; 3 * 4097]);
+    let table = found.table().unwrap();
+    assert_eq!(table.columns.len(), 4096);
+    assert!(table.columns.iter().all(|column| column.capacity() < 8));
+    assert_eq!(table.left_out, [("wider".into(), "more than 4096 columns")]);
 }
 
 /// The file with `old`, which is in it, replaced by `new` everywhere.

@@ -3,6 +3,9 @@
 use crate::log::table::{Broken, MOST_CELLS, Table};
 use std::collections::BTreeMap;
 
+/// Most columns of a matrix: a name and a list for each of millions take more memory than numbers.
+const MOST_COLUMNS: usize = 4096;
+
 /// A variable's numbers, column by column.
 struct Variable {
     name: String,
@@ -38,14 +41,17 @@ impl MatVariables {
             1 => (columns, 1),
             rows => (rows, columns),
         };
-        match values.is_empty() {
-            true => self.leave_out(name, "nothing"),
-            false => self.variables.push(Variable {
+        if values.is_empty() {
+            self.leave_out(name, "nothing");
+        } else if columns > MOST_COLUMNS {
+            self.leave_out(name, "more than 4096 columns");
+        } else {
+            self.variables.push(Variable {
                 name,
                 rows,
                 columns,
                 values,
-            }),
+            });
         }
     }
 
@@ -65,7 +71,7 @@ impl MatVariables {
             left_out: self.left_out,
             ..Table::default()
         };
-        for mut variable in self.variables {
+        for variable in self.variables {
             if variable.rows == 1 && variable.columns == 1 {
                 table.constants.push((variable.name, variable.values[0]));
             } else if variable.rows != rows {
@@ -75,12 +81,9 @@ impl MatVariables {
                 table.names.push(variable.name);
                 table.columns.push(variable.values);
             } else {
-                for column in 1..=variable.columns {
-                    let rest = variable.values.split_off(rows);
+                for (column, values) in (1..).zip(variable.values.chunks_exact(rows)) {
                     table.names.push(format!("{}_{column}", variable.name));
-                    table
-                        .columns
-                        .push(std::mem::replace(&mut variable.values, rest));
+                    table.columns.push(values.to_vec());
                 }
             }
         }
