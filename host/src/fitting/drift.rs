@@ -18,7 +18,7 @@ const HALF_WIDTH: f64 = 1.96;
 
 /// A log and its motions: a session, or a servo on the bench.
 #[derive(Debug, Clone)]
-pub struct Session {
+pub struct DriftSession {
     /// Its name.
     pub name: String,
     /// Its motions.
@@ -71,7 +71,7 @@ pub struct DriftReport {
 pub fn drift(
     model: &Model,
     free: &[ParameterPath],
-    sessions: &[Session],
+    sessions: &[DriftSession],
     horizon: Option<Horizon>,
 ) -> DriftReport {
     let horizon = horizon.unwrap_or(Horizon::Whole);
@@ -149,7 +149,7 @@ fn between_joints(free: &[ParameterPath], sessions: &[Drift]) -> Vec<(String, Ve
 
 /// A mean and its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Mean {
+struct MeanWithError {
     value: f64,
     error: f64,
 }
@@ -160,14 +160,14 @@ fn error(fitted: &FittedValue) -> f64 {
 }
 
 /// Mean weighted by inverse variance; none of no values.
-fn weighted<'a>(values: impl IntoIterator<Item = &'a OneValue>) -> Option<Mean> {
+fn weighted<'a>(values: impl IntoIterator<Item = &'a OneValue>) -> Option<MeanWithError> {
     let (mut sum, mut weights) = (0.0, 0.0);
     for value in values {
         let weight = error(&value.fitted).max(1e-300).powi(-2);
         sum += weight * value.fitted.value;
         weights += weight;
     }
-    (weights > 0.0).then(|| Mean {
+    (weights > 0.0).then(|| MeanWithError {
         value: sum / weights,
         error: weights.powf(-0.5),
     })

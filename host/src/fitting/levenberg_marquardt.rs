@@ -16,7 +16,7 @@ pub(super) struct LevenbergMarquardt<'a> {
 }
 
 /// A step that lowers the cost.
-struct Step {
+struct DescentStep {
     /// By how much.
     reduction: f64,
     /// The same for a residual that is linear.
@@ -104,7 +104,7 @@ impl<'a> LevenbergMarquardt<'a> {
     }
 
     /// Derivatives corrected by what a step brought.
-    fn correct(&mut self, step: &Step) {
+    fn correct(&mut self, step: &DescentStep) {
         let fit = &mut self.fit;
         for (w, window) in fit.jacobian.iter_mut().enumerate() {
             let (guess, node) = (&self.guesses[w], &fit.nodes[w]);
@@ -130,7 +130,7 @@ impl<'a> LevenbergMarquardt<'a> {
     }
 
     /// Tries steps with growing damping until one lowers the cost; `None` when none does.
-    fn step(&mut self, damping: &mut f64) -> Option<Step> {
+    fn step(&mut self, damping: &mut f64) -> Option<DescentStep> {
         let before = self.cost();
         let tries = if self.fit.fresh { TRIES.0 } else { TRIES.1 };
         for _ in 0..tries {
@@ -157,7 +157,7 @@ impl<'a> LevenbergMarquardt<'a> {
                 self.fit.residuals = residuals;
                 self.fit.fresh = false;
                 *damping = (*damping / 8.0).max(1e-9);
-                return Some(Step {
+                return Some(DescentStep {
                     reduction: before - after,
                     predicted: before - (linear + prior),
                     values,

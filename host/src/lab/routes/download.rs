@@ -3,7 +3,7 @@
 use super::{blocking, session};
 use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
-use crate::lab::session::{SavedSession, Session};
+use crate::lab::session::{LabSession, SavedSession};
 use crate::log::Split;
 use crate::report::{ModelFile, Report, ReportProvenance, html};
 use axum::extract::{Path, State};
@@ -37,7 +37,7 @@ pub(super) async fn download(
 }
 
 /// The page that `handstand compare --report` writes of the steps up to the present one.
-fn report(session: &Session, saved: &SavedSession) -> Result<String, LabError> {
+fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError> {
     let mut comparisons = Vec::new();
     let mut model_files = Vec::new();
     let mut split = Split::default();
