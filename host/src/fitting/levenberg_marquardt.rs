@@ -3,7 +3,7 @@
 
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
-use super::node::{Guess, Node};
+use super::node::{Node, StartGuess};
 use super::normal::NormalEquations;
 use super::residual::residuals;
 use nalgebra::DVector;
@@ -12,7 +12,7 @@ use nalgebra::DVector;
 pub(super) struct LevenbergMarquardt<'a> {
     pub fit: Fit,
     pub data: &'a FitData,
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<StartGuess>,
 }
 
 /// A step that lowers the cost.
@@ -38,7 +38,7 @@ const DAMPING: f64 = 1e-3;
 
 impl<'a> LevenbergMarquardt<'a> {
     /// Goes on from where `fit` stands.
-    pub fn new(fit: Fit, data: &'a FitData, guesses: Vec<Guess>) -> Self {
+    pub fn new(fit: Fit, data: &'a FitData, guesses: Vec<StartGuess>) -> Self {
         LevenbergMarquardt { fit, data, guesses }
     }
 

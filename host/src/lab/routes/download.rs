@@ -5,7 +5,7 @@ use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
 use crate::lab::session::{LabSession, SavedSession};
 use crate::log::Split;
-use crate::report::{ModelFile, Report, ReportProvenance, html};
+use crate::report::{HashedModel, Report, ReportProvenance, html};
 use axum::extract::{Path, State};
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         comparisons.push(evaluation.comparison().clone());
         let text = saved.steps[step].toml.as_bytes();
-        model_files.push(ModelFile::of(format!("model-{step}.toml"), text));
+        model_files.push(HashedModel::of(format!("model-{step}.toml"), text));
         split = Split::default();
         for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
             let side = match evaluation.is_held_out(index) {
