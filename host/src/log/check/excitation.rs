@@ -12,7 +12,7 @@ const SWING_RAD: f64 = 0.02;
 const HOLD_S: f64 = 0.5;
 
 /// Running account of every joint.
-pub(super) struct Excitation {
+pub(super) struct ExcitationCheck {
     joints: Vec<JointExcitation>,
     motions: usize,
 }
@@ -42,10 +42,10 @@ struct MotionState {
     stretch: (f64, f64),
 }
 
-impl Excitation {
+impl ExcitationCheck {
     pub fn new(model: &Model) -> Self {
         let joints = model.log.joints.iter().zip(&model.joints);
-        Excitation {
+        ExcitationCheck {
             motions: 0,
             joints: joints
                 .map(|(columns, joint)| JointExcitation {

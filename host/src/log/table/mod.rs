@@ -30,7 +30,7 @@ pub(super) type Broken = &'static str;
 
 /// A log as columns.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Table {
+pub(super) struct LogTable {
     /// In the file's order.
     pub names: Vec<String>,
     /// As long as each other.
@@ -43,12 +43,12 @@ pub(super) struct Table {
     pub sha256: String,
 }
 
-impl Table {
+impl LogTable {
     /// Reads a file in one of these formats.
     ///
     /// # Errors
     /// What the system refuses, and what is no such file.
-    pub fn read(path: &Path, format: LogFormat) -> Result<Table> {
+    pub fn read(path: &Path, format: LogFormat) -> Result<LogTable> {
         let refused = |source| Error::file(path, "read", source);
         let length = std::fs::metadata(path).map_err(refused)?.len();
         let file = TableFile { path };
@@ -58,14 +58,14 @@ impl Table {
         let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
         let digest = || hex(Sha256::digest(&bytes));
         let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format), digest);
-        Ok(Table { sha256, ..table? })
+        Ok(LogTable { sha256, ..table? })
     }
 
     /// Reads the bytes of a file.
     ///
     /// # Errors
     /// What is no such file.
-    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<Table> {
+    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<LogTable> {
         match format {
             LogFormat::Mcap => mcap::read(&bytes, file),
             LogFormat::Mat => mat::read(bytes, file),

@@ -29,13 +29,13 @@ pub(super) fn path(name: &str) -> PathBuf {
         .join(name)
 }
 
-pub(super) fn table(name: &str) -> Table {
-    Table::read(&path(name), LogFormat::of(&path(name))).unwrap()
+pub(super) fn table(name: &str) -> LogTable {
+    LogTable::read(&path(name), LogFormat::of(&path(name))).unwrap()
 }
 
-pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Table> {
+pub(super) fn of(name: &str, bytes: &[u8]) -> Result<LogTable> {
     let path = path(name);
-    Table::of(
+    LogTable::of(
         Bytes::copy_from_slice(bytes),
         TableFile { path: &path },
         LogFormat::of(&path),
@@ -58,7 +58,7 @@ pub(super) fn expected(group: &str) -> Vec<(String, Vec<f64>)> {
         .collect()
 }
 
-pub(super) fn assert_bits(table: &Table, name: &str, expected: &[f64]) {
+pub(super) fn assert_bits(table: &LogTable, name: &str, expected: &[f64]) {
     let index = table.names.iter().position(|own| own == name);
     let index = index.unwrap_or_else(|| panic!("{name} is none of {:?}", table.names));
     assert_eq!(table.columns[index].len(), expected.len(), "{name}");
@@ -202,7 +202,7 @@ fn a_torn_mcap_is_read_as_far_as_it_is_whole() {
     let whole = table("states_none.mcap");
     let torn = of("states_none.mcap", &bytes[..bytes.len() / 2]).unwrap();
     assert!(torn.rows() > 5 && torn.rows() < whole.rows());
-    let index = |table: &Table| {
+    let index = |table: &LogTable| {
         table
             .names
             .iter()

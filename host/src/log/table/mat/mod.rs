@@ -12,7 +12,7 @@ mod variables;
 mod version5;
 mod version73;
 
-use super::{Table, TableFile};
+use super::{LogTable, TableFile};
 use crate::error::{Error, Result};
 use bytes::Bytes;
 
@@ -26,7 +26,7 @@ const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 const REMEDY: &str = "save it from MATLAB by save(\"log.mat\", .., \"-v7\"), from Python by \
                       scipy.io.savemat";
 
-pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<Table> {
+pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
     let variables = match is_version73(&bytes) {
         true => version73::read(bytes, file)?,
         false => version5::read(&bytes, file)?,

@@ -1,6 +1,6 @@
 //! Variables of a MATLAB file, and the columns that they are.
 
-use crate::log::table::{Broken, MOST_CELLS, Table};
+use crate::log::table::{Broken, LogTable, MOST_CELLS};
 use std::collections::BTreeMap;
 
 /// Most columns of a matrix: a name and a list for each of millions take more memory than numbers.
@@ -61,15 +61,15 @@ impl MatVariables {
     }
 
     /// Columns as long as most variables are.
-    pub fn table(self) -> Option<Table> {
+    pub fn table(self) -> Option<LogTable> {
         let mut lengths: BTreeMap<usize, usize> = BTreeMap::new();
         for variable in self.variables.iter().filter(|variable| variable.rows > 1) {
             *lengths.entry(variable.rows).or_default() += variable.columns;
         }
         let rows = lengths.into_iter().max_by_key(|(_, count)| *count)?.0;
-        let mut table = Table {
+        let mut table = LogTable {
             left_out: self.left_out,
-            ..Table::default()
+            ..LogTable::default()
         };
         for variable in self.variables {
             if variable.rows == 1 && variable.columns == 1 {
