@@ -49,7 +49,9 @@ fn a_plan_that_was_spoilt_is_not_loaded() {
     let length = bytes(&plan()).len();
     for at in (0..HEADER + length).step_by(3) {
         let mut spoilt = eeprom.clone();
-        SLOTS.map(|slot| spoilt[slot + at] ^= 1);
+        for slot in SLOTS {
+            spoilt[slot + at] ^= 1;
+        }
         assert_eq!(plan_of(spoilt), 0, "byte {at}");
     }
 }
