@@ -8,13 +8,15 @@
 mod command;
 mod fault;
 mod report;
+mod stream_report;
 
 pub use command::{ArmLimits, Attitude, Command, Mode, PLAN_CHUNK, ServoList, Subject};
 pub use fault::FaultEntry;
 pub use report::{
-    Answer, Cause, Condition, Hello, Housekeeping, Refusal, Report, ResetCause, Statistics,
-    StreamReport, Telemetry, TrippedServo,
+    Answer, Cause, Condition, Hello, Refusal, Report, ResetCause, Statistics, Telemetry,
+    TrippedServo,
 };
+pub use stream_report::{Housekeeping, StreamReport};
 
 use crate::crc::crc32;
 use crate::frame::{self, MAX_BODY, MAX_FRAME};
