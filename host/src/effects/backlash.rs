@@ -52,7 +52,13 @@ impl Effect for Backlash {
     ) -> f64 {
         let half_rad = values[0] / 2.0;
         let before_rad = memory.map_or(angle_rad, |[_, reading_rad]| reading_rad);
-        let reading_rad = before_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
+        // Not by `clamp`, which panics where a simulation has diverged to no number.
+        let reading_rad = match (angle_rad - half_rad, angle_rad + half_rad) {
+            _ if angle_rad.is_nan() => angle_rad,
+            (low_rad, _) if before_rad < low_rad => low_rad,
+            (_, high_rad) if before_rad > high_rad => high_rad,
+            _ => before_rad,
+        };
         *memory = Some([angle_rad, reading_rad]);
         reading_rad
     }

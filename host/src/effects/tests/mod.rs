@@ -6,6 +6,7 @@ use crate::dynamics::Chain;
 use crate::dynamics::ChainLink;
 use std::collections::HashSet;
 
+mod diverged;
 mod infos;
 mod laws;
 mod off;
