@@ -17,6 +17,7 @@ fn forward(c: &mut Criterion) {
             mass_kg: 0.2,
             inertia_kg_m2: 3.75e-4,
             armature_kg_m2: 0.0,
+            slide: None,
         };
         let chain = Chain {
             links: vec![link; n],

@@ -31,7 +31,8 @@ pub use reason::{ModelReason, PathReason};
 pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
-use crate::effects::{self, Effect, Scope};
+use crate::dynamics::SlideAxis;
+use crate::effects::{self, Axis, Effect, Scope};
 use crate::error::Result;
 use std::path::Path;
 
@@ -106,11 +107,58 @@ pub struct Link {
     pub inertia_kg_m2: f64,
 }
 
-/// A joint: what drives it, and how its motor's inertia counts.
+/// A joint: what drives it, and whether it turns or slides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// What moves it.
     pub drive: Drive,
+    /// Along what it slides; none of a hinge. Of a joint that slides, what is said in rad, rad/s
+    /// and N m is in m, m/s and N.
+    pub slide: Option<SlideAxis>,
+}
+
+impl From<Drive> for Joint {
+    /// A hinge.
+    fn from(drive: Drive) -> Joint {
+        Joint { drive, slide: None }
+    }
+}
+
+impl Joint {
+    /// How it moves.
+    pub fn axis(&self) -> Axis {
+        match self.slide {
+            None => Axis::Hinge,
+            Some(_) => Axis::Slide,
+        }
+    }
+}
+
+/// An effect as it is at a joint, or at all driven ones; none where it cannot act, or where its
+/// values had different units at different joints.
+pub fn effect_on(
+    effect: &'static dyn Effect,
+    joint: Option<usize>,
+    joints: &[Joint],
+) -> Option<&'static dyn Effect> {
+    if effect.info().scope == Scope::WholeRig {
+        return Some(effect);
+    }
+    let acts = |(index, own): &(usize, &Joint)| match joint {
+        Some(joint) => joint == *index,
+        None => own.drive.is_driven(),
+    };
+    let mut axes = joints
+        .iter()
+        .enumerate()
+        .filter(acts)
+        .map(|(_, own)| own.axis());
+    let first = effects::on_axis(effect, axes.next()?)?;
+    let same = |axis| {
+        let other = effects::on_axis(effect, axis);
+        other.is_some_and(|other| std::ptr::eq(other.info(), first.info()))
+    };
+    axes.all(same).then_some(first)
 }
 
 /// What moves a joint. Duty is the share of the full voltage, -1 to 1.
@@ -258,6 +306,35 @@ impl Model {
             .collect()
     }
 
+    /// Whether any joint slides.
+    pub fn slides(&self) -> bool {
+        self.joints.iter().any(|joint| joint.slide.is_some())
+    }
+
+    /// Refuses a model with joints that slide; `why` reads on from "joint 1 slides, and".
+    ///
+    /// # Errors
+    /// A joint that slides.
+    pub fn hinges_only(&self, why: &str) -> Result<()> {
+        match self.joints.iter().position(|joint| joint.slide.is_some()) {
+            None => Ok(()),
+            Some(joint) => Err(crate::Error::design(
+                format!("joint {} of `{}` slides, and {why}", joint + 1, self.name),
+                "give a model whose joints all turn",
+            )),
+        }
+    }
+
+    /// Angle from hanging at which the log's angle of a joint is zero, rad: what `angle_zero` says
+    /// of the first joint that turns, else 0.
+    pub fn zero_rad(&self, joint: usize) -> f64 {
+        let first = self.joints.iter().position(|joint| joint.slide.is_none());
+        match first == Some(joint) {
+            true => self.angle_zero.from_hanging_rad(),
+            false => 0.0,
+        }
+    }
+
     /// Whether a sensor's reading trails the motion.
     pub fn trails(&self) -> bool {
         let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);
@@ -266,12 +343,13 @@ impl Model {
 
     /// Adds an effect of the library at a joint, if there is one of this id.
     pub(crate) fn add_effect(&mut self, id: &str, joint: usize, values: Vec<f64>) {
-        self.effects
-            .extend(effects::named(id).map(|effect| EffectInstance {
-                effect,
-                joint: Some(joint),
-                values,
-            }));
+        let named = effects::named(id);
+        let effect = named.and_then(|effect| effect_on(effect, Some(joint), &self.joints));
+        self.effects.extend(effect.map(|effect| EffectInstance {
+            effect,
+            joint: Some(joint),
+            values,
+        }));
     }
 
     /// Effects that act on a joint, given by index from 0, in the order of the file; of the whole

@@ -2,7 +2,9 @@
 
 use super::error::DesignError;
 use super::omitted::OmittedEffect;
-use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
+use crate::effects::{
+    AtRest, Axis, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope,
+};
 use crate::model::{Drive, EffectInstance, Model};
 
 /// Most steps of Newton's iteration for the duty that holds a torque.
@@ -34,6 +36,7 @@ pub(super) struct Held {
 /// One joint and what acts on it.
 pub(super) struct JointAt<'a> {
     joint: usize,
+    axis: Axis,
     drive: &'a Drive,
     effects: Vec<&'a EffectInstance>,
     angle_rad: f64,
@@ -56,15 +59,12 @@ impl<'a> JointAt<'a> {
         effects.extend(model.effects.iter().filter(users));
         effects
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
-        let zero = match joint {
-            0 => model.angle_zero.from_hanging_rad(),
-            _ => 0.0,
-        };
         JointAt {
             joint,
+            axis: model.joints[joint].axis(),
             drive: &model.joints[joint].drive,
             effects,
-            angle_rad: relative_rad[joint] - zero,
+            angle_rad: relative_rad[joint] - model.zero_rad(joint),
             pose_rad: pose_rad[joint],
         }
     }
@@ -139,6 +139,7 @@ impl<'a> JointAt<'a> {
                 joint: self.joint,
                 torque_nm: needed_nm,
                 angle_rad: self.pose_rad,
+                axis: self.axis,
             });
         };
         Ok(Held {
@@ -174,6 +175,7 @@ impl<'a> JointAt<'a> {
         Err(DesignError::DriveTooWeak {
             joint: self.joint,
             torque_nm: needed_nm,
+            axis: self.axis,
         })
     }
 

@@ -1,7 +1,7 @@
 //! URDF: the chain with its joints' damping and friction.
 
 use super::Exported;
-use super::carried::{NotCarried, not_carried, value};
+use super::carried::{NotCarried, not_carried, slide_axis, value};
 use super::xml::{comment, escaped, number, numbers};
 use crate::effects::Rig;
 use crate::model::Model;
@@ -62,15 +62,29 @@ fn joints(text: &mut String, model: &Model, rig: &Rig) {
             joint => format!("link{joint}"),
         };
         let of = |id| value(model, id, joint, 0).unwrap_or(0.0);
+        let (kind, axis, turn_rad) = match link.slide {
+            None => ("continuous", [0.0, -1.0, 0.0], 0.0),
+            Some(slide) => ("prismatic", slide_axis(&slide), -slide.link_rad),
+        };
+        // A prismatic joint must have limits; the model knows none.
+        let limit = match link.slide {
+            None => "",
+            Some(_) => {
+                "    <limit lower=\"-1e6\" upper=\"1e6\" effort=\"1e6\" velocity=\"1e6\"/>\n"
+            }
+        };
         let _ = write!(
             text,
-            "  <joint name=\"joint{0}\" type=\"continuous\">\n    <parent link=\"{parent}\"/>\n    \
-             <child link=\"link{0}\"/>\n    <origin xyz=\"{1}\" rpy=\"0 0 0\"/>\n    \
-             <axis xyz=\"0 -1 0\"/>\n    <dynamics damping=\"{2}\" friction=\"{3}\"/>\n  </joint>\n",
+            "  <joint name=\"joint{0}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
+             <child link=\"link{0}\"/>\n    <origin xyz=\"{1}\" rpy=\"{4}\"/>\n    \
+             <axis xyz=\"{5}\"/>\n    <dynamics damping=\"{2}\" friction=\"{3}\"/>\n{limit}  \
+             </joint>\n",
             joint + 1,
             numbers(&[0.0, 0.0, -above_m]),
             number(of("viscous")),
             number(of("coulomb")),
+            numbers(&[0.0, turn_rad, 0.0]),
+            numbers(&axis),
         );
         above_m = link.length_m;
     }
