@@ -194,7 +194,7 @@ fn finish(
         },
         free: found.free,
         windows,
-        unobserved: before.log.unobserved(),
+        unobserved: before.log.notes(),
         converged: found.converged,
         model: found.model,
         horizon,

@@ -230,21 +230,29 @@ impl LogColumns {
         let mut sentences: Vec<String> = joints.filter_map(sentence).collect();
         let is = |signal| self.joints.iter().any(|columns| columns.signal() == signal);
         let slides = is(MeasuredSignal::Displacement);
-        if slides && self.joints.len() > 1 {
-            sentences.push(
-                "Where errors of several joints are one figure in mrad, 1 mm of a joint that \
-                 slides counts as 1 mrad."
-                    .to_string(),
-            );
-        } else if slides {
-            sentences.push(
-                "The joint slides: errors of the whole log that say mrad are in mm.".to_string(),
-            );
-        }
         if !slides && !is(MeasuredSignal::Angle) {
             sentences.push(
                 "No angle is measured at all: errors of all joints together are in rad/s, also \
                  where they say rad."
+                    .to_string(),
+            );
+        }
+        sentences
+    }
+
+    /// The same, and how errors of joints that turn and joints that slide become one figure.
+    pub fn notes(&self) -> Vec<String> {
+        let mut sentences = self.unobserved();
+        let slides = |columns: &JointColumns| columns.signal() == MeasuredSignal::Displacement;
+        if self.joints.iter().all(slides) {
+            sentences.push(
+                "All joints slide: errors of the whole log are in mm, also where they say mrad."
+                    .to_string(),
+            );
+        } else if self.joints.iter().any(slides) {
+            sentences.push(
+                "Where errors of several joints are one figure in mrad, 1 mm of a joint that \
+                 slides counts as 1 mrad."
                     .to_string(),
             );
         }

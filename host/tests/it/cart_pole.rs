@@ -237,7 +237,9 @@ fn what_is_for_hinges_alone_is_refused() {
 fn an_exported_cart_pole_comes_back() {
     let bench = bench();
     for (format, file) in [("mjcf", "cart.xml"), ("urdf", "cart.urdf")] {
-        let exported = bench.run(&format!("model export cart.toml --format {format} -o {file}"));
+        let exported = bench.run(&format!(
+            "model export cart.toml --format {format} -o {file}"
+        ));
         assert_eq!(exported.code, Some(0), "{exported:?}");
         let imported = bench.run(&format!("import {file} -o back-{format}.toml"));
         assert_eq!(imported.code, Some(0), "{imported:?}");

@@ -223,7 +223,9 @@ impl Bench {
             }
         }
         for (pairs, (peer, n, target)) in pairs.iter().zip(sizes) {
-            table.faster(&format!("forward dynamics, n = {n}: {peer}"), pairs, target);
+            let form = if n == 3 { "closed form" } else { "recursion" };
+            let row = format!("forward dynamics, n = {n}, {form}: {peer}");
+            table.faster(&row, pairs, target);
         }
         let text = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
         let states: Value = serde_json::from_str(&text).map_err(|error| error.to_string())?;

@@ -1,7 +1,7 @@
 //! Forward dynamics of the chains of `chain.py`.
 
 use super::median_seconds;
-use handstand::dynamics::{Chain, ChainLink, Workspace};
+use handstand::dynamics::{Chain, ChainLink, Dense, Workspace};
 use serde_json::Value;
 use std::hint::black_box;
 
@@ -34,30 +34,72 @@ pub(super) fn chain(n: usize) -> Chain {
     }
 }
 
+/// The equations that simulations of such a chain run: in closed form up to four links, by
+/// recursion beyond.
+enum Equations {
+    Closed(Box<Dense<3>>),
+    Recursive { chain: Chain, work: Workspace },
+}
+
+impl Equations {
+    fn of(n: usize) -> Equations {
+        let chain = chain(n);
+        match Dense::new(&chain, 0.0) {
+            Some(dense) => Equations::Closed(Box::new(dense)),
+            None => Equations::Recursive {
+                work: Workspace::new(n),
+                chain,
+            },
+        }
+    }
+
+    /// Accelerations, rad/s^2, from angles, speeds and torques; all as long as the chain.
+    #[inline]
+    fn accelerate(
+        &mut self,
+        angle_rad: &[f64],
+        speed_rad_s: &[f64],
+        torque_nm: &[f64],
+        out: &mut [f64],
+    ) {
+        match self {
+            Equations::Closed(dense) => {
+                let three = |row: &[f64]| [row[0], row[1], row[2]];
+                let (angle, speed, torque) =
+                    (three(angle_rad), three(speed_rad_s), three(torque_nm));
+                out.copy_from_slice(&dense.forward(
+                    &angle,
+                    &speed,
+                    &torque,
+                    &black_box([false; 3]),
+                ));
+            }
+            Equations::Recursive { chain, work } => {
+                let held = &HELD[..angle_rad.len()];
+                let base = chain.base_m_s2(0.0);
+                chain.forward(work, base, angle_rad, speed_rad_s, torque_nm, held, out);
+            }
+        }
+    }
+}
+
+/// No joint is held, in the longest chain.
+const HELD: [bool; 100] = [false; 100];
+
 /// Median seconds of one evaluation; the angle moves a little on each, so that nothing can be saved
 /// up.
 pub fn forward_seconds(n: usize) -> f64 {
-    let chain = chain(n);
-    let mut work = Workspace::new(n);
+    let mut equations = Equations::of(n);
     let wave = |k: f64| move |i: usize| (k * (i + 1) as f64).sin();
     let mut angle: Vec<f64> = (0..n).map(wave(1.0)).collect();
     let speed: Vec<f64> = (0..n).map(wave(2.0)).collect();
     let torque: Vec<f64> = (0..n).map(wave(3.0)).collect();
-    let (held, mut out) = (vec![false; n], vec![0.0; n]);
-    let base = chain.base_m_s2(0.0);
+    let mut out = vec![0.0; n];
     let calls = 300_000 / n;
     let seconds = median_seconds(15, || {
         for _ in 0..calls {
             angle[0] += 1e-9;
-            chain.forward(
-                &mut work,
-                base,
-                black_box(&angle),
-                &speed,
-                &torque,
-                &held,
-                &mut out,
-            );
+            equations.accelerate(black_box(&angle), &speed, &torque, &mut out);
             black_box(&mut out);
         }
     });
@@ -74,17 +116,8 @@ pub fn farthest_off(states: &Value, n: usize, peer: &str) -> Option<f64> {
     };
     let (angle, speed, torque) = (list("q_rad")?, list("dq_rad_s")?, list("tau_nm")?);
     let theirs = list(&format!("{peer}_rad_s2"))?;
-    let chain = chain(n);
     let mut ours = vec![0.0; n];
-    chain.forward(
-        &mut Workspace::new(n),
-        chain.base_m_s2(0.0),
-        &angle,
-        &speed,
-        &torque,
-        &vec![false; n],
-        &mut ours,
-    );
+    Equations::of(n).accelerate(&angle, &speed, &torque, &mut ours);
     let largest = theirs.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
     let differences = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs());
     Some(differences.fold(0.0, f64::max) / largest)
