@@ -43,7 +43,10 @@ pub(super) fn failing(
         let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
-            let conditions = met(&features(model, motions, joint), place_unit(model, joint));
+            let conditions = met(
+                &features(model, motions, joint),
+                model.joints[joint].units()[0],
+            );
             let ranked = ranked(&error, signal.floor, conditions);
             all.extend(
                 ranked
@@ -55,14 +58,6 @@ pub(super) fn failing(
     all.sort_by(|a, b| excess(&b.failure).total_cmp(&excess(&a.failure)));
     all.truncate(MOST);
     all
-}
-
-/// Unit of a joint's angle or displacement.
-fn place_unit(model: &Model, joint: usize) -> &'static str {
-    match model.joints[joint].slide {
-        None => "rad",
-        Some(_) => "m",
-    }
 }
 
 fn excess(failure: &Failure) -> f64 {

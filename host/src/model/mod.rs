@@ -132,6 +132,14 @@ impl Joint {
             Some(_) => Axis::Slide,
         }
     }
+
+    /// SI units, as text, of its place, its speed and its torque or force.
+    pub fn units(&self) -> [&'static str; 3] {
+        match self.axis() {
+            Axis::Hinge => ["rad", "rad/s", "N m"],
+            Axis::Slide => ["m", "m/s", "N"],
+        }
+    }
 }
 
 /// An effect as it is at a joint, or at all driven ones; none where it cannot act, or where its

@@ -1,6 +1,5 @@
 //! Names and units of states and inputs, and the default limits of inputs.
 
-use crate::effects::Axis;
 use crate::model::{Drive, Model};
 
 /// What a weight is by definition, m/s^2.
@@ -20,7 +19,7 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
     Signal {
         name: format!("u{}", joint + 1),
         unit: {
-            let [place, speed, torque] = units(model, joint);
+            let [place, speed, torque] = model.joints[joint].units();
             match model.joints[joint].drive {
                 Drive::Passive | Drive::Duty(_) => "1",
                 Drive::Torque => torque,
@@ -28,14 +27,6 @@ pub(super) fn input(model: &Model, joint: usize) -> Signal {
                 Drive::Speed { .. } => speed,
             }
         },
-    }
-}
-
-/// Units of a joint's place, speed and torque: its displacement, speed and force if it slides.
-fn units(model: &Model, joint: usize) -> [&'static str; 3] {
-    match model.joints[joint].axis() {
-        Axis::Hinge => ["rad", "rad/s", "N m"],
-        Axis::Slide => ["m", "m/s", "N"],
     }
 }
 
@@ -69,7 +60,7 @@ pub(super) fn states(model: &Model, inputs: &[Signal], delayed: usize) -> Vec<Si
     let of = |prefix: &'static str, order: usize| {
         (0..model.link_count()).map(move |joint| Signal {
             name: format!("{prefix}{}", joint + 1),
-            unit: units(model, joint)[order],
+            unit: model.joints[joint].units()[order],
         })
     };
     let past = (1..=delayed).flat_map(|k| {

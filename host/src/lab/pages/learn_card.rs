@@ -180,7 +180,7 @@ fn residual_over(x_label: &str, joint: usize, evaluation: &Evaluation) -> Option
     Some(Chart::new(
         format!("residual over {}", variable.name),
         &label,
-        "residual, mrad",
+        &format!("residual, {}", run.data.signals[joint].milli()),
         vec![Curve::dots("", Tone::Blue, points)],
     ))
 }

@@ -10,6 +10,9 @@ use std::fmt::Write as _;
 /// A moment of inertia of zero is refused by most readers, kg m^2.
 const LEAST_INERTIA: f64 = 1e-9;
 
+/// More than any joint does: m, m/s, N.
+const UNLIMITED: f64 = 1e5;
+
 /// Effects that URDF holds: in the links, and in the joints' `dynamics`.
 const HELD: [&str; 4] = ["com_angle", "coulomb", "mass", "viscous"];
 
@@ -62,16 +65,17 @@ fn joints(text: &mut String, model: &Model, rig: &Rig) {
             joint => format!("link{joint}"),
         };
         let of = |id| value(model, id, joint, 0).unwrap_or(0.0);
-        let (kind, axis, turn_rad) = match link.slide {
-            None => ("continuous", [0.0, -1.0, 0.0], 0.0),
-            Some(slide) => ("prismatic", slide_axis(&slide), -slide.link_rad),
+        let (kind, axis, turn) = match link.slide {
+            None => ("continuous", "0 -1 0".to_string(), "0 0 0".to_string()),
+            Some(slide) => (
+                "prismatic",
+                numbers(&slide_axis(&slide)),
+                numbers(&[0.0, 0.0 - slide.link_rad, 0.0]),
+            ),
         };
-        // A prismatic joint must have limits; the model knows none.
         let limit = match link.slide {
-            None => "",
-            Some(_) => {
-                "    <limit lower=\"-1e6\" upper=\"1e6\" effort=\"1e6\" velocity=\"1e6\"/>\n"
-            }
+            None => String::new(),
+            Some(_) => limit(model.joints[joint].drive.is_driven()),
         };
         let _ = write!(
             text,
@@ -83,11 +87,21 @@ fn joints(text: &mut String, model: &Model, rig: &Rig) {
             numbers(&[0.0, 0.0, -above_m]),
             number(of("viscous")),
             number(of("coulomb")),
-            numbers(&[0.0, turn_rad, 0.0]),
-            numbers(&axis),
+            turn,
+            axis,
         );
         above_m = link.length_m;
     }
+}
+
+/// A prismatic joint must have limits, and the model knows none.
+fn limit(driven: bool) -> String {
+    let effort = number(if driven { UNLIMITED } else { 0.0 });
+    let unlimited = number(UNLIMITED);
+    format!(
+        "    <limit lower=\"-{unlimited}\" upper=\"{unlimited}\" effort=\"{effort}\" \
+         velocity=\"{unlimited}\"/>\n"
+    )
 }
 
 fn left_out(model: &Model, rig: &Rig) -> Vec<NotCarried> {
