@@ -2,9 +2,9 @@
 
     python write_logs.py FOLDER
 
-Needs numpy, scipy, mcap, mcap-ros2-support, rosbags, pyarrow and polars (PyPI). `expected.json`
-holds what every file says, by column: numbers as their shortest decimal, which is read back to the
-last bit, or null where nothing was measured.
+Needs numpy, scipy, h5py, hdf5storage, mcap, mcap-ros2-support, rosbags, pyarrow and polars (PyPI).
+`expected.json` holds what every file says, by column: numbers as their shortest decimal, which is
+read back to the last bit, or null where nothing was measured.
 """
 
 import json
@@ -13,6 +13,8 @@ import sys
 from decimal import Decimal
 from pathlib import Path
 
+import h5py
+import hdf5storage
 import numpy as np
 import polars
 import pyarrow
@@ -113,6 +115,111 @@ def write_mat(file, compressed):
     savemat(file, columns, do_compression=compressed, oned_as="column")
 
 
+LARGEST = 2**64 - 100
+
+
+def mat73_columns():
+    """Variables of MATLAB 7.3 that are read."""
+    rows = range(ROWS)
+    return {
+        "t": np.array([STEP_NS * row / 1e9 for row in rows]),
+        "q": np.array([[value(joint, row) for joint in range(2)] for row in rows]),
+        "count": np.array([row * 7 - 200 for row in rows], dtype=np.int16),
+        "small": np.array([row - 30 for row in rows], dtype=np.int8),
+        "large": np.array([2**31 + row * 1000 for row in rows], dtype=np.uint32),
+        "stamp": np.array(stamps(), dtype=np.int64),
+        "largest": np.array([LARGEST + row for row in rows], dtype=np.uint64),
+        "single": np.array([value(0, row) for row in rows], dtype=np.float32),
+        "on": np.array([row % 5 != 0 for row in rows]),
+        "supply_v": np.float64(11.7),
+    }
+
+
+def mat73_struct():
+    return {
+        "dq": np.array([speed(1, row) for row in range(ROWS)]),
+        "inner": {"x": np.array([value(1, row) for row in range(ROWS)])},
+    }
+
+
+def write_mat73(file):
+    left_out = {
+        "note": "a text",
+        "short": np.array([1.0, 2.0]),
+        "complex": np.array([1j] * ROWS),
+        "cells": np.array([1.0, "a"], dtype=object),
+        "none": np.zeros((0, 0)),
+        "cube": np.zeros((ROWS, 2, 2)),
+    }
+    columns = mat73_columns() | {"data": mat73_struct()} | left_out
+    hdf5storage.savemat(str(file), columns, oned_as="column", store_python_metadata=False)
+
+
+def write_mat73_h5py(file, libver):
+    """What MATLAB may write and hdf5storage does not: other layouts, orders of bytes, versions."""
+    with h5py.File(file, "w", libver=libver, userblock_size=512) as stream:
+
+        def put(group, name, values, of=None, **layout):
+            values = np.asarray(values)
+            of = of or {"bool": "logical", "float64": "double", "float32": "single"}.get(
+                values.dtype.name, values.dtype.name)
+            values = values.astype(np.uint8) if of == "logical" else values
+            values = np.atleast_2d(values.T).astype(values.dtype.newbyteorder(">"))
+            if "chunks" in layout:
+                layout |= {"compression": "gzip", "shuffle": True}
+            dataset = group.create_dataset(name, data=values, **layout)
+            dataset.attrs["MATLAB_class"] = np.bytes_(of)
+
+        layouts = {
+            "t": {"chunks": (1, 7)},
+            "q": {"chunks": (2, 16), "maxshape": (None, None)},
+            "count": {"chunks": (1, 1)},
+            "stamp": {"chunks": (1, 7), "maxshape": (1, None), "fletcher32": True},
+            "single": {"chunks": (1, 100), "maxshape": (1, 100)},
+        }
+        for name, values in mat73_columns().items():
+            put(stream, name, values, **layouts.get(name, {}))
+
+        def structure(group, name, fields):
+            inner = group.create_group(name)
+            inner.attrs["MATLAB_class"] = np.bytes_("struct")
+            for key, values in fields.items():
+                if isinstance(values, dict):
+                    structure(inner, key, values)
+                else:
+                    put(inner, key, values)
+
+        # Links of a group as large as this stand in a heap of their own.
+        structure(stream, "data", mat73_struct() | {f"k{at:02}": 0.5 * at for at in range(40)})
+        sparse = stream.create_group("sparse")
+        sparse.attrs["MATLAB_class"] = np.bytes_("double")
+        sparse.attrs["MATLAB_sparse"] = np.uint64(ROWS)
+        put(sparse, "ir", np.arange(3, dtype=np.uint64))
+        put(stream, "half", np.zeros(ROWS, dtype=np.float16), "single")
+        stream["plain"] = np.zeros((1, ROWS))
+    write_userblock(file)
+
+
+def write_userblock(file):
+    words = b"MATLAB 7.3 MAT-file, HDF5 schema 1.00 .".ljust(116) + bytes(8)
+    with open(file, "r+b") as stream:
+        stream.write(words + bytes([0, 2]) + b"IM")
+
+
+def expected_mat73():
+    """As doubles; whole numbers too long for those count from the first."""
+    rows = range(ROWS)
+    of = {name: [float(number) for number in values]
+          for name, values in mat73_columns().items() if name not in ["q", "supply_v"]}
+    of["stamp"] = [float(STEP_NS * row) for row in rows]
+    of["largest"] = [float(row) for row in rows]
+    for joint in range(2):
+        of[f"q_{joint + 1}"] = [value(joint, row) for row in rows]
+    of["data.dq"] = plain(speed(1, row) for row in rows)
+    of["data.inner.x"] = [value(1, row) for row in rows]
+    return of
+
+
 def parquet_columns():
     """Every kind of column, each with its type; a gap in some."""
     rows = range(ROWS)
@@ -206,7 +313,8 @@ def expected():
     mat = {"t": of["time_s"], "q_1": of["shoulder.position"], "q_2": of["elbow.position"],
            "data.dq": of["elbow.velocity"], "count": [float(row * 7) for row in rows],
            "single": [float(np.float32(value(0, row))) for row in rows]}
-    return {"states": of, "mat": mat, "parquet": expected_parquet()}
+    return {"states": of, "mat": mat, "mat73": expected_mat73(),
+            "parquet": expected_parquet()}
 
 
 def main():
@@ -222,6 +330,9 @@ def main():
         (folder / name).rmdir()
     write_mat(folder / "v7.mat", True)
     write_mat(folder / "v6.mat", False)
+    write_mat73(folder / "v73.mat")
+    write_mat73_h5py(folder / "v73_packed.mat", "earliest")
+    write_mat73_h5py(folder / "v73_latest.mat", "latest")
     write_parquet(folder)
     with open(folder / "expected.json", "w", encoding="utf-8") as file:
         json.dump(expected(), file)

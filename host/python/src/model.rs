@@ -3,7 +3,7 @@
 use crate::errors::exception;
 use handstand::fitting::Candidate;
 use handstand::output;
-use handstand::report::{ModelFile, file_name};
+use handstand::report::{HashedModel, file_name};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -24,8 +24,8 @@ impl Model {
     }
 
     /// Name and hash, for reports.
-    pub fn file(&self) -> ModelFile {
-        ModelFile::of(file_name(&self.path), self.text.as_bytes())
+    pub fn file(&self) -> HashedModel {
+        HashedModel::of(file_name(&self.path), self.text.as_bytes())
     }
 }
 

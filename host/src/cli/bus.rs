@@ -48,7 +48,7 @@ pub enum BusCommand {
     /// Restore saved settings to the servos
     Restore(backup::RestoreArgs),
     /// Diagnose why a servo returns no status packet
-    Doctor(doctor::DoctorArgs),
+    Doctor(doctor::BusDoctorArgs),
     /// Read the CM-5's fault log
     Log(log::FaultLogArgs),
 }

@@ -14,7 +14,7 @@
 //! `on_bound`, `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::fitting::{Drift, DriftReport, OneValue, Session, drift, free_parameters};
+use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
 use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
@@ -41,12 +41,12 @@ pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::load(&args.model)?;
     let free = free_parameters(&model, &args.free)?;
     let sessions = args.logs.iter().map(|log| {
-        Ok(Session {
+        Ok(DriftSession {
             name: log.to_string(),
             motions: read(std::slice::from_ref(log), &model.log)?,
         })
     });
-    let sessions: Vec<Session> = sessions.collect::<Result<_>>()?;
+    let sessions: Vec<DriftSession> = sessions.collect::<Result<_>>()?;
     let found = drift(&model, &free, &sessions, args.run.horizon);
     talk.result(&serde_json::to_value(&found).unwrap_or_default(), || {
         said(&found)

@@ -2,7 +2,7 @@
 
 use super::Talk;
 use handstand::log::Split;
-use handstand::report::{ModelFile, ReportProvenance, file_name};
+use handstand::report::{HashedModel, ReportProvenance, file_name};
 use handstand::{Error, Result, output};
 use std::path::{Path, PathBuf};
 
@@ -54,7 +54,7 @@ impl PageFile {
 /// # Errors
 /// A model file that cannot be read again.
 pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<ReportProvenance> {
-    let model_files: Result<Vec<ModelFile>> = models.iter().map(|file| hashed(file)).collect();
+    let model_files: Result<Vec<HashedModel>> = models.iter().map(|file| hashed(file)).collect();
     Ok(ReportProvenance::new(model_files?, split, &talk.command))
 }
 
@@ -62,7 +62,7 @@ pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<Rep
 ///
 /// # Errors
 /// [`Error::File`] if it cannot be read.
-pub fn hashed(file: &Path) -> Result<ModelFile> {
+pub fn hashed(file: &Path) -> Result<HashedModel> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
-    Ok(ModelFile::of(file_name(file), &bytes))
+    Ok(HashedModel::of(file_name(file), &bytes))
 }

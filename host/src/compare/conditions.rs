@@ -6,10 +6,10 @@
 use super::sample_features::{STILL_SHARE, SampleFeatures};
 
 /// A condition as it ends a sentence, and whether a sample meets it.
-type Condition = (&'static str, fn(&SampleFeatures) -> bool);
+type NamedCondition = (&'static str, fn(&SampleFeatures) -> bool);
 
 /// All but the ranges of angle, which depend on the motion.
-pub(super) const CONDITIONS: &[Condition] = &[
+pub(super) const CONDITIONS: &[NamedCondition] = &[
     ("within 80 ms after a reversal", |m| {
         m.since_reversal_s <= 0.08
     }),

@@ -3,7 +3,7 @@
 use super::block_errors::{BlockErrors, gain, paired, reduction};
 use super::error_budget::error_budget;
 use super::evaluator::Evaluator;
-use super::explanation::{Evidence, Explanation};
+use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
 use super::values::{compared, contradicted};
@@ -15,7 +15,7 @@ use crate::output::number::{percent, short};
 const COLLINEAR: f64 = 0.95;
 
 /// Draws the conclusion.
-pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
+pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
     let rivals = evidence.rivals();
     let (chosen, evaluator) = (evidence.chosen(), evidence.evaluator);
     let (values, correlation) = fitted_values(chosen.fit(), &evaluator.training);
@@ -52,7 +52,7 @@ pub(super) fn conclude(evidence: &Evidence) -> Diagnosis {
     diagnosis
 }
 
-fn error(evidence: &Evidence) -> ErrorReduction {
+fn error(evidence: &VerdictEvidence) -> ErrorReduction {
     let (given, chosen) = (&evidence.evaluator.given, evidence.chosen());
     let blocks = given.deciding().zip(chosen.deciding());
     ErrorReduction {
@@ -67,7 +67,7 @@ fn error(evidence: &Evidence) -> ErrorReduction {
 
 /// The values that are wrong: the one that explains all, or those that the refit contradicts; all
 /// of them where only together they differ.
-fn wrong_values(evidence: &Evidence, base: &[FittedValue]) -> Vec<WrongValue> {
+fn wrong_values(evidence: &VerdictEvidence, base: &[FittedValue]) -> Vec<WrongValue> {
     let given = &evidence.evaluator.start;
     let contradicted = contradicted(given, base);
     match evidence.explanation {
@@ -86,7 +86,7 @@ fn windows(evaluator: &Evaluator) -> Vec<MotionWindow> {
         .collect()
 }
 
-fn warnings(evidence: &Evidence, determined: bool) -> Vec<String> {
+fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
     let mut warnings = Vec::new();
     if !determined {
         warnings.push(
@@ -153,7 +153,7 @@ fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
     }
 }
 
-fn ruled_out(evidence: &Evidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
+fn ruled_out(evidence: &VerdictEvidence, rivals: &[&Hypothesis]) -> Vec<RuledOut> {
     let (base, chosen) = (&evidence.evaluator.base, evidence.chosen());
     let kept = |h: &Hypothesis| {
         let mut kept = rivals.iter().copied().chain([chosen]);
@@ -180,7 +180,7 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
     hypothesis.evaluation.as_ref()?.held_out.as_ref()
 }
 
-fn why_not(evidence: &Evidence, hypothesis: &Hypothesis) -> String {
+fn why_not(evidence: &VerdictEvidence, hypothesis: &Hypothesis) -> String {
     let evaluator = evidence.evaluator;
     // A value refitted alone is compared with the model as given.
     let alone = hypothesis.values.len() == 1 && hypothesis.search.free.len() == 1;
@@ -232,7 +232,7 @@ fn better(name: &str, best: &Hypothesis, other: &Hypothesis) -> String {
     )
 }
 
-fn motions(evidence: &Evidence) -> Vec<MotionError> {
+fn motions(evidence: &VerdictEvidence) -> Vec<MotionError> {
     let evaluator = evidence.evaluator;
     let evaluations = (&evaluator.given.evaluation, &evidence.chosen().evaluation);
     let (Some(before), Some(after)) = evaluations else {

@@ -11,7 +11,7 @@ use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
-use super::replacement::{Other, Part};
+use super::replacement::{Other, ReplaceablePart};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
 use crate::fitting::{FitData, FitOptions, Node, fit, fit_start_states, predicted};
@@ -42,7 +42,7 @@ impl Evaluator<'_> {
         let Some(predicted) = self.predicted(chosen).filter(|_| !parts.is_empty()) else {
             return Vec::new();
         };
-        let of_part = |part: &Part| {
+        let of_part = |part: &ReplaceablePart| {
             let (model, free) = self.without(chosen, part);
             // The derivatives where the part is missing and all else is as it was.
             let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
@@ -61,34 +61,36 @@ impl Evaluator<'_> {
     }
 
     /// What may be replaced: each effect, or each wrong value.
-    fn parts(&self, explanation: Explanation) -> Vec<Part> {
+    fn parts(&self, explanation: Explanation) -> Vec<ReplaceablePart> {
         match explanation {
             Explanation::Given(_) => Vec::new(),
             Explanation::Effects(chosen) => chosen
                 .set
                 .iter()
-                .map(|&effect| Part::Effect(effect))
+                .map(|&effect| ReplaceablePart::Effect(effect))
                 .collect(),
             Explanation::Value(chosen) | Explanation::ValueAndRefit(chosen) => {
-                vec![Part::Values(chosen.values.clone())]
+                vec![ReplaceablePart::Values(chosen.values.clone())]
             }
             Explanation::Refit(base) => {
                 let wrong = contradicted_paths(&self.start, base.fit(), &self.training);
                 let wrong = wrong.into_iter().take(REFITTED);
-                wrong.map(|path| Part::Values(vec![path])).collect()
+                wrong
+                    .map(|path| ReplaceablePart::Values(vec![path]))
+                    .collect()
             }
         }
     }
 
     /// The model of the short windows and what is free of it, less a part of the explanation.
-    fn without(&self, chosen: &Hypothesis, part: &Part) -> (Model, Vec<ParameterPath>) {
+    fn without(&self, chosen: &Hypothesis, part: &ReplaceablePart) -> (Model, Vec<ParameterPath>) {
         let (mut model, mut free) = (chosen.search.model.clone(), chosen.search.free.clone());
         match part {
-            Part::Effect(effect) => {
+            ReplaceablePart::Effect(effect) => {
                 model.effects.retain(|instance| !effect.is(instance));
                 free.retain(|path| effect.paths().all(|own| own != *path));
             }
-            Part::Values(paths) => {
+            ReplaceablePart::Values(paths) => {
                 for path in paths {
                     let given = path.get(&self.start);
                     let known = given.is_some_and(|given| path.set(&mut model, given));

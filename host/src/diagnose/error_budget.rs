@@ -7,7 +7,7 @@
 use super::block_errors::{BlockErrors, PairedSums, bootstrap, paired};
 use super::budget::LOOK;
 use super::evaluator::Evaluator;
-use super::explanation::{Evidence, Explanation};
+use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{BudgetShare, BudgetedPart};
 use super::hypothesis::Hypothesis;
 use crate::fitting::{Candidate, FitOptions, fit};
@@ -26,7 +26,7 @@ enum Part {
 
 /// The parts of the chosen explanation with their shares; none where the model as given explains
 /// the motions.
-pub(super) fn error_budget(evidence: &Evidence) -> Vec<BudgetedPart> {
+pub(super) fn error_budget(evidence: &VerdictEvidence) -> Vec<BudgetedPart> {
     let (evaluator, chosen) = (evidence.evaluator, evidence.chosen());
     let frees = !evaluator.base.search.free.is_empty();
     let effects = (0..chosen.set.len()).map(Part::Effect);
@@ -77,7 +77,7 @@ fn name(chosen: &Hypothesis, part: &Part) -> String {
 
 /// The model as given with one part alone; an effect with the free values refitted, as it was
 /// tried.
-fn alone(evidence: &Evidence, part: &Part) -> Hypothesis {
+fn alone(evidence: &VerdictEvidence, part: &Part) -> Hypothesis {
     let (evaluator, chosen) = (evidence.evaluator, evidence.chosen());
     let mut hypothesis = match part {
         Part::Free => evaluator.base.clone(),

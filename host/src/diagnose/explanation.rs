@@ -18,7 +18,7 @@ pub(super) struct Tried {
 }
 
 /// Everything the verdict rests on.
-pub(super) struct Evidence<'a> {
+pub(super) struct VerdictEvidence<'a> {
     pub evaluator: &'a Evaluator<'a>,
     pub tried: &'a Tried,
     /// The simplest explanation that is not clearly worse than the best.
@@ -91,7 +91,7 @@ impl Tried {
     }
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> VerdictEvidence<'a> {
     pub fn chosen(&self) -> &'a Hypothesis {
         self.explanation.hypothesis()
     }

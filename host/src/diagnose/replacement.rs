@@ -18,7 +18,7 @@ const LITTLE: f64 = 0.01;
 
 /// A part of an explanation that may be replaced.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Part {
+pub(super) enum ReplaceablePart {
     Effect(Candidate),
     /// Values of the model file.
     Values(Vec<ParameterPath>),
@@ -36,12 +36,12 @@ pub(super) struct Other {
     share: f64,
 }
 
-impl Part {
+impl ReplaceablePart {
     /// Values it brings.
     fn count(&self) -> usize {
         match self {
-            Part::Effect(effect) => effect.parameters().len(),
-            Part::Values(paths) => paths.len(),
+            ReplaceablePart::Effect(effect) => effect.parameters().len(),
+            ReplaceablePart::Values(paths) => paths.len(),
         }
     }
 }
@@ -49,7 +49,7 @@ impl Part {
 impl Evaluator<'_> {
     /// What may stand in for a part, the best first; `rest` is the explanation without it, with its
     /// derivatives. Nothing that brings more values, unless one factor changes all of them.
-    pub fn others(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Vec<Other> {
+    pub fn others(&self, chosen: &Hypothesis, part: &ReplaceablePart, rest: &Fit) -> Vec<Other> {
         let made = rest.residuals.less(&chosen.search.residuals);
         let target = ProjectedResidual::of(rest, &made);
         let local = self.little_of(chosen, part, rest);
@@ -57,11 +57,11 @@ impl Evaluator<'_> {
         // So many times a little of the part is all of it.
         let all = (target.size() / little.size()).sqrt();
         let mut set = chosen.set.clone();
-        set.retain(|effect| Part::Effect(*effect) != *part);
+        set.retain(|effect| ReplaceablePart::Effect(*effect) != *part);
         let fits = |change: &&Vec<PredictionChange>| {
             change.first().is_some_and(|change| {
                 let candidate = change.candidate;
-                Part::Effect(candidate) != *part
+                ReplaceablePart::Effect(candidate) != *part
                     && candidate.parameters().len() <= part.count()
                     && set
                         .iter()
@@ -115,7 +115,7 @@ impl Evaluator<'_> {
     }
 
     /// Values, alone and as kinds, that may stand for a part: those that are not free already.
-    fn replacing_values(&self, part: &Part, rest: &Fit) -> Vec<Vec<ParameterPath>> {
+    fn replacing_values(&self, part: &ReplaceablePart, rest: &Fit) -> Vec<Vec<ParameterPath>> {
         let single = self.open_values().into_iter().map(|path| vec![path]);
         let mut values: Vec<Vec<ParameterPath>> = single.collect();
         values.extend(kinds_of_values(&self.start));
@@ -124,14 +124,14 @@ impl Evaluator<'_> {
             !paths
                 .iter()
                 .any(|path| is_free(path) || self.known.contains(path))
-                && Part::Values(paths.clone()) != *part
+                && ReplaceablePart::Values(paths.clone()) != *part
         });
         values
     }
 
     /// A small share of a part taken out where the explanation stands: there the derivatives of
     /// what is equal to the logs agree, however far the part has gone.
-    fn little_of(&self, chosen: &Hypothesis, part: &Part, rest: &Fit) -> Little {
+    fn little_of(&self, chosen: &Hypothesis, part: &ReplaceablePart, rest: &Fit) -> Little {
         let (model, nodes) = (&chosen.search.model, Some(&chosen.search.nodes[..]));
         let fit = fit(
             model,
@@ -142,7 +142,7 @@ impl Evaluator<'_> {
         );
         let mut model = fit.model.clone();
         match part {
-            Part::Effect(effect) => {
+            ReplaceablePart::Effect(effect) => {
                 for instance in model.effects.iter_mut().filter(|e| effect.is(e)) {
                     let values = instance.values.iter_mut().zip(effect.parameters());
                     for (value, parameter) in values {
@@ -154,7 +154,7 @@ impl Evaluator<'_> {
                     }
                 }
             }
-            Part::Values(paths) => {
+            ReplaceablePart::Values(paths) => {
                 for path in paths {
                     let (from, to) = (path.get(&model), path.get(&self.start));
                     let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(0.0));

@@ -13,7 +13,7 @@ use super::budget::{
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
 use super::evaluator::{Evaluator, every_change};
-use super::explanation::{Evidence, Explanation, Tried};
+use super::explanation::{Explanation, Tried, VerdictEvidence};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
@@ -55,7 +55,7 @@ pub fn diagnose(
     };
     let explanation = tried.explanation(&evaluator);
     let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
-    let mut evidence = Evidence {
+    let mut evidence = VerdictEvidence {
         evaluator: &evaluator,
         tried: &tried,
         explanation,

@@ -54,7 +54,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
         start_rad[joint] = goals.excitation.angle_rad[0][at];
     }
     let plant = Plant::new(model, &motion);
-    let regulator = Regulator::new(model, &motion, limits);
+    let regulator = GoalRegulator::new(model, &motion, limits);
     let mut state = at_rest(&plant, &start_rad);
     let mut sensors = SensorState::default();
     let joints = model.link_count();
@@ -103,19 +103,19 @@ pub(super) fn at_rest(plant: &Plant, reading_rad: &[f64]) -> Start {
 }
 
 /// Holds a simulated rig at goals: gravity fed forward, angle and speed fed back.
-struct Regulator<'a> {
+struct GoalRegulator<'a> {
     model: &'a Model,
     equations: EquationsOfMotion,
     torque_nm: f64,
 }
 
-impl<'a> Regulator<'a> {
-    fn new(model: &'a Model, motion: &Motion, limits: &ExperimentLimits) -> Regulator<'a> {
+impl<'a> GoalRegulator<'a> {
+    fn new(model: &'a Model, motion: &Motion, limits: &ExperimentLimits) -> GoalRegulator<'a> {
         let mut rig = model.rig(motion.turned);
         if motion.payload_kg > 0.0 {
             rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
         }
-        Regulator {
+        GoalRegulator {
             model,
             equations: EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad),
             torque_nm: limits.torque_nm.unwrap_or(f64::INFINITY),

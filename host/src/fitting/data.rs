@@ -2,7 +2,7 @@
 
 use super::assumed::{AssumedStates, assumed};
 use super::growth::stable_horizon;
-use super::node::{Guess, Node};
+use super::node::{Node, StartGuess};
 use super::noise::noise;
 use super::windows::MotionWindow;
 use crate::log::Motion;
@@ -237,9 +237,9 @@ impl FitData {
     }
 
     /// The same with how sure it is.
-    pub(super) fn guess(&self, window: &Window) -> Guess {
+    pub(super) fn guess(&self, window: &Window) -> StartGuess {
         let (motion, assumed) = (&self.motions[window.motion], &self.assumed[window.motion]);
-        Guess::of(motion, &self.sigma, assumed, window)
+        StartGuess::of(motion, &self.sigma, assumed, window)
     }
 
     /// Number of samples in all windows.

@@ -3,7 +3,7 @@
 
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
-use super::node::{Guess, Node};
+use super::node::{Node, StartGuess};
 use super::normal::NormalEquations;
 use super::residual::residuals;
 use nalgebra::DVector;
@@ -12,11 +12,11 @@ use nalgebra::DVector;
 pub(super) struct LevenbergMarquardt<'a> {
     pub fit: Fit,
     pub data: &'a FitData,
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<StartGuess>,
 }
 
 /// A step that lowers the cost.
-struct Step {
+struct DescentStep {
     /// By how much.
     reduction: f64,
     /// The same for a residual that is linear.
@@ -38,7 +38,7 @@ const DAMPING: f64 = 1e-3;
 
 impl<'a> LevenbergMarquardt<'a> {
     /// Goes on from where `fit` stands.
-    pub fn new(fit: Fit, data: &'a FitData, guesses: Vec<Guess>) -> Self {
+    pub fn new(fit: Fit, data: &'a FitData, guesses: Vec<StartGuess>) -> Self {
         LevenbergMarquardt { fit, data, guesses }
     }
 
@@ -104,7 +104,7 @@ impl<'a> LevenbergMarquardt<'a> {
     }
 
     /// Derivatives corrected by what a step brought.
-    fn correct(&mut self, step: &Step) {
+    fn correct(&mut self, step: &DescentStep) {
         let fit = &mut self.fit;
         for (w, window) in fit.jacobian.iter_mut().enumerate() {
             let (guess, node) = (&self.guesses[w], &fit.nodes[w]);
@@ -130,7 +130,7 @@ impl<'a> LevenbergMarquardt<'a> {
     }
 
     /// Tries steps with growing damping until one lowers the cost; `None` when none does.
-    fn step(&mut self, damping: &mut f64) -> Option<Step> {
+    fn step(&mut self, damping: &mut f64) -> Option<DescentStep> {
         let before = self.cost();
         let tries = if self.fit.fresh { TRIES.0 } else { TRIES.1 };
         for _ in 0..tries {
@@ -157,7 +157,7 @@ impl<'a> LevenbergMarquardt<'a> {
                 self.fit.residuals = residuals;
                 self.fit.fresh = false;
                 *damping = (*damping / 8.0).max(1e-9);
-                return Some(Step {
+                return Some(DescentStep {
                     reduction: before - after,
                     predicted: before - (linear + prior),
                     values,

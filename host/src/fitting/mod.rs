@@ -41,7 +41,7 @@ pub use add::{Addition, add_effects, candidates_named, not_reduced, with_refitte
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals};
 pub use data::{FitData, Horizon, Window};
-pub use drift::{Drift, DriftReport, OneValue, Session, drift};
+pub use drift::{Drift, DriftReport, DriftSession, OneValue, drift};
 pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
 pub use fitted_value::{FittedValue, fitted_values};

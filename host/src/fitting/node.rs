@@ -18,7 +18,7 @@ pub struct Node {
 
 /// What the samples around a window's start say of its node, and how surely.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Guess {
+pub(super) struct StartGuess {
     pub node: Node,
     /// Standard deviations of the node's unknowns.
     pub deviation: DVector<f64>,
@@ -35,10 +35,15 @@ const REACH_S: f64 = 0.06;
 /// Standard deviation of a speed of which nothing is known, rad/s.
 const SPEED_UNKNOWN_RAD_S: f64 = 2.0;
 
-impl Guess {
+impl StartGuess {
     /// From a parabola through the samples around the window's start; `sigma` is each joint's
     /// noise, `assumed` says where joints are whose angle is not measured.
-    pub fn of(motion: &Motion, sigma: &[f64], assumed: &AssumedStates, window: &Window) -> Guess {
+    pub fn of(
+        motion: &Motion,
+        sigma: &[f64],
+        assumed: &AssumedStates,
+        window: &Window,
+    ) -> StartGuess {
         let (joints, first) = (motion.position_rad.len(), window.samples.start);
         let mut unknowns = DVector::zeros(3 * joints);
         let mut deviation = DVector::zeros(3 * joints);
@@ -71,7 +76,7 @@ impl Guess {
                 unknowns[speed] = logged;
             }
         }
-        Guess {
+        StartGuess {
             node: Node { unknowns },
             deviation,
         }
@@ -111,7 +116,7 @@ impl Node {
         assumed: &AssumedStates,
         window: &Window,
     ) -> Node {
-        Guess::of(motion, sigma, assumed, window).node
+        StartGuess::of(motion, sigma, assumed, window).node
     }
 
     /// The simulator's start state.

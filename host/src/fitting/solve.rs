@@ -3,7 +3,7 @@
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
-use super::node::{Guess, Node};
+use super::node::{Node, StartGuess};
 use super::residual::residuals;
 use crate::model::{Model, ParameterPath};
 
@@ -97,6 +97,6 @@ pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
     guesses(data).into_iter().map(|guess| guess.node).collect()
 }
 
-fn guesses(data: &FitData) -> Vec<Guess> {
+fn guesses(data: &FitData) -> Vec<StartGuess> {
     data.windows.iter().map(|w| data.guess(w)).collect()
 }

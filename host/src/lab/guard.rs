@@ -12,14 +12,14 @@ use std::sync::Arc;
 
 /// The secret that the printed address carries.
 #[derive(Debug, Clone)]
-pub(super) struct Token(String);
+pub(super) struct AccessToken(String);
 
-impl Token {
+impl AccessToken {
     /// 128 random bits in hexadecimal.
-    pub fn random() -> Token {
+    pub fn random() -> AccessToken {
         let mut bytes = [0; 16];
         rand::rng().fill_bytes(&mut bytes);
-        Token(crate::output::number::hex(bytes))
+        AccessToken(crate::output::number::hex(bytes))
     }
 
     /// As the address carries it.

@@ -1,6 +1,6 @@
 //! The server: one port of the loopback interface, one token, the sessions of one folder.
 
-use super::guard::{Token, guard};
+use super::guard::{AccessToken, guard};
 use super::live::{LiveRobot, RobotAccess};
 use super::routes;
 use super::session::{Given, SessionStore};
@@ -31,7 +31,7 @@ pub struct LabOptions {
 /// What every request sees.
 #[derive(Debug)]
 pub(super) struct LabState {
-    pub token: Token,
+    pub token: AccessToken,
     pub port: u16,
     pub store: SessionStore,
     pub robot: Option<Arc<LiveRobot>>,
@@ -83,7 +83,7 @@ impl Lab {
         let port = listener.local_addr().map_err(refused)?.port();
         listener.set_nonblocking(true).map_err(refused)?;
         let state = LabState {
-            token: Token::random(),
+            token: AccessToken::random(),
             port,
             store: SessionStore::open(options.folder, options.given)?,
             robot: options.robot.map(|robot| Arc::new(LiveRobot::new(robot))),

@@ -23,6 +23,9 @@ pub struct Session<L> {
     next_out: u8,
     next_in: Option<u8>,
     waiting: VecDeque<(Duration, Report)>,
+    /// Whether ticks that are reported while an answer is awaited are kept for [`Session::next`]:
+    /// for who wants them all, and not the newest.
+    pub keeps_ticks: bool,
     /// The firmware's answer to the greeting.
     pub hello: Hello,
     /// Sound frames received.
@@ -51,6 +54,7 @@ impl<L: SerialLink> Session<L> {
             next_out: 0,
             next_in: None,
             waiting: VecDeque::new(),
+            keeps_ticks: false,
             hello: unknown,
             frames: 0,
             bad: 0,
@@ -204,19 +208,28 @@ impl<L: SerialLink> Session<L> {
         self.waiting.push_back((self.link.now(), message));
     }
 
-    /// Waits for a report that `pick` takes; others that come meanwhile are dropped.
+    /// Waits for a report that `pick` takes; others that come meanwhile are dropped, but for ticks
+    /// that are to be kept.
     fn wait<T>(
         &mut self,
         wait: Duration,
         mut pick: impl FnMut(&Report) -> Option<T>,
     ) -> Result<Option<T>> {
         let deadline = self.link.now() + wait;
-        while let Some((_, report)) = self.next(deadline.saturating_sub(self.link.now()))? {
-            if let Some(picked) = pick(&report) {
-                return Ok(Some(picked));
+        let mut kept = Vec::new();
+        let mut picked = None;
+        while let Some((time, report)) = self.next(deadline.saturating_sub(self.link.now()))? {
+            picked = pick(&report);
+            if picked.is_some() {
+                break;
+            }
+            if self.keeps_ticks && matches!(report, Report::Stream(_)) {
+                kept.push((time, report));
             }
         }
-        Ok(None)
+        kept.extend(self.waiting.drain(..));
+        self.waiting.extend(kept);
+        Ok(picked)
     }
 
     fn port(&self) -> String {

@@ -2,7 +2,7 @@
 
 use super::lines::Lines;
 use super::reason::LogReason;
-use super::table::Table;
+use super::table::LogTable;
 use crate::error::{Error, Place, Result};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -86,7 +86,7 @@ impl LogHeader {
     }
 
     /// The header of a table.
-    pub fn of_table(path: &Path, table: &Table) -> LogHeader {
+    pub fn of_table(path: &Path, table: &LogTable) -> LogHeader {
         let constants = table.constants.iter();
         LogHeader {
             path: path.to_path_buf(),

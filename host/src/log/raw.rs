@@ -6,7 +6,7 @@ use super::header::{LogHeader, fields, number};
 use super::iso::iso_ns;
 use super::lines::Lines;
 use super::request::LogRequest;
-use super::table::Table;
+use super::table::LogTable;
 use crate::error::{Error, Place, Result};
 use std::path::Path;
 
@@ -35,7 +35,7 @@ impl RawLog {
             )?)),
             LogFormat::Csv => read_csv(path),
             format => {
-                let table = Table::read(path, format)?;
+                let table = LogTable::read(path, format)?;
                 Ok(RawLog {
                     iso: vec![false; table.names.len()],
                     names: table.names,

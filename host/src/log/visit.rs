@@ -5,7 +5,7 @@ use super::format::LogFormat;
 use super::header::LogHeader;
 use super::row::LogRow;
 use super::row_reader::RowReader;
-use super::table::Table;
+use super::table::LogTable;
 use crate::error::Result;
 use crate::model::LogColumns;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub fn visit(
     if matches!(format, LogFormat::Csv | LogFormat::Bam) {
         return csv::visit(path, columns, visitor);
     }
-    let table = Table::read(path, format)?;
+    let table = LogTable::read(path, format)?;
     let header = LogHeader::of_table(path, &table);
     let reader = RowReader::new(path, columns, &header)?;
     let mut row = LogRow {

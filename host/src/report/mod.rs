@@ -69,7 +69,7 @@ pub struct ReportProvenance {
     /// Version of this program.
     pub program_version: String,
     /// Models, in the order of the chain.
-    pub model_files: Vec<ModelFile>,
+    pub model_files: Vec<HashedModel>,
     /// Logs.
     pub logs: Vec<LogFile>,
     /// The command line that makes it again.
@@ -78,7 +78,7 @@ pub struct ReportProvenance {
 
 impl ReportProvenance {
     /// Of this version of the program: `command` read the files, and the logs gave these motions.
-    pub fn new(model_files: Vec<ModelFile>, split: &Split, command: impl Into<String>) -> Self {
+    pub fn new(model_files: Vec<HashedModel>, split: &Split, command: impl Into<String>) -> Self {
         let mut logs = Vec::new();
         add_logs(&mut logs, &split.training, false);
         add_logs(&mut logs, &split.held_out, true);
@@ -117,17 +117,17 @@ pub fn file_name(file: &Path) -> String {
 
 /// A model that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelFile {
+pub struct HashedModel {
     /// Its name.
     pub name: String,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
 }
 
-impl ModelFile {
+impl HashedModel {
     /// The file of this name with these contents.
-    pub fn of(name: impl Into<String>, contents: &[u8]) -> ModelFile {
-        ModelFile {
+    pub fn of(name: impl Into<String>, contents: &[u8]) -> HashedModel {
+        HashedModel {
             name: name.into(),
             sha256: hex(Sha256::digest(contents)),
         }

@@ -28,8 +28,8 @@ pub fn outcomes_csv(outcomes: &[LogOutcome]) -> String {
             values => values.iter().map(|value| (outcome, Some(value))).collect(),
         })
         .collect();
-    type Row<'a> = (&'a LogOutcome, Option<&'a OutcomeValue>);
-    let columns: &[TableColumn<Row>] = &[
+    type OutcomeRow<'a> = (&'a LogOutcome, Option<&'a OutcomeValue>);
+    let columns: &[TableColumn<OutcomeRow>] = &[
         ("log", &|(outcome, _)| outcome.key.log.replace(',', "_")),
         ("verdict", &|(outcome, _)| outcome.verdict.clone()),
         ("effects", &|(outcome, _)| outcome.effects.join("+")),

@@ -53,4 +53,4 @@ pub use response::{LoopResponse, response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
-pub use verify::{LeftOut, Verification, Without, left_out, verification_steps, verify};
+pub use verify::{UndesignedEffect, Verification, Without, left_out, verification_steps, verify};

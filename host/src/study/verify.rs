@@ -59,7 +59,7 @@ impl Verification {
 
 /// An effect of the model that a design does not have.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeftOut {
+pub struct UndesignedEffect {
     /// Which one.
     pub effect: &'static dyn Effect,
     /// Its joint, counted from 0; none for the whole rig.
@@ -67,7 +67,7 @@ pub struct LeftOut {
 }
 
 /// Effects of `model` that the design of `designed_for`, the model or a part of it, leaves out.
-pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<LeftOut> {
+pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<UndesignedEffect> {
     let omitted = |e: &EffectInstance| {
         let is = |o: &crate::synth::OmittedEffect| {
             o.effect == e.effect && e.acts_on(o.joint, &model.joints[o.joint])
@@ -75,9 +75,9 @@ pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<Lef
         design.omitted.iter().any(is)
     };
     let instances = model.effects.iter();
-    let mut left_out: Vec<LeftOut> = instances
+    let mut left_out: Vec<UndesignedEffect> = instances
         .filter(|e| omitted(e) || !designed_for.effects.contains(e))
-        .map(|e| LeftOut {
+        .map(|e| UndesignedEffect {
             effect: e.effect,
             joint: e.joint,
         })
@@ -87,7 +87,7 @@ pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<Lef
 }
 
 /// Shares that [`verify`] simulates at most.
-pub fn verification_steps(left_out: &[LeftOut]) -> usize {
+pub fn verification_steps(left_out: &[UndesignedEffect]) -> usize {
     let regions = match left_out.len() {
         count @ 0..2 => 1 + count,
         count => 2 + count,
@@ -105,7 +105,7 @@ pub fn verify(
     model: &Model,
     design: &Design,
     request: &Request,
-    left_out: &[LeftOut],
+    left_out: &[UndesignedEffect],
     done: &dyn Fn(),
 ) -> Result<Verification> {
     let tested = Tested {
@@ -146,9 +146,11 @@ struct Tested<'a> {
 
 impl Tested<'_> {
     /// The loop of the model without these effects.
-    fn closed_loop(&self, without: &[LeftOut]) -> Result<ClosedLoop> {
+    fn closed_loop(&self, without: &[UndesignedEffect]) -> Result<ClosedLoop> {
         let mut model = self.model.clone();
-        let is = |e: &EffectInstance, one: &LeftOut| one.effect == e.effect && one.joint == e.joint;
+        let is = |e: &EffectInstance, one: &UndesignedEffect| {
+            one.effect == e.effect && one.joint == e.joint
+        };
         let stays = |e: &EffectInstance| !without.iter().any(|one| is(e, one));
         model.effects.retain(stays);
         closed_loop(model, self.design, self.request)
@@ -169,7 +171,7 @@ impl Tested<'_> {
         figures
     }
 
-    fn region_rad(&self, without: &[LeftOut]) -> Result<f64> {
+    fn region_rad(&self, without: &[UndesignedEffect]) -> Result<f64> {
         let closed = self.closed_loop(without)?;
         let stabilises =
             |spread_rad| Ok(self.figures(&closed, spread_rad).stabilised_share >= STABILISED_SHARE);

@@ -107,9 +107,9 @@ pub enum DesignError {
     #[error("the eigenvalues of the system matrix cannot be found")]
     Eigenvalues,
     #[error("{mode}: {}", role.uncontrollable().0)]
-    Uncontrollable { mode: PlantMode, role: Role },
+    Uncontrollable { mode: PlantMode, role: RiccatiRole },
     #[error("{mode}: {}", role.unweighted().0)]
-    Unweighted { mode: PlantMode, role: Role },
+    Unweighted { mode: PlantMode, role: RiccatiRole },
     #[error(
         "no stabilising solution was found within double precision{}",
         nearest(weakest.as_ref())
@@ -168,22 +168,22 @@ pub struct PlantMode {
 
 /// What a Riccati equation is solved for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum RiccatiRole {
     /// Gains.
     Regulator,
     /// A Kalman filter: the regulator of the transposed plant.
     Estimator,
 }
 
-impl Role {
+impl RiccatiRole {
     /// A mode that inputs (outputs) do not reach, and the remedy.
     fn uncontrollable(self) -> (&'static str, &'static str) {
         match self {
-            Role::Regulator => (
+            RiccatiRole::Regulator => (
                 "no input reaches it: the plant cannot be stabilised",
                 "drive a joint that moves this mode",
             ),
-            Role::Estimator => (
+            RiccatiRole::Estimator => (
                 "no output shows it: the state cannot be estimated",
                 "measure a state in which this mode shows",
             ),
@@ -193,11 +193,11 @@ impl Role {
     /// A mode on the edge of stability without weight (noise), and the remedy.
     fn unweighted(self) -> (&'static str, &'static str) {
         match self {
-            Role::Regulator => (
+            RiccatiRole::Regulator => (
                 "Q does not weigh it, so the best gain leaves it alone",
                 "weigh that state in Q",
             ),
-            Role::Estimator => (
+            RiccatiRole::Estimator => (
                 "the process noise W does not excite it, so the best filter ignores it",
                 "give that state process noise in W",
             ),

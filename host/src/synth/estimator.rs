@@ -1,7 +1,7 @@
 //! The stationary Kalman filter, and with gains the controller that needs no measured state (LQG).
 
 use super::eigen::{poles, slowest_first};
-use super::error::{DesignError, Role};
+use super::error::{DesignError, RiccatiRole};
 use super::gains::Gains;
 use super::riccati::{Problem, TimeDomain};
 use super::system::Discrete;
@@ -63,7 +63,7 @@ pub fn kalman(
     };
     let solution = problem
         .solve()
-        .ok_or_else(|| problem.unsolvable(Role::Estimator))?;
+        .ok_or_else(|| problem.unsolvable(RiccatiRole::Estimator))?;
     let covariance = solution.x;
     let cp = &plant.c * &covariance;
     let innovation = (&cp * &c + measurement)

@@ -1,7 +1,7 @@
 //! The linear-quadratic regulator, continuous and sampled.
 
 use super::eigen::{poles, slowest_first};
-use super::error::{DesignError, Role};
+use super::error::{DesignError, RiccatiRole};
 use super::riccati::{Problem, TimeDomain};
 use super::system::{Continuous, Discrete};
 use super::weights::{self, Sign};
@@ -67,7 +67,7 @@ pub fn continuous_period_s(poles: &[Complex<f64>]) -> f64 {
 
 impl Gains {
     fn of(problem: &Problem<'_>) -> Result<Gains, DesignError> {
-        let refused = || problem.unsolvable(Role::Regulator);
+        let refused = || problem.unsolvable(RiccatiRole::Regulator);
         let solution = problem.solve().ok_or_else(refused)?;
         let mut poles = poles(&(problem.a - problem.b * &solution.k))?;
         let stable = match problem.time {

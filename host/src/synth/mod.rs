@@ -36,7 +36,7 @@ pub use controllability::{Controllability, controllability, observability};
 pub use design::{Design, Estimation, Fixed};
 pub use discretise::zoh;
 pub use eigen::{Mode, poles};
-pub use error::{DesignError, PlantMode, Role};
+pub use error::{DesignError, PlantMode, RiccatiRole};
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, continuous_period_s, dlqr, lqr};

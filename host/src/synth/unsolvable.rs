@@ -1,7 +1,7 @@
 //! Why a Riccati equation has no stabilising solution: the mode that stands in the way.
 
 use super::eigen::{Mode, modes};
-use super::error::{DesignError, PlantMode, Role};
+use super::error::{DesignError, PlantMode, RiccatiRole};
 use super::riccati::{Problem, TimeDomain};
 
 /// A mode with a smaller margin cannot be moved.
@@ -9,7 +9,7 @@ const UNCONTROLLABLE: f64 = 1e-9;
 
 impl Problem<'_> {
     /// The reason for no stabilising solution.
-    pub fn unsolvable(&self, role: Role) -> DesignError {
+    pub fn unsolvable(&self, role: RiccatiRole) -> DesignError {
         let lasting = |mode: &Mode| match self.time {
             TimeDomain::Continuous => mode.pole.re > -1e-9 * self.a.norm(),
             TimeDomain::Discrete => mode.pole.norm() > 1.0 - 1e-9,

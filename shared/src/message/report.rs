@@ -171,6 +171,24 @@ impl StreamReport {
         (self.missing.get(place / 8)).is_some_and(|bits| bits >> (place % 8) & 1 == 0)
     }
 
+    /// Whether torque was on when the servos were read in this tick, the report before being
+    /// `before`; none where it is not known. While balancing, torque comes on with the law's first
+    /// command and goes off where the law gives up: after the reading, while `condition` is that of
+    /// the tick's end.
+    pub fn torque_was_on(&self, before: Option<&StreamReport>) -> Option<bool> {
+        let before = before.filter(|before| self.tick == before.tick.wrapping_add(1));
+        let was = |condition| before.is_some_and(|before| before.condition == condition);
+        match self.condition {
+            Condition::Bridge => None,
+            Condition::BalanceArmed => Some(!was(Condition::Balance)),
+            Condition::StreamArmed | Condition::Soft => Some(true),
+            Condition::Fault(
+                Cause::Fallen | Cause::JointRange | Cause::JointSpeed | Cause::ServoLost,
+            ) => Some(was(Condition::BalanceArmed)),
+            Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
+        }
+    }
+
     /// Position code of the servo at this place, if it answered.
     pub fn position(&self, place: usize) -> Option<u16> {
         self.positions

@@ -34,6 +34,7 @@ pub const TARGETS: &[Target] = &[
     target("log_csv", targets::files::log_csv),
     target("log_json", targets::files::log_json),
     target("log_mat", targets::files::log_mat),
+    target("log_mat73", targets::files::log_mat73),
     target("log_mcap", targets::files::log_mcap),
     target("log_parquet", targets::files::log_parquet),
     target("log_rosbag", targets::files::log_rosbag),

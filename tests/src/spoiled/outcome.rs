@@ -3,7 +3,7 @@
 use super::rig::Rig;
 use super::spoiling::Spoiling;
 use handstand::diagnose::conventions::{
-    LeaveOut, Quantity, Unusable, leave_out, search, unexplained,
+    LeaveOut, LogColumn, Unusable, leave_out, search, unexplained,
 };
 use serde::Serialize;
 use std::time::Instant;
@@ -113,7 +113,7 @@ fn leaves_out(spoiling: Spoiling, left_out: &LeaveOut) -> bool {
     match spoiling {
         Spoiling::Stalled => left_out.why == Unusable::Stalled,
         Spoiling::Clipped(joint) => {
-            left_out.why == Unusable::Clipped && left_out.column == Quantity::Input(joint)
+            left_out.why == Unusable::Clipped && left_out.column == LogColumn::Input(joint)
         }
         _ => false,
     }

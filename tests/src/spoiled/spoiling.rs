@@ -5,7 +5,7 @@ use super::edits::{
 };
 use super::rig::Rig;
 use handstand::Model;
-use handstand::diagnose::conventions::{Quantity, Remedy};
+use handstand::diagnose::conventions::{LogColumn, Remedy};
 use handstand::log::Motion;
 use handstand::model::{AngleZero, Angles, Unit};
 use std::f64::consts::{PI, TAU};
@@ -38,7 +38,7 @@ pub enum Spoiling {
     /// Milliseconds are declared as seconds.
     Milliseconds,
     /// A column was taken so much later than the others, s.
-    Shift(Quantity, f64),
+    Shift(LogColumn, f64),
     /// All joints stand still for the last 25 s.
     Stalled,
     /// The input is cut off at half its most.
@@ -78,10 +78,10 @@ pub fn spoilings(rig: &Rig) -> Vec<Spoiling> {
             let others = others.filter(|name| *name != drive.name());
             all.extend(others.map(|name| S::Drive(joint, name)));
             // Later instead of earlier is what a delay of the drive does: no fault of the log.
-            all.push(S::Shift(Quantity::Input(joint), -shift_s));
+            all.push(S::Shift(LogColumn::Input(joint), -shift_s));
         }
         if joint > 0 {
-            all.push(S::Shift(Quantity::Position(joint), shift_s));
+            all.push(S::Shift(LogColumn::Position(joint), shift_s));
         }
     }
     if joints > 1 {
@@ -171,12 +171,12 @@ impl Spoiling {
     /// Whether this remedy mends it.
     pub fn mended_by(&self, remedy: &Remedy, rig: &Rig, spoiled: &Spoiled) -> bool {
         let near = |value: f64, wanted: f64, by: f64| (value - wanted).abs() <= by;
-        let factor = |quantity: Quantity, unit: &Unit| {
+        let factor = |quantity: LogColumn, unit: &Unit| {
             quantity
                 .column(&spoiled.model)
                 .map_or(0.0, |column| unit.si / column.unit.si)
         };
-        let scaled = |quantity: Quantity, wanted: f64| match remedy {
+        let scaled = |quantity: LogColumn, wanted: f64| match remedy {
             Remedy::Unit(columns) => {
                 let mut columns = columns.iter();
                 columns.any(|(q, unit)| {
@@ -186,15 +186,15 @@ impl Spoiling {
             _ => false,
         };
         let offset = |joint: usize| match remedy {
-            Remedy::Offset(Quantity::Position(j), offset) if *j == joint => {
-                let column = Quantity::Position(joint).column(&spoiled.model)?;
+            Remedy::Offset(LogColumn::Position(j), offset) if *j == joint => {
+                let column = LogColumn::Position(joint).column(&spoiled.model)?;
                 Some(offset - column.offset)
             }
             _ => None,
         };
         match *self {
-            Spoiling::PositionSign(joint) => reverses(remedy, Quantity::Position(joint)),
-            Spoiling::InputSign(joint) => reverses(remedy, Quantity::Input(joint)),
+            Spoiling::PositionSign(joint) => reverses(remedy, LogColumn::Position(joint)),
+            Spoiling::InputSign(joint) => reverses(remedy, LogColumn::Input(joint)),
             Spoiling::Zero(joint) => offset(joint).is_some_and(|o| near(o, -OFFSET_RAD, 0.15)),
             Spoiling::AngleZero => {
                 let (is, was) = (spoiled.model.angle_zero, rig.model.angle_zero);
@@ -202,12 +202,12 @@ impl Spoiling {
                 let turned = |o: f64| near((o - wanted + PI).rem_euclid(TAU), PI, 0.15);
                 *remedy == Remedy::AngleZero(was) || offset(0).is_some_and(turned)
             }
-            Spoiling::Degrees(joint) => scaled(Quantity::Position(joint), PI / 180.0),
-            Spoiling::Radians(joint) => scaled(Quantity::Position(joint), 180.0 / PI),
-            Spoiling::Counts(joint) => scaled(Quantity::Position(joint), TAU / 4096.0),
-            Spoiling::CountsPerTurn(joint) => scaled(Quantity::Position(joint), 0.25),
+            Spoiling::Degrees(joint) => scaled(LogColumn::Position(joint), PI / 180.0),
+            Spoiling::Radians(joint) => scaled(LogColumn::Position(joint), 180.0 / PI),
+            Spoiling::Counts(joint) => scaled(LogColumn::Position(joint), TAU / 4096.0),
+            Spoiling::CountsPerTurn(joint) => scaled(LogColumn::Position(joint), 0.25),
             Spoiling::InputUnit(joint) => scaled(
-                Quantity::Input(joint),
+                LogColumn::Input(joint),
                 1.0 / input_factor(&rig.model, joint),
             ),
             Spoiling::Angles => matches!(remedy, Remedy::Angles(_)),
@@ -217,7 +217,7 @@ impl Spoiling {
                 }
                 _ => false,
             },
-            Spoiling::Milliseconds => scaled(Quantity::Time, 1e-3),
+            Spoiling::Milliseconds => scaled(LogColumn::Time, 1e-3),
             Spoiling::Shift(column, shift_s) => match remedy {
                 Remedy::Shift(c, s) => *c == column && near(*s / shift_s, 1.0, 0.5),
                 _ => false,
@@ -227,7 +227,7 @@ impl Spoiling {
     }
 }
 
-fn reverses(remedy: &Remedy, quantity: Quantity) -> bool {
+fn reverses(remedy: &Remedy, quantity: LogColumn) -> bool {
     matches!(remedy, Remedy::Reverse(columns) if columns.contains(&quantity))
 }
 

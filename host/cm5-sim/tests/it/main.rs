@@ -9,3 +9,5 @@ mod joints;
 mod life;
 mod rig;
 mod start;
+mod supply;
+mod torque;

@@ -1,6 +1,6 @@
 //! A page that shows both attempts side by side.
 
-use super::attempt::{BalanceAttempt, STANDS_S};
+use super::attempt::{AttemptSample, BalanceAttempt, STANDS_S};
 use super::run::RobotDemo;
 use crate::output::number::exact;
 use crate::output::plot::{Chart, Curve, Tone};
@@ -64,13 +64,11 @@ fn said(attempt: &BalanceAttempt) -> String {
     }
 }
 
-type Sample = super::attempt::AttemptSample;
-
 fn curve(
     attempt: &BalanceAttempt,
     name: &str,
     tone: Tone,
-    angle_rad: impl Fn(&Sample) -> f64,
+    angle_rad: impl Fn(&AttemptSample) -> f64,
 ) -> Curve {
     let samples = attempt.samples.iter();
     let points = samples.map(|sample| (sample.time_s, angle_rad(sample).to_degrees()));

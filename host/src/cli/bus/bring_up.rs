@@ -20,7 +20,7 @@ pub fn run(
         output::vacant(file, false)?;
     }
     let port = link.name().to_string();
-    let mut person = Terminal {
+    let mut person = Attendant {
         can_be_asked: std::io::stdin().is_terminal(),
         yes,
         talk,
@@ -43,14 +43,14 @@ pub fn run(
 }
 
 /// Who sits at the terminal.
-struct Terminal<'a> {
+struct Attendant<'a> {
     can_be_asked: bool,
     /// Torque is allowed beforehand.
     yes: bool,
     talk: &'a Talk,
 }
 
-impl Terminal<'_> {
+impl Attendant<'_> {
     fn answer(&self, question: &str) -> Result<String> {
         eprint!("{question} ");
         let mut answer = String::new();
@@ -60,7 +60,7 @@ impl Terminal<'_> {
     }
 }
 
-impl Person for Terminal<'_> {
+impl Person for Attendant<'_> {
     fn confirms(&mut self, title: &str, instruction: &str) -> Result<(Option<bool>, String)> {
         if !self.can_be_asked {
             return Ok((None, "to be checked by hand".to_string()));

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 /// Find what is wrong.
 #[derive(Debug, clap::Args)]
-pub struct DoctorArgs {
+pub struct BusDoctorArgs {
     #[command(flatten)]
     port: Port,
     /// Servos that should be there
@@ -37,7 +37,7 @@ pub struct DoctorArgs {
 }
 
 /// Examines, shows.
-pub fn run(args: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &BusDoctorArgs, talk: &Talk) -> Result<ExitStatus> {
     let link = args.port.open()?;
     if args.bring_up {
         let report = args.report.as_deref();

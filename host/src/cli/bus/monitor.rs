@@ -42,7 +42,7 @@ struct ServoReading {
 }
 
 #[derive(Debug, Serialize)]
-struct Round {
+struct MonitorRound {
     time_s: f64,
     servos: Vec<ServoReading>,
 }
@@ -73,7 +73,7 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
             });
         }
         if talk.json {
-            rounds.push(Round {
+            rounds.push(MonitorRound {
                 time_s,
                 servos: seen,
             });

@@ -25,7 +25,7 @@ pub struct ScanArgs {
 
 /// A servo that answered.
 #[derive(Debug, Serialize)]
-pub struct Found {
+pub struct FoundServo {
     pub id: u8,
     pub protocol: Protocol,
     pub model: u16,
@@ -51,8 +51,8 @@ pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
     }
 }
 
-fn table(found: &[Found]) -> String {
-    let columns: &[TableColumn<Found>] = &[
+fn table(found: &[FoundServo]) -> String {
+    let columns: &[TableColumn<FoundServo>] = &[
         ("Id", &|s| s.id.to_string()),
         ("Protocol", &|s| s.protocol.to_string()),
         ("Model", &|s| model(s)),
@@ -86,7 +86,7 @@ pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Resul
 
 /// Pings these ids and reads what answers, in both protocols unless one was asked for. The servos
 /// are left with the protocol that more of them speak.
-pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
+pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<FoundServo>> {
     let asked = servos.protocol;
     let mut found = Vec::new();
     if asked != Some(Protocol::Two) {
@@ -114,7 +114,7 @@ pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
 /// So many ids are pinged one by one even where a broadcast did not find them.
 const FEW: usize = 20;
 
-fn scan_one(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<Found>> {
+fn scan_one(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<FoundServo>> {
     let bar = talk.bar(ids.len() as u64);
     let mut found = Vec::new();
     for id in ids {
@@ -142,7 +142,7 @@ fn scan_one(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec
     Ok(found)
 }
 
-fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult<Found> {
+fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult<FoundServo> {
     let protocol = servos.detect(id)?;
     let (position_rad, error_flags) = match protocol {
         Protocol::One => {
@@ -159,7 +159,7 @@ fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult
             (position.map_or(0.0, |(rad, _)| rad), names)
         }
     };
-    Ok(Found {
+    Ok(FoundServo {
         id,
         protocol,
         model: servos.get(id, ct::MODEL)?,
@@ -173,7 +173,7 @@ fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult
     })
 }
 
-fn model(servo: &Found) -> String {
+fn model(servo: &FoundServo) -> String {
     if servo.protocol == Protocol::Two {
         let model = ServoModel::of(servo.model);
         return model.map_or_else(|| servo.model.to_string(), |model| model.name.to_string());

@@ -20,7 +20,7 @@ use crate::sim::closed_loop::{
 };
 use crate::synth::{StateFeedbackPlan, continuous_period_s, linearise, poles};
 use nalgebra::DMatrix;
-use series::{Both, Series, pooled};
+use series::{Both, DeviationSeries, pooled};
 
 /// Simulates the loop of `model`, with all its effects, and the plan's law from the first sample of
 /// each motion, and compares angles at the samples.
@@ -154,7 +154,7 @@ fn initial_state(
     }
 }
 
-fn measured(closed: &ClosedLoop, motion: &Motion, first: usize, time_s: &[f64]) -> Series {
+fn measured(closed: &ClosedLoop, motion: &Motion, first: usize, time_s: &[f64]) -> DeviationSeries {
     let pose_rad = closed.plant.pose_reading_rad();
     let still = vec![0.0; pose_rad.len()];
     let fallen = |k: usize| {
@@ -167,7 +167,7 @@ fn measured(closed: &ClosedLoop, motion: &Motion, first: usize, time_s: &[f64]) 
     let fell = (0..time_s.len()).find(|&k| fallen(k));
     let end = first + fell.unwrap_or(time_s.len());
     let joints = motion.position_rad.iter().zip(&pose_rad);
-    Series {
+    DeviationSeries {
         angle_rad: joints
             .map(|(joint, pose)| joint[first..end].iter().map(|angle| angle - pose).collect())
             .collect(),
@@ -182,7 +182,7 @@ fn simulated(
     start: &InitialState,
     time_s: &[f64],
     index: u64,
-) -> Series {
+) -> DeviationSeries {
     let joints = plan.pose_rad.len();
     let law = StateFeedback::new(joints, plan.k.clone()).feeding(&plan.u0);
     let seconds = time_s.last().copied().unwrap_or(0.0);
@@ -208,7 +208,7 @@ fn simulated(
         };
         joint[before] + share * (joint[after] - joint[before])
     };
-    Series {
+    DeviationSeries {
         angle_rad: readings
             .iter()
             .map(|joint| {

@@ -4,7 +4,7 @@ use super::result::{LoopMotion, LoopSignal};
 
 /// Deviations of one motion at its samples from the first on: `[joint][sample]`, rad, up to the
 /// fall; not a number where nothing was measured.
-pub(super) struct Series {
+pub(super) struct DeviationSeries {
     pub angle_rad: Vec<Vec<f64>>,
     pub fell_s: Option<f64>,
 }
@@ -12,12 +12,12 @@ pub(super) struct Series {
 /// A motion with the series behind its figures.
 pub(super) struct Both {
     pub time_s: Vec<f64>,
-    pub measured: Series,
-    pub simulated: Series,
+    pub measured: DeviationSeries,
+    pub simulated: DeviationSeries,
     pub motion: LoopMotion,
 }
 
-impl Series {
+impl DeviationSeries {
     /// Peak to peak of a joint over the last second or the last half.
     fn limit_cycle_rad(&self, joint: usize, time_s: &[f64]) -> Option<f64> {
         let end_s = time_s.last()?;
@@ -37,7 +37,7 @@ impl Series {
 
 /// One joint's figures over motions.
 pub(super) fn pooled(all: &[Both], joint: usize) -> LoopSignal {
-    let of = |series: fn(&Both) -> &Series| {
+    let of = |series: fn(&Both) -> &DeviationSeries| {
         let angles = all.iter().flat_map(|both| &series(both).angle_rad[joint]);
         let cycles = all
             .iter()

@@ -9,7 +9,7 @@ pub(crate) const LEGEND: &str = "Each loop is simulated from the first sample of
     Phase drifts, so judge by rms, limit cycle and falls.";
 
 /// One column of the table: the measured loop, or a model's with its name.
-type Column<'a> = (&'a str, Option<&'a ClosedLoopComparison>);
+type LoopColumn<'a> = (&'a str, Option<&'a ClosedLoopComparison>);
 
 /// A figure of a joint, rad.
 type Figure = fn(&LoopSignal) -> Option<f64>;
@@ -46,7 +46,7 @@ pub(crate) fn closed_loop_rows(compared: &[(&str, &ClosedLoopComparison)]) -> Ve
         return Vec::new();
     };
     let models = compared.iter().map(|(name, c)| (*name, Some(*c)));
-    let columns: Vec<Column> = std::iter::once(("measured", None)).chain(models).collect();
+    let columns: Vec<LoopColumn> = std::iter::once(("measured", None)).chain(models).collect();
     let names = columns.iter().map(|(name, _)| (*name).to_string());
     let mut rows = vec![std::iter::once(String::new()).chain(names).collect()];
     for (joint, measured) in last.signals.iter().enumerate() {

@@ -71,7 +71,7 @@ pub fn check_attitude(plan: &Plan, is_gyro: bool) -> Result<()> {
 
 /// What the reading thread has found.
 #[derive(Debug, Default)]
-struct Found {
+struct ReaderState {
     newest: Option<Attitude>,
     error: Option<Error>,
     has_ended: bool,
@@ -81,13 +81,13 @@ struct Found {
 /// comma. Empty lines and those that begin with `#` are passed over.
 #[derive(Debug)]
 pub struct AttitudeLines {
-    found: Arc<Mutex<Found>>,
+    found: Arc<Mutex<ReaderState>>,
 }
 
 impl AttitudeLines {
     /// Reads `input` in a thread of its own until it ends; `name` names it in errors.
     pub fn read(input: impl BufRead + Send + 'static, name: &str) -> Self {
-        let found = Arc::new(Mutex::new(Found::default()));
+        let found = Arc::new(Mutex::new(ReaderState::default()));
         let (own, name) = (found.clone(), name.to_string());
         std::thread::spawn(move || {
             let end = read_all(input, &name, |attitude| {

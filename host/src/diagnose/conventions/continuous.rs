@@ -1,7 +1,7 @@
 //! Remedies with a free number: a zero that lies elsewhere, a column that is shifted in time.
 
-use super::remedy::{Quantity, Remedy};
-use super::trial::{Bench, Effort, Trial};
+use super::remedy::{LogColumn, Remedy};
+use super::trial::{Effort, RemedyTrial, Trial};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -17,16 +17,16 @@ const LEAST_STEP_S: f64 = 0.02;
 const REFINEMENTS: usize = 7;
 
 /// The best zero of each joint's angle, and the best shift of each column against the others.
-pub(super) fn continuous(bench: &Bench) -> Vec<Remedy> {
+pub(super) fn continuous(bench: &RemedyTrial) -> Vec<Remedy> {
     let model = &bench.model;
     let mut found = Vec::new();
     for joint in 0..model.link_count() {
         found.extend(zero(bench, joint));
     }
     let joints = 0..model.link_count();
-    let inputs = joints.clone().map(Quantity::Input);
+    let inputs = joints.clone().map(LogColumn::Input);
     let several = model.link_count() > 1;
-    let positions = joints.filter(|_| several).map(Quantity::Position);
+    let positions = joints.filter(|_| several).map(LogColumn::Position);
     let columns = inputs
         .chain(positions)
         .filter(|column| bench.varies(*column));
@@ -34,8 +34,8 @@ pub(super) fn continuous(bench: &Bench) -> Vec<Remedy> {
     found
 }
 
-fn zero(bench: &Bench, joint: usize) -> Option<Remedy> {
-    let quantity = Quantity::Position(joint);
+fn zero(bench: &RemedyTrial, joint: usize) -> Option<Remedy> {
+    let quantity = LogColumn::Position(joint);
     let given = quantity.column(&bench.model)?.offset;
     let step = TAU / ZEROS as f64;
     let offsets =
@@ -50,7 +50,7 @@ fn zero(bench: &Bench, joint: usize) -> Option<Remedy> {
     (off.abs() > LEAST_ZERO_RAD).then_some(best.remedy)
 }
 
-fn shift(bench: &Bench, quantity: Quantity) -> Option<Remedy> {
+fn shift(bench: &RemedyTrial, quantity: LogColumn) -> Option<Remedy> {
     let given = quantity.column(&bench.model)?.shift_s;
     let samples: usize = bench.motions.iter().map(|m| m.len()).sum();
     let seconds: f64 = bench.motions.iter().map(|m| m.duration_s()).sum();
@@ -65,7 +65,7 @@ fn shift(bench: &Bench, quantity: Quantity) -> Option<Remedy> {
 
 /// The best of some values, refined within a step of it by golden section.
 fn best(
-    bench: &Bench,
+    bench: &RemedyTrial,
     values: Vec<f64>,
     step: f64,
     remedy: impl Fn(f64) -> Remedy + Sync,

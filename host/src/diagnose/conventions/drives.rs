@@ -1,8 +1,8 @@
 //! Other kinds of drive that the input column may belong to.
 
-use super::remedy::{Quantity, Remedy};
+use super::remedy::{LogColumn, Remedy};
 use super::reread::written;
-use super::trial::{Bench, Effort, Trial};
+use super::trial::{Effort, RemedyTrial, Trial};
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
 use rayon::prelude::*;
 
@@ -17,15 +17,15 @@ const GAINS_PER_RAD: [f64; 4] = [1.5, 5.0, 15.0, 50.0];
 const GAINS_S_PER_RAD: [f64; 3] = [0.2, 1.0, 5.0];
 
 /// For each driven joint, the best drive of each other kind that the input may be meant for.
-pub(super) fn drives(bench: &Bench) -> Vec<Remedy> {
+pub(super) fn drives(bench: &RemedyTrial) -> Vec<Remedy> {
     let joints = bench.model.driven_joints().into_iter();
     // Of a slide, torques that hold the chain level say nothing.
     let joints = joints.filter(|joint| bench.model.joints[*joint].slide.is_none());
-    let joints = joints.filter(|joint| bench.varies(Quantity::Input(*joint)));
+    let joints = joints.filter(|joint| bench.varies(LogColumn::Input(*joint)));
     joints.flat_map(|joint| of_joint(bench, joint)).collect()
 }
 
-fn of_joint(bench: &Bench, joint: usize) -> Vec<Remedy> {
+fn of_joint(bench: &RemedyTrial, joint: usize) -> Vec<Remedy> {
     let model = &bench.model;
     let given = &model.joints[joint].drive;
     let motors = match given.motor() {
@@ -134,7 +134,7 @@ impl Line {
 }
 
 impl Written {
-    fn of(bench: &Bench, joint: usize) -> Written {
+    fn of(bench: &RemedyTrial, joint: usize) -> Written {
         let (mut angles, mut speeds, mut most) = (Vec::new(), Vec::new(), 0.0_f64);
         let column = bench.model.log.joints[joint].input.as_ref();
         for motion in &bench.motions {

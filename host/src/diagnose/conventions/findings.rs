@@ -1,7 +1,7 @@
 //! Faults as findings of a log check: what was found, the remedy, and the proof.
 
 use super::leave_out::{LeaveOut, Unusable};
-use super::remedy::{Quantity, Remedy};
+use super::remedy::{LogColumn, Remedy};
 use super::search::Found;
 use super::trial::Trial;
 use crate::error::{Place, Result};
@@ -54,7 +54,7 @@ fn kind(remedy: &Remedy) -> &'static str {
     match remedy {
         Remedy::Reverse(_) => "sign",
         Remedy::AngleZero(_) | Remedy::Offset(..) => "zero",
-        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == Quantity::Time) => "time_unit",
+        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => "time_unit",
         Remedy::Unit(_) => "unit",
         Remedy::Angles(_) => "angles",
         Remedy::Drive(..) => "drive",
@@ -62,7 +62,7 @@ fn kind(remedy: &Remedy) -> &'static str {
     }
 }
 
-fn name(quantity: Quantity, model: &Model) -> String {
+fn name(quantity: LogColumn, model: &Model) -> String {
     let names: Vec<&str> = quantity
         .columns(model)
         .iter()
@@ -115,7 +115,7 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             format!("each angle is measured from {from}")
         }
         Remedy::Drive(joint, drive, unit) => {
-            let input = name(Quantity::Input(*joint), model);
+            let input = name(LogColumn::Input(*joint), model);
             let meaning = match drive.name() {
                 "torque" => "a torque",
                 "duty" => "a share of the full voltage",
@@ -147,7 +147,7 @@ fn si_name(dimension: Dimension) -> &'static str {
 }
 
 /// In which unit a column is written, and in which the model says it is.
-fn written_in(quantity: Quantity, unit: &Unit, model: &Model) -> String {
+fn written_in(quantity: LogColumn, unit: &Unit, model: &Model) -> String {
     let declared = quantity
         .column(model)
         .map_or("?", |column| column.unit.name);

@@ -2,8 +2,8 @@
 //! a limit.
 
 use super::excerpts::excerpts;
-use super::rating::{Rating, Reading};
-use super::remedy::Quantity;
+use super::rating::{ModelReading, Rating};
+use super::remedy::LogColumn;
 use super::search::is_doubtful_time;
 use super::trial::Effort;
 use crate::log::Motion;
@@ -39,7 +39,7 @@ pub struct LeaveOut {
     /// Why.
     pub why: Unusable,
     /// The column that shows it.
-    pub column: Quantity,
+    pub column: LogColumn,
     /// Motion, and its samples.
     pub runs: Vec<(usize, Range<usize>)>,
     /// Duration of the longest run, s.
@@ -81,18 +81,18 @@ fn stalled(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> 
     if runs.is_empty() {
         return None;
     }
-    let reading = Reading::new(model.clone(), motions.to_vec());
+    let reading = ModelReading::new(model.clone(), motions.to_vec());
     proven(
         &reading,
         motions,
         runs,
         Unusable::Stalled,
-        Quantity::Position(joint),
+        LogColumn::Position(joint),
     )
 }
 
 fn clipped(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> {
-    let column = Quantity::Input(joint);
+    let column = LogColumn::Input(joint);
     column.column(model)?;
     let limits = limits(motions, joint);
     let few = excerpts(motions, SAMPLES);
@@ -100,7 +100,7 @@ fn clipped(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> 
     if runs.is_empty() {
         return None;
     }
-    let reading = Reading::cut(model.clone(), few.clone(), CLIPPED_WINDOW_S);
+    let reading = ModelReading::cut(model.clone(), few.clone(), CLIPPED_WINDOW_S);
     let found = proven(&reading, &few, runs, Unusable::Clipped, column)?;
     Some(LeaveOut {
         runs: runs_at(motions, joint, &limits),
@@ -149,11 +149,11 @@ fn runs_at(motions: &[Motion], joint: usize, limits: &[(f64, f64)]) -> Vec<(usiz
 
 /// The samples with their proof, where the error without them is clearly lower.
 fn proven(
-    reading: &Reading,
+    reading: &ModelReading,
     motions: &[Motion],
     runs: Vec<(usize, Range<usize>)>,
     why: Unusable,
-    column: Quantity,
+    column: LogColumn,
 ) -> Option<LeaveOut> {
     let lasts_s = |(motion, run): &(usize, Range<usize>)| {
         motions[*motion].time_s[run.end - 1] - motions[*motion].time_s[run.start]
@@ -175,7 +175,7 @@ fn proven(
         .cloned()
         .collect();
     let touched = windows.len() - free.len();
-    let rated = |reading: &Reading| reading.rated(Effort::Starts);
+    let rated = |reading: &ModelReading| reading.rated(Effort::Starts);
     let all: Rating = rated(reading);
     let rest = rated(&reading.cut_as(&free));
     // The yardstick is that of all samples: a rest is no motion to measure by.

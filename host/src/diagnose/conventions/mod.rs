@@ -20,7 +20,7 @@ mod trial;
 
 pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
-pub use remedy::{Quantity, Remedy};
+pub use remedy::{LogColumn, Remedy};
 pub use search::{Found, search};
 pub use trial::Trial;
 
@@ -97,7 +97,7 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
     else {
         return Vec::new();
     };
-    let mended = Remedy::Unit(vec![(Quantity::Time, milliseconds)]).applied(model);
+    let mended = Remedy::Unit(vec![(LogColumn::Time, milliseconds)]).applied(model);
     let motions = read(requests, &mended.log).unwrap_or_default();
     let back = motions
         .iter()
@@ -109,6 +109,6 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
 /// much as going on at constant speed does; none where no joint moves.
 pub fn unexplained(model: &Model, motions: &[Motion]) -> Option<f64> {
     let few = excerpts::excerpts(motions, search::SAMPLES);
-    let reading = rating::Reading::new(model.clone(), few);
+    let reading = rating::ModelReading::new(model.clone(), few);
     reading.rated(trial::Effort::Starts).share()
 }

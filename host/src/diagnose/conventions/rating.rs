@@ -23,40 +23,40 @@ const MOST: f64 = 2.0;
 const LEAST_MOVEMENT: f64 = 5.0;
 
 /// A model with the motions as it reads them.
-pub(super) struct Reading {
+pub(super) struct ModelReading {
     pub model: Model,
     pub data: FitData,
 }
 
-impl Reading {
+impl ModelReading {
     /// Cut into windows of a second, or shorter where start errors grow fast.
-    pub fn new(model: Model, motions: Vec<Motion>) -> Reading {
+    pub fn new(model: Model, motions: Vec<Motion>) -> ModelReading {
         let samples: usize = motions.iter().map(Motion::len).sum();
         let seconds: f64 = motions.iter().map(Motion::duration_s).sum();
         let samples_s = WINDOW_SAMPLES * seconds / samples.max(1) as f64;
-        Reading::cut(model, motions, WINDOW_S.max(samples_s))
+        ModelReading::cut(model, motions, WINDOW_S.max(samples_s))
     }
 
     /// Cut into windows of so many seconds, or shorter where start errors grow fast.
-    pub fn cut(model: Model, motions: Vec<Motion>, horizon_s: f64) -> Reading {
-        Reading {
+    pub fn cut(model: Model, motions: Vec<Motion>, horizon_s: f64) -> ModelReading {
+        ModelReading {
             data: FitData::new(&model, motions, Horizon::Seconds(horizon_s)),
             model,
         }
     }
 
     /// The same model and motions, cut as other data of as many samples are.
-    pub fn cut_as(&self, windows: &[Window]) -> Reading {
+    pub fn cut_as(&self, windows: &[Window]) -> ModelReading {
         let mut data = self.data.clone();
         data.windows = windows.to_vec();
-        Reading {
+        ModelReading {
             model: self.model.clone(),
             data,
         }
     }
 
     /// The windows of whichever reading has shorter ones, motion by motion.
-    pub fn common_windows(&self, other: &Reading) -> Vec<Window> {
+    pub fn common_windows(&self, other: &ModelReading) -> Vec<Window> {
         let motions = 0..self.data.motions.len();
         let shorter = |motion: usize| {
             let pieces = |data: &FitData| data.windows_of(motion).count();
@@ -72,10 +72,10 @@ impl Reading {
     }
 
     /// Another model that reads the same samples in its own way, cut into the same windows.
-    pub fn read_as(&self, model: &Model, motions: Vec<Motion>) -> Reading {
+    pub fn read_as(&self, model: &Model, motions: Vec<Motion>) -> ModelReading {
         let mut data = self.data.clone();
         data.motions = motions;
-        Reading {
+        ModelReading {
             model: model.clone(),
             data,
         }

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 /// A column of the logs, or of one joint of them (index from 0).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum LogColumn {
     /// The time of the samples.
     Time,
     /// A joint's angle.
@@ -20,15 +20,15 @@ pub enum Quantity {
     Input(usize),
 }
 
-impl Quantity {
+impl LogColumn {
     /// Its columns, if the logs have it: one, or those of several servos.
     pub fn columns(self, model: &Model) -> &[Column] {
         let joint = |joint: usize| model.log.joints.get(joint);
         let mean = match self {
-            Quantity::Time => return std::slice::from_ref(&model.log.time),
-            Quantity::Position(j) => joint(j).and_then(|columns| columns.position.as_ref()),
-            Quantity::Velocity(j) => joint(j).and_then(|columns| columns.velocity.as_ref()),
-            Quantity::Input(j) => joint(j).and_then(|columns| columns.input.as_ref()),
+            LogColumn::Time => return std::slice::from_ref(&model.log.time),
+            LogColumn::Position(j) => joint(j).and_then(|columns| columns.position.as_ref()),
+            LogColumn::Velocity(j) => joint(j).and_then(|columns| columns.velocity.as_ref()),
+            LogColumn::Input(j) => joint(j).and_then(|columns| columns.input.as_ref()),
         };
         mean.map_or(&[], ColumnMean::columns)
     }
@@ -41,10 +41,10 @@ impl Quantity {
     fn columns_mut(self, model: &mut Model) -> &mut [Column] {
         let joints = &mut model.log.joints;
         let mean = match self {
-            Quantity::Time => return std::slice::from_mut(&mut model.log.time),
-            Quantity::Position(j) => joints.get_mut(j).and_then(|c| c.position.as_mut()),
-            Quantity::Velocity(j) => joints.get_mut(j).and_then(|c| c.velocity.as_mut()),
-            Quantity::Input(j) => joints.get_mut(j).and_then(|c| c.input.as_mut()),
+            LogColumn::Time => return std::slice::from_mut(&mut model.log.time),
+            LogColumn::Position(j) => joints.get_mut(j).and_then(|c| c.position.as_mut()),
+            LogColumn::Velocity(j) => joints.get_mut(j).and_then(|c| c.velocity.as_mut()),
+            LogColumn::Input(j) => joints.get_mut(j).and_then(|c| c.input.as_mut()),
         };
         mean.map_or(&mut [], ColumnMean::columns_mut)
     }
@@ -54,19 +54,19 @@ impl Quantity {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Remedy {
     /// These columns count the other way round.
-    Reverse(Vec<Quantity>),
+    Reverse(Vec<LogColumn>),
     /// The angles are zero elsewhere.
     AngleZero(AngleZero),
     /// A column's zero lies elsewhere: its new offset, in SI.
-    Offset(Quantity, f64),
+    Offset(LogColumn, f64),
     /// These columns are written in other units.
-    Unit(Vec<(Quantity, Unit)>),
+    Unit(Vec<(LogColumn, Unit)>),
     /// The angles are measured from something else.
     Angles(Angles),
     /// Another drive moves the joint (index from 0), and its input is written in this unit.
     Drive(usize, Drive, Unit),
     /// A column's samples were taken this much later than the log says, s; earlier below 0.
-    Shift(Quantity, f64),
+    Shift(LogColumn, f64),
 }
 
 impl Remedy {
@@ -105,7 +105,7 @@ impl Remedy {
                 // Another kind of drive has other values.
                 let has = |path: &ParameterPath| path.get(&new).is_some_and(f64::is_finite);
                 new.free = model.free.iter().copied().filter(has).collect();
-                for column in Quantity::Input(*joint).columns_mut(&mut new) {
+                for column in LogColumn::Input(*joint).columns_mut(&mut new) {
                     column.unit = *unit;
                 }
             }
@@ -160,7 +160,7 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
     for joint in 0..model.link_count() {
         all.extend(of_motion(model, motions, joint));
         if model.joints[joint].drive.is_driven() {
-            let input = Quantity::Input(joint);
+            let input = LogColumn::Input(joint);
             all.push(Remedy::Reverse(vec![input]));
             let units = other_units(model, input).into_iter();
             all.extend(units.map(|unit| Remedy::Unit(vec![(input, unit)])));
@@ -172,7 +172,7 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
 /// Other signs, units and half turns of what is measured of a joint: its angle, or its rate where
 /// that alone is.
 fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
-    let (position, velocity) = (Quantity::Position(joint), Quantity::Velocity(joint));
+    let (position, velocity) = (LogColumn::Position(joint), LogColumn::Velocity(joint));
     let Some(column) = position.column(model) else {
         let Some(_) = velocity.column(model) else {
             return Vec::new();
@@ -198,8 +198,8 @@ fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
 
 /// The position in another unit; a speed that agreed with it goes along.
 fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Remedy {
-    let mut columns = vec![(Quantity::Position(joint), unit)];
-    let velocity = Quantity::Velocity(joint);
+    let mut columns = vec![(LogColumn::Position(joint), unit)];
+    let velocity = LogColumn::Velocity(joint);
     let agreed = slope.is_some_and(|slope| (0.8..1.25).contains(&slope));
     let name = match unit.name {
         "deg" => Some("deg/s"),
@@ -248,7 +248,7 @@ fn speed_slope(motions: &[Motion], joint: usize) -> Option<f64> {
 }
 
 /// The other units of the column's dimension.
-fn other_units(model: &Model, quantity: Quantity) -> Vec<Unit> {
+fn other_units(model: &Model, quantity: LogColumn) -> Vec<Unit> {
     let Some(column) = quantity.column(model) else {
         return Vec::new();
     };
@@ -274,6 +274,6 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
         .plain_units()
         .filter(|unit| unit.name != declared.name)
         .filter(|unit| plausible.contains(&(spacing_s / declared.si * unit.si)))
-        .map(|unit| Remedy::Unit(vec![(Quantity::Time, unit)]))
+        .map(|unit| Remedy::Unit(vec![(LogColumn::Time, unit)]))
         .collect()
 }

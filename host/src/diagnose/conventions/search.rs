@@ -3,8 +3,8 @@
 use super::continuous::{LEAST_ZERO_RAD, continuous};
 use super::drives::drives;
 use super::excerpts::excerpts;
-use super::remedy::{Quantity, Remedy, alternatives, time_units, travel_rad};
-use super::trial::{Bench, Effort, Trial};
+use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
+use super::trial::{Effort, RemedyTrial, Trial};
 use crate::log::Motion;
 use crate::model::{Model, Unit};
 use rayon::prelude::*;
@@ -52,7 +52,7 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<Found> {
     } else {
         // Few samples: as declared, each may last a thousand integration steps.
         let few = excerpts(motions, SAMPLES_CONTINUOUS);
-        let bench = Bench::of_doubtful_time(model, few);
+        let bench = RemedyTrial::of_doubtful_time(model, few);
         let doubtful = doubtful.into_iter();
         let trials = doubtful.filter_map(|remedy| bench.tried(remedy, Effort::Guess));
         trials.filter(|trial| trial.ratio() < 1.0).collect()
@@ -78,8 +78,8 @@ const FREE_NUMBER: f64 = 0.7;
 const AS_GOOD: f64 = 1.15;
 
 fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
-    let bench = Bench::new(model, excerpts(motions, SAMPLES));
-    let few = Bench::new(model, excerpts(motions, SAMPLES_CONTINUOUS));
+    let bench = RemedyTrial::new(model, excerpts(motions, SAMPLES));
+    let few = RemedyTrial::new(model, excerpts(motions, SAMPLES_CONTINUOUS));
     let mut remedies = alternatives(model, motions);
     remedies.extend(drives(&few));
     remedies.extend(continuous(&few));
@@ -87,7 +87,7 @@ fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
 }
 
 /// Those of the remedies that clearly lower the error.
-fn judged(bench: &Bench, remedies: Vec<Remedy>) -> Vec<Trial> {
+fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
     let screened = remedies.into_par_iter();
     let mut screened: Vec<Trial> = screened
         .filter_map(|remedy| bench.tried(remedy, Effort::Guess))
@@ -121,7 +121,7 @@ impl Least {
 
 /// What this remedy must do: alternatives without a free number less than zeros and shifts, which
 /// effects of the rig (a tilt, a delay) look like.
-fn least(bench: &Bench, remedy: &Remedy) -> Least {
+fn least(bench: &RemedyTrial, remedy: &Remedy) -> Least {
     let strict = Least {
         ratio: 0.6,
         better: 0.75,
@@ -141,7 +141,7 @@ fn least(bench: &Bench, remedy: &Remedy) -> Least {
             }
         }
         // A drive that acts late, whatever delays it, is an effect of the library.
-        Remedy::Shift(Quantity::Input(_), shift_s) if *shift_s > 0.0 => never,
+        Remedy::Shift(LogColumn::Input(_), shift_s) if *shift_s > 0.0 => never,
         Remedy::Shift(_, shift_s) => match shift_s.abs() > 0.008 {
             true => strict,
             false => never,
@@ -167,18 +167,18 @@ const DOUBTFUL_RAD: f64 = 30.0;
 const STILL_RAD: f64 = 0.1;
 
 /// Whether one of the columns is an angle that hardly moves as the remedy reads it.
-fn stands_still(bench: &Bench, remedy: &Remedy, columns: &[(Quantity, Unit)]) -> bool {
+fn stands_still(bench: &RemedyTrial, remedy: &Remedy, columns: &[(LogColumn, Unit)]) -> bool {
     let motions = remedy.reread(&bench.model, &bench.motions);
     columns.iter().any(|(quantity, _)| match quantity {
-        Quantity::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
+        LogColumn::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
         _ => false,
     })
 }
 
 /// Whether one of the columns is an angle that travels too far as it is read.
-fn doubts_travel(bench: &Bench, columns: &[(Quantity, Unit)]) -> bool {
+fn doubts_travel(bench: &RemedyTrial, columns: &[(LogColumn, Unit)]) -> bool {
     columns.iter().any(|(quantity, _)| match quantity {
-        Quantity::Position(joint) => travel_rad(&bench.motions, *joint) > DOUBTFUL_RAD,
+        LogColumn::Position(joint) => travel_rad(&bench.motions, *joint) > DOUBTFUL_RAD,
         _ => false,
     })
 }

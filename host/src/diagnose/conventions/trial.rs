@@ -1,7 +1,7 @@
 //! A remedy tried: the error with it and without.
 
-use super::rating::{Rating, Reading};
-use super::remedy::{Quantity, Remedy};
+use super::rating::{ModelReading, Rating};
+use super::remedy::{LogColumn, Remedy};
 use crate::log::Motion;
 use crate::model::Model;
 
@@ -62,25 +62,25 @@ pub(super) enum Effort {
 }
 
 /// Tries remedies on a model and its motions.
-pub(super) struct Bench {
+pub(super) struct RemedyTrial {
     pub model: Model,
     pub motions: Vec<Motion>,
-    reading: Option<Reading>,
+    reading: Option<ModelReading>,
 }
 
-impl Bench {
-    pub fn new(model: &Model, motions: Vec<Motion>) -> Bench {
-        Bench {
+impl RemedyTrial {
+    pub fn new(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
+        RemedyTrial {
             model: model.clone(),
-            reading: Some(Reading::new(model.clone(), motions.clone())),
+            reading: Some(ModelReading::new(model.clone(), motions.clone())),
             motions,
         }
     }
 
     /// For times so far apart that the model cannot be run over them for long: as it reads them,
     /// it is rated on the windows of the remedy.
-    pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> Bench {
-        Bench {
+    pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
+        RemedyTrial {
             model: model.clone(),
             reading: None,
             motions,
@@ -90,7 +90,7 @@ impl Bench {
     /// The remedy's effect, on windows in which start errors grow in neither reading.
     pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
         let motions = remedy.reread(&self.model, &self.motions);
-        let after = Reading::new(remedy.applied(&self.model), motions);
+        let after = ModelReading::new(remedy.applied(&self.model), motions);
         let Some(reading) = &self.reading else {
             let before = after.read_as(&self.model, self.motions.clone());
             return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
@@ -102,29 +102,29 @@ impl Bench {
         };
         let before = shortened.as_ref().unwrap_or(reading);
         let windows = before.common_windows(&after);
-        let rated = |reading: &Reading| reading.cut_as(&windows).rated(effort);
+        let rated = |reading: &ModelReading| reading.cut_as(&windows).rated(effort);
         Trial::new(remedy, &rated(before), &rated(&after))
     }
 
     /// The motions without the ends that others lack.
-    fn shortened_as(&self, others: &[Motion]) -> Reading {
+    fn shortened_as(&self, others: &[Motion]) -> ModelReading {
         let motions = self.motions.iter().zip(others);
         let motions = motions.map(|(motion, other)| {
             let first_s = other.time_s.first().copied().unwrap_or(f64::INFINITY);
             let begin = motion.time_s.partition_point(|t| *t < first_s);
             motion.part(begin..begin + other.len())
         });
-        Reading::new(self.model.clone(), motions.collect())
+        ModelReading::new(self.model.clone(), motions.collect())
     }
 
     /// Whether the column is there and not the same all the time.
-    pub fn varies(&self, quantity: Quantity) -> bool {
+    pub fn varies(&self, quantity: LogColumn) -> bool {
         let values = |motion: &Motion| -> Option<Vec<f64>> {
             match quantity {
-                Quantity::Time => Some(motion.time_s.clone()),
-                Quantity::Position(joint) => Some(motion.position_rad[joint].clone()),
-                Quantity::Velocity(joint) => motion.velocity_rad_s[joint].clone(),
-                Quantity::Input(joint) => motion.input[joint].clone(),
+                LogColumn::Time => Some(motion.time_s.clone()),
+                LogColumn::Position(joint) => Some(motion.position_rad[joint].clone()),
+                LogColumn::Velocity(joint) => motion.velocity_rad_s[joint].clone(),
+                LogColumn::Input(joint) => motion.input[joint].clone(),
             }
         };
         let varies = |values: Vec<f64>| values.windows(2).any(|pair| pair[0] != pair[1]);

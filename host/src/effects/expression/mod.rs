@@ -56,9 +56,9 @@ pub enum DefinitionFault {
     Torque(Misplaced),
 }
 
-type Laws = Vec<(LawDefinition, &'static ExpressionLaw)>;
+type ExpressionLaws = Vec<(LawDefinition, &'static ExpressionLaw)>;
 
-static LAWS: LazyLock<RwLock<Laws>> = LazyLock::new(RwLock::default);
+static LAWS: LazyLock<RwLock<ExpressionLaws>> = LazyLock::new(RwLock::default);
 
 /// The effect of this definition.
 ///

@@ -1,7 +1,7 @@
 //! Balancing the robot, live: as `handstand balance`, with the same questions.
 
 use super::access::OpenLine;
-use super::pose::Pose;
+use super::pose::LinkPose;
 use super::samples::{LiveChart, Sender};
 use super::slot::{LivePhase, LiveRobot};
 use crate::deploy::balance::{
@@ -62,7 +62,7 @@ pub fn run(
     robot.keep_emergency_off(balancer.emergency_off());
     let mut watch = Watch {
         robot,
-        pose: Pose::new(model, &access.ids),
+        pose: LinkPose::new(model, &access.ids),
         sender: Sender::new(robot.samples().clone()),
         recorder: None,
         file,
@@ -130,7 +130,7 @@ fn prepares(robot: &LiveRobot, what: &str) {
 /// Sends what it is told to pages, and writes it down.
 struct Watch<'a> {
     robot: &'a LiveRobot,
-    pose: Pose<'a>,
+    pose: LinkPose<'a>,
     sender: Sender,
     /// Made when torque comes on.
     recorder: Option<RobotRecorder>,

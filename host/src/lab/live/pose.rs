@@ -6,15 +6,15 @@ use crate::model::{AngleZero, Angles, Model};
 
 /// Turns samples into angles of links.
 #[derive(Debug)]
-pub struct Pose<'a> {
+pub struct LinkPose<'a> {
     model: Option<&'a Model>,
     ids: &'a [u8],
 }
 
-impl<'a> Pose<'a> {
+impl<'a> LinkPose<'a> {
     /// Of this model's links, by the servos' places in a sample; without a model there are none.
     pub fn new(model: Option<&'a Model>, ids: &'a [u8]) -> Self {
-        Pose { model, ids }
+        LinkPose { model, ids }
     }
 
     /// Angle of each link from hanging, rad, by the columns that the model's log names; none where
@@ -99,13 +99,13 @@ mod tests {
             joints: vec![servo(Some(0.3)), servo(Some(-0.1))],
             ..RobotSample::default()
         };
-        let pose = Pose::new(Some(&model), &[1, 2]);
+        let pose = LinkPose::new(Some(&model), &[1, 2]);
         let [Some(angle)] = pose.of_sample(&sample)[..] else {
             panic!("one link");
         };
         assert!((angle - 0.2).abs() < 1e-12, "{angle}");
         sample.joints[1] = servo(None);
         assert_eq!(pose.of_sample(&sample), [None], "half of it is no angle");
-        assert_eq!(Pose::new(None, &[1, 2]).of_sample(&sample), []);
+        assert_eq!(LinkPose::new(None, &[1, 2]).of_sample(&sample), []);
     }
 }

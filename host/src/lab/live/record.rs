@@ -1,6 +1,6 @@
 //! Recording what the servos do, live: as `handstand record`.
 
-use super::pose::Pose;
+use super::pose::LinkPose;
 use super::samples::{LiveChart, LiveSamples, Sender};
 use super::slot::{LivePhase, LiveRobot};
 use crate::error::Result;
@@ -36,7 +36,10 @@ pub fn run(
         what: "recording".into(),
         charts: charts.collect(),
     });
-    let (mut sender, pose) = (Sender::new(robot.samples().clone()), Pose::new(model, ids));
+    let (mut sender, pose) = (
+        Sender::new(robot.samples().clone()),
+        LinkPose::new(model, ids),
+    );
     let recorded = record_samples(&mut *source, &mut recorder, seconds, |sample, _| {
         if let Some(sample) = sample {
             let angles = sample.joints.iter().map(|servo| servo.position_rad);

@@ -4,7 +4,7 @@
 use super::slot::{LivePhase, LiveRobot};
 use super::{balance, record};
 use crate::error::{Error, Result};
-use crate::lab::session::Session;
+use crate::lab::session::LabSession;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl LiveTask {
 /// A task that cannot be done.
 pub fn begin(
     robot: &Arc<LiveRobot>,
-    session: Arc<Session>,
+    session: Arc<LabSession>,
     viewer: u64,
     task: LiveTask,
 ) -> Result<bool> {
@@ -93,7 +93,11 @@ pub fn begin(
 }
 
 /// The run, and how it ended; the log that the session got.
-fn run(robot: &LiveRobot, session: &Session, task: LiveTask) -> Result<(String, Option<String>)> {
+fn run(
+    robot: &LiveRobot,
+    session: &LabSession,
+    task: LiveTask,
+) -> Result<(String, Option<String>)> {
     robot.tell(LivePhase::Preparing {
         what: format!("opening {}", robot.access.port),
     });

@@ -56,7 +56,7 @@ pub enum LivePhase {
 }
 
 #[derive(Default)]
-struct Control {
+struct RunControl {
     running: bool,
     viewer: u64,
     stop: bool,
@@ -73,7 +73,7 @@ pub struct LiveRobot {
     pub access: RobotAccess,
     phase: watch::Sender<LivePhase>,
     samples: broadcast::Sender<Arc<LiveSamples>>,
-    control: Mutex<Control>,
+    control: Mutex<RunControl>,
     changed: Condvar,
 }
 
@@ -110,7 +110,7 @@ impl LiveRobot {
         &self.samples
     }
 
-    fn lock(&self) -> MutexGuard<'_, Control> {
+    fn lock(&self) -> MutexGuard<'_, RunControl> {
         self.control.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -220,7 +220,7 @@ impl LiveRobot {
     }
 }
 
-impl Control {
+impl RunControl {
     fn is_watched(&self) -> bool {
         let seen = self.viewers.get(&self.viewer);
         seen.is_some_and(|seen| seen.elapsed() < GONE)

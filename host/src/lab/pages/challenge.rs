@@ -1,12 +1,12 @@
 //! Rounds with a hidden effect: the one that is open, the score, the history.
 
 use super::{frame, in_mrad};
-use crate::lab::session::{Round, RoundResult, Session, SessionStore};
+use crate::lab::session::{LabSession, Round, RoundResult, SessionStore};
 use crate::output::number::{NONE, exact};
 use maud::{Markup, html};
 
 /// The page.
-pub fn page(session: &Session, store: &SessionStore) -> Markup {
+pub fn page(session: &LabSession, store: &SessionStore) -> Markup {
     let saved = session.saved();
     let evaluation = session.known_evaluation(&saved);
     let rounds: Vec<(u32, Round)> = store

@@ -3,13 +3,13 @@
 use super::{evaluated, frame, in_milli};
 use crate::compare::{Failure, SignalError};
 use crate::lab::reply::LabError;
-use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session};
+use crate::lab::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation};
 use crate::output::number::{mrad, percent, short};
 use crate::output::plot::{Bar, Tone};
 use maud::{Markup, html};
 
 /// The page.
-pub fn page(session: &Session) -> Result<Markup, LabError> {
+pub fn page(session: &LabSession) -> Result<Markup, LabError> {
     let saved = session.saved();
     let (evaluation, body) =
         evaluated(session, &saved, |evaluation| Ok(shown(&saved, evaluation)))?;
@@ -23,7 +23,7 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
     ))
 }
 
-fn shown(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
+fn shown(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
     let comparison = evaluation.at_its_horizon();
     html! {
         section {
@@ -72,7 +72,7 @@ pub fn command(line: &str) -> Markup {
 }
 
 /// The motions to choose from.
-pub fn motions(evaluation: &Evaluation) -> Markup {
+pub fn motions(evaluation: &SessionEvaluation) -> Markup {
     html! {
         label for="motion" { "Motion" }
         select #motion {
@@ -86,7 +86,7 @@ pub fn motions(evaluation: &Evaluation) -> Markup {
     }
 }
 
-fn controls(saved: &SavedSession, evaluation: &Evaluation) -> Markup {
+fn controls(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
     let longest = evaluation.run.data.longest_s().max(0.2);
     // A step beyond the longest motion stands for whole motions.
     let (low, high) = (-1.3, longest.log10() + 0.1);
@@ -165,7 +165,7 @@ fn signals(signals: &[SignalError]) -> Markup {
 
 /// The error over ever longer runs; start states are fitted for each, so the page does not wait
 /// for it.
-pub fn horizons(evaluation: &Evaluation) -> Markup {
+pub fn horizons(evaluation: &SessionEvaluation) -> Markup {
     html! {
         p.facts #horizons {
             @for horizon in &evaluation.comparison().horizons {

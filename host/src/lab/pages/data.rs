@@ -3,12 +3,12 @@
 use super::data_model;
 use super::frame;
 use crate::error::Result;
-use crate::lab::session::{EXAMPLES, LogFacts, MOST_BYTES, SavedSession, Session};
+use crate::lab::session::{EXAMPLES, LabSession, LogFacts, MOST_BYTES, SavedSession};
 use crate::log::{LogFinding, LogFormat, Severity};
 use maud::{Markup, html};
 
 /// The page.
-pub fn page(session: &Session) -> Result<Markup> {
+pub fn page(session: &LabSession) -> Result<Markup> {
     let saved = session.saved();
     let model = session.model(&saved)?;
     let facts = session.log_facts(&saved, model.as_ref());
@@ -126,7 +126,7 @@ fn log(fact: &LogFacts) -> Markup {
 }
 
 /// What the check finds; it simulates, so the page does not wait for it.
-pub fn findings(session: &Session, findings: &[LogFinding]) -> Markup {
+pub fn findings(session: &LabSession, findings: &[LogFinding]) -> Markup {
     html! {
         @if findings.is_empty() { p.good { "Nothing is wrong with these logs." } }
         ul.plain #findings { @for finding in findings {

@@ -1,12 +1,12 @@
 //! The model on the data page: its columns, its text, the form of a new one.
 
-use crate::lab::session::{SavedSession, Session};
+use crate::lab::session::{LabSession, SavedSession};
 use crate::log::RawLog;
 use crate::model::{Column, ColumnMean, Dimension, Model};
 use maud::{Markup, html};
 
 /// The model's sections.
-pub fn sections(session: &Session, saved: &SavedSession, model: Option<&Model>) -> Markup {
+pub fn sections(session: &LabSession, saved: &SavedSession, model: Option<&Model>) -> Markup {
     html! {
         @if let (Some(model), false) = (model, saved.logs.is_empty()) {
             section {
@@ -38,7 +38,7 @@ pub fn sections(session: &Session, saved: &SavedSession, model: Option<&Model>) 
 }
 
 /// Names of the columns of all logs, each once.
-fn names(session: &Session, saved: &SavedSession) -> Vec<String> {
+fn names(session: &LabSession, saved: &SavedSession) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for log in &saved.logs {
         // What is wrong with a file is said where the logs are listed.

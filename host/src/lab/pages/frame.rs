@@ -1,7 +1,7 @@
 //! What stands around every page: where one is, the model in force, its error.
 
 use super::in_milli;
-use crate::lab::session::{Evaluation, SavedSession, Session};
+use crate::lab::session::{LabSession, SavedSession, SessionEvaluation};
 use maud::{DOCTYPE, Markup, html};
 
 /// Pages of a session: address and name.
@@ -47,10 +47,10 @@ pub fn entrance() -> Markup {
 
 /// A page of a session; `script` is the one that it needs.
 pub fn page(
-    session: &Session,
+    session: &LabSession,
     saved: &SavedSession,
     here: &str,
-    evaluation: Option<&Evaluation>,
+    evaluation: Option<&SessionEvaluation>,
     script: &str,
     body: &Markup,
 ) -> Markup {
@@ -93,7 +93,7 @@ fn top(number: u32, here: &str) -> Markup {
     }
 }
 
-fn status(saved: &SavedSession, evaluation: Option<&Evaluation>) -> Markup {
+fn status(saved: &SavedSession, evaluation: Option<&SessionEvaluation>) -> Markup {
     let Some(step) = saved.step() else {
         return html! { div.status role="status" { span { "No model yet" } } };
     };
@@ -108,7 +108,7 @@ fn status(saved: &SavedSession, evaluation: Option<&Evaluation>) -> Markup {
 }
 
 /// The error in force and the floor below it.
-pub fn error(evaluation: &Evaluation) -> Markup {
+pub fn error(evaluation: &SessionEvaluation) -> Markup {
     html! {
         span { "Error " b #error-now data-error=(evaluation.rms()) {
             (in_milli(evaluation.rms(), evaluation))

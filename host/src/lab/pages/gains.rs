@@ -2,7 +2,7 @@
 
 use super::{frame, lacking};
 use crate::lab::reply::LabError;
-use crate::lab::session::Session;
+use crate::lab::session::LabSession;
 use maud::{Markup, html};
 
 /// A slider: name, title, lowest, highest and first place; powers of ten but for the delay.
@@ -14,7 +14,7 @@ const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
 ];
 
 /// The page.
-pub fn page(session: &Session) -> Result<Markup, LabError> {
+pub fn page(session: &LabSession) -> Result<Markup, LabError> {
     let saved = session.saved();
     let evaluation = session.known_evaluation(&saved);
     let (script, body) = match session.model(&saved)? {

@@ -5,11 +5,11 @@ use super::learn_card::card;
 use super::learn_steps::steps;
 use super::{evaluated, frame, in_mrad};
 use crate::lab::reply::LabError;
-use crate::lab::session::{Evaluation, SavedDiagnosis, SavedSession, Session};
+use crate::lab::session::{LabSession, SavedDiagnosis, SavedSession, SessionEvaluation};
 use maud::{Markup, html};
 
 /// The page.
-pub fn page(session: &Session) -> Result<Markup, LabError> {
+pub fn page(session: &LabSession) -> Result<Markup, LabError> {
     let saved = session.saved();
     let (evaluation, body) = evaluated(session, &saved, |evaluation| {
         shown(session, &saved, evaluation)
@@ -25,9 +25,9 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
 }
 
 fn shown(
-    session: &Session,
+    session: &LabSession,
     saved: &SavedSession,
-    evaluation: &Evaluation,
+    evaluation: &SessionEvaluation,
 ) -> Result<Markup, LabError> {
     Ok(html! {
         section {
@@ -72,7 +72,11 @@ fn ask(saved: &SavedSession) -> Markup {
     }
 }
 
-fn said(saved: &SavedSession, diagnosis: &SavedDiagnosis, evaluation: &Evaluation) -> Markup {
+fn said(
+    saved: &SavedSession,
+    diagnosis: &SavedDiagnosis,
+    evaluation: &SessionEvaluation,
+) -> Markup {
     let class = match diagnosis.verdict.as_str() {
         "nominal" | "adequate" => "verdict-nominal",
         "named" | "wrong_value" => "verdict-named",

@@ -4,7 +4,7 @@ use super::in_mrad;
 use crate::compare::residual_variables;
 use crate::effects::signature::signature;
 use crate::effects::{Effect, named};
-use crate::lab::session::{CardRole, Evaluation, SavedCard, SavedSession};
+use crate::lab::session::{CardRole, SavedCard, SavedSession, SessionEvaluation};
 use crate::output::number::short;
 use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::signature_chart;
@@ -17,7 +17,7 @@ const DOTS: usize = 500;
 pub fn card(
     card: &SavedCard,
     saved: &SavedSession,
-    evaluation: &Evaluation,
+    evaluation: &SessionEvaluation,
     current: bool,
 ) -> Markup {
     let role = match card.role {
@@ -140,7 +140,11 @@ fn add(card: &SavedCard, saved: &SavedSession) -> Markup {
 }
 
 /// The signature of the law, and this log's residual over the quantity that the law depends on.
-fn pictures(effect: &'static dyn Effect, joint: Option<usize>, evaluation: &Evaluation) -> Markup {
+fn pictures(
+    effect: &'static dyn Effect,
+    joint: Option<usize>,
+    evaluation: &SessionEvaluation,
+) -> Markup {
     let drawn = signature(effect);
     let joint = joint.unwrap_or(0);
     let beside = (joint < evaluation.run.model.link_count())
@@ -159,7 +163,7 @@ fn pictures(effect: &'static dyn Effect, joint: Option<usize>, evaluation: &Eval
     }
 }
 
-fn residual_over(x_label: &str, joint: usize, evaluation: &Evaluation) -> Option<Chart> {
+fn residual_over(x_label: &str, joint: usize, evaluation: &SessionEvaluation) -> Option<Chart> {
     let run = &evaluation.run;
     let wanted = ["speed", "angle", "torque", "supply", "time"]
         .into_iter()

@@ -2,7 +2,7 @@
 
 use super::in_milli;
 use crate::error::Result;
-use crate::lab::session::{Evaluation, SavedSession, SavedStep, Session};
+use crate::lab::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use crate::output::number::{NONE, percent};
 use crate::output::plot::{Bar, Tone, largest};
 use maud::{Markup, html};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 struct StepError<'a> {
     index: usize,
     step: &'a SavedStep,
-    evaluation: Option<Arc<Evaluation>>,
+    evaluation: Option<Arc<SessionEvaluation>>,
 }
 
 impl StepError<'_> {
@@ -39,7 +39,7 @@ impl StepError<'_> {
 ///
 /// # Errors
 /// Logs that cannot be read.
-pub fn steps(session: &Session, saved: &SavedSession) -> Result<Markup> {
+pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
     let mut rows = Vec::new();
     for (index, step) in saved.steps.iter().enumerate() {
         let evaluation = session.evaluation(saved, index)?;

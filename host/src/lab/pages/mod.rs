@@ -15,13 +15,13 @@ mod robot_live;
 pub(super) mod what_if;
 
 use super::reply::LabError;
-use super::session::{Evaluation, SavedSession, Session};
+use super::session::{LabSession, SavedSession, SessionEvaluation};
 use crate::output::number::{NONE, mrad};
 use maud::{Markup, html};
 use std::sync::Arc;
 
 /// The error of an evaluation as people read it.
-fn in_milli(value: f64, evaluation: &Evaluation) -> String {
+fn in_milli(value: f64, evaluation: &SessionEvaluation) -> String {
     format!("{} {}", mrad(value), evaluation.quantity().milli())
 }
 
@@ -49,10 +49,10 @@ fn lacking(number: u32, saved: &SavedSession) -> Markup {
 /// The body of a page that needs model and logs, drawn by `shown`, with the model in force as it
 /// was evaluated for it; what is lacking, or wrong with the logs, becomes words.
 fn evaluated(
-    session: &Session,
+    session: &LabSession,
     saved: &SavedSession,
-    shown: impl FnOnce(&Evaluation) -> Result<Markup, LabError>,
-) -> Result<(Option<Arc<Evaluation>>, Markup), LabError> {
+    shown: impl FnOnce(&SessionEvaluation) -> Result<Markup, LabError>,
+) -> Result<(Option<Arc<SessionEvaluation>>, Markup), LabError> {
     match session.evaluation(saved, saved.current) {
         Ok(Some(evaluation)) => {
             let body = shown(&evaluation)?;

@@ -3,12 +3,12 @@
 use super::{evaluated, frame, robot_live};
 use crate::lab::live::LiveRobot;
 use crate::lab::reply::LabError;
-use crate::lab::session::Session;
+use crate::lab::session::LabSession;
 use crate::report::playback::{Scene, stage};
 use maud::{DOCTYPE, Markup, html};
 
 /// The page; a page of its own in a frame, so that its keys do not meet those of the lab.
-pub fn page(session: &Session, robot: Option<&LiveRobot>) -> Result<Markup, LabError> {
+pub fn page(session: &LabSession, robot: Option<&LiveRobot>) -> Result<Markup, LabError> {
     let saved = session.saved();
     let (evaluation, played) = evaluated(session, &saved, |_| Ok(shown(session.number)))?;
     let model = session.model(&saved)?;
@@ -40,7 +40,7 @@ fn shown(number: u32) -> Markup {
 }
 
 /// The document in the frame.
-pub fn stage_page(session: &Session) -> Result<Markup, LabError> {
+pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
     let saved = session.saved();
     let evaluation = session.evaluation(&saved, saved.current)?;
     let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;

@@ -6,13 +6,13 @@ use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
 use crate::lab::reply::LabError;
-use crate::lab::session::{Evaluation, Session};
+use crate::lab::session::{LabSession, SessionEvaluation};
 use crate::model::{JointField, Link, LinkField, Model, ParameterPath};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 /// The page.
-pub fn page(session: &Session) -> Result<Markup, LabError> {
+pub fn page(session: &LabSession) -> Result<Markup, LabError> {
     let saved = session.saved();
     let (evaluation, body) = evaluated(session, &saved, |evaluation| Ok(shown(evaluation)))?;
     let script = match evaluation {
@@ -29,7 +29,7 @@ pub fn page(session: &Session) -> Result<Markup, LabError> {
     ))
 }
 
-fn shown(evaluation: &Evaluation) -> Markup {
+fn shown(evaluation: &SessionEvaluation) -> Markup {
     let model = &evaluation.run.model;
     let candidates = candidates(model, &evaluation.run.data.motions, &[]);
     // What could end the script element is written otherwise.

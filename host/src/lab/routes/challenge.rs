@@ -29,7 +29,7 @@ pub(super) async fn begin(
     Json(asked): Json<RoundAsked>,
 ) -> Answer {
     let new = blocking(move || {
-        let begin = |session: &crate::lab::session::Session| session.begin_round(asked.seed);
+        let begin = |session: &crate::lab::session::LabSession| session.begin_round(asked.seed);
         lab.store.add(begin).map_err(LabError::from)
     });
     let number = new.await?.number;

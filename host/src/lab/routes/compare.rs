@@ -6,7 +6,7 @@ use crate::compare::{FailingSamples, residual_variables};
 use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{ChosenWindow, Evaluation, SavedSession, Session, aside};
+use crate::lab::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation, aside};
 use crate::model::{Drive, Joint};
 use axum::Json;
 use axum::extract::{Path, Query, State};
@@ -83,7 +83,7 @@ pub(super) async fn curves(
             true => roughly(&session, &saved, step),
             false => exactly(&session, &saved, step),
         };
-        let evaluation: Arc<Evaluation> = made(step)?;
+        let evaluation: Arc<SessionEvaluation> = made(step)?;
         let other = asked.other.map(made).transpose()?;
         let mut arrays = Arrays::default();
         let meta = draw(&mut arrays, &evaluation, asked.motion)?;
@@ -102,20 +102,20 @@ pub(super) async fn curves(
 
 /// A step over the session's windows.
 fn exactly(
-    session: &Session,
+    session: &LabSession,
     saved: &SavedSession,
     step: usize,
-) -> Result<Arc<Evaluation>, LabError> {
+) -> Result<Arc<SessionEvaluation>, LabError> {
     let evaluation = session.evaluation(saved, step)?;
     evaluation.ok_or(LabError::NotFound("step"))
 }
 
 /// A step over windows that are tried: what is known of the session's own saves most of the time.
 fn roughly(
-    session: &Session,
+    session: &LabSession,
     tried: &SavedSession,
     step: usize,
-) -> Result<Arc<Evaluation>, LabError> {
+) -> Result<Arc<SessionEvaluation>, LabError> {
     let own = exactly(session, &session.saved(), step)?;
     match own.run.horizon == tried.horizon() {
         true => Ok(own),
@@ -126,7 +126,7 @@ fn roughly(
 /// Adds a motion's curves, and describes them.
 pub(super) fn draw(
     arrays: &mut Arrays,
-    evaluation: &Evaluation,
+    evaluation: &SessionEvaluation,
     index: usize,
 ) -> Result<Value, LabError> {
     let run = &evaluation.run;
@@ -185,7 +185,7 @@ fn input_of(joint: &Joint) -> (&'static str, &'static str) {
 }
 
 /// For each condition, the stretches of this motion that meet it, s.
-fn shades(evaluation: &Evaluation, index: usize) -> Vec<Value> {
+fn shades(evaluation: &SessionEvaluation, index: usize) -> Vec<Value> {
     let motions = &evaluation.run.data.motions;
     let begin: usize = motions[..index].iter().map(|motion| motion.len()).sum();
     let time = &motions[index].time_s;

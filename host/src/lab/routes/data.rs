@@ -5,7 +5,7 @@ use super::{act, blocking, said_shortly, session};
 use crate::lab::pages::data as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{EXAMPLES, MOST_BYTES, SavedSession, SavedStep, Session};
+use crate::lab::session::{EXAMPLES, LabSession, MOST_BYTES, SavedSession, SavedStep};
 use crate::log::RawLog;
 use crate::log::init::Draft;
 use crate::model::edit::{ColumnChoice, set_log_columns};
@@ -159,7 +159,7 @@ pub(super) async fn new_model(
 
 /// The model of a form with the columns of the first log, where its names and values say which is
 /// what.
-fn with_columns(session: &Session, saved: &SavedSession, plan: &ModelPlan) -> Option<String> {
+fn with_columns(session: &LabSession, saved: &SavedSession, plan: &ModelPlan) -> Option<String> {
     let log = saved.logs.first()?;
     let raw = RawLog::read(&session.log_path(&log.file)).ok()?;
     let mut drives = plan.links.iter().map(|link| link.drive.as_str());

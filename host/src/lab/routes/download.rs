@@ -3,9 +3,9 @@
 use super::{blocking, session};
 use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
-use crate::lab::session::{SavedSession, Session};
+use crate::lab::session::{LabSession, SavedSession};
 use crate::log::Split;
-use crate::report::{ModelFile, Report, ReportProvenance, html};
+use crate::report::{HashedModel, Report, ReportProvenance, html};
 use axum::extract::{Path, State};
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ pub(super) async fn download(
 }
 
 /// The page that `handstand compare --report` writes of the steps up to the present one.
-fn report(session: &Session, saved: &SavedSession) -> Result<String, LabError> {
+fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError> {
     let mut comparisons = Vec::new();
     let mut model_files = Vec::new();
     let mut split = Split::default();
@@ -46,7 +46,7 @@ fn report(session: &Session, saved: &SavedSession) -> Result<String, LabError> {
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         comparisons.push(evaluation.comparison().clone());
         let text = saved.steps[step].toml.as_bytes();
-        model_files.push(ModelFile::of(format!("model-{step}.toml"), text));
+        model_files.push(HashedModel::of(format!("model-{step}.toml"), text));
         split = Split::default();
         for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
             let side = match evaluation.is_held_out(index) {

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::lab::pages::gains as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, download, page};
 use crate::lab::server::LabState;
-use crate::lab::session::Session;
+use crate::lab::session::LabSession;
 use crate::model::Model;
 use crate::output::number::hex;
 use crate::study::{left_out, response, verify};
@@ -86,7 +86,7 @@ pub(super) async fn design(
     .await
 }
 
-fn model(session: &Session, asked: GainsAsked) -> Result<(Model, Provenance), LabError> {
+fn model(session: &LabSession, asked: GainsAsked) -> Result<(Model, Provenance), LabError> {
     let saved = session.saved();
     let model = session.model(&saved)?.ok_or(LabError::NotFound("model"))?;
     let toml = saved.step().map_or("", |step| &step.toml);

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::lab::pages::learn as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{JobReport, Session};
+use crate::lab::session::{JobReport, LabSession};
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -31,7 +31,7 @@ fn begin(
     lab: &LabState,
     number: u32,
     what: &str,
-    work: impl FnOnce(&Session, &JobReport) -> Result<()> + Send + 'static,
+    work: impl FnOnce(&LabSession, &JobReport) -> Result<()> + Send + 'static,
 ) -> Answer {
     let session = session(lab, number)?;
     let Some(report) = session.job.begin(what) else {
@@ -47,7 +47,7 @@ fn begin(
 
 /// Begins a diagnosis.
 pub(super) async fn diagnose(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
-    begin(&lab, number, "diagnosis", Session::diagnose)
+    begin(&lab, number, "diagnosis", LabSession::diagnose)
 }
 
 #[derive(Debug, Deserialize)]

@@ -15,7 +15,7 @@ mod what_if;
 use super::assets::asset;
 use super::reply::{Answer, LabError, data as reply};
 use super::server::LabState;
-use super::session::{SavedSession, Session};
+use super::session::{LabSession, SavedSession};
 use crate::error::Error;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -75,7 +75,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
 }
 
 /// A session by its number; from now on it is somebody's.
-fn session(lab: &LabState, number: u32) -> Result<Arc<Session>, LabError> {
+fn session(lab: &LabState, number: u32) -> Result<Arc<LabSession>, LabError> {
     let session = lab.store.get(number);
     session
         .inspect(|_| lab.store.take(number))
@@ -100,7 +100,7 @@ async fn act(
     lab: Arc<LabState>,
     number: u32,
     page: &'static str,
-    action: impl FnOnce(&Session, &SavedSession) -> Result<(), LabError> + Send + 'static,
+    action: impl FnOnce(&LabSession, &SavedSession) -> Result<(), LabError> + Send + 'static,
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
@@ -115,7 +115,7 @@ async fn act(
 }
 
 /// An error without the session's folder in its words.
-fn said_shortly(session: &Session, error: Error) -> LabError {
+fn said_shortly(session: &LabSession, error: Error) -> LabError {
     let words = session.shortened(&error.to_string());
     let remedy = error.remedy().unwrap_or_default().into_owned();
     LabError::Library(Error::usage(words, remedy))

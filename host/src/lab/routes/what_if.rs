@@ -24,7 +24,7 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
 
 /// What is tried.
 #[derive(Debug, Clone, Deserialize)]
-pub(super) struct Tried {
+pub(super) struct TriedChange {
     /// The motion to draw.
     #[serde(default)]
     motion: usize,
@@ -38,7 +38,7 @@ pub(super) struct Tried {
     values: Vec<(String, f64)>,
 }
 
-impl Tried {
+impl TriedChange {
     /// The model with what is tried, and the effects that it adds.
     fn applied_to(&self, model: &Model) -> Result<(Model, Vec<Candidate>)> {
         let mut tried = model.clone();
@@ -79,7 +79,7 @@ impl Tried {
 pub(super) async fn run(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
-    Json(tried): Json<Tried>,
+    Json(tried): Json<TriedChange>,
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
@@ -110,7 +110,7 @@ pub(super) async fn run(
 pub(super) async fn keep(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
-    Json(tried): Json<Tried>,
+    Json(tried): Json<TriedChange>,
 ) -> Answer {
     act(lab, number, "learn", move |session, saved| {
         let file = std::path::Path::new("model.toml");

@@ -1,6 +1,6 @@
 //! Bringing data: logs into the session's folder, a model in force, what the check finds.
 
-use super::Session;
+use super::LabSession;
 use super::saved::{SavedLog, SavedSession, SavedStep};
 use crate::error::{Error, Result};
 use crate::log::{LogFormat, LogRequest, LogSet, RawLog, Split, split};
@@ -24,7 +24,7 @@ pub struct LogFacts {
     pub content: std::result::Result<(usize, usize, f64), (String, String)>,
 }
 
-impl Session {
+impl LabSession {
     /// The path of one of its logs.
     pub fn log_path(&self, file: &str) -> PathBuf {
         self.folder().join("logs").join(file)
@@ -79,10 +79,10 @@ impl Session {
         }
     }
 
-    /// Takes a file that was written to the path of [`Session::vacant_log`] as a log.
+    /// Takes a file that was written to the path of [`LabSession::vacant_log`] as a log.
     ///
     /// # Errors
-    /// As [`Session::change`].
+    /// As [`LabSession::change`].
     pub fn take_log(&self, file: &str) -> Result<()> {
         self.change(|saved| {
             saved.logs.push(SavedLog {
@@ -98,7 +98,7 @@ impl Session {
     /// Takes a log out; its file stays in the folder.
     ///
     /// # Errors
-    /// As [`Session::change`].
+    /// As [`LabSession::change`].
     pub fn remove_log(&self, file: &str) -> Result<()> {
         self.change(|saved| {
             saved.logs.retain(|log| log.file != file);
@@ -110,7 +110,7 @@ impl Session {
     /// Makes a log one to judge by, or one to learn from.
     ///
     /// # Errors
-    /// As [`Session::change`].
+    /// As [`LabSession::change`].
     pub fn hold_out(&self, file: &str, held_out: bool) -> Result<()> {
         self.change(|saved| {
             let logs = saved.logs.iter_mut().filter(|log| log.file == file);

@@ -1,6 +1,6 @@
 //! The model of a step run along the session's motions, kept while it may be asked for again.
 
-use super::Session;
+use super::LabSession;
 use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::compare::{Comparison, FailingSamples, ModelRun};
@@ -15,7 +15,7 @@ const KEPT: usize = 24;
 
 /// A model run along all motions, as `handstand compare` runs it.
 #[derive(Debug)]
-pub struct Evaluation {
+pub struct SessionEvaluation {
     /// The run.
     pub run: ModelRun,
     /// Motions that are fitted; those after them are held out.
@@ -26,9 +26,9 @@ pub struct Evaluation {
     name: String,
 }
 
-impl Evaluation {
-    fn of(run: ModelRun, fitted: usize, name: String) -> Evaluation {
-        Evaluation {
+impl SessionEvaluation {
+    fn of(run: ModelRun, fitted: usize, name: String) -> SessionEvaluation {
+        SessionEvaluation {
             run,
             fitted,
             at_its_horizon: OnceLock::new(),
@@ -39,18 +39,18 @@ impl Evaluation {
     }
 
     /// The same model and motions in windows of another length.
-    fn at(&self, horizon: Horizon) -> Evaluation {
+    fn at(&self, horizon: Horizon) -> SessionEvaluation {
         let data = self.run.data.recut(horizon);
         let run = ModelRun::new(self.run.model.clone(), data, horizon);
-        Evaluation::of(run, self.fitted, self.name.clone())
+        SessionEvaluation::of(run, self.fitted, self.name.clone())
     }
 
     /// The same in a fraction of the time, for a slider that moves: start states are fitted
     /// roughly.
-    pub fn roughly_at(&self, horizon: Horizon) -> Evaluation {
+    pub fn roughly_at(&self, horizon: Horizon) -> SessionEvaluation {
         let data = self.run.data.recut(horizon);
         let run = ModelRun::roughly(self.run.model.clone(), data, horizon);
-        Evaluation::of(run, self.fitted, self.name.clone())
+        SessionEvaluation::of(run, self.fitted, self.name.clone())
     }
 
     /// The comparison without the errors over shorter runs, made when it is first asked for.
@@ -110,14 +110,18 @@ struct Wanted {
 
 /// The last evaluations.
 #[derive(Debug, Default)]
-pub(super) struct Evaluations(Vec<(Wanted, Arc<Evaluation>)>);
+pub(super) struct Evaluations(Vec<(Wanted, Arc<SessionEvaluation>)>);
 
-impl Session {
+impl LabSession {
     /// The step's model along the session's motions; nothing without model or logs.
     ///
     /// # Errors
     /// Logs that cannot be read.
-    pub fn evaluation(&self, saved: &SavedSession, step: usize) -> Result<Option<Arc<Evaluation>>> {
+    pub fn evaluation(
+        &self,
+        saved: &SavedSession,
+        step: usize,
+    ) -> Result<Option<Arc<SessionEvaluation>>> {
         let Some(wanted) = wanted(saved, step) else {
             return Ok(None);
         };
@@ -143,18 +147,18 @@ impl Session {
 
     /// The evaluation of the step in force, if it was made already: pages that only mention it
     /// do not wait for it.
-    pub fn known_evaluation(&self, saved: &SavedSession) -> Option<Arc<Evaluation>> {
+    pub fn known_evaluation(&self, saved: &SavedSession) -> Option<Arc<SessionEvaluation>> {
         self.kept(&wanted(saved, saved.current)?)
     }
 
-    fn kept(&self, wanted: &Wanted) -> Option<Arc<Evaluation>> {
+    fn kept(&self, wanted: &Wanted) -> Option<Arc<SessionEvaluation>> {
         let known = self.known();
         let found = known.0.iter().find(|(key, _)| key == wanted);
         found.map(|(_, evaluation)| evaluation.clone())
     }
 
     /// An evaluation of the same model and logs, whose motions need not be read again.
-    fn kept_at_another_horizon(&self, wanted: &Wanted) -> Option<Arc<Evaluation>> {
+    fn kept_at_another_horizon(&self, wanted: &Wanted) -> Option<Arc<SessionEvaluation>> {
         let known = self.known();
         let same = |key: &Wanted| key.toml == wanted.toml && key.logs == wanted.logs;
         let found = known.0.iter().find(|(key, _)| same(key));
@@ -167,7 +171,7 @@ impl Session {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<Evaluation> {
+    fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<SessionEvaluation> {
         let model = Model::parse(toml, file)?;
         let split = self.split(saved, &model)?;
         let fitted = split.training.len();
@@ -175,7 +179,11 @@ impl Session {
         let horizon = saved.horizon();
         let data = FitData::new(&model, motions, horizon);
         let run = ModelRun::new(model, data, horizon);
-        Ok(Evaluation::of(run, fitted, file.display().to_string()))
+        Ok(SessionEvaluation::of(
+            run,
+            fitted,
+            file.display().to_string(),
+        ))
     }
 }
 

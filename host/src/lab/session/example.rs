@@ -1,6 +1,6 @@
 //! Examples to begin with: a bench arm with a known effect missing from its model.
 
-use super::{ChosenWindow, Session};
+use super::{ChosenWindow, LabSession};
 use crate::challenge::{Hidden, generate};
 use crate::error::Result;
 
@@ -43,7 +43,7 @@ pub const EXAMPLES: &[Example] = &[
     },
 ];
 
-impl Session {
+impl LabSession {
     /// Brings an example into the session; its last log judges. What was there is gone.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! What the check of the logs finds, kept while model and logs stay as they are: it simulates, and
 //! pages ask for it again and again.
 
-use super::Session;
+use super::LabSession;
 use super::aside::aside;
 use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
@@ -21,7 +21,7 @@ struct Checked {
 #[derive(Debug, Default)]
 pub(super) struct KnownFindings(Option<(Checked, Arc<Vec<LogFinding>>)>);
 
-impl Session {
+impl LabSession {
     /// What `handstand log check` finds; nothing without model or logs. Who asks while the check
     /// runs waits for its end.
     ///

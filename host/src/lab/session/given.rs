@@ -1,6 +1,6 @@
 //! What the command line gives a new session.
 
-use super::Session;
+use super::LabSession;
 use super::saved::SavedLog;
 use crate::error::{Error, Result};
 use crate::log::LogRequest;
@@ -32,7 +32,7 @@ impl Given {
     }
 }
 
-impl Session {
+impl LabSession {
     /// Copies the given files into the session.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ mod work;
 pub use aside::aside;
 pub(super) use card::{CardRole, SavedCard, SavedDiagnosis};
 pub(super) use data::{LogFacts, MOST_BYTES};
-pub(super) use evaluation::{Evaluation, pooled_rms};
+pub(super) use evaluation::{SessionEvaluation, pooled_rms};
 pub(super) use example::EXAMPLES;
 pub use given::Given;
 pub(super) use job::{JobReport, JobSlot};
@@ -34,7 +34,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// One session.
 #[derive(Debug)]
-pub(super) struct Session {
+pub(super) struct LabSession {
     /// Its number, which names its folder and its address.
     pub number: u32,
     folder: PathBuf,
@@ -47,9 +47,9 @@ pub(super) struct Session {
     pub job: JobSlot,
 }
 
-impl Session {
-    fn new(number: u32, folder: PathBuf) -> Session {
-        Session {
+impl LabSession {
+    fn new(number: u32, folder: PathBuf) -> LabSession {
+        LabSession {
             number,
             folder,
             saved: Mutex::default(),
@@ -64,8 +64,8 @@ impl Session {
     ///
     /// # Errors
     /// As [`SavedSession::load`].
-    pub fn load(number: u32, folder: PathBuf) -> Result<Session> {
-        let session = Session::new(number, folder);
+    pub fn load(number: u32, folder: PathBuf) -> Result<LabSession> {
+        let session = LabSession::new(number, folder);
         *session.lock() = SavedSession::load(&session.folder)?;
         Ok(session)
     }

@@ -1,6 +1,6 @@
 //! A round of a challenge: an arm with a hidden effect, to be named.
 
-use super::Session;
+use super::LabSession;
 use crate::challenge::{ChallengeScore, Hidden, generate, score, write};
 use crate::error::{Error, Result};
 use rand::RngCore as _;
@@ -52,7 +52,7 @@ impl From<ChallengeScore> for RoundResult {
     }
 }
 
-impl Session {
+impl LabSession {
     /// Begins a round with a bench of this seed; a random one without.
     ///
     /// # Errors

@@ -1,13 +1,13 @@
 //! Models one after the other: undone, done again, noted, written as files.
 
-use super::Session;
+use super::LabSession;
 use super::data::model_file;
 use super::saved::SavedStep;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::output::write_new;
 
-impl Session {
+impl LabSession {
     /// Puts a model in force after the present one; steps that were undone are gone.
     ///
     /// # Errors

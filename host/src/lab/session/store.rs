@@ -1,6 +1,6 @@
 //! The sessions of one folder, each in a folder of its own.
 
-use super::{Given, Session};
+use super::{Given, LabSession};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub struct SessionStore {
 
 #[derive(Debug, Default)]
 struct OpenSessions {
-    sessions: BTreeMap<u32, Arc<Session>>,
+    sessions: BTreeMap<u32, Arc<LabSession>>,
     /// Those that a browser has been sent to since the start.
     taken: BTreeSet<u32>,
 }
@@ -39,7 +39,7 @@ impl SessionStore {
             let path = entry.path();
             if let Some(number) = number.filter(|_| path.join("session.json").is_file()) {
                 open.sessions
-                    .insert(number, Arc::new(Session::load(number, path)?));
+                    .insert(number, Arc::new(LabSession::load(number, path)?));
             }
         }
         Ok(SessionStore {
@@ -55,12 +55,12 @@ impl SessionStore {
     }
 
     /// A session by its number.
-    pub fn get(&self, number: u32) -> Option<Arc<Session>> {
+    pub fn get(&self, number: u32) -> Option<Arc<LabSession>> {
         self.lock().sessions.get(&number).cloned()
     }
 
     /// All of them, the oldest first.
-    pub fn all(&self) -> Vec<Arc<Session>> {
+    pub fn all(&self) -> Vec<Arc<LabSession>> {
         self.lock().sessions.values().cloned().collect()
     }
 
@@ -69,7 +69,7 @@ impl SessionStore {
     ///
     /// # Errors
     /// As [`SessionStore::begin`].
-    pub fn for_newcomer(&self) -> Result<Option<Arc<Session>>> {
+    pub fn for_newcomer(&self) -> Result<Option<Arc<LabSession>>> {
         let waiting = {
             let open = self.lock();
             open.sessions
@@ -86,7 +86,7 @@ impl SessionStore {
     ///
     /// # Errors
     /// The system's refusal.
-    pub fn begin(&self) -> Result<Arc<Session>> {
+    pub fn begin(&self) -> Result<Arc<LabSession>> {
         self.add(|session| session.bring(&self.given))
     }
 
@@ -94,9 +94,9 @@ impl SessionStore {
     ///
     /// # Errors
     /// Those of `fill`, and the system's refusal.
-    pub fn add(&self, fill: impl FnOnce(&Session) -> Result<()>) -> Result<Arc<Session>> {
+    pub fn add(&self, fill: impl FnOnce(&LabSession) -> Result<()>) -> Result<Arc<LabSession>> {
         let (number, folder) = self.reserve()?;
-        let session = Session::new(number, folder);
+        let session = LabSession::new(number, folder);
         fill(&session)?;
         session.save()?;
         let session = Arc::new(session);

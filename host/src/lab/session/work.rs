@@ -1,6 +1,6 @@
 //! The long work: diagnosing, adding effects, fitting values; each ends in what the session keeps.
 
-use super::Session;
+use super::LabSession;
 use super::card::SavedDiagnosis;
 use super::data::model_file;
 use super::job::JobReport;
@@ -14,7 +14,7 @@ use crate::fitting::{
 };
 use crate::model::Model;
 
-impl Session {
+impl LabSession {
     /// Diagnoses the model in force.
     ///
     /// # Errors

@@ -56,9 +56,9 @@ pub(super) fn measured<L: SerialLink>(
     }
 }
 
-type Found = Result<(bool, String)>;
+type CheckOutcome = Result<(bool, String)>;
 
-fn firmware<L: SerialLink>(link: &mut L) -> Found {
+fn firmware<L: SerialLink>(link: &mut L) -> CheckOutcome {
     let mut session = Session::open(link)?;
     let telemetry = telemetry(&mut session)?;
     let is_watchdog = telemetry.reset.is_watchdog();
@@ -71,7 +71,7 @@ fn firmware<L: SerialLink>(link: &mut L) -> Found {
     Ok((!is_watchdog, format!("{state}; last started by {why}")))
 }
 
-fn servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut servos = adapter(link)?;
     servos.tries = 1;
     let mut found = Vec::new();
@@ -87,14 +87,14 @@ fn servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
     })
 }
 
-fn supply<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn supply<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut session = streaming(link, ids)?;
     stream(&mut session, Duration::from_millis(600))?;
     let supply_v = Supply(telemetry(&mut session)?.supply).to_v();
     Ok((supply_v >= 8.8, format!("{supply_v:.1} V")))
 }
 
-fn ticks<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn ticks<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut session = streaming(link, ids)?;
     stream(&mut session, Duration::from_millis(300))?;
     let before = telemetry(&mut session)?;
@@ -106,7 +106,7 @@ fn ticks<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
     Ok((overruns == 0, found))
 }
 
-fn stack<L: SerialLink>(link: &mut L) -> Found {
+fn stack<L: SerialLink>(link: &mut L) -> CheckOutcome {
     let Telemetry {
         stack_used,
         stack_size,
@@ -119,7 +119,7 @@ fn stack<L: SerialLink>(link: &mut L) -> Found {
     Ok((is_low, format!("{stack_used} of {stack_size} bytes")))
 }
 
-fn gyro_zero<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn gyro_zero<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut session = streaming(link, ids)?;
     let reports = stream(&mut session, Duration::from_secs(2))?;
     let codes = || reports.iter().map(|report| report.gyro);
@@ -131,7 +131,7 @@ fn gyro_zero<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
     Ok((is_steady, format!("code {mean:.1}, {least} to {most}")))
 }
 
-fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut session = streaming(link, ids.get(..1).unwrap_or(ids))?;
     arm(&mut session)?;
     let reports = stream(&mut session, Duration::from_secs(1))?;
@@ -150,7 +150,7 @@ fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
     ))
 }
 
-fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> Found {
+fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let mut session = streaming(link, ids.get(..1).unwrap_or(ids))?;
     arm(&mut session)?;
     let begun = session.link().now();

@@ -43,3 +43,6 @@ mod group_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod tests;
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod torque_tests;

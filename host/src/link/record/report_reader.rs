@@ -1,7 +1,7 @@
 //! Samples from a CM-5's stream reports.
 
 use super::sample::{GyroSample, RobotSample, ServoSample};
-use handstand_shared::message::{Attitude, Condition, StreamReport, Telemetry};
+use handstand_shared::message::{Attitude, StreamReport, Telemetry};
 use handstand_shared::raw::Position;
 use std::time::Duration;
 
@@ -12,6 +12,8 @@ pub struct ReportReader {
     housekeeping: Vec<ServoSample>,
     /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
     gyro: Option<(u16, f64)>,
+    /// The report before.
+    last: Option<StreamReport>,
 }
 
 impl ReportReader {
@@ -22,6 +24,7 @@ impl ReportReader {
             begun,
             housekeeping: vec![ServoSample::default(); count],
             gyro: (scale != 0.0).then_some((account.gyro_zero, scale)),
+            last: None,
         }
     }
 
@@ -56,6 +59,8 @@ impl ReportReader {
         });
         let joints = joints.collect();
         let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
+        let torque_on = report.torque_was_on(self.last.as_ref());
+        self.last = Some(*report);
         RobotSample {
             time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
             joints,
@@ -64,17 +69,8 @@ impl ReportReader {
                 zero: self.gyro.map(|(zero, _)| f64::from(zero)),
                 rate_rad_s: self.gyro.map(rate),
             }),
-            torque_on: torque(report.condition),
+            torque_on,
             has_current: false,
         }
-    }
-}
-
-/// Whether torque is on in this condition; none where it is not known.
-fn torque(condition: Condition) -> Option<bool> {
-    match condition {
-        Condition::StreamArmed | Condition::BalanceArmed | Condition::Soft => Some(true),
-        Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
-        Condition::Bridge => None,
     }
 }

@@ -61,6 +61,7 @@ impl<L: SerialLink> Stream<L> {
             _ => None,
         })?;
         let begun = session.link().now();
+        session.keeps_ticks = true;
         Ok(Stream {
             reader: ReportReader::new(ids.len(), begun, &telemetry),
             session,

@@ -14,7 +14,7 @@ const STROKE_M: f64 = 0.005;
 const HOLD_S: f64 = 0.5;
 
 /// Running account of every joint.
-pub(super) struct Excitation {
+pub(super) struct ExcitationCheck {
     joints: Vec<JointExcitation>,
     motions: usize,
 }
@@ -45,10 +45,10 @@ struct MotionState {
     stretch: (f64, f64),
 }
 
-impl Excitation {
+impl ExcitationCheck {
     pub fn new(model: &Model) -> Self {
         let joints = model.log.joints.iter().zip(&model.joints);
-        Excitation {
+        ExcitationCheck {
             motions: 0,
             joints: joints
                 .map(|(columns, joint)| JointExcitation {

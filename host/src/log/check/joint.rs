@@ -56,15 +56,15 @@ struct Still {
 
 /// One column of the joint.
 #[derive(Debug)]
-struct Series {
+struct ColumnSeries {
     name: String,
     extremes: Extremes,
     steps: StepSizes,
 }
 
-impl Series {
+impl ColumnSeries {
     fn new(name: String) -> Self {
-        Series {
+        ColumnSeries {
             name,
             extremes: Extremes::NONE,
             steps: StepSizes::default(),
@@ -88,10 +88,10 @@ impl Series {
 /// Running judgement of one joint in one file.
 pub(super) struct JointCheck {
     signal: MeasuredSignal,
-    position: Series,
+    position: ColumnSeries,
     /// The rate, where there is no angle.
-    rate: Series,
-    input: Series,
+    rate: ColumnSeries,
+    input: ColumnSeries,
     /// Rows seen.
     rows: usize,
     /// Declared resolution of the position, rad, or m of a slide.
@@ -105,9 +105,9 @@ impl JointCheck {
         let declared = columns.position.as_ref().and_then(ColumnMean::resolution);
         JointCheck {
             signal: columns.signal(),
-            position: Series::new(name(&columns.position)),
-            rate: Series::new(name(&columns.velocity)),
-            input: Series::new(name(&columns.input)),
+            position: ColumnSeries::new(name(&columns.position)),
+            rate: ColumnSeries::new(name(&columns.velocity)),
+            input: ColumnSeries::new(name(&columns.input)),
             rows: 0,
             declared_rad: declared,
             still: None,

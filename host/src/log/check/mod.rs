@@ -25,7 +25,7 @@ use super::row::LogRow;
 use super::{LEAST_ROWS, bam, expanded, visit};
 use crate::error::{Error, Place, Result, words};
 use crate::model::Model;
-use excitation::Excitation;
+use excitation::ExcitationCheck;
 use finding::Findings;
 use joint::JointCheck;
 use relation::Relations;
@@ -40,7 +40,7 @@ use sampling::Sampling;
 /// Only what the system refuses; everything wrong with the content is a finding.
 pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> {
     let mut findings = Findings::default();
-    let mut excitation = Excitation::new(model);
+    let mut excitation = ExcitationCheck::new(model);
     let requests = &expanded(requests)?;
     for request in requests {
         let mut file = FileCheck::new(request, model, &mut excitation, &mut findings);
@@ -80,7 +80,7 @@ struct FileCheck<'a> {
     request: &'a LogRequest,
     model: &'a Model,
     findings: &'a mut Findings,
-    excitation: &'a mut Excitation,
+    excitation: &'a mut ExcitationCheck,
     previous: Option<LogRow>,
     rows_in_motion: usize,
     sampling: Sampling,
@@ -92,7 +92,7 @@ impl<'a> FileCheck<'a> {
     fn new(
         request: &'a LogRequest,
         model: &'a Model,
-        excitation: &'a mut Excitation,
+        excitation: &'a mut ExcitationCheck,
         findings: &'a mut Findings,
     ) -> Self {
         FileCheck {

@@ -7,10 +7,10 @@ use std::path::Path;
 const SAMPLES: usize = 400;
 
 /// A column over time, s.
-type Curve = fn(f64) -> f64;
+type TestCurve = fn(f64) -> f64;
 
 /// A log of these columns, each a function of time in s.
-fn log(columns: &[(&str, Curve)]) -> RawLog {
+fn log(columns: &[(&str, TestCurve)]) -> RawLog {
     let time = |k: usize| 0.01 * k as f64;
     RawLog {
         names: columns.iter().map(|(name, _)| name.to_string()).collect(),
@@ -31,7 +31,7 @@ fn rate(t: f64) -> f64 {
     -3.5 * (7.0 * t).sin()
 }
 
-fn draft(columns: &[(&str, Curve)]) -> (Draft, Model) {
+fn draft(columns: &[(&str, TestCurve)]) -> (Draft, Model) {
     let draft = Draft::of(&log(columns), "a.csv", None).unwrap();
     let text = draft.toml().unwrap();
     let model = Model::parse(&text, Path::new("a.toml")).unwrap();
@@ -40,7 +40,7 @@ fn draft(columns: &[(&str, Curve)]) -> (Draft, Model) {
 
 #[test]
 fn the_same_swing_is_understood_under_many_headers() {
-    let headers: [[(&str, Curve); 3]; 8] = [
+    let headers: [[(&str, TestCurve); 3]; 8] = [
         [("t", |t| t), ("q", swing), ("dq", rate)],
         [("time_s", |t| t), ("q1_rad", swing), ("dq1_rad_s", rate)],
         [
@@ -114,7 +114,7 @@ fn the_same_swing_is_understood_under_many_headers() {
 
 #[test]
 fn drives_come_from_their_inputs() {
-    let inputs: [(&str, Curve, &str); 6] = [
+    let inputs: [(&str, TestCurve, &str); 6] = [
         ("tau", |t| t.sin(), "torque"),
         ("goal_rad", |t| t.sin(), "position"),
         ("goal_speed_rad_s", |t| t.cos(), "speed"),

@@ -1,6 +1,6 @@
 //! Joint states of one or several topics as one table.
 
-use super::{MOST_CELLS, Table, TableFile};
+use super::{LogTable, MOST_CELLS, TableFile};
 use crate::error::Result;
 use crate::log::cdr::JointStateMessage;
 use std::collections::{BTreeMap, HashMap};
@@ -89,7 +89,7 @@ impl JointStates {
     ///
     /// # Errors
     /// No message.
-    pub fn table(mut self, file: TableFile) -> Result<Table> {
+    pub fn table(mut self, file: TableFile) -> Result<LogTable> {
         let most = |topic: &&String| self.topics[*topic].stamp_ns.len();
         let longest = self.topics.keys().rev().max_by_key(most).cloned();
         let own = self.topics.remove(STATES);
@@ -104,10 +104,10 @@ impl JointStates {
         let time_s = stamps
             .iter()
             .map(|ns| ns.wrapping_sub(first_ns) as i64 as f64 / 1e9);
-        let mut table = Table {
+        let mut table = LogTable {
             names: vec!["time_s".to_string()],
             columns: vec![time_s.collect()],
-            ..Table::default()
+            ..LogTable::default()
         };
         let mut budget = self.values * 16 + 1_000_000;
         let prefix = |topic: &str| format!("{}/", topic.trim_start_matches('/'));

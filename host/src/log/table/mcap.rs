@@ -3,7 +3,7 @@
 //! Chunks may be compressed by lz4 or zstd. A torn file is read as far as it is whole.
 
 use super::joint_states::JointStates;
-use super::{Table, TableFile};
+use super::{LogTable, TableFile};
 use crate::error::Result;
 use crate::log::cdr::{IMU_NAME, ImuMessage, JointStateMessage, NAME};
 use ::mcap::read::LinearReader;
@@ -37,7 +37,7 @@ struct Messages {
     is_own: bool,
 }
 
-pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<Table> {
+pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
     let remedy = "give an MCAP file with joint states of ROS 2, or of `handstand record`";
     if !bytes.starts_with(MAGIC) {
         return Err(file.wrong("not an MCAP file", remedy));

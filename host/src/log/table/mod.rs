@@ -6,7 +6,6 @@
 
 mod joint_states;
 mod mat;
-mod mat_element;
 mod mcap;
 mod parquet;
 mod rosbag;
@@ -26,9 +25,12 @@ const LARGEST: u64 = 4 << 30;
 /// Most numbers of a table: 1.6 GB.
 pub(super) const MOST_CELLS: usize = 200_000_000;
 
+/// What is wrong with a file.
+pub(super) type Broken = &'static str;
+
 /// A log as columns.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Table {
+pub(super) struct LogTable {
     /// In the file's order.
     pub names: Vec<String>,
     /// As long as each other.
@@ -41,12 +43,12 @@ pub(super) struct Table {
     pub sha256: String,
 }
 
-impl Table {
+impl LogTable {
     /// Reads a file in one of these formats.
     ///
     /// # Errors
     /// What the system refuses, and what is no such file.
-    pub fn read(path: &Path, format: LogFormat) -> Result<Table> {
+    pub fn read(path: &Path, format: LogFormat) -> Result<LogTable> {
         let refused = |source| Error::file(path, "read", source);
         let length = std::fs::metadata(path).map_err(refused)?.len();
         let file = TableFile { path };
@@ -56,17 +58,17 @@ impl Table {
         let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
         let digest = || hex(Sha256::digest(&bytes));
         let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format), digest);
-        Ok(Table { sha256, ..table? })
+        Ok(LogTable { sha256, ..table? })
     }
 
     /// Reads the bytes of a file.
     ///
     /// # Errors
     /// What is no such file.
-    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<Table> {
+    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<LogTable> {
         match format {
             LogFormat::Mcap => mcap::read(&bytes, file),
-            LogFormat::Mat => mat::read(&bytes, file),
+            LogFormat::Mat => mat::read(bytes, file),
             LogFormat::Rosbag => rosbag::read(&bytes, file),
             LogFormat::Parquet => parquet::read(bytes, file),
             LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),
@@ -104,4 +106,15 @@ pub(super) fn from_integers(values: &[i64]) -> Vec<f64> {
         .iter()
         .map(|value| value.wrapping_sub(first) as f64)
         .collect()
+}
+
+/// Likewise, of numbers without a sign.
+pub(super) fn from_unsigned(values: &[u64]) -> Vec<f64> {
+    let whole: std::result::Result<Vec<i64>, _> =
+        values.iter().map(|value| i64::try_from(*value)).collect();
+    let Ok(whole) = whole else {
+        let from_first = |value: &u64| value.wrapping_sub(values[0]) as i64 as f64;
+        return values.iter().map(from_first).collect();
+    };
+    from_integers(&whole)
 }

@@ -2,12 +2,12 @@
 
 use super::joint_states::JointStates;
 use super::sqlite::{Sqlite, Value};
-use super::{Table, TableFile};
+use super::{LogTable, TableFile};
 use crate::error::Result;
 use crate::log::cdr::{JointStateMessage, NAME};
 use std::collections::HashMap;
 
-pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<Table> {
+pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
     let broken = |why: &str| {
         file.wrong(
             why,

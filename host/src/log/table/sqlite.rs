@@ -39,15 +39,15 @@ impl Value {
 pub(super) type Row = (i64, Vec<Value>);
 
 /// What is wrong with a file.
-type Broken = &'static str;
+type Damage = &'static str;
 
 /// What takes the rows of a table, with the names of its columns.
-type Visitor<'v> = dyn FnMut(&[String], Row) -> Result<(), Broken> + 'v;
+type Visitor<'v> = dyn FnMut(&[String], Row) -> Result<(), Damage> + 'v;
 
 impl<'a> Sqlite<'a> {
     /// # Errors
     /// Bytes that are no such file.
-    pub fn open(bytes: &'a [u8]) -> Result<Self, Broken> {
+    pub fn open(bytes: &'a [u8]) -> Result<Self, Damage> {
         if !bytes.starts_with(MAGIC) || bytes.len() < 100 {
             return Err("not an SQLite file");
         }
@@ -78,7 +78,7 @@ impl<'a> Sqlite<'a> {
     ///
     /// # Errors
     /// No such table, broken pages, and what the visitor refuses.
-    pub fn rows(&self, table: &str, visitor: &mut Visitor<'_>) -> Result<(), Broken> {
+    pub fn rows(&self, table: &str, visitor: &mut Visitor<'_>) -> Result<(), Damage> {
         let mut found = None;
         self.walk(1, &mut |(_, values)| {
             if let [kind, name, _, Value::Integer(root), sql, ..] = values.as_slice()
@@ -94,7 +94,7 @@ impl<'a> Sqlite<'a> {
         self.walk(root, &mut |row| visitor(&columns, row))
     }
 
-    fn page(&self, number: usize) -> Result<&'a [u8], Broken> {
+    fn page(&self, number: usize) -> Result<&'a [u8], Damage> {
         let from = number
             .checked_sub(1)
             .and_then(|page| page.checked_mul(self.page_size));
@@ -106,8 +106,8 @@ impl<'a> Sqlite<'a> {
     fn walk(
         &self,
         root: usize,
-        visitor: &mut dyn FnMut(Row) -> Result<(), Broken>,
-    ) -> Result<(), Broken> {
+        visitor: &mut dyn FnMut(Row) -> Result<(), Damage>,
+    ) -> Result<(), Damage> {
         let mut seen = vec![false; self.bytes.len() / self.page_size + 1];
         self.tree(root, 0, &mut seen, visitor)
     }
@@ -117,8 +117,8 @@ impl<'a> Sqlite<'a> {
         number: usize,
         depth: usize,
         seen: &mut [bool],
-        visitor: &mut dyn FnMut(Row) -> Result<(), Broken>,
-    ) -> Result<(), Broken> {
+        visitor: &mut dyn FnMut(Row) -> Result<(), Damage>,
+    ) -> Result<(), Damage> {
         let page = self.page(number)?;
         if depth > DEEPEST || std::mem::replace(&mut seen[number - 1], true) {
             return Err("its pages lead in a ring");
@@ -143,7 +143,7 @@ impl<'a> Sqlite<'a> {
         }
     }
 
-    fn row(&self, page: &'a [u8], at: usize) -> Result<Row, Broken> {
+    fn row(&self, page: &'a [u8], at: usize) -> Result<Row, Damage> {
         let mut at = at;
         let length =
             usize::try_from(varint(page, &mut at)?).map_err(|_| "a row of negative length")?;
@@ -156,7 +156,7 @@ impl<'a> Sqlite<'a> {
     }
 
     /// A row's bytes: those on its page, and those it goes on with.
-    fn payload(&self, page: &'a [u8], at: usize, length: usize) -> Result<Vec<u8>, Broken> {
+    fn payload(&self, page: &'a [u8], at: usize, length: usize) -> Result<Vec<u8>, Damage> {
         let most = self.usable - 35;
         let here = match length <= most {
             true => length,
@@ -184,18 +184,18 @@ impl<'a> Sqlite<'a> {
     }
 }
 
-fn short(bytes: &[u8], at: usize) -> Result<usize, Broken> {
+fn short(bytes: &[u8], at: usize) -> Result<usize, Damage> {
     let two = bytes.get(at..at + 2).ok_or("a number beyond its page")?;
     Ok(usize::from(u16::from_be_bytes([two[0], two[1]])))
 }
 
-fn long(bytes: &[u8], at: usize) -> Result<usize, Broken> {
+fn long(bytes: &[u8], at: usize) -> Result<usize, Damage> {
     let four = bytes.get(at..at + 4).ok_or("a number beyond its page")?;
     Ok(u32::from_be_bytes([four[0], four[1], four[2], four[3]]) as usize)
 }
 
 /// A number of one to nine bytes, seven bits each, eight of the ninth.
-fn varint(bytes: &[u8], at: &mut usize) -> Result<i64, Broken> {
+fn varint(bytes: &[u8], at: &mut usize) -> Result<i64, Damage> {
     let mut value: u64 = 0;
     for place in 0..9 {
         let byte = *bytes.get(*at).ok_or("a number beyond its page")?;
@@ -211,7 +211,7 @@ fn varint(bytes: &[u8], at: &mut usize) -> Result<i64, Broken> {
     Ok(value as i64)
 }
 
-fn values(payload: &[u8]) -> Result<Vec<Value>, Broken> {
+fn values(payload: &[u8]) -> Result<Vec<Value>, Damage> {
     let mut at = 0;
     let head = usize::try_from(varint(payload, &mut at)?).unwrap_or(usize::MAX);
     if head > payload.len() {

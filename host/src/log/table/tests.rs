@@ -5,7 +5,7 @@ use super::*;
 use serde_json::Value;
 use std::path::PathBuf;
 
-const FILES: [&str; 12] = [
+const FILES: [&str; 15] = [
     "states_none.mcap",
     "states_lz4.mcap",
     "states_zstd.mcap",
@@ -13,6 +13,9 @@ const FILES: [&str; 12] = [
     "many.db3",
     "v6.mat",
     "v7.mat",
+    "v73.mat",
+    "v73_packed.mat",
+    "v73_latest.mat",
     "arrow.parquet",
     "arrow_v2.parquet",
     "arrow_old.parquet",
@@ -20,19 +23,19 @@ const FILES: [&str; 12] = [
     "polars.parquet",
 ];
 
-fn path(name: &str) -> PathBuf {
+pub(super) fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/logs")
         .join(name)
 }
 
-fn table(name: &str) -> Table {
-    Table::read(&path(name), LogFormat::of(&path(name))).unwrap()
+pub(super) fn table(name: &str) -> LogTable {
+    LogTable::read(&path(name), LogFormat::of(&path(name))).unwrap()
 }
 
-fn of(name: &str, bytes: &[u8]) -> Result<Table> {
+pub(super) fn of(name: &str, bytes: &[u8]) -> Result<LogTable> {
     let path = path(name);
-    Table::of(
+    LogTable::of(
         Bytes::copy_from_slice(bytes),
         TableFile { path: &path },
         LogFormat::of(&path),
@@ -40,7 +43,7 @@ fn of(name: &str, bytes: &[u8]) -> Result<Table> {
 }
 
 /// What a file must say, by column.
-fn expected(group: &str) -> Vec<(String, Vec<f64>)> {
+pub(super) fn expected(group: &str) -> Vec<(String, Vec<f64>)> {
     let text = std::fs::read_to_string(path("expected.json")).unwrap();
     let all: Value = serde_json::from_str(&text).unwrap();
     let columns = all[group].as_object().unwrap().iter();
@@ -55,7 +58,7 @@ fn expected(group: &str) -> Vec<(String, Vec<f64>)> {
         .collect()
 }
 
-fn assert_bits(table: &Table, name: &str, expected: &[f64]) {
+pub(super) fn assert_bits(table: &LogTable, name: &str, expected: &[f64]) {
     let index = table.names.iter().position(|own| own == name);
     let index = index.unwrap_or_else(|| panic!("{name} is none of {:?}", table.names));
     assert_eq!(table.columns[index].len(), expected.len(), "{name}");
@@ -199,7 +202,7 @@ fn a_torn_mcap_is_read_as_far_as_it_is_whole() {
     let whole = table("states_none.mcap");
     let torn = of("states_none.mcap", &bytes[..bytes.len() / 2]).unwrap();
     assert!(torn.rows() > 5 && torn.rows() < whole.rows());
-    let index = |table: &Table| {
+    let index = |table: &LogTable| {
         table
             .names
             .iter()
@@ -281,4 +284,7 @@ fn whole_numbers_too_long_for_a_double_count_from_the_first() {
         [0.0, 1.0, 10.0]
     );
     assert_eq!(from_integers(&[3, -4]), [3.0, -4.0]);
+    let largest = u64::MAX - 1;
+    assert_eq!(from_unsigned(&[largest, u64::MAX, 1]), [0.0, 1.0, 3.0]);
+    assert_eq!(from_unsigned(&[3, 4]), [3.0, 4.0]);
 }

@@ -14,14 +14,14 @@ fn each_refusal_names_its_place() {
             .replace("-1\n", "-1,50,0\n");
         text.replace("0.06,0.5,-1,50,0", change)
     };
-    type Case<'a> = (
+    type Refusal<'a> = (
         String,
         &'a LogColumns,
         Option<usize>,
         Option<usize>,
         &'a str,
     );
-    let cases: &[Case] = &[
+    let cases: &[Refusal] = &[
         (String::new(), &columns(), None, None, "no header line"),
         (
             "# only\n\n".into(),

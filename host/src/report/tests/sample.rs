@@ -10,7 +10,7 @@ use crate::diagnose::{
 };
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::model::MeasuredSignal;
-use crate::report::{LogFile, ModelFile, Report, ReportProvenance};
+use crate::report::{HashedModel, LogFile, Report, ReportProvenance};
 
 pub(in crate::report) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
@@ -19,7 +19,7 @@ pub(in crate::report) fn report() -> Report {
         samples: 6000,
         held_out,
     };
-    let model = |name: &str| ModelFile {
+    let model = |name: &str| HashedModel {
         name: name.into(),
         sha256: "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae".into(),
     };

@@ -63,6 +63,11 @@ pub(crate) fn log_mat(bytes: &[u8]) {
     raw("log.mat", bytes);
 }
 
+/// Version 7.3 is HDF5.
+pub(crate) fn log_mat73(bytes: &[u8]) {
+    raw("log.mat", bytes);
+}
+
 pub(crate) fn log_parquet(bytes: &[u8]) {
     raw("log.parquet", bytes);
 }

@@ -5,7 +5,7 @@
 //! gigabytes, overflow the stack or take seconds.
 
 use super::varint::{varint, zigzag};
-use crate::log::table::mat_element::Broken;
+use crate::log::table::Broken;
 
 /// Deepest nesting of groups; lists of structures of lists take six.
 const DEEPEST: usize = 32;

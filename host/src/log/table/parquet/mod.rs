@@ -11,7 +11,7 @@ mod pages;
 mod series;
 mod varint;
 
-use super::{MOST_CELLS, Table, TableFile};
+use super::{LogTable, MOST_CELLS, TableFile};
 use crate::error::Result;
 use bytes::Bytes;
 use leaf::{ParquetLeaf, leaves};
@@ -30,7 +30,7 @@ const ENCRYPTED: &[u8] = b"PARE";
 const FEW_CELLS: usize = 1_000_000;
 const CELLS_PER_BYTE: usize = 1024;
 
-pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<Table> {
+pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
     let remedy = "write it again, or as CSV, in Python: \
                   pandas.read_parquet(\"a.parquet\").to_csv(\"a.csv\", index=False)";
     let metadata = metadata(&bytes).map_err(|what| file.wrong(what, remedy))?;
@@ -50,7 +50,7 @@ pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<Table> {
         .enumerate()
         .map(|(index, leaf)| columns(&source, leaf, index))
         .collect();
-    let mut table = Table::default();
+    let mut table = LogTable::default();
     for (
         ParquetLeaf {
             name,

@@ -1,6 +1,6 @@
 //! Numbers of a few bytes, as the footer of a Parquet file and its pages hold them.
 
-use crate::log::table::mat_element::Broken;
+use crate::log::table::Broken;
 
 /// Takes a whole number off the front: seven bits a byte, the lowest first.
 ///

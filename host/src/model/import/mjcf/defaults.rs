@@ -10,17 +10,17 @@ const MAIN: &str = "main";
 /// Classes within classes.
 const DEEPEST: usize = 50;
 
-type Values<'a> = BTreeMap<&'a str, &'a str>;
+type AttributeValues<'a> = BTreeMap<&'a str, &'a str>;
 
 /// Every class: per tag, its attributes with those of the classes around it.
 pub(super) struct Defaults<'a> {
-    classes: HashMap<&'a str, HashMap<&'a str, Values<'a>>>,
+    classes: HashMap<&'a str, HashMap<&'a str, AttributeValues<'a>>>,
 }
 
 /// An element's attributes, its own before those of its class.
 pub(super) struct Attributes<'a> {
     pub element: Element<'a>,
-    from_class: Values<'a>,
+    from_class: AttributeValues<'a>,
 }
 
 impl<'a> Defaults<'a> {
@@ -81,7 +81,7 @@ impl<'a> Attributes<'a> {
     pub fn own(element: Element<'a>) -> Self {
         Attributes {
             element,
-            from_class: Values::new(),
+            from_class: AttributeValues::new(),
         }
     }
 

@@ -1,10 +1,7 @@
 //! Elements of a MATLAB file, version 5: a tag with type and length, then data, to 8 bytes.
 
-/// Nested compressed elements, structures in structures.
-pub(super) const DEEPEST: usize = 16;
-
-/// What is wrong with a file.
-pub(super) type Broken = &'static str;
+use super::number::MatNumber;
+use crate::log::table::Broken;
 
 /// Types of data.
 pub(super) mod kind {
@@ -112,34 +109,20 @@ impl<'a> MatElement<'a> {
 
     /// Its numbers; none of what holds no numbers.
     pub fn numbers(&self) -> Option<Vec<f64>> {
-        fn all<const N: usize>(data: &[u8], big_endian: bool, of: fn([u8; N]) -> f64) -> Vec<f64> {
-            let one = |bytes: &[u8]| {
-                let mut one = [0; N];
-                one.copy_from_slice(bytes);
-                if big_endian {
-                    one.reverse();
-                }
-                of(one)
-            };
-            data.chunks_exact(N).map(one).collect()
-        }
-        let (data, big) = (self.data, self.big_endian);
-        Some(match self.kind {
-            kind::I8 => all(data, big, |b| f64::from(i8::from_le_bytes(b))),
-            kind::U8 => all(data, big, |b| f64::from(u8::from_le_bytes(b))),
-            kind::I16 => all(data, big, |b| f64::from(i16::from_le_bytes(b))),
-            kind::U16 => all(data, big, |b| f64::from(u16::from_le_bytes(b))),
-            kind::I32 => all(data, big, |b| f64::from(i32::from_le_bytes(b))),
-            kind::U32 => all(data, big, |b| f64::from(u32::from_le_bytes(b))),
-            kind::F32 => all(data, big, |b| f64::from(f32::from_le_bytes(b))),
-            kind::F64 => all(data, big, f64::from_le_bytes),
-            kind::I64 | kind::U64 => {
-                let bits = all(data, big, |b| f64::from_bits(u64::from_le_bytes(b)));
-                let whole: Vec<i64> = bits.iter().map(|bits| bits.to_bits() as i64).collect();
-                super::from_integers(&whole)
-            }
+        let number = match self.kind {
+            kind::I8 => MatNumber::I8,
+            kind::U8 => MatNumber::U8,
+            kind::I16 => MatNumber::I16,
+            kind::U16 => MatNumber::U16,
+            kind::I32 => MatNumber::I32,
+            kind::U32 => MatNumber::U32,
+            kind::F32 => MatNumber::F32,
+            kind::F64 => MatNumber::F64,
+            kind::I64 => MatNumber::I64,
+            kind::U64 => MatNumber::U64,
             _ => return None,
-        })
+        };
+        Some(number.all(self.data, self.big_endian))
     }
 }
 

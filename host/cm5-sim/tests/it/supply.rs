@@ -1,0 +1,61 @@
+//! What a low supply does.
+
+use super::rig::*;
+use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
+use handstand_shared::message::*;
+
+/// One servo tells this supply, V.
+fn tells(cm5: &mut VirtualCm5, supply_v: f64) {
+    cm5.bus().servo(4).unwrap().supply_v = supply_v;
+}
+
+#[test]
+fn a_supply_that_stays_low_lets_the_robot_down() {
+    let mut cm5 = VirtualCm5::new();
+    tells(&mut cm5, 8.8);
+    arm(&mut cm5);
+    say(&mut cm5, &Command::KeepAlive, 1000);
+    assert_eq!(
+        cm5.app.condition(),
+        Condition::StreamArmed,
+        "8.8 V is enough"
+    );
+    tells(&mut cm5, 8.7);
+    let (soft_ms, off_ms) = times_to_off(&mut cm5, Some(&Command::KeepAlive));
+    // Three rounds of 9 ticks each, the first of them begun already; then it fades for 160 ms.
+    assert!(
+        soft_ms.is_some_and(|ms| (180.0..380.0).contains(&ms)),
+        "{soft_ms:?}"
+    );
+    assert!(off_ms.is_some_and(|ms| ms < 560.0), "{off_ms:?}");
+    let fault = Condition::Fault(Cause::LowSupply);
+    assert_eq!(cm5.app.condition(), fault);
+}
+
+#[test]
+fn dips_of_the_supply_do_not_add_up() {
+    let mut cm5 = VirtualCm5::new();
+    arm(&mut cm5);
+    for _ in 0..6 {
+        tells(&mut cm5, 8.0);
+        say(&mut cm5, &Command::KeepAlive, 100);
+        tells(&mut cm5, 9.6);
+        say(&mut cm5, &Command::KeepAlive, 200);
+        assert_eq!(cm5.app.condition(), Condition::StreamArmed);
+    }
+}
+
+#[test]
+fn a_low_supply_is_not_armed_with() {
+    let mut cm5 = VirtualCm5::new();
+    let token = greet(&mut cm5).token;
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    // Before any servo told it.
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Supply)));
+    tells(&mut cm5, 8.7);
+    say(&mut cm5, &Command::KeepAlive, 250);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Supply)));
+    tells(&mut cm5, 8.8);
+    say(&mut cm5, &Command::KeepAlive, 250);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+}

@@ -1,0 +1,132 @@
+//! What the options of `handstand gains` ask of a design.
+
+use super::super::weight_arg::WeightArg;
+use super::super::{Talk, page};
+use super::GainsArgs;
+use handstand::model::Model;
+use handstand::synth::export::Provenance;
+use handstand::synth::{Format, Request, Sensors, Time, balanced, upright};
+use handstand::{Error, Result, output};
+use handstand_shared::raw::Position;
+use std::path::Path;
+
+/// Where the robot is balanced.
+#[derive(Debug, Clone)]
+pub(super) enum Pose {
+    /// All links straight up.
+    Upright,
+    /// Angles of the joints, rad.
+    Angles(Vec<f64>),
+}
+
+/// `--pose`.
+pub(super) fn pose(text: &str) -> Result<Pose, String> {
+    if text == "upright" {
+        return Ok(Pose::Upright);
+    }
+    let angles: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    angles
+        .map(Pose::Angles)
+        .map_err(|_| "give angles in rad between commas, or `upright`".into())
+}
+
+/// The model without the effects left out, what is asked of its design, and where it came from.
+pub(in crate::cli) fn requested(
+    args: &GainsArgs,
+    talk: &Talk,
+) -> Result<(Model, Request, Provenance)> {
+    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
+    for file in files.into_iter().flatten() {
+        output::vacant(file, args.force)?;
+    }
+    let mut model = Model::load(&args.model)?;
+    for id in leave_out(&mut model, &args.without)? {
+        talk.say(&format!("designed without {id}; the simulated loop has it"));
+    }
+    let (request, balance) = request(args, &model)?;
+    if let Some(said) = balance {
+        talk.say(&said);
+    }
+    Ok((model, request, provenance(&args.model, talk)?))
+}
+
+/// Takes these effects out of the model; which ones they were.
+fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String]> {
+    for id in without {
+        let before = model.effects.len();
+        model.effects.retain(|e| e.effect.info().id != id);
+        if model.effects.len() == before {
+            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            let held = match held.as_slice() {
+                [] => "none at all".to_string(),
+                held => held.join(", "),
+            };
+            return Err(Error::usage(
+                format!("`{}` holds no effect `{id}`", model.name),
+                format!("it holds {held}"),
+            ));
+        }
+    }
+    Ok(without)
+}
+
+/// The request, and where the pose was moved to if it was.
+fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)> {
+    let mut pose_rad = match &args.pose {
+        Pose::Upright => upright(model),
+        Pose::Angles(angles) => angles.clone(),
+    };
+    let mut moved = None;
+    if args.balance {
+        pose_rad = balanced(model, &pose_rad)?;
+        let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
+        moved = Some(format!("balanced at q = [{}] rad", said.join(", ")));
+    }
+    let time = match args.continuous {
+        true => Time::Continuous,
+        false => Time::Sampled {
+            ts_s: args.ts,
+            delay_s: args.delay,
+        },
+    };
+    let joints = model.link_count();
+    let driven = model.joints.iter().filter(|joint| joint.drive.is_driven());
+    let inputs = driven.count();
+    let list = |given: &Option<WeightArg>, name, size| {
+        let list = given.as_ref().map(|given| given.list(name, size));
+        list.transpose()
+    };
+    let read = |given: &Option<WeightArg>| given.as_ref().map(WeightArg::read).transpose();
+    let standard = Request::standard(model);
+    let sensors = Sensors {
+        position_step_rad: args.position_step.unwrap_or(Position::LSB_RAD),
+        gyro_step_rad_s: args
+            .gyro_step
+            .unwrap_or(10.0 * std::f64::consts::PI / 180.0),
+        process: read(&args.process)?,
+    };
+    let request = Request {
+        pose_rad,
+        q: read(&args.q)?.unwrap_or(standard.q),
+        r: read(&args.r)?.unwrap_or(standard.r),
+        time,
+        sensors: args.lqg.then_some(sensors),
+        state_range: read(&args.range)?.unwrap_or(standard.state_range),
+        input_range: read(&args.limit)?,
+        format: Format {
+            state_step: list(&args.state_step, "--state-step", 2 * joints)?,
+            input_step: list(&args.input_step, "--input-step", inputs)?,
+            ..standard.format
+        },
+    };
+    Ok((request, moved))
+}
+
+fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
+    let file = page::hashed(model)?;
+    Ok(Provenance {
+        model: file.name,
+        sha256: file.sha256,
+        command: talk.command.clone(),
+    })
+}

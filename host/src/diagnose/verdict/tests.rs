@@ -1,0 +1,194 @@
+use super::*;
+
+/// Effects that explain all but noise.
+const FOUND: Signs = Signs {
+    kind: Kind::Effects,
+    before: 400.0,
+    left: 1.3,
+    at_noise_floor: true,
+    held_out: true,
+    tolerated: false,
+    free_form_share: 0.0,
+    free_form_low: 0.0,
+    per_motion_reduction: 0.0,
+    placebo_ranks: false,
+    rivals: false,
+};
+/// The same with something left above the noise.
+const ABOVE: Signs = Signs {
+    left: 1.8,
+    at_noise_floor: false,
+    ..FOUND
+};
+const GIVEN: Signs = Signs {
+    kind: Kind::Given,
+    before: 1.1,
+    left: 1.1,
+    ..FOUND
+};
+
+#[test]
+fn what_explains_all_is_named_by_its_kind() {
+    assert_eq!(FOUND.verdict(), Verdict::Named);
+    assert_eq!(ABOVE.verdict(), Verdict::Named);
+    let values = Signs {
+        kind: Kind::Values,
+        ..FOUND
+    };
+    assert_eq!(values.verdict(), Verdict::WrongValue);
+    assert_eq!(GIVEN.verdict(), Verdict::Nominal);
+}
+
+#[test]
+fn with_rivals_nothing_is_named() {
+    for kind in [Kind::Values, Kind::Effects] {
+        let signs = Signs {
+            kind,
+            rivals: true,
+            ..FOUND
+        };
+        assert_eq!(signs.verdict(), Verdict::Ambiguous);
+    }
+}
+
+#[test]
+fn what_a_placebo_gains_too_proves_nothing() {
+    let signs = Signs {
+        placebo_ranks: true,
+        ..FOUND
+    };
+    assert_eq!(signs.verdict(), Verdict::Unexplained);
+}
+
+#[test]
+fn a_model_as_given_is_nominal_only_near_the_floor() {
+    let left = |left: f64| Signs {
+        left,
+        at_noise_floor: false,
+        ..GIVEN
+    };
+    assert_eq!(left(1.49 * 1.49).verdict(), Verdict::Nominal);
+    assert_eq!(left(1.51 * 1.51).verdict(), Verdict::Unexplained);
+    let fitted = Signs {
+        held_out: false,
+        ..left(4.0)
+    };
+    assert_eq!(fitted.verdict(), Verdict::Unexplained);
+}
+
+#[test]
+fn a_tolerance_makes_a_model_adequate_but_not_nominal() {
+    let above = Signs {
+        left: 9.0,
+        at_noise_floor: false,
+        tolerated: true,
+        ..GIVEN
+    };
+    assert_eq!(above.verdict(), Verdict::Adequate);
+    assert_eq!(
+        Signs {
+            tolerated: true,
+            ..GIVEN
+        }
+        .verdict(),
+        Verdict::Nominal
+    );
+}
+
+#[test]
+fn structure_in_what_is_left_must_be_sure_and_large() {
+    let structured = |share: f64, low: f64| Signs {
+        free_form_share: share,
+        free_form_low: low,
+        ..ABOVE
+    };
+    assert_eq!(structured(0.4, 0.21).verdict(), Verdict::Unexplained);
+    assert_eq!(structured(0.3, 0.21).verdict(), Verdict::Named);
+    assert_eq!(structured(0.4, 0.19).verdict(), Verdict::Named);
+    // Far above the noise less is asked for.
+    let far = Signs {
+        before: 1e4,
+        left: 17.0,
+        ..structured(0.4, 0.01)
+    };
+    assert_eq!(far.verdict(), Verdict::Unexplained);
+    assert_eq!(
+        Signs {
+            free_form_low: -0.01,
+            ..far
+        }
+        .verdict(),
+        Verdict::Named
+    );
+}
+
+#[test]
+fn an_eighth_of_the_squared_error_may_be_left() {
+    let left = |left: f64| Signs {
+        before: 81.0,
+        left,
+        ..ABOVE
+    };
+    assert_eq!(left(10.9).verdict(), Verdict::Named);
+    assert_eq!(left(11.1).verdict(), Verdict::Unexplained);
+    // Near the noise a larger share may.
+    assert_eq!(
+        Signs {
+            before: 4.0,
+            ..left(1.9)
+        }
+        .verdict(),
+        Verdict::Named
+    );
+    assert_eq!(
+        Signs {
+            before: 4.0,
+            ..left(2.1)
+        }
+        .verdict(),
+        Verdict::Unexplained
+    );
+}
+
+#[test]
+fn what_leaves_five_times_the_noise_is_not_the_whole_however_much_it_removes() {
+    let left = |rms: f64| Signs {
+        before: 1e6,
+        left: rms * rms,
+        ..ABOVE
+    };
+    assert_eq!(left(4.9).verdict(), Verdict::Named);
+    assert_eq!(left(5.1).verdict(), Verdict::Unexplained);
+    // What is left of the motions that were fitted is left of others too.
+    let fitted = Signs {
+        held_out: false,
+        ..left(5.1)
+    };
+    assert_eq!(fitted.verdict(), Verdict::Unexplained);
+}
+
+#[test]
+fn a_law_has_the_same_values_in_all_motions() {
+    let varying = Signs {
+        per_motion_reduction: 0.51,
+        ..ABOVE
+    };
+    assert_eq!(varying.verdict(), Verdict::Unexplained);
+    assert_eq!(
+        Signs {
+            per_motion_reduction: 0.49,
+            ..ABOVE
+        }
+        .verdict(),
+        Verdict::Named
+    );
+    // Motions that were fitted show too little of it.
+    assert_eq!(
+        Signs {
+            held_out: false,
+            ..varying
+        }
+        .verdict(),
+        Verdict::Named
+    );
+}
