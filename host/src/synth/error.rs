@@ -1,7 +1,6 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
 use super::eigen::Mode;
-use crate::effects::Axis;
 use crate::error::{Error, Reason};
 use std::borrow::Cow;
 use std::fmt;
@@ -26,26 +25,26 @@ pub enum DesignError {
         "joint {} is passive and {torque_nm:.3e} {} would have to hold it at {angle_rad} {}: \
          the pose is no equilibrium",
         joint + 1,
-        torque_unit(*axis),
-        place_unit(*axis)
+        units[2],
+        units[0]
     )]
     NoEquilibrium {
         joint: usize,
         torque_nm: f64,
         angle_rad: f64,
-        axis: Axis,
+        units: [&'static str; 3],
     },
     #[error("no equilibrium was found near this pose")]
     EquilibriumNotFound,
     #[error(
         "joint {} needs {torque_nm:.3} {} to hold the pose, more than its drive can give",
         joint + 1,
-        torque_unit(*axis)
+        units[2]
     )]
     DriveTooWeak {
         joint: usize,
         torque_nm: f64,
-        axis: Axis,
+        units: [&'static str; 3],
     },
     #[error("joint {} slides, and the filter measures angles and a gyro", joint + 1)]
     SlideFiltered { joint: usize },
@@ -225,20 +224,6 @@ fn nearest(weakest: Option<&PlantMode>) -> String {
             mode.mode.margin
         )
     })
-}
-
-fn torque_unit(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Hinge => "N m",
-        Axis::Slide => "N",
-    }
-}
-
-fn place_unit(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Hinge => "rad",
-        Axis::Slide => "m",
-    }
 }
 
 impl Reason for DesignError {

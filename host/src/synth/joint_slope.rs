@@ -2,9 +2,7 @@
 
 use super::error::DesignError;
 use super::omitted::OmittedEffect;
-use crate::effects::{
-    AtRest, Axis, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope,
-};
+use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
 use crate::model::{Drive, EffectInstance, Model};
 
 /// Most steps of Newton's iteration for the duty that holds a torque.
@@ -36,7 +34,8 @@ pub(super) struct Held {
 /// One joint and what acts on it.
 pub(super) struct JointAt<'a> {
     joint: usize,
-    axis: Axis,
+    /// Of its place, speed and torque.
+    units: [&'static str; 3],
     drive: &'a Drive,
     effects: Vec<&'a EffectInstance>,
     angle_rad: f64,
@@ -61,7 +60,7 @@ impl<'a> JointAt<'a> {
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         JointAt {
             joint,
-            axis: model.joints[joint].axis(),
+            units: model.joints[joint].units(),
             drive: &model.joints[joint].drive,
             effects,
             angle_rad: relative_rad[joint] - model.zero_rad(joint),
@@ -139,7 +138,7 @@ impl<'a> JointAt<'a> {
                 joint: self.joint,
                 torque_nm: needed_nm,
                 angle_rad: self.pose_rad,
-                axis: self.axis,
+                units: self.units,
             });
         };
         Ok(Held {
@@ -175,7 +174,7 @@ impl<'a> JointAt<'a> {
         Err(DesignError::DriveTooWeak {
             joint: self.joint,
             torque_nm: needed_nm,
-            axis: self.axis,
+            units: self.units,
         })
     }
 

@@ -173,9 +173,10 @@ fn mjcf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
             "0 -3 0"
         };
         let across = format!("{} 0 {}\" type=\"slide", draws.next(), draws.next() + 1.5);
-        let axis = match slides && draws.next() > 0.0 {
-            true => across.as_str(),
-            false => axis,
+        // Degrees, or metres.
+        let (axis, most) = match slides && draws.next() > 0.0 {
+            true => (across.as_str(), 0.3),
+            false => (axis, 20.0),
         };
         let shape = match index % 4 {
             0 => format!(
@@ -207,9 +208,9 @@ fn mjcf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
             draws.next(),
             draws.next() + 1.5,
             draws.three(0.1),
-            20.0 * draws.next(),
+            most * draws.next(),
             draws.above(0.1, 2.0),
-            20.0 * draws.next(),
+            most * draws.next(),
             draws.above(0.001, 0.01),
             draws.three(0.2),
         );

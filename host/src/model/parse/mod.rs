@@ -4,6 +4,8 @@ mod columns;
 mod effects;
 mod expressions;
 #[cfg(test)]
+mod slide_tests;
+#[cfg(test)]
 mod tests;
 
 use super::field::{JOINT_INERTIA, JointField, LinkField, POSITIVE};
