@@ -159,7 +159,7 @@ fn exported_models_move_in_mujoco_as_here() {
     };
     let folder = tempfile::tempdir().unwrap();
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
-    let mut listed = 0;
+    let mut listed = Vec::new();
     for seed in 0..4 * KINDS.len() as u64 {
         let kind = KINDS[seed as usize % KINDS.len()];
         let motions = if seed % 3 == 2 {
@@ -167,6 +167,10 @@ fn exported_models_move_in_mujoco_as_here() {
         } else {
             Motions::Arm
         };
+        // What MJCF lacks it lacks at every seed.
+        if listed.contains(&(kind, motions)) {
+            continue;
+        }
         let Some(model) = model(motions, kind, seed) else {
             continue;
         };
@@ -174,7 +178,9 @@ fn exported_models_move_in_mujoco_as_here() {
         // These motions log no supply, so it does nothing.
         let mut missing = exported.not_carried.iter().map(|missing| &*missing.part);
         if missing.clone().any(|part| part != "nominal_supply_v") {
-            listed += usize::from(missing.any(|part| part == kind));
+            if missing.any(|part| part == kind) {
+                listed.push((kind, motions));
+            }
             continue;
         }
         let file = folder.path().join(format!("{seed}.xml"));
@@ -208,8 +214,9 @@ fn exported_models_move_in_mujoco_as_here() {
         }
     }
     println!(
-        "{} compared, {listed} with an effect listed as not carried",
-        expected.len()
+        "{} compared; not carried, by effect and motions: {}",
+        expected.len(),
+        listed.len()
     );
     assert!(expected.len() >= 20, "{}", expected.len());
 }
