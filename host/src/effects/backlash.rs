@@ -38,9 +38,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Nordin, Gutman, Automatica 38 (2002) 1633",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "the reading stays while |q - reading| <= gap_m / 2, else it follows at that distance",
+    parameters: &[Parameter {
+        key: "gap_m",
+        unit: "m",
+        meaning: "free play, from flank to flank",
+        off: Some(0.0),
+        typical: (0.0001, 0.005),
+        bounds: (0.0, 0.1),
+        starts: &[0.001, 0.003],
+    }],
+    ..INFO
+};
+
 impl Effect for Backlash {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn sense(

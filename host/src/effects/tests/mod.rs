@@ -65,6 +65,7 @@ fn rig() -> Rig {
         mass_kg: 0.4,
         inertia_kg_m2: 8e-4,
         armature_kg_m2: 2e-3,
+        slide: None,
     };
     let chain = Chain {
         links: vec![link],
