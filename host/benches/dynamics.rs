@@ -15,6 +15,7 @@ fn chain(n: usize) -> Chain {
         mass_kg: 0.2,
         inertia_kg_m2: 3.75e-4,
         armature_kg_m2: 0.0,
+        slide: None,
     };
     Chain {
         links: vec![link; n],

@@ -131,7 +131,11 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let data = gains_json(&design, &made, &verified);
     talk.result(&data, || {
         let design = export::text(&design);
-        format!("{}\n{}", design.trim_end(), verification::text(&verified))
+        format!(
+            "{}\n{}",
+            design.trim_end(),
+            verification::text(&verified, whole.slides())
+        )
     })?;
     write(args, &design, &made, &data, talk)?;
     Ok(ExitStatus::answer(verified.stabilised))

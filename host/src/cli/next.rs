@@ -104,6 +104,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
         effect_named(effect)?;
     }
     let mut model = Model::load(&args.model)?;
+    model.hinges_only("proposed motions are for servos that turn")?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));
     let logs = input::log_set(&args.logs, &args.judging.holdout);

@@ -58,6 +58,7 @@ impl ServoColumns {
         let (columns, joint) = match &self.model {
             Some(file) => {
                 let model = Model::load(file)?;
+                model.hinges_only("a servo's columns are angles")?;
                 let joint = self.driven(&model)?;
                 (model.log, joint)
             }

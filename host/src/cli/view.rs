@@ -48,6 +48,7 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
     let model = Model::load(&args.model)?;
+    model.hinges_only("a page draws links that turn")?;
     if let Some(sentence) = model.log.unobserved().into_iter().next() {
         return Err(Error::usage(
             sentence,

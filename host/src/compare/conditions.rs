@@ -60,8 +60,9 @@ pub(super) struct Met {
     pub holds: Vec<bool>,
 }
 
-/// Every condition, ranges of angle included, asked of every sample.
-pub(super) fn met(features: &[SampleFeatures]) -> Vec<Met> {
+/// Every condition, ranges of angle included, asked of every sample; `unit` is that of the angle,
+/// or of a slide's displacement.
+pub(super) fn met(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
     let mut all: Vec<Met> = CONDITIONS
         .iter()
         .map(|(words, holds)| Met {
@@ -69,12 +70,12 @@ pub(super) fn met(features: &[SampleFeatures]) -> Vec<Met> {
             holds: features.iter().map(holds).collect(),
         })
         .collect();
-    all.extend(angle_ranges(features));
+    all.extend(angle_ranges(features, unit));
     all
 }
 
 /// Sixths of the range between the smallest and the largest angle.
-fn angle_ranges(features: &[SampleFeatures]) -> Vec<Met> {
+fn angle_ranges(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
     let angles = || features.iter().map(|m| m.angle_rad);
     let low = angles().fold(f64::INFINITY, f64::min);
     let high = angles().fold(f64::NEG_INFINITY, f64::max);
@@ -88,7 +89,7 @@ fn angle_ranges(features: &[SampleFeatures]) -> Vec<Met> {
             let (from, to) = (edge(part), edge(part + 1));
             let last = part + 1 == ANGLE_PARTS;
             Met {
-                words: format!("between {from:.digits$} and {to:.digits$} rad"),
+                words: format!("between {from:.digits$} and {to:.digits$} {unit}"),
                 holds: angles().map(|a| a >= from && (a < to || last)).collect(),
             }
         })

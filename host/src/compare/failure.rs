@@ -43,7 +43,10 @@ pub(super) fn failing(
         let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
-            let conditions = met(&features(model, motions, joint));
+            let conditions = met(
+                &features(model, motions, joint),
+                model.joints[joint].units()[0],
+            );
             let ranked = ranked(&error, signal.floor, conditions);
             all.extend(
                 ranked

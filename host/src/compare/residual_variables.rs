@@ -7,7 +7,7 @@ use crate::model::{Drive, MeasuredSignal, Model};
 /// A quantity at every sample, the motions end to end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualVariable {
-    /// What it is: `speed`, `angle`, `load`, `time`, `supply`.
+    /// What it is: `speed`, `angle` (of a slide its displacement), `load`, `time`, `supply`.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
@@ -33,12 +33,13 @@ pub fn residual_variables(
         MeasuredSignal::Rate => m.measured(joint, signal).to_vec(),
         _ => speed_rad_s(&m.time_s, &m.position_rad[joint]),
     };
+    let [place_unit, speed_unit, torque_unit] = model.joints[joint].units();
     let duty = matches!(model.joints[joint].drive, Drive::Duty(_))
         && motions.iter().any(|motion| motion.input[joint].is_some());
     let mut variables = vec![
-        variable("speed", "rad/s", &|m| speed(m)),
-        variable("angle", "rad", &|m| m.position_rad[joint].clone()),
-        variable("load", if duty { "1" } else { "N m" }, &|m| {
+        variable("speed", speed_unit, &|m| speed(m)),
+        variable("angle", place_unit, &|m| m.position_rad[joint].clone()),
+        variable("load", if duty { "1" } else { torque_unit }, &|m| {
             load_nm(model, m, joint)
         }),
         variable("time", "s", &|m| {

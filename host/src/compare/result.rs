@@ -154,18 +154,20 @@ impl Serialize for Trace {
 }
 
 impl Comparison {
-    /// The signals whose errors can be pooled: angles, or rates where no angle is measured.
+    /// The signals whose errors can be pooled: angles and, 1 mm for 1 mrad, displacements; rates
+    /// where neither is measured.
     pub fn pooled(&self) -> impl Iterator<Item = &SignalError> {
         let quantity = self.quantity();
-        self.signals.iter().filter(move |s| s.quantity == quantity)
+        let signals = self.signals.iter();
+        signals.filter(move |s| s.quantity.counts_in(quantity))
     }
 
     /// What errors over all joints are of.
     pub fn quantity(&self) -> MeasuredSignal {
-        let angles = |signal: &SignalError| signal.quantity == MeasuredSignal::Angle;
-        match self.signals.is_empty() || self.signals.iter().any(angles) {
+        let signals: Vec<MeasuredSignal> = self.signals.iter().map(|s| s.quantity).collect();
+        match signals.is_empty() {
             true => MeasuredSignal::Angle,
-            false => MeasuredSignal::Rate,
+            false => MeasuredSignal::pooled(&signals),
         }
     }
 

@@ -69,7 +69,7 @@ impl ModelRun {
             model: name.to_string(),
             horizon_s: horizon.seconds(),
             windows: data.motion_windows(*horizon),
-            unobserved: model.log.unobserved(),
+            unobserved: model.log.notes(),
             horizons: vec![HorizonError {
                 quantity: data.quantity(),
                 horizon_s: horizon.seconds(),

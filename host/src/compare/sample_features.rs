@@ -2,6 +2,7 @@
 //! of them.
 
 use super::order::{quantile, ranks};
+use crate::dynamics::EquationsOfMotion;
 use crate::log::Motion;
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
 
@@ -130,6 +131,9 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
 
 /// Torque of gravity on a joint, N m, by the model's links at the measured angles; payload apart.
 fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
+    if model.slides() {
+        return gravity_with_slides(model, motion, joint);
+    }
     let zero = model.angle_zero.from_hanging_rad();
     (0..motion.len())
         .map(|k| {
@@ -148,6 +152,16 @@ fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
             torque
         })
         .collect()
+}
+
+/// The same where joints slide: torques, or forces, N.
+fn gravity_with_slides(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
+    let equations = EquationsOfMotion::new(&model.chain(), 0.0);
+    let at = |k: usize| {
+        let reading: Vec<f64> = motion.position_rad.iter().map(|series| series[k]).collect();
+        -equations.gravity(&model.relative_rad(&reading))[joint]
+    };
+    (0..motion.len()).map(at).collect()
 }
 
 /// The torque a joint is told, or duty in its place; gravity's where it is told neither.

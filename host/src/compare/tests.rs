@@ -134,7 +134,7 @@ fn an_error_after_reversals_is_named_so() {
                 }
         })
         .collect();
-    let all = ranked(&error, 1e-4, met(&features(&model, &motions, 0)));
+    let all = ranked(&error, 1e-4, met(&features(&model, &motions, 0), "rad"));
     assert_eq!(all[0].words, "within 80 ms after a reversal");
     assert!(all[0].error_share > 0.95 && all[0].sample_share < 0.12);
 }
@@ -272,7 +272,7 @@ proptest! {
         let features = features(&pendulum(), &motions, 0);
         prop_assert_eq!(features.len(), 2 * rows.len());
         let error: Vec<f64> = features.iter().map(|m| m.angle_rad).collect();
-        for ranked in ranked(&error, 0.0, met(&features)) {
+        for ranked in ranked(&error, 0.0, met(&features, "rad")) {
             prop_assert!((0.0..=1.0 + 1e-12).contains(&ranked.error_share));
             prop_assert!((0.0..=1.0).contains(&ranked.sample_share));
         }

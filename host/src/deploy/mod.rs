@@ -57,8 +57,10 @@ fn observer_known(model: &Model, board: &Board) -> Result<DesignModel> {
 /// The plan that makes the CM-5 execute a design.
 ///
 /// # Errors
-/// A design that the firmware has no law for, or values that do not fit its words.
+/// A design that the firmware has no law for, values that do not fit its words, or joints that
+/// slide.
 pub fn plan(model: &Model, law: BoardLaw, board: &Board) -> Result<Plan> {
+    model.hinges_only("the board's plans are for servos that turn")?;
     match law {
         BoardLaw::State(design) => state::plan(model, design, board),
         BoardLaw::Observer(machine) => {

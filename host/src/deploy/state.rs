@@ -36,12 +36,12 @@ pub fn state_design(model: &Model, mut request: Request, board: &Board) -> Resul
         ));
     }
     request.format.state_step = Some(measured_steps(board.period_s));
+    relative(model)?;
     let mut design = Design::of(model, &request)?;
     if let Some(step_nm) = finer_step_nm(&design, board) {
         request.format.input_step = Some(vec![step_nm; design.inputs.len()]);
         design = Design::of(model, &request)?;
     }
-    relative(model)?;
     shift_to_upright(&mut design, model);
     Ok(design)
 }
@@ -106,8 +106,9 @@ fn shift_to_upright(design: &mut Design, model: &Model) {
     }
 }
 
-/// Refuse absolute angles: servos measure relative ones.
+/// Refuse absolute angles, for servos measure relative ones, and joints that slide.
 pub(super) fn relative(model: &Model) -> Result<()> {
+    model.hinges_only("the board's plans are for servos that turn")?;
     match model.angles {
         Angles::Relative => Ok(()),
         Angles::Absolute => Err(Error::design(

@@ -3,7 +3,7 @@
 use crate::effects::{EFFECTS, Effect, Needs, Parameter, Scope, Site};
 use crate::fitting::Candidate;
 use crate::log::Motion;
-use crate::model::{Drive, MeasuredSignal, Model};
+use crate::model::{Drive, MeasuredSignal, Model, effect_on};
 
 /// Every effect of the library and of the model's file at every place where it can act on this
 /// model and be seen in these motions, except those the model holds and those named in `without`;
@@ -24,11 +24,16 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
                 .map(Some)
                 .collect(),
         };
-        let at = |joint| Candidate { effect, joint };
+        let at = |joint| Candidate {
+            effect: effect_on(effect, joint, &model.joints).unwrap_or(effect),
+            joint,
+        };
         let can_act = |joint| {
-            !at(joint).in_model(model)
+            effect_on(effect, joint, &model.joints).is_some()
+                && !at(joint).in_model(model)
                 && visible(info.needs, model, motions, joint)
                 && joint.is_none_or(|joint| is_read(effect, model, joint))
+                && joint.is_none_or(|joint| info.id != COM_ANGLE || turns(model, joint))
         };
         let twins = twins(model);
         let share = |joint: &usize| joints.contains(&Some(*joint)) && can_act(Some(*joint));
@@ -45,6 +50,15 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
     found
 }
 
+/// Where the centre of mass of a link lies beside its line.
+const COM_ANGLE: &str = "com_angle";
+
+/// Whether the link behind a joint turns: the angles of one that only slides show in nothing.
+fn turns(model: &Model, joint: usize) -> bool {
+    let until = model.joints.iter().take(joint + 1);
+    until.into_iter().any(|joint| joint.slide.is_none())
+}
+
 /// Whether an encoder or sensor that this effect changes is read at a joint: by the log, or by the
 /// regulator of its drive. A rate shows what scales the reading.
 fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
@@ -54,7 +68,7 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
     match info.site {
         Site::Encoder | Site::Sensor if regulated => true,
         Site::Encoder => match signal {
-            MeasuredSignal::Angle => true,
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => true,
             MeasuredSignal::Rate => {
                 let start = |parameter: &Parameter| parameter.starts.first().copied();
                 let values: Vec<f64> = info.parameters.iter().filter_map(start).collect();
@@ -62,7 +76,7 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
             }
             MeasuredSignal::Nothing => false,
         },
-        Site::Sensor => signal == MeasuredSignal::Angle,
+        Site::Sensor => matches!(signal, MeasuredSignal::Angle | MeasuredSignal::Displacement),
         _ => true,
     }
 }
@@ -74,7 +88,9 @@ fn twins(model: &Model) -> Vec<usize> {
     let drive = |joint: &usize| &model.joints[*joint].drive;
     let alike = |joint: &usize| {
         let (first, own) = (drive(&driven[0]), drive(joint));
-        first.name() == own.name() && first.motor() == own.motor()
+        let axis = |joint: usize| model.joints[joint].axis();
+        let same = first.name() == own.name() && first.motor() == own.motor();
+        same && axis(driven[0]) == axis(*joint)
     };
     match driven.len() > 1 && driven.iter().all(alike) {
         true => driven,

@@ -113,7 +113,7 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
             percent(evidence.per_motion_reduction.unwrap_or(0.0))
         ));
     }
-    warnings.extend(evidence.evaluator.start.log.unobserved());
+    warnings.extend(evidence.evaluator.start.log.notes());
     warnings
 }
 

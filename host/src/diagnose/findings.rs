@@ -3,7 +3,7 @@
 use crate::effects;
 use crate::fitting::{Candidate, ErrorReduction, FittedValue, MotionWindow};
 use crate::log::{LogFinding, Severity};
-use crate::model::{Model, ParameterPath};
+use crate::model::{Model, ParameterPath, effect_on};
 use serde::Serialize;
 
 /// What a diagnosis may end in.
@@ -191,11 +191,10 @@ impl FittedEffect {
         }
     }
 
-    fn candidate(&self) -> Option<Candidate> {
-        Some(Candidate {
-            effect: effects::named(&self.kind)?,
-            joint: self.joint.map(|joint| joint - 1),
-        })
+    pub(crate) fn candidate(&self, model: &Model) -> Option<Candidate> {
+        let joint = self.joint.map(|joint| joint - 1);
+        let effect = effect_on(effects::named(&self.kind)?, joint, &model.joints)?;
+        Some(Candidate { effect, joint })
     }
 }
 
@@ -215,8 +214,9 @@ impl Diagnosis {
         }
         let found = self.effects.iter().filter_map(|effect| {
             let values: Vec<f64> = effect.parameters.iter().map(|value| value.value).collect();
-            Some(effect.candidate()?.instance(&values))
+            Some(effect.candidate(&model)?.instance(&values))
         });
+        let found: Vec<_> = found.collect();
         model.effects.extend(found);
         model
     }

@@ -76,13 +76,16 @@ pub fn how_to_measure(path: &str) -> Option<String> {
         ParameterPath::Joint { index, field } => {
             let joint = index + 1;
             match field {
-                JointField::StallTorque => {
+                JointField::StallTorque | JointField::StallForce => {
                     format!("hold a known mass at a known arm with joint {joint}")
                 }
-                JointField::NoLoadSpeed => {
+                JointField::NoLoadSpeed | JointField::NoLoadLinearSpeed => {
                     format!("time joint {joint} without load at full duty")
                 }
-                JointField::GainPerRad | JointField::GainSPerRad => {
+                JointField::GainPerRad
+                | JointField::GainSPerRad
+                | JointField::GainPerM
+                | JointField::GainSPerM => {
                     format!("read the gain that is set in the servo of joint {joint}")
                 }
             }

@@ -4,7 +4,7 @@
 use crate::effects::ProbeVariable;
 use crate::fitting::Candidate;
 use crate::fitting::FitData;
-use crate::model::{Drive, MeasuredSignal, Model};
+use crate::model::{Drive, Link, MeasuredSignal, Model};
 use std::f64::consts::PI;
 
 /// A probe with the amplitude at which its effect is measured.
@@ -52,8 +52,11 @@ pub(super) fn terms(model: &Model, data: &FitData) -> Vec<Term> {
             add(ProbeVariable::SineOfAngle, 0.3 * torque, periods, 1.0);
             add(ProbeVariable::CosineOfAngle, 0.3 * torque, periods, 1.0);
         }
-        let moment = model.links[joint].inertia_kg_m2
-            + model.links[joint].mass_kg * model.links[joint].com_m.powi(2);
+        let link = &model.links[joint];
+        let moment = match model.joints[joint].slide {
+            Some(_) => model.links[joint..].iter().map(|link| link.mass_kg).sum(),
+            None => link.inertia_kg_m2 + link.mass_kg * link.com_m.powi(2),
+        };
         add(ProbeVariable::Inertia, 0.02 * moment, 0.0, 1.0);
         add(
             ProbeVariable::Mass,
@@ -133,10 +136,14 @@ impl Range {
             Drive::Torque | Drive::Duty(_) => full * largest,
             _ => full,
         };
-        let outer: f64 = model.links[joint..]
-            .iter()
-            .map(|l| l.mass_kg * (l.com_m.abs() + 0.3 * l.length_m))
-            .sum();
+        let slides = model.joints[joint].slide.is_some();
+        let lever_m = |l: &Link| match slides {
+            // A force: no lever.
+            true => 1.0,
+            false => l.com_m.abs() + 0.3 * l.length_m,
+        };
+        let outer = model.links[joint..].iter();
+        let outer: f64 = outer.map(|l| l.mass_kg * lever_m(l)).sum();
         // An angle that is not measured may be anywhere.
         let (low_rad, high_rad) = match measured().next() {
             Some(_) => (

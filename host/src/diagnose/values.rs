@@ -91,7 +91,8 @@ pub(super) fn kinds_of_values(model: &Model) -> Vec<Vec<ParameterPath>> {
     };
     let torque = |path: &ParameterPath| match path {
         ParameterPath::Joint { index, field } => {
-            (*field == JointField::StallTorque).then_some(*index)
+            let stall = [JointField::StallTorque, JointField::StallForce].contains(field);
+            stall.then_some(*index)
         }
         _ => None,
     };

@@ -18,8 +18,11 @@ pub struct Workspace {
 #[derive(Debug, Clone, Copy, Default)]
 struct Scratch {
     motion: LinkMotion,
+    /// Direction of a joint that slides.
+    along: [f64; 2],
     /// Share of the link before's angular acceleration that the link takes on, the rest left to the
-    /// joint; of a held joint, its torque per unit of that acceleration.
+    /// joint; of a held joint, its torque per unit of that acceleration. Of a joint that slides, its
+    /// own acceleration, or force, likewise: so in the two below.
     carried: f64,
     /// Angular acceleration per unit of the joint's acceleration (x, y); of a held joint, torque
     /// instead.
@@ -49,7 +52,7 @@ impl Workspace {
 }
 
 impl Chain {
-    /// Accelerations of the joints, rad/s^2, into `out`.
+    /// Accelerations of the joints, rad/s^2, into `out`; m/s^2 and forces, N, of those that slide.
     ///
     /// `base_m_s2` is the acceleration of the base that stands for gravity, from
     /// [`Chain::base_m_s2`]. Where `held[i]`, the joint does not move (its speed must be 0) and
@@ -68,7 +71,7 @@ impl Chain {
         out: &mut [f64],
     ) {
         let n = self.links.len();
-        if n == 1 {
+        if n == 1 && self.links[0].slide.is_none() {
             let (angle, torque) = (angle_rad[0], torque_nm[0]);
             out[0] = self.links[0].forward(base_m_s2, angle, torque, held[0]);
             return;
@@ -79,16 +82,31 @@ impl Chain {
         let (held, out) = (&held[..n], &mut out[..n]);
 
         let (mut angle, mut speed) = (0.0, 0.0);
+        let mut before: Option<&mut LinkMotion> = None;
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
-            angle += angle_rad[i];
-            speed += speed_rad_s[i];
+            if let Some(slide) = &link.slide {
+                let (along, left) = slide.along(angle);
+                if let Some(before) = before {
+                    before.extend(left, angle_rad[i], speed_rad_s[i], speed);
+                }
+                s.along = along;
+                angle += slide.link_rad;
+            } else {
+                angle += angle_rad[i];
+                speed += speed_rad_s[i];
+            }
             s.motion = LinkMotion::new(link, angle, speed);
+            before = Some(&mut s.motion);
         }
 
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
             tree.shift(s.motion.lever, s.motion.centripetal);
             tree.add(link, &s.motion);
+            if link.slide.is_some() {
+                s.slid(&mut tree, link.armature_kg_m2, torque_nm[i], held[i]);
+                continue;
+            }
             let torque = torque_nm[i] - tree.moment;
             if held[i] {
                 // A held joint carries whatever moment comes.
@@ -106,10 +124,15 @@ impl Chain {
 
         let mut linear = base_m_s2;
         let mut angular = 0.0;
-        for (i, s) in scratch.iter().enumerate() {
+        for (i, (s, link)) in scratch.iter().zip(&self.links).enumerate() {
             let value =
                 (s.own + s.carried * angular) + (s.pull[0] * linear[0] + s.pull[1] * linear[1]);
-            if held[i] {
+            if link.slide.is_some() {
+                out[i] = value;
+                if !held[i] {
+                    linear = [0, 1].map(|k| linear[k] + value * s.along[k]);
+                }
+            } else if held[i] {
                 out[i] = value;
             } else {
                 out[i] = value - angular;
@@ -117,6 +140,36 @@ impl Chain {
             }
             linear = s.motion.end_m_s2(linear, angular);
         }
+    }
+}
+
+impl Scratch {
+    /// A joint that slides: what it needs of the link before it, and what it leaves to that link.
+    fn slid(&mut self, tree: &mut Subtree, armature_kg: f64, force_n: f64, held: bool) {
+        let [x, y] = self.along;
+        let force = force_n - (x * tree.force[0] + y * tree.force[1]);
+        let moment = x * tree.b[0] + y * tree.b[1];
+        let pull = [
+            tree.mass[0] * x + tree.mass[1] * y,
+            tree.mass[1] * x + tree.mass[2] * y,
+        ];
+        if held {
+            (self.carried, self.pull, self.own) = (moment, pull, -force);
+            return;
+        }
+        let inverse = 1.0 / (x * pull[0] + y * pull[1] + armature_kg);
+        self.carried = -moment * inverse;
+        self.pull = pull.map(|pull| -pull * inverse);
+        self.own = force * inverse;
+        tree.moment += moment * self.own;
+        tree.inertia += moment * self.carried;
+        for k in [0, 1] {
+            tree.force[k] += pull[k] * self.own;
+            tree.b[k] += moment * self.pull[k];
+        }
+        tree.mass[0] += pull[0] * self.pull[0];
+        tree.mass[1] += pull[0] * self.pull[1];
+        tree.mass[2] += pull[1] * self.pull[1];
     }
 }
 
@@ -183,102 +236,4 @@ impl Subtree {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn chain(n: usize) -> Chain {
-        let links = (0..n)
-            .map(|i| ChainLink {
-                length_m: 0.1 + 0.03 * i as f64,
-                com_m: 0.05 + 0.02 * i as f64,
-                com_angle_rad: 0.1 * i as f64,
-                mass_kg: 0.3 + 0.1 * i as f64,
-                inertia_kg_m2: 1e-3,
-                armature_kg_m2: if i == 1 { 2e-3 } else { 0.0 },
-            })
-            .collect();
-        Chain {
-            links,
-            gravity_m_s2: 9.81,
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn forward_undoes_inverse(
-            n in 1usize..6,
-            turn in -3.0f64..3.0,
-            values in prop::collection::vec(-3.0f64..3.0, 18),
-        ) {
-            let chain = chain(n);
-            let (q, w, a) = (&values[..n], &values[6..6 + n], &values[12..12 + n]);
-            let mut torque = vec![0.0; n];
-            chain.inverse(turn, q, w, a, &mut torque);
-            let mut out = vec![0.0; n];
-            let (mut work, base) = (Workspace::new(n), chain.base_m_s2(turn));
-            chain.forward(&mut work, base, q, w, &torque, &vec![false; n], &mut out);
-            for i in 0..n {
-                prop_assert!((out[i] - a[i]).abs() < 1e-8, "{out:?} {a:?}");
-            }
-        }
-
-        #[test]
-        fn a_held_joint_reports_the_torque_that_holds_it(
-            values in prop::collection::vec(-3.0f64..3.0, 9),
-        ) {
-            let chain = chain(3);
-            let q = &values[..3];
-            let mut w = values[3..6].to_vec();
-            w[1] = 0.0;
-            let torque = &values[6..9];
-            let held = [false, true, false];
-            let mut out = [0.0; 3];
-            let mut work = Workspace::new(3);
-            chain.forward(&mut work, chain.base_m_s2(0.0), q, &w, torque, &held, &mut out);
-            let pushed = [torque[0], torque[1] + out[1], torque[2]];
-            let mut free = [0.0; 3];
-            chain.forward(&mut work, chain.base_m_s2(0.0), q, &w, &pushed, &[false; 3], &mut free);
-            prop_assert!(free[1].abs() < 1e-7);
-            prop_assert!((free[0] - out[0]).abs() < 1e-7);
-            prop_assert!((free[2] - out[2]).abs() < 1e-7);
-        }
-    }
-
-    #[test]
-    fn energy_is_kept_without_friction() {
-        let chain = chain(3);
-        let mut work = Workspace::new(3);
-        let (mut q, mut w) = (vec![1.0, 0.5, -0.3], vec![0.0; 3]);
-        let total = |q: &[f64], w: &[f64]| {
-            let (kinetic, potential) = chain.energy_j(q, w);
-            kinetic + potential
-        };
-        let before = total(&q, &w);
-        let h = 1e-4;
-        for _ in 0..20_000 {
-            let mut accelerate = |q: &[f64], w: &[f64]| {
-                let mut out = vec![0.0; 3];
-                chain.forward(
-                    &mut work,
-                    chain.base_m_s2(0.0),
-                    q,
-                    w,
-                    &[0.0; 3],
-                    &[false; 3],
-                    &mut out,
-                );
-                out
-            };
-            let add = |x: &[f64], k: f64, dx: &[f64]| -> Vec<f64> {
-                x.iter().zip(dx).map(|(x, d)| x + k * d).collect()
-            };
-            let a1 = accelerate(&q, &w);
-            let (q2, w2) = (add(&q, h / 2.0, &w), add(&w, h / 2.0, &a1));
-            let a2 = accelerate(&q2, &w2);
-            q = add(&q, h, &w2);
-            w = add(&w, h, &a2);
-        }
-        assert!((total(&q, &w) - before).abs() < 1e-6);
-    }
-}
+mod tests;

@@ -1,6 +1,11 @@
 //! The constants of a planar chain.
 
+use super::slide_axis::SlideAxis;
+
 /// A planar chain on a fixed base. Angles are relative, joint 1's from hanging, counter-clockwise.
+///
+/// Where a joint slides, its place among the angles, rad, is a displacement, m, that among the
+/// speeds, rad/s, one in m/s, and that among the torques, N m, a force, N.
 #[derive(Debug, Clone)]
 pub struct Chain {
     /// Links from the base outwards; link i follows joint i.
@@ -25,6 +30,8 @@ pub struct ChainLink {
     /// Rotor's inertia reflected through the gear, kg m^2: counts in the joint's own acceleration
     /// only.
     pub armature_kg_m2: f64,
+    /// Along what its joint slides; none of a hinge. The rotor's inertia above is then one in kg.
+    pub slide: Option<SlideAxis>,
 }
 
 impl Chain {
@@ -36,6 +43,11 @@ impl Chain {
     /// Whether there is no link.
     pub fn is_empty(&self) -> bool {
         self.links.is_empty()
+    }
+
+    /// Whether any joint slides.
+    pub fn slides(&self) -> bool {
+        self.links.iter().any(|link| link.slide.is_some())
     }
 
     /// Acceleration of the base, m/s^2, that acts on the chain as gravity does when turned
@@ -68,8 +80,20 @@ impl Chain {
         let (mut height, mut velocity) = (0.0, [0.0, 0.0]);
         let (mut kinetic, mut potential) = (0.0, 0.0);
         for (i, link) in self.links.iter().enumerate() {
-            angle += angle_rad[i];
-            speed += speed_rad_s[i];
+            match &link.slide {
+                None => {
+                    angle += angle_rad[i];
+                    speed += speed_rad_s[i];
+                }
+                Some(slide) => {
+                    let (q, rate) = (angle_rad[i], speed_rad_s[i]);
+                    let (sin, cos) = (angle + slide.direction_rad).sin_cos();
+                    velocity[0] += rate * sin + speed * q * cos;
+                    velocity[1] += speed * q * sin - rate * cos;
+                    height -= q * cos;
+                    angle += slide.link_rad;
+                }
+            }
             let (com_sin, com_cos) = (angle + link.com_angle_rad).sin_cos();
             let com_speed = [
                 velocity[0] + speed * link.com_m * com_cos,

@@ -28,8 +28,11 @@ pub struct Dense<const N: usize, V = f64> {
 
 impl<const N: usize> Dense<N> {
     /// Equations of `chain`, gravity turned counter-clockwise by `gravity_turn_rad`; none unless it
-    /// has `N` links.
+    /// has `N` links, all on hinges.
     pub fn new(chain: &Chain, gravity_turn_rad: f64) -> Option<Self> {
+        if chain.slides() {
+            return None;
+        }
         let terms: [LinkTerms; N] = LinkTerms::of(chain).try_into().ok()?;
         Some(Dense {
             length_m: terms.map(|t| t.length_m),
@@ -284,6 +287,7 @@ mod tests {
             mass_kg: 0.3 + 0.1 * i as f64,
             inertia_kg_m2: 1e-3 * (1.0 + i as f64),
             armature_kg_m2: 1e-3 * (i % 2) as f64,
+            slide: None,
         };
         Chain {
             links: (0..n).map(link).collect(),

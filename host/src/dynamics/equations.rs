@@ -17,6 +17,7 @@
 //! and Control (2006), chapter 7.)
 
 use super::chain::Chain;
+use super::jacobians::Jacobians;
 use super::lanes::Lane;
 use nalgebra::{DMatrix, DVector};
 
@@ -100,6 +101,8 @@ pub(super) fn weight<V: Lane>(base_m_s2: [V; 2], link: &Turned<V>) -> V {
 pub struct EquationsOfMotion {
     terms: Vec<LinkTerms>,
     base_m_s2: [f64; 2],
+    /// The chain, if a joint of it slides: its equations have no such terms.
+    slides: Option<Chain>,
 }
 
 impl EquationsOfMotion {
@@ -108,7 +111,13 @@ impl EquationsOfMotion {
         EquationsOfMotion {
             terms: LinkTerms::of(chain),
             base_m_s2: chain.base_m_s2(gravity_turn_rad),
+            slides: chain.slides().then(|| chain.clone()),
         }
+    }
+
+    /// Whether any joint slides; [`EquationsOfMotion::moments_kg_m`] then does not hold.
+    pub fn slides(&self) -> bool {
+        self.slides.is_some()
     }
 
     /// Moment of each link with all that hangs on its end, p_j above: along the link and across it,
@@ -117,8 +126,11 @@ impl EquationsOfMotion {
         self.terms.iter().map(|t| [t.along, t.across]).collect()
     }
 
-    /// M(q), n x n, kg m^2: symmetric, positive definite.
+    /// M(q), n x n, kg m^2 (kg m, kg where joints slide): symmetric, positive definite.
     pub fn mass(&self, angle_rad: &[f64]) -> DMatrix<f64> {
+        if let Some(chain) = &self.slides {
+            return Jacobians::new(chain, angle_rad).mass(chain);
+        }
         let turned = self.turned(angle_rad);
         relative(self.square(|i, j| match j - i {
             0 => self.terms[i].diagonal,
@@ -130,6 +142,9 @@ impl EquationsOfMotion {
     /// C(q, q'), n x n, kg m^2/s: C q' are the Coriolis and centrifugal torques, and dM/dt - 2 C is
     /// skew.
     pub fn coriolis(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> DMatrix<f64> {
+        if let Some(chain) = &self.slides {
+            return Jacobians::new(chain, angle_rad).coriolis(chain, speed_rad_s);
+        }
         let turned = self.turned(angle_rad);
         let mut c = self.square(|i, j| match i == j {
             true => 0.0,
@@ -142,8 +157,11 @@ impl EquationsOfMotion {
         relative(c)
     }
 
-    /// G(q), n, N m: the torques that hold the chain at rest.
+    /// G(q), n, N m (N where joints slide): the torques that hold the chain at rest.
     pub fn gravity(&self, angle_rad: &[f64]) -> DVector<f64> {
+        if let Some(chain) = &self.slides {
+            return Jacobians::new(chain, angle_rad).gravity(chain, self.base_m_s2);
+        }
         let turned = self.turned(angle_rad);
         let weights = turned.iter().map(|link| weight(self.base_m_s2, link));
         let mut torque = DVector::from_iterator(turned.len(), weights);
@@ -155,6 +173,9 @@ impl EquationsOfMotion {
 
     /// dG/dq, n x n, N m/rad.
     pub fn gravity_slope(&self, angle_rad: &[f64]) -> DMatrix<f64> {
+        if let Some(chain) = &self.slides {
+            return Jacobians::new(chain, angle_rad).gravity_slope(chain, self.base_m_s2);
+        }
         let [x, y] = self.base_m_s2;
         let turned = self.turned(angle_rad);
         // A turn by dt moves (a, b) by (-b, a) dt.
@@ -217,6 +238,7 @@ mod tests {
             mass_kg: 0.3 + 0.1 * i as f64,
             inertia_kg_m2: 1e-3,
             armature_kg_m2: if i == 1 { 2e-3 } else { 0.0 },
+            slide: None,
         };
         Chain {
             links: (0..n).map(link).collect(),

@@ -1,6 +1,6 @@
 //! Inverse dynamics by recursive Newton-Euler, in the plane.
 
-use super::chain::Chain;
+use super::chain::{Chain, ChainLink};
 use super::link_motion::LinkMotion;
 
 /// Absolute angle, angular velocity and angular acceleration of a link, and the acceleration of its
@@ -24,9 +24,23 @@ impl Chain {
         out: &mut [f64],
     ) {
         let joints = [angle_rad, speed_rad_s, acceleration_rad_s2];
-        self.newton_euler(gravity_turn_rad, joints, |i, moment, _| {
-            out[i] = moment + self.links[i].armature_kg_m2 * acceleration_rad_s2[i];
+        self.newton_euler(gravity_turn_rad, joints, |i, moment, force| {
+            let own = match &self.links[i].slide {
+                None => moment,
+                Some(slide) => {
+                    let ([x, y], _) = slide.along(self.angle_before_rad(i, angle_rad));
+                    x * force[0] + y * force[1]
+                }
+            };
+            out[i] = own + self.links[i].armature_kg_m2 * acceleration_rad_s2[i];
         });
+    }
+
+    /// Angle of the link before a joint from hanging, rad.
+    fn angle_before_rad(&self, joint: usize, angle_rad: &[f64]) -> f64 {
+        let links = self.links[..joint].iter().zip(angle_rad);
+        let turn = |(link, angle): (&ChainLink, &f64)| link.slide.map_or(*angle, |s| s.link_rad);
+        links.map(turn).sum()
     }
 
     /// Calls `each` with every joint's index and what its bearing passes on, moment, N m, and
@@ -55,10 +69,22 @@ impl Chain {
         let Some(link) = self.links.get(i) else {
             return (0.0, [0.0; 2]);
         };
-        let own = std::array::from_fn(|k| before.link[k] + joints[k][i]);
+        let mut linear = before.joint_m_s2;
+        let own = match &link.slide {
+            None => std::array::from_fn(|k| before.link[k] + joints[k][i]),
+            Some(slide) => {
+                let (along, _) = slide.along(before.link[0]);
+                linear = [0, 1].map(|k| linear[k] + joints[2][i] * along[k]);
+                let [angle, speed, acceleration] = before.link;
+                [angle + slide.link_rad, speed, acceleration]
+            }
+        };
         let [angle, speed, acceleration] = own;
-        let at = LinkMotion::new(link, angle, speed);
-        let linear = before.joint_m_s2;
+        let mut at = LinkMotion::new(link, angle, speed);
+        if let Some(slide) = self.links.get(i + 1).and_then(|next| next.slide) {
+            let (_, left) = slide.along(angle);
+            at.extend(left, joints[0][i + 1], joints[1][i + 1], speed);
+        }
         let next = LinkState {
             link: own,
             joint_m_s2: at.end_m_s2(linear, acceleration),

@@ -9,9 +9,10 @@ use super::lanes::Lane;
 /// sin).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LinkMotion {
-    /// Joint to next joint, turned left: velocity of its end per rad/s, m.
+    /// Joint to next joint, wherever that has slid, turned left: velocity of its end per rad/s, m.
     pub lever: [f64; 2],
-    /// Centripetal acceleration of the link's end, m/s^2.
+    /// Acceleration of the link's end at constant speeds, m/s^2: centripetal, and Coriolis of a
+    /// slide.
     pub centripetal: [f64; 2],
     /// First moment about the joint, turned left, kg m.
     pub moment: [f64; 2],
@@ -37,6 +38,18 @@ impl LinkMotion {
             moment: [first_moment * com_cos, first_moment * com_sin],
             speed_squared,
         }
+    }
+
+    /// Moves the link's end on to where the next joint has slid: by `q`, m, at `rate`, m/s, along a
+    /// direction that the link carries with it, given turned left; `speed_rad_s` is the link's.
+    #[inline]
+    pub fn extend(&mut self, left: [f64; 2], q: f64, rate: f64, speed_rad_s: f64) {
+        let coriolis = 2.0 * rate * speed_rad_s;
+        let ahead = q * self.speed_squared;
+        self.lever[0] += q * left[0];
+        self.lever[1] += q * left[1];
+        self.centripetal[0] += coriolis * left[0] - ahead * left[1];
+        self.centripetal[1] += coriolis * left[1] + ahead * left[0];
     }
 
     /// Acceleration of the link's end, m/s^2, from that of its joint and the link's angular

@@ -6,10 +6,12 @@ mod chain;
 mod dense;
 mod equations;
 mod inverse;
+mod jacobians;
 mod lanes;
 mod link_motion;
 mod runge_kutta;
 mod sin_cos;
+mod slide_axis;
 
 pub use articulated::Workspace;
 pub use chain::{Chain, ChainLink};
@@ -17,3 +19,4 @@ pub use dense::Dense;
 pub use equations::EquationsOfMotion;
 pub use lanes::{Lane, Lanes};
 pub use runge_kutta::{RungeKutta, runge_kutta};
+pub use slide_axis::SlideAxis;

@@ -36,9 +36,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Nelson, Olsson, American Journal of Physics 54 (1986) 112",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force = -coefficient_n_s2_m2 * w * |w|",
+    parameters: &[Parameter {
+        key: "coefficient_n_s2_m2",
+        unit: "N s^2/m^2",
+        meaning: "resistance per square of speed",
+        off: Some(0.0),
+        typical: (0.005, 1.0),
+        bounds: (0.0, 1000.0),
+        starts: &[0.1, 0.01],
+    }],
+    ..INFO
+};
+
 impl Effect for AirDrag {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

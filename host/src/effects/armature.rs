@@ -35,9 +35,28 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 7",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "mass along the slide + inertia_kg, without weight",
+    parameters: &[Parameter {
+        key: "inertia_kg",
+        unit: "kg",
+        meaning: "rotor inertia over the square of the displacement per turn in rad",
+        off: Some(0.0),
+        typical: (0.01, 1.0),
+        bounds: (0.0, 100.0),
+        starts: &[0.05, 0.3],
+    }],
+    ..INFO
+};
+
 impl Effect for Armature {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn is_of_servo(&self) -> bool {

@@ -38,9 +38,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Nordin, Gutman, Automatica 38 (2002) 1633",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "the reading stays while |q - reading| <= gap_m / 2, else it follows at that distance",
+    parameters: &[Parameter {
+        key: "gap_m",
+        unit: "m",
+        meaning: "free play, from flank to flank",
+        off: Some(0.0),
+        typical: (0.0001, 0.005),
+        bounds: (0.0, 0.1),
+        starts: &[0.001, 0.003],
+    }],
+    ..INFO
+};
+
 impl Effect for Backlash {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn sense(
@@ -52,7 +71,13 @@ impl Effect for Backlash {
     ) -> f64 {
         let half_rad = values[0] / 2.0;
         let before_rad = memory.map_or(angle_rad, |[_, reading_rad]| reading_rad);
-        let reading_rad = before_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
+        // Not by `clamp`, which panics where a simulation has diverged to no number.
+        let reading_rad = match (angle_rad - half_rad, angle_rad + half_rad) {
+            _ if angle_rad.is_nan() => angle_rad,
+            (low_rad, _) if before_rad < low_rad => low_rad,
+            (_, high_rad) if before_rad > high_rad => high_rad,
+            _ => before_rad,
+        };
         *memory = Some([angle_rad, reading_rad]);
         reading_rad
     }

@@ -47,9 +47,39 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Hooke, Lectures de Potentia Restitutiva (1678)",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force = -stiffness_n_m * (q - rest_m)",
+    parameters: &[
+        Parameter {
+            key: "stiffness_n_m",
+            unit: "N/m",
+            meaning: "force per displacement",
+            off: Some(0.0),
+            typical: (0.1, 50.0),
+            bounds: (0.0, 100000.0),
+            starts: &[1.0, 10.0],
+        },
+        Parameter {
+            key: "rest_m",
+            unit: "m",
+            meaning: "displacement at which the cable does not pull",
+            off: None,
+            typical: (-0.5, 0.5),
+            bounds: (-10.0, 10.0),
+            starts: &[0.0, -0.3, 0.3],
+        },
+    ],
+    ..INFO
+};
+
 impl Effect for CableSpring {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

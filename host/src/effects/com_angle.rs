@@ -45,6 +45,10 @@ impl Effect for ComAngle {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         rig.chain.links[joint].com_angle_rad += values[0];
     }

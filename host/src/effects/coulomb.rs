@@ -37,9 +37,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "friction = force_n * sgn(w), against the motion; at rest it holds up to force_n",
+    parameters: &[Parameter {
+        key: "force_n",
+        unit: "N",
+        meaning: "friction force, the same at every speed",
+        off: Some(0.0),
+        typical: (0.05, 10.0),
+        bounds: (0.0, 1000.0),
+        starts: &[0.5, 5.0],
+    }],
+    ..INFO
+};
+
 impl Effect for Coulomb {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn friction(&self, values: &[f64], _at: &Slide) -> f64 {

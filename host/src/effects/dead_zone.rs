@@ -54,6 +54,10 @@ impl Effect for DeadZone {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn difference(&self) -> f64 {
         2e-2
     }

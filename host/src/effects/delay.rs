@@ -37,6 +37,10 @@ impl Effect for Delay {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0]
     }

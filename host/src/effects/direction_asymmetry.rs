@@ -35,9 +35,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "friction += half_difference_n * sgn(w)",
+    parameters: &[Parameter {
+        key: "half_difference_n",
+        unit: "N",
+        meaning: "half of forward minus backward friction",
+        off: Some(0.0),
+        typical: (-2.0, 2.0),
+        bounds: (-500.0, 500.0),
+        starts: &[0.3, -0.3],
+    }],
+    ..INFO
+};
+
 impl Effect for DirectionAsymmetry {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {

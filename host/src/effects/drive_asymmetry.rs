@@ -51,6 +51,10 @@ impl Effect for DriveAsymmetry {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {
         (values[0] * at.motor_nm - values[1] * at.outside_nm).abs()
     }

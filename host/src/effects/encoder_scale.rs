@@ -42,6 +42,10 @@ impl Effect for EncoderScale {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         values[0] * angle_rad
     }

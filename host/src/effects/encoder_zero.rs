@@ -35,9 +35,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "reading = q + offset_m",
+    parameters: &[Parameter {
+        key: "offset_m",
+        unit: "m",
+        meaning: "reading at true displacement zero",
+        off: Some(0.0),
+        typical: (-0.05, 0.05),
+        bounds: (-10.0, 10.0),
+        starts: &[0.01, -0.01],
+    }],
+    ..INFO
+};
+
 impl Effect for EncoderZero {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -23,6 +23,16 @@ pub enum Site {
     Sensor,
 }
 
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// It turns: rad, N m.
+    Hinge,
+    /// It slides: m, N.
+    Slide,
+}
+
 /// Which joints an effect can act on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -42,6 +42,10 @@ impl Effect for LoadFriction {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn friction(&self, values: &[f64], at: &Slide) -> f64 {
         values[0] * at.gear_load_nm
     }

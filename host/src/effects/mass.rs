@@ -49,6 +49,10 @@ impl Effect for Mass {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         let link = &mut rig.chain.links[joint];
         if link.mass_kg > 0.0 {

@@ -23,6 +23,7 @@ pub mod expression;
 mod info;
 mod load_friction;
 mod mass;
+mod on_slide;
 mod placebo;
 mod probe;
 mod sensor_lag;
@@ -40,7 +41,8 @@ pub mod signature;
 #[cfg(test)]
 mod tests;
 
-pub use info::{Confusion, EffectInfo, Needs, Parameter, Scope, Site};
+pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site};
+pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
 pub use state::{AtRest, DriveState, JointState, Rig, Slide, Slope};
@@ -116,6 +118,17 @@ pub fn at_all(id: &str) -> &'static str {
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
     fn info(&self) -> &'static EffectInfo;
+
+    /// What people and tools need to know of it at a joint that slides, in m and N: `info()` itself
+    /// where no unit is one of angles; none where it cannot act there.
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        None
+    }
+
+    /// The joints whose units its values have; see [`on_axis`].
+    fn axis(&self) -> Axis {
+        Axis::Hinge
+    }
 
     /// Whether a model file defines it: see [`expression`].
     fn is_users(&self) -> bool {

@@ -40,6 +40,10 @@ impl Effect for Placebo {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         values[0] * at.shuffled_rad_s
     }

@@ -170,6 +170,10 @@ impl Effect for Probe {
         self.info
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(self.info)
+    }
+
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0].max(0.0)
     }

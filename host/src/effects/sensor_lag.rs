@@ -41,6 +41,10 @@ impl Effect for SensorLag {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
     }

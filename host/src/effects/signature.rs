@@ -197,6 +197,7 @@ fn arm(effect: &dyn Effect, values: &[f64]) -> Rig {
         mass_kg: 0.3,
         inertia_kg_m2: 8e-4,
         armature_kg_m2: 2e-3,
+        slide: None,
     };
     let chain = Chain {
         links: vec![link],

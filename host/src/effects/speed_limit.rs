@@ -39,9 +39,28 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force - full force * w / no_load_speed_m_s, while energised",
+    parameters: &[Parameter {
+        key: "no_load_speed_m_s",
+        unit: "m/s",
+        meaning: "speed at which full duty leaves no force",
+        off: Some(f64::INFINITY),
+        typical: (0.1, 5.0),
+        bounds: (0.005, 10000.0),
+        starts: &[1.0, 4.0],
+    }],
+    ..INFO
+};
+
 impl Effect for SpeedLimit {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

@@ -51,9 +51,39 @@ static INFO: EffectInfo = EffectInfo {
      Automatica 30 (1994) 1083",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "friction = excess_n * exp(-|w| / speed_m_s), against the motion",
+    parameters: &[
+        Parameter {
+            key: "excess_n",
+            unit: "N",
+            meaning: "breakaway force above the sliding friction",
+            off: Some(0.0),
+            typical: (0.05, 10.0),
+            bounds: (0.0, 1000.0),
+            starts: &[0.5, 5.0],
+        },
+        Parameter {
+            key: "speed_m_s",
+            unit: "m/s",
+            meaning: "Stribeck speed, at which 37 % of the excess is left",
+            off: None,
+            typical: (0.005, 0.2),
+            bounds: (0.0005, 5.0),
+            starts: &[0.02, 0.1],
+        },
+    ],
+    ..INFO
+};
+
 impl Effect for Stribeck {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

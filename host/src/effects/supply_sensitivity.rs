@@ -39,6 +39,10 @@ impl Effect for SupplySensitivity {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 + values[0] * (at.supply_ratio - 1.0))
     }

@@ -34,9 +34,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS AX-12 manual, stall torque and torque limit",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force clipped to -limit_n..limit_n",
+    parameters: &[Parameter {
+        key: "limit_n",
+        unit: "N",
+        meaning: "largest force in either direction",
+        off: Some(f64::INFINITY),
+        typical: (1.0, 100.0),
+        bounds: (0.001, 100000.0),
+        starts: &[3.0, 10.0, 30.0],
+    }],
+    ..INFO
+};
+
 impl Effect for TorqueSaturation {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {

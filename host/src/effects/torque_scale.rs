@@ -42,6 +42,10 @@ impl Effect for TorqueScale {
         &INFO
     }
 
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         values[0] * torque_nm
     }

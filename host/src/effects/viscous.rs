@@ -37,9 +37,28 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 };
 
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force = -coefficient_n_s_m * w",
+    parameters: &[Parameter {
+        key: "coefficient_n_s_m",
+        unit: "N s/m",
+        meaning: "resistance per speed",
+        off: Some(0.0),
+        typical: (0.05, 20.0),
+        bounds: (0.0, 10000.0),
+        starts: &[0.5, 5.0],
+    }],
+    ..INFO
+};
+
 impl Effect for Viscous {
     fn info(&self) -> &'static EffectInfo {
         &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
     }
 
     fn is_of_servo(&self) -> bool {

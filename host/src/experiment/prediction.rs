@@ -29,7 +29,9 @@ pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion
     );
     for (joint, readings) in readings.chunks(count).enumerate() {
         match signal(model, joint) {
-            MeasuredSignal::Angle => motion.position_rad[joint] = readings.to_vec(),
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => {
+                motion.position_rad[joint] = readings.to_vec();
+            }
             MeasuredSignal::Rate => motion.velocity_rad_s[joint] = Some(readings.to_vec()),
             MeasuredSignal::Nothing => {}
         }

@@ -2,8 +2,7 @@
 
 use super::proposal::RivalName;
 use crate::diagnose::{Diagnosis, FittedEffect, WrongValue, independent_share};
-use crate::effects;
-use crate::fitting::{Candidate, Fit, FitData, FitOptions, FittedValue, fit};
+use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit};
 use crate::model::{Model, ParameterPath};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -82,12 +81,8 @@ fn explained(
         }
     }
     for effect in effects {
-        let Some(known) = effects::named(&effect.kind) else {
+        let Some(candidate) = effect.candidate(model) else {
             continue;
-        };
-        let candidate = Candidate {
-            effect: known,
-            joint: effect.joint.map(|joint| joint - 1),
         };
         let values: Vec<f64> = effect.parameters.iter().map(|value| value.value).collect();
         explained.effects.push(candidate.instance(&values));

@@ -45,7 +45,7 @@ pub(super) fn assumed(
 ) -> AssumedStates {
     let rest = hanging(model);
     let joint = |(joint, signal): (usize, &MeasuredSignal)| match signal {
-        MeasuredSignal::Angle => None,
+        MeasuredSignal::Angle | MeasuredSignal::Displacement => None,
         MeasuredSignal::Rate => Some(integrated(motion, joint, rest[joint])),
         MeasuredSignal::Nothing => Some(AssumedJoint {
             angle_rad: vec![rest[joint]; motion.len()],

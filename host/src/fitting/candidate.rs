@@ -4,7 +4,7 @@
 use crate::effects::expression::defined;
 use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope, at_all};
 use crate::error::Error;
-use crate::model::{EffectInstance, Model, ParameterPath};
+use crate::model::{EffectInstance, Model, ParameterPath, effect_on};
 use std::fmt;
 
 /// An effect of the library at a joint, at all driven joints with the same values, or on the whole
@@ -52,6 +52,9 @@ impl Candidate {
         };
         let effect = effect_named(id)?;
         let joint = joint(effect, at, model)?;
+        let effect = effect_on(effect, joint, &model.joints).ok_or(CandidateError::NotOnSlide {
+            id: effect.info().id,
+        })?;
         let candidate = Candidate { effect, joint };
         match candidate.in_model(model) {
             true => Err(CandidateError::InModel(candidate)),
@@ -101,12 +104,8 @@ impl Candidate {
 
     /// Addresses of its values.
     pub fn paths(&self) -> impl Iterator<Item = ParameterPath> + '_ {
-        let info = self.effect.info();
-        (0..info.parameters.len()).map(move |parameter| ParameterPath::Effect {
-            id: info.id,
-            joint: self.joint,
-            parameter,
-        })
+        let at = |parameter| ParameterPath::at(self.effect, self.joint, parameter);
+        (0..self.parameters().len()).map(at)
     }
 
     /// Every combination of the parameters' start values.
@@ -179,6 +178,12 @@ pub enum CandidateError {
         /// The joint's drive.
         drive: &'static str,
     },
+    /// The joint slides, and the effect is one of hinges, or differs between the driven joints.
+    #[error("`{id}` does not act on joints that slide")]
+    NotOnSlide {
+        /// The effect.
+        id: &'static str,
+    },
     /// The model holds the effect already.
     #[error("the model holds `{0}` already")]
     InModel(Candidate),
@@ -204,6 +209,7 @@ impl From<CandidateError> for Error {
                 format!("joints of this model count from 1 to {count}")
             }
             E::UnsuitedDrive { wanted, .. } => format!("name a {wanted} joint, or another effect"),
+            E::NotOnSlide { .. } => "name a joint that turns, or another effect".to_string(),
             E::InModel(_) => "refit its values with `handstand fit`".to_string(),
         };
         Error::usage(error.to_string(), remedy)

@@ -220,18 +220,15 @@ impl FitData {
         self.windows.iter().map(of_window).sum()
     }
 
-    /// What an error over all joints together is made of: angles, or rates where no angle is
-    /// measured.
+    /// What an error over all joints together is made of: angles and, 1 mm for 1 mrad,
+    /// displacements; rates where neither is measured.
     pub fn quantity(&self) -> MeasuredSignal {
-        match self.signals.contains(&MeasuredSignal::Angle) {
-            true => MeasuredSignal::Angle,
-            false => MeasuredSignal::Rate,
-        }
+        MeasuredSignal::pooled(&self.signals)
     }
 
     /// Whether a joint counts in an error over all joints together.
     pub fn counts(&self, joint: usize) -> bool {
-        self.signals[joint] == self.quantity()
+        self.signals[joint].counts_in(self.quantity())
     }
 
     /// The start state that the samples around a window's start suggest.

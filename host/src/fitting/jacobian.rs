@@ -140,8 +140,8 @@ const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 /// A value's natural size, for the step of a finite difference where the value itself is zero.
 fn scale(path: &ParameterPath) -> f64 {
     match path {
-        ParameterPath::Effect { id, parameter, .. } => crate::effects::named(id)
-            .and_then(|effect| effect.info().parameters.get(*parameter))
+        ParameterPath::Effect { .. } => path
+            .parameter()
             .and_then(|parameter| parameter.starts.first())
             .map_or(1e-3, |start| start.abs().max(1e-6)),
         _ => 1e-9,

@@ -55,7 +55,9 @@ fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
             .unwrap_or(1e-9);
         let rounded = values.iter().map(|value| (value / step).round() * step);
         match columns.signal() {
-            MeasuredSignal::Angle => motion.position_rad[joint] = rounded.collect(),
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => {
+                motion.position_rad[joint] = rounded.collect();
+            }
             MeasuredSignal::Rate => motion.velocity_rad_s[joint] = Some(rounded.collect()),
             MeasuredSignal::Nothing => {}
         }

@@ -26,7 +26,8 @@ pub(super) struct StartGuess {
 
 /// How many standard deviations a start state may lie from the guess.
 const REACH_DEVIATIONS: f64 = 6.0;
-/// No start angle, rad, speed, rad/s, and acceleration, rad/s^2, is known better than this, however
+/// No start angle, rad, speed, rad/s, and acceleration, rad/s^2, is known better than this (of a
+/// slide, no displacement in m, and so on: 0.2 mm are less than its rail bends), however
 /// smooth the log: smoothing and rounding leave slow errors that neighbouring samples share.
 const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// Half the span of the samples that determine a window's start.

@@ -3,7 +3,7 @@
 use crate::log::Motion;
 use crate::model::MeasuredSignal;
 
-/// Standard deviation of what is measured of a joint, rad or rad/s.
+/// Standard deviation of what is measured of a joint, rad, m or rad/s.
 ///
 /// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
 /// differences. Motion leaks into them where sampling is slow; then neighbours agree, while those

@@ -15,7 +15,7 @@ use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
-use crate::model::{EffectInstance, Model, ParameterPath};
+use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
 
 /// Over short windows the squared error has few false valleys: where start values are told apart,
 /// s.
@@ -92,6 +92,8 @@ impl Refitted {
     /// How all fitted values came about; `logs` as for [`added`](Self::added).
     pub fn record(&self, logs: Vec<(String, String)>) -> FitRecord {
         let values = self.free.iter().zip(&self.values);
+        let signals: Vec<MeasuredSignal> =
+            self.model.log.joints.iter().map(|j| j.signal()).collect();
         FitRecord {
             intervals: values
                 .map(|(path, value)| (*path, value.low, value.high))
@@ -99,7 +101,7 @@ impl Refitted {
             logs,
             error_before: self.error.before_rad,
             error_after: self.error.after_rad,
-            error_unit: "rad".to_string(),
+            error_unit: MeasuredSignal::pooled(&signals).unit().to_string(),
         }
     }
 }
@@ -194,7 +196,7 @@ fn finish(
         },
         free: found.free,
         windows,
-        unobserved: before.log.unobserved(),
+        unobserved: before.log.notes(),
         converged: found.converged,
         model: found.model,
         horizon,

@@ -15,7 +15,7 @@ pub struct Residuals {
     pub gaps: usize,
 }
 
-/// A prediction that diverges counts as this far off, rad or rad/s, so that a fit can turn back.
+/// A prediction that diverges counts as this far off, rad (m) or rad/s, so that a fit can turn back.
 const DIVERGED_RAD: f64 = 10.0;
 const DIVERGED_RAD_S: f64 = 100.0;
 
@@ -23,7 +23,9 @@ const DIVERGED_RAD_S: f64 = 100.0;
 pub(super) fn worst(signal: MeasuredSignal, sigma: f64) -> f64 {
     match signal {
         MeasuredSignal::Rate => DIVERGED_RAD_S / sigma,
-        MeasuredSignal::Angle | MeasuredSignal::Nothing => DIVERGED_RAD * (1.0 / sigma),
+        MeasuredSignal::Angle | MeasuredSignal::Displacement | MeasuredSignal::Nothing => {
+            DIVERGED_RAD * (1.0 / sigma)
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
 use super::reason::PathReason;
-use crate::effects::{self, EffectInfo};
+use crate::effects::{self, Axis, EffectInfo};
 use crate::error::Error;
 use std::str::FromStr;
 
@@ -36,17 +36,24 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
         None => (owner, None),
     };
     let defined = effects::expression::defined();
-    let infos = effects::EFFECTS
-        .iter()
-        .chain(&defined)
-        .map(|effect| effect.info());
-    let info: &'static EffectInfo = choose(text, id, infos.map(|info| (info.id, info)))?;
-    let keys = info.parameters.iter().enumerate().map(|(i, p)| (p.key, i));
-    Ok(ParameterPath::Effect {
-        id: info.id,
-        joint: joint_of(text, info, joint)?,
-        parameter: choose(text, key, keys)?,
-    })
+    let all = effects::EFFECTS.iter().chain(&defined).copied();
+    let effect = choose(text, id, all.map(|effect| (effect.info().id, effect)))?;
+    let joint = joint_of(text, effect.info(), joint)?;
+    let axes = [Axis::Hinge, Axis::Slide].into_iter();
+    let keys = axes
+        .filter_map(|axis| effects::on_axis(effect, axis))
+        .flat_map(|effect| {
+            let parameters = effect.info().parameters.iter().enumerate();
+            parameters.map(move |(i, p)| (p.key, (effect, i)))
+        });
+    let mut known: Vec<(&str, _)> = Vec::new();
+    for (key, value) in keys {
+        if known.iter().all(|(known, _)| *known != key) {
+            known.push((key, value));
+        }
+    }
+    let (effect, parameter) = choose(text, key, known)?;
+    Ok(ParameterPath::at(effect, joint, parameter))
 }
 
 /// The joint named behind the `@`, as the effect's scope allows.

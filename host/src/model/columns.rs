@@ -84,6 +84,8 @@ impl ColumnMean {
 pub enum MeasuredSignal {
     /// Its angle, rad; a logged speed only helps to guess start states.
     Angle,
+    /// Its displacement, m, of a joint that slides; likewise.
+    Displacement,
     /// Its speed alone, rad/s, as of a gyro.
     Rate,
     /// Nothing.
@@ -91,10 +93,29 @@ pub enum MeasuredSignal {
 }
 
 impl MeasuredSignal {
+    /// What an error of all joints together is called: of angles and, 1 mm for 1 mrad,
+    /// displacements; of displacements alone; of rates where neither is measured.
+    pub fn pooled(signals: &[MeasuredSignal]) -> MeasuredSignal {
+        let places = [MeasuredSignal::Angle, MeasuredSignal::Displacement];
+        let found = places.into_iter().find(|place| signals.contains(place));
+        found.unwrap_or(MeasuredSignal::Rate)
+    }
+
+    /// Whether a joint of this signal counts in an error of all joints that is called so.
+    pub fn counts_in(self, pooled: MeasuredSignal) -> bool {
+        match pooled {
+            MeasuredSignal::Angle => {
+                matches!(self, MeasuredSignal::Angle | MeasuredSignal::Displacement)
+            }
+            other => self == other,
+        }
+    }
+
     /// SI unit, as text.
     pub fn unit(self) -> &'static str {
         match self {
             MeasuredSignal::Rate => "rad/s",
+            MeasuredSignal::Displacement => "m",
             MeasuredSignal::Angle | MeasuredSignal::Nothing => "rad",
         }
     }
@@ -103,6 +124,7 @@ impl MeasuredSignal {
     pub fn milli(self) -> &'static str {
         match self {
             MeasuredSignal::Rate => "mrad/s",
+            MeasuredSignal::Displacement => "mm",
             MeasuredSignal::Angle | MeasuredSignal::Nothing => "mrad",
         }
     }
@@ -111,6 +133,7 @@ impl MeasuredSignal {
     pub fn suffix(self) -> &'static str {
         match self {
             MeasuredSignal::Rate => "_rad_s",
+            MeasuredSignal::Displacement => "_m",
             MeasuredSignal::Angle | MeasuredSignal::Nothing => "_rad",
         }
     }
@@ -131,6 +154,7 @@ impl JointColumns {
     /// What the log holds of the joint's motion.
     pub fn signal(&self) -> MeasuredSignal {
         match (&self.position, &self.velocity) {
+            (Some(p), _) if p.dimension() == Dimension::Length => MeasuredSignal::Displacement,
             (Some(_), _) => MeasuredSignal::Angle,
             (None, Some(_)) => MeasuredSignal::Rate,
             (None, None) => MeasuredSignal::Nothing,
@@ -193,7 +217,7 @@ impl LogColumns {
     pub fn unobserved(&self) -> Vec<String> {
         let joints = (1..).zip(&self.joints);
         let sentence = |(joint, columns): (usize, &JointColumns)| match columns.signal() {
-            MeasuredSignal::Angle => None,
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => None,
             MeasuredSignal::Rate => Some(format!(
                 "Joint {joint} has no measured angle, only a rate: its angle is an unknown of each \
                  window, errors are those of the rate, and an offset of the angle does not show."
@@ -204,11 +228,31 @@ impl LogColumns {
             )),
         };
         let mut sentences: Vec<String> = joints.filter_map(sentence).collect();
-        let is_angle = |columns: &JointColumns| columns.signal() == MeasuredSignal::Angle;
-        if !self.joints.iter().any(is_angle) {
+        let is = |signal| self.joints.iter().any(|columns| columns.signal() == signal);
+        let slides = is(MeasuredSignal::Displacement);
+        if !slides && !is(MeasuredSignal::Angle) {
             sentences.push(
                 "No angle is measured at all: errors of all joints together are in rad/s, also \
                  where they say rad."
+                    .to_string(),
+            );
+        }
+        sentences
+    }
+
+    /// The same, and how errors of joints that turn and joints that slide become one figure.
+    pub fn notes(&self) -> Vec<String> {
+        let mut sentences = self.unobserved();
+        let slides = |columns: &JointColumns| columns.signal() == MeasuredSignal::Displacement;
+        if self.joints.iter().all(slides) {
+            sentences.push(
+                "All joints slide: errors of the whole log are in mm, also where they say mrad."
+                    .to_string(),
+            );
+        } else if self.joints.iter().any(slides) {
+            sentences.push(
+                "Where errors of several joints are one figure in mrad, 1 mm of a joint that \
+                 slides counts as 1 mrad."
                     .to_string(),
             );
         }

@@ -1,6 +1,7 @@
 //! The numbers of links and joints: key, range, and where they are kept.
 
-use super::{Drive, Link};
+use super::{Drive, Joint, Link};
+use crate::effects::Axis;
 
 /// Range of a quantity that must be above zero; far wider than any rig on a bench.
 pub(super) const POSITIVE: (f64, f64) = (1e-9, 1e3);
@@ -69,15 +70,27 @@ pub enum JointField {
     StallTorque,
     /// Speed without load, rad/s.
     NoLoadSpeed,
+    /// Position drive of a slide: duty per m of error.
+    GainPerM,
+    /// Speed drive of a slide: duty per m/s of error.
+    GainSPerM,
+    /// Force of a slide at standstill, N.
+    StallForce,
+    /// Speed of a slide without load, m/s.
+    NoLoadLinearSpeed,
 }
 
 impl JointField {
-    /// Every one, in the order of a model file.
-    pub const ALL: [JointField; 4] = [
+    /// Every one, in the order of a model file: those of hinges, then those of slides.
+    pub const ALL: [JointField; 8] = [
         JointField::GainPerRad,
         JointField::GainSPerRad,
         JointField::StallTorque,
         JointField::NoLoadSpeed,
+        JointField::GainPerM,
+        JointField::GainSPerM,
+        JointField::StallForce,
+        JointField::NoLoadLinearSpeed,
     ];
 
     /// Key in model files; it ends in the unit.
@@ -87,15 +100,45 @@ impl JointField {
             JointField::GainSPerRad => "gain_s_per_rad",
             JointField::StallTorque => "stall_torque_nm",
             JointField::NoLoadSpeed => "no_load_speed_rad_s",
+            JointField::GainPerM => "gain_per_m",
+            JointField::GainSPerM => "gain_s_per_m",
+            JointField::StallForce => "stall_force_n",
+            JointField::NoLoadLinearSpeed => "no_load_speed_m_s",
         }
     }
 
-    pub(super) fn of(self, drive: &mut Drive) -> Option<&mut f64> {
-        match (self, drive) {
-            (JointField::GainPerRad, Drive::Position { gain_per_rad, .. }) => Some(gain_per_rad),
-            (JointField::GainSPerRad, Drive::Speed { gain_s_per_rad, .. }) => Some(gain_s_per_rad),
-            (JointField::StallTorque, drive) => Some(&mut drive.motor_mut()?.stall_torque_nm),
-            (JointField::NoLoadSpeed, drive) => Some(&mut drive.motor_mut()?.no_load_speed_rad_s),
+    /// How the joints move that have it.
+    pub(super) fn axis(self) -> Axis {
+        match self {
+            JointField::GainPerRad
+            | JointField::GainSPerRad
+            | JointField::StallTorque
+            | JointField::NoLoadSpeed => Axis::Hinge,
+            JointField::GainPerM
+            | JointField::GainSPerM
+            | JointField::StallForce
+            | JointField::NoLoadLinearSpeed => Axis::Slide,
+        }
+    }
+
+    pub(super) fn of(self, joint: &mut Joint) -> Option<&mut f64> {
+        use JointField as F;
+        if joint.axis() != self.axis() {
+            return None;
+        }
+        match (self, &mut joint.drive) {
+            (F::GainPerRad | F::GainPerM, Drive::Position { gain_per_rad, .. }) => {
+                Some(gain_per_rad)
+            }
+            (F::GainSPerRad | F::GainSPerM, Drive::Speed { gain_s_per_rad, .. }) => {
+                Some(gain_s_per_rad)
+            }
+            (F::StallTorque | F::StallForce, drive) => {
+                Some(&mut drive.motor_mut()?.stall_torque_nm)
+            }
+            (F::NoLoadSpeed | F::NoLoadLinearSpeed, drive) => {
+                Some(&mut drive.motor_mut()?.no_load_speed_rad_s)
+            }
             _ => None,
         }
     }

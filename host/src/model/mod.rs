@@ -9,6 +9,7 @@ pub mod edit;
 pub mod export;
 mod field;
 pub mod import;
+mod joint;
 mod limits;
 pub mod new_model;
 mod parse;
@@ -24,6 +25,7 @@ mod unit;
 
 pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
 pub use field::{JointField, LinkField};
+pub use joint::{Drive, Joint, Motor, effect_on};
 pub use limits::Limits;
 pub use path::ParameterPath;
 pub use pose::{hanging, upright};
@@ -106,88 +108,6 @@ pub struct Link {
     pub inertia_kg_m2: f64,
 }
 
-/// A joint: what drives it, and how its motor's inertia counts.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
-    /// What moves it.
-    pub drive: Drive,
-}
-
-/// What moves a joint. Duty is the share of the full voltage, -1 to 1.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Drive {
-    /// Nothing: swings freely.
-    Passive,
-    /// The log's input is a torque, N m.
-    Torque,
-    /// The log's input is a duty; torque = stall torque * duty.
-    Duty(Motor),
-    /// The log's input is a goal angle, rad; duty = gain * error, clipped at 1.
-    Position {
-        /// Duty per rad of error.
-        gain_per_rad: f64,
-        /// The motor behind it.
-        motor: Motor,
-    },
-    /// The log's input is a goal speed, rad/s; duty = goal / no-load speed + gain * error, clipped
-    /// at 1.
-    Speed {
-        /// Duty per rad/s of error.
-        gain_s_per_rad: f64,
-        /// The motor behind it.
-        motor: Motor,
-    },
-}
-
-impl Drive {
-    /// The motor, if there is one.
-    pub fn motor(&self) -> Option<&Motor> {
-        match self {
-            Drive::Passive | Drive::Torque => None,
-            Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
-                Some(motor)
-            }
-        }
-    }
-
-    fn motor_mut(&mut self) -> Option<&mut Motor> {
-        match self {
-            Drive::Passive | Drive::Torque => None,
-            Drive::Duty(motor) | Drive::Position { motor, .. } | Drive::Speed { motor, .. } => {
-                Some(motor)
-            }
-        }
-    }
-
-    /// Whether anything moves the joint.
-    pub fn is_driven(&self) -> bool {
-        !matches!(self, Drive::Passive)
-    }
-
-    /// The key that names it in a model file.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Drive::Passive => "passive",
-            Drive::Torque => "torque",
-            Drive::Duty(_) => "duty",
-            Drive::Position { .. } => "position",
-            Drive::Speed { .. } => "speed",
-        }
-    }
-}
-
-/// A direct-current motor with its gear, at the joint.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Motor {
-    /// Torque at standstill and full duty at the nominal supply, N m.
-    pub stall_torque_nm: f64,
-    /// Speed without load at full duty at the nominal supply, rad/s; infinite when torque does not
-    /// fall with speed.
-    pub no_load_speed_rad_s: f64,
-    /// Supply for which the figures hold, V.
-    pub nominal_supply_v: Option<f64>,
-}
-
 /// One effect of the library with its values: at a joint, at all driven joints, or on the whole
 /// rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -258,6 +178,35 @@ impl Model {
             .collect()
     }
 
+    /// Whether any joint slides.
+    pub fn slides(&self) -> bool {
+        self.joints.iter().any(|joint| joint.slide.is_some())
+    }
+
+    /// Refuses a model with joints that slide; `why` reads on from "joint 1 slides, and".
+    ///
+    /// # Errors
+    /// A joint that slides.
+    pub fn hinges_only(&self, why: &str) -> Result<()> {
+        match self.joints.iter().position(|joint| joint.slide.is_some()) {
+            None => Ok(()),
+            Some(joint) => Err(crate::Error::design(
+                format!("joint {} of `{}` slides, and {why}", joint + 1, self.name),
+                "give a model whose joints all turn",
+            )),
+        }
+    }
+
+    /// Angle from hanging at which the log's angle of a joint is zero, rad: what `angle_zero` says
+    /// of the first joint that turns, else 0.
+    pub fn zero_rad(&self, joint: usize) -> f64 {
+        let first = self.joints.iter().position(|joint| joint.slide.is_none());
+        match first == Some(joint) {
+            true => self.angle_zero.from_hanging_rad(),
+            false => 0.0,
+        }
+    }
+
     /// Whether a sensor's reading trails the motion.
     pub fn trails(&self) -> bool {
         let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);
@@ -266,12 +215,13 @@ impl Model {
 
     /// Adds an effect of the library at a joint, if there is one of this id.
     pub(crate) fn add_effect(&mut self, id: &str, joint: usize, values: Vec<f64>) {
-        self.effects
-            .extend(effects::named(id).map(|effect| EffectInstance {
-                effect,
-                joint: Some(joint),
-                values,
-            }));
+        let named = effects::named(id);
+        let effect = named.and_then(|effect| effect_on(effect, Some(joint), &self.joints));
+        self.effects.extend(effect.map(|effect| EffectInstance {
+            effect,
+            joint: Some(joint),
+            values,
+        }));
     }
 
     /// Effects that act on a joint, given by index from 0, in the order of the file; of the whole

@@ -1,6 +1,8 @@
 //! A model's file written from plain figures, with comments that say what to look at next.
 
-use super::{Dimension, Model};
+use super::{Dimension, JointField, Model};
+use crate::dynamics::SlideAxis;
+use crate::effects::Axis;
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::fmt::Write as _;
@@ -44,6 +46,9 @@ pub struct LinkPlan {
     pub stall_torque_nm: Option<f64>,
     /// Speed without load, rad/s.
     pub no_load_speed_rad_s: Option<f64>,
+    /// Along what the joint slides; the figures of its drive are then in m, m/s and N.
+    #[serde(skip)]
+    pub slide: Option<SlideAxis>,
 }
 
 /// The model file of a plan.
@@ -112,19 +117,38 @@ fn write_link(text: &mut String, index: usize, link: &LinkPlan) {
 fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
     let drive = toml_edit::Value::from(link.drive.as_str());
     let _ = write!(text, "\n[[joint]] # {}\ndrive = {drive}\n", index + 1);
+    if let Some(slide) = &link.slide {
+        let (direction, turn) = (number(slide.direction_rad), number(slide.link_rad));
+        let _ = writeln!(
+            text,
+            "axis = \"slide\"\nslide_rad = {direction}\nlink_rad = {turn}"
+        );
+    }
+    let [per_place, per_speed, stall, no_load] = match link.slide {
+        None => [
+            JointField::GainPerRad,
+            JointField::GainSPerRad,
+            JointField::StallTorque,
+            JointField::NoLoadSpeed,
+        ],
+        Some(_) => [
+            JointField::GainPerM,
+            JointField::GainSPerM,
+            JointField::StallForce,
+            JointField::NoLoadLinearSpeed,
+        ],
+    }
+    .map(JointField::key);
     let gain = match link.drive.as_str() {
-        "position" => Some("gain_per_rad"),
-        "speed" => Some("gain_s_per_rad"),
+        "position" => Some(per_place),
+        "speed" => Some(per_speed),
         _ => None,
     };
     let has_motor = gain.is_some() || link.drive == "duty";
     let figures = [
         (gain, link.gain),
-        (has_motor.then_some("stall_torque_nm"), link.stall_torque_nm),
-        (
-            has_motor.then_some("no_load_speed_rad_s"),
-            link.no_load_speed_rad_s,
-        ),
+        (has_motor.then_some(stall), link.stall_torque_nm),
+        (has_motor.then_some(no_load), link.no_load_speed_rad_s),
     ];
     for (key, value) in figures {
         if let (Some(key), Some(value)) = (key, value) {
@@ -142,7 +166,9 @@ fn log_table(plan: &ModelPlan) -> String {
             text,
             "\n[[log.joint]]\nposition = {{ column = \"q{joint}_rad\", unit = \"rad\" }}\n"
         );
-        if let Some(unit) = Dimension::of_input(&link.drive).and_then(|d| d.unit_names().next()) {
+        if let Some(unit) =
+            Dimension::of_input(&link.drive, Axis::Hinge).and_then(|d| d.unit_names().next())
+        {
             let _ = writeln!(
                 text,
                 "input = {{ column = \"input{joint}\", unit = \"{unit}\" }}"
@@ -172,6 +198,7 @@ mod tests {
             gain: Some(5.0),
             stall_torque_nm: Some(1.5),
             no_load_speed_rad_s: None,
+            slide: None,
         }
     }
 

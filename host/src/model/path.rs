@@ -4,7 +4,7 @@
 use super::field::{JointField, LinkField, POSITIVE};
 use super::suggest::split_unit;
 use super::{EffectInstance, Model};
-use crate::effects;
+use crate::effects::{self, Axis, Effect};
 use std::fmt;
 
 /// Where one number of a model is. Indices count from 0 here, and from 1 in text.
@@ -33,17 +33,32 @@ pub enum ParameterPath {
         joint: Option<usize>,
         /// Position among its parameters.
         parameter: usize,
+        /// At which joints this value has its key and unit: of one that has the same everywhere, a
+        /// hinge.
+        axis: Axis,
     },
 }
 
 impl ParameterPath {
     /// Addresses of an effect's values, in the order of its parameters.
     pub fn of_effect(effect: &EffectInstance) -> impl Iterator<Item = ParameterPath> + '_ {
-        (0..effect.values.len()).map(|parameter| ParameterPath::Effect {
-            id: effect.effect.info().id,
-            joint: effect.joint,
+        let of = |parameter| ParameterPath::at(effect.effect, effect.joint, parameter);
+        (0..effect.values.len()).map(of)
+    }
+
+    /// Address of a value of an effect at a joint; `None` as [`EffectInstance`] has it.
+    pub fn at(effect: &'static dyn Effect, joint: Option<usize>, parameter: usize) -> Self {
+        let key = |effect: &dyn Effect| effect.info().parameters.get(parameter).map(|p| p.key);
+        let axis = match effects::on_axis(effect, Axis::Hinge) {
+            Some(hinge) if key(hinge) == key(effect) => Axis::Hinge,
+            _ => effect.axis(),
+        };
+        ParameterPath::Effect {
+            id: effect.info().id,
+            joint,
             parameter,
-        })
+            axis,
+        }
     }
 
     /// The number there; `None` if the model has no such link, joint, drive figure or effect.
@@ -53,15 +68,21 @@ impl ParameterPath {
                 Some(*field.of(&mut model.links.get(index)?.clone()))
             }
             ParameterPath::Joint { index, field } => {
-                Some(*field.of(&mut model.joints.get(index)?.drive.clone())?)
+                Some(*field.of(&mut model.joints.get(index)?.clone())?)
             }
             ParameterPath::Effect {
                 id,
                 joint,
                 parameter,
+                ..
             } => {
                 let effect = model.effects.iter().find(|effect| effect.is(id, joint))?;
-                effect.values.get(parameter).copied()
+                let own = effect.effect.info().parameters.get(parameter)?;
+                effect
+                    .values
+                    .get(parameter)
+                    .copied()
+                    .filter(|_| own.key == self.key())
             }
         }
     }
@@ -70,6 +91,9 @@ impl ParameterPath {
     /// such place.
     #[must_use]
     pub fn set(&self, model: &mut Model, value: f64) -> bool {
+        if self.get(model).is_none() {
+            return false;
+        }
         let place = match *self {
             ParameterPath::Link { index, field } => {
                 model.links.get_mut(index).map(|link| field.of(link))
@@ -77,11 +101,12 @@ impl ParameterPath {
             ParameterPath::Joint { index, field } => model
                 .joints
                 .get_mut(index)
-                .and_then(|joint| field.of(&mut joint.drive)),
+                .and_then(|joint| field.of(joint)),
             ParameterPath::Effect {
                 id,
                 joint,
                 parameter,
+                ..
             } => model
                 .effects
                 .iter_mut()
@@ -121,11 +146,18 @@ impl ParameterPath {
     }
 
     /// The effect's parameter, of the value of an effect.
-    fn parameter(&self) -> Option<&'static effects::Parameter> {
-        let ParameterPath::Effect { id, parameter, .. } = *self else {
+    pub(crate) fn parameter(&self) -> Option<&'static effects::Parameter> {
+        let ParameterPath::Effect {
+            id,
+            parameter,
+            axis,
+            ..
+        } = *self
+        else {
             return None;
         };
-        effects::named(id)?.info().parameters.get(parameter)
+        let effect = effects::on_axis(effects::named(id)?, axis)?;
+        effect.info().parameters.get(parameter)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Straight poses in a model's own convention of angles.
 
-use super::{Angles, Model};
+use super::{Angles, Joint, Model};
 
 /// All links straight up, one angle per joint, rad.
 pub fn upright(model: &Model) -> Vec<f64> {
@@ -15,11 +15,9 @@ pub fn hanging(model: &Model) -> Vec<f64> {
 impl Model {
     /// Angles in the model's own convention as relative ones, the first from hanging, rad.
     pub fn relative_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
-        let zero = self.angle_zero.from_hanging_rad();
-        let mut before = -zero;
+        let mut before = -self.angle_zero.from_hanging_rad();
         let angle = |(joint, &angle): (usize, &f64)| match self.angles {
-            Angles::Relative if joint == 0 => angle + zero,
-            Angles::Relative => angle,
+            Angles::Relative => angle + self.zero_rad(joint),
             Angles::Absolute => angle - std::mem::replace(&mut before, angle),
         };
         pose_rad.iter().enumerate().map(angle).collect()
@@ -28,13 +26,11 @@ impl Model {
     /// Relative angles, the first from hanging, in the model's own convention, rad: undoes
     /// [`Model::relative_rad`].
     pub fn convention_rad(&self, relative_rad: &[f64]) -> Vec<f64> {
-        let zero = self.angle_zero.from_hanging_rad();
-        let mut sum = -zero;
+        let mut sum = -self.angle_zero.from_hanging_rad();
         let angle = |(joint, &angle): (usize, &f64)| {
             sum += angle;
             match self.angles {
-                Angles::Relative if joint == 0 => angle - zero,
-                Angles::Relative => angle,
+                Angles::Relative => angle - self.zero_rad(joint),
                 Angles::Absolute => sum,
             }
         };
@@ -42,14 +38,24 @@ impl Model {
     }
 }
 
-/// All links at an angle from hanging, rad.
+/// All links that turn at an angle from hanging, rad, and joints that slide at 0.
 fn straight(model: &Model, from_hanging_rad: f64) -> Vec<f64> {
-    let first = from_hanging_rad - model.angle_zero.from_hanging_rad();
-    let later = match model.angles {
-        Angles::Absolute => first,
-        Angles::Relative => 0.0,
+    if model.angles == Angles::Absolute {
+        let first = from_hanging_rad - model.angle_zero.from_hanging_rad();
+        return vec![first; model.link_count()];
+    }
+    let mut before = 0.0;
+    let joints = model.joints.iter().enumerate();
+    let angle = |(joint, own): (usize, &Joint)| match own.slide {
+        Some(slide) => {
+            before += slide.link_rad;
+            0.0
+        }
+        None => {
+            let turn = from_hanging_rad - before;
+            before = from_hanging_rad;
+            turn - model.zero_rad(joint)
+        }
     };
-    (0..model.link_count())
-        .map(|joint| if joint == 0 { first } else { later })
-        .collect()
+    joints.map(angle).collect()
 }

@@ -80,6 +80,18 @@ pub enum ModelReason {
         /// Its drive.
         drive: &'static str,
     },
+    /// An effect that has no meaning where the joint slides.
+    #[error("`{id}` does not act on joints that slide")]
+    NotOnSlide {
+        /// The effect.
+        id: &'static str,
+    },
+    /// Joints that slide, and angles from the world.
+    #[error("the model has joints that slide, and angles from the world")]
+    AbsoluteSlides,
+    /// A slide whose displacement no log holds.
+    #[error("[[log.joint]] of a joint that slides lacks `position`")]
+    SlideUnmeasured,
     /// A unit that there is not.
     #[error("unknown unit `{unit}`")]
     UnknownUnit {
@@ -180,6 +192,11 @@ impl Reason for ModelReason {
             NoDrivenJoint { .. } => "name a joint, counted from 1",
             UnsuitedJoint { wanted, .. } => {
                 return format!("name a {wanted} joint, or another effect").into();
+            }
+            NotOnSlide { .. } => "name a joint that turns, or another effect",
+            AbsoluteSlides => "write `angles = \"relative\"`: each from the link before",
+            SlideUnmeasured => {
+                "name the column of its displacement: a slide's speed alone will not do"
             }
             UnknownUnit { wanted, .. } | OtherDimension { wanted, .. } => {
                 return format!("write one of: {}", units(wanted)).into();

@@ -7,13 +7,15 @@ use crate::effects::{Rig, Scope, Site};
 impl Model {
     /// The rigid chain of the links alone, without any effect.
     pub fn chain(&self) -> Chain {
-        let links = self.links.iter().map(|link| ChainLink {
+        let bodies = self.links.iter().zip(&self.joints);
+        let links = bodies.map(|(link, joint)| ChainLink {
             length_m: link.length_m,
             com_m: link.com_m,
             com_angle_rad: 0.0,
             mass_kg: link.mass_kg,
             inertia_kg_m2: link.inertia_kg_m2,
             armature_kg_m2: 0.0,
+            slide: joint.slide,
         });
         Chain {
             links: links.collect(),

@@ -1,5 +1,6 @@
 //! Units a log may be written in; declared, never guessed.
 
+use crate::effects::Axis;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -14,6 +15,12 @@ pub enum Dimension {
     Speed,
     /// Torque, SI N m.
     Torque,
+    /// Displacement of a joint that slides, SI m.
+    Length,
+    /// Its speed, SI m/s.
+    LinearSpeed,
+    /// Force along it, SI N.
+    Force,
     /// Voltage, SI V.
     Voltage,
     /// Mass, SI kg.
@@ -29,6 +36,9 @@ impl fmt::Display for Dimension {
             Dimension::Angle => "an angle",
             Dimension::Speed => "an angular speed",
             Dimension::Torque => "a torque",
+            Dimension::Length => "a length",
+            Dimension::LinearSpeed => "a linear speed",
+            Dimension::Force => "a force",
             Dimension::Voltage => "a voltage",
             Dimension::Mass => "a mass",
             Dimension::Ratio => "a share",
@@ -44,20 +54,35 @@ impl Dimension {
             Dimension::Angle => "_rad",
             Dimension::Speed => "_rad_s",
             Dimension::Torque => "_nm",
+            Dimension::Length => "_m",
+            Dimension::LinearSpeed => "_m_s",
+            Dimension::Force => "_n",
             Dimension::Voltage => "_v",
             Dimension::Mass => "_kg",
             Dimension::Ratio => "",
         }
     }
 
-    /// What the input of a drive of this name measures; nothing for one that has no input.
-    pub fn of_input(drive: &str) -> Option<Dimension> {
+    /// What the input of a drive of this name measures at a joint that moves so; nothing for one
+    /// that has no input.
+    pub fn of_input(drive: &str, axis: Axis) -> Option<Dimension> {
         match drive {
-            "torque" => Some(Dimension::Torque),
+            "torque" => Some(Dimension::Torque.on(axis)),
             "duty" => Some(Dimension::Ratio),
-            "position" => Some(Dimension::Angle),
-            "speed" => Some(Dimension::Speed),
+            "position" => Some(Dimension::Angle.on(axis)),
+            "speed" => Some(Dimension::Speed.on(axis)),
             _ => None,
+        }
+    }
+
+    /// What takes the place of this at a joint that moves so: of an angle, a length on a slide.
+    #[must_use]
+    pub fn on(self, axis: Axis) -> Dimension {
+        match (self, axis) {
+            (Dimension::Angle, Axis::Slide) => Dimension::Length,
+            (Dimension::Speed, Axis::Slide) => Dimension::LinearSpeed,
+            (Dimension::Torque, Axis::Slide) => Dimension::Force,
+            _ => self,
         }
     }
 
@@ -97,6 +122,19 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     // Currents of a motor, which are torques by its constant.
     ("A", Dimension::Torque, f64::NAN),
     ("mA", Dimension::Torque, f64::NAN),
+    ("m", Dimension::Length, 1.0),
+    ("cm", Dimension::Length, 1e-2),
+    ("mm", Dimension::Length, 1e-3),
+    ("um", Dimension::Length, 1e-6),
+    ("ticks", Dimension::Length, f64::NAN),
+    ("m/s", Dimension::LinearSpeed, 1.0),
+    ("cm/s", Dimension::LinearSpeed, 1e-2),
+    ("mm/s", Dimension::LinearSpeed, 1e-3),
+    ("N", Dimension::Force, 1.0),
+    ("mN", Dimension::Force, 1e-3),
+    ("kgf", Dimension::Force, 9.806_65),
+    ("A", Dimension::Force, f64::NAN),
+    ("mA", Dimension::Force, f64::NAN),
     ("V", Dimension::Voltage, 1.0),
     ("mV", Dimension::Voltage, 1e-3),
     ("kg", Dimension::Mass, 1.0),
@@ -117,11 +155,20 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// The unit of this name; `scale` is what a column says under [`Unit::scale_key`]: counts per
-    /// turn, or N m per ampere.
+    /// The unit of this name, of a hinge where one of slides has the same; `scale` is what a column
+    /// says under [`Unit::scale_key`]: counts per turn, or N m per ampere.
     pub fn named(name: &str, scale: Option<f64>) -> Option<Unit> {
-        let (name, dimension, factor) = UNITS.iter().find(|(known, _, _)| *known == name)?;
+        let dimension = UNITS.iter().find(|(known, _, _)| *known == name)?.1;
+        Unit::of(name, dimension, scale)
+    }
+
+    /// The unit of this name that measures this; `scale` as above, per metre and N per ampere where
+    /// it is one of slides.
+    pub fn of(name: &str, dimension: Dimension, scale: Option<f64>) -> Option<Unit> {
+        let is = |unit: &&(&str, Dimension, f64)| unit.0 == name && unit.1 == dimension;
+        let (name, dimension, factor) = UNITS.iter().find(is)?;
         let si = match (*name, scale) {
+            ("ticks", Some(ticks)) if *dimension == Dimension::Length => 1.0 / ticks,
             ("ticks", Some(ticks)) => TAU / ticks,
             ("A", Some(constant)) => constant,
             ("mA", Some(constant)) => 1e-3 * constant,
@@ -134,11 +181,14 @@ impl Unit {
         })
     }
 
-    /// The key under which a column says the size of a unit of this name, where it has to.
-    pub fn scale_key(name: &str) -> Option<&'static str> {
-        match name {
-            "ticks" => Some("ticks_per_turn"),
-            "A" | "mA" => Some("torque_constant_nm_a"),
+    /// The key under which a column of this dimension says the size of a unit of this name, where
+    /// it has to.
+    pub fn scale_key(name: &str, dimension: Dimension) -> Option<&'static str> {
+        match (name, dimension) {
+            ("ticks", Dimension::Length) => Some("ticks_per_m"),
+            ("ticks", _) => Some("ticks_per_turn"),
+            ("A" | "mA", Dimension::Force) => Some("force_constant_n_a"),
+            ("A" | "mA", _) => Some("torque_constant_nm_a"),
             _ => None,
         }
     }
@@ -146,6 +196,7 @@ impl Unit {
     /// What a column says under [`Unit::scale_key`] of a unit of this size.
     pub fn scale(self) -> Option<f64> {
         match self.name {
+            "ticks" if self.dimension == Dimension::Length => Some(1.0 / self.si),
             "ticks" => Some(TAU / self.si),
             "A" => Some(self.si),
             "mA" => Some(1e3 * self.si),

@@ -62,6 +62,7 @@ fn chain(n: usize) -> Chain {
         mass_kg: 0.9 / (1.0 + i as f64),
         inertia_kg_m2: 8e-4,
         armature_kg_m2: 0.0,
+        slide: None,
     };
     Chain {
         links: (0..n).map(link).collect(),

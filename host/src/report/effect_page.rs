@@ -26,6 +26,7 @@ pub fn page(effect: &dyn Effect) -> String {
         heading(info),
         section("Law", &wrapped(info.law)),
         section("Parameters", &parameters(info)),
+        section("On a joint that slides", &on_slide(effect)),
         section("What a log shows", &wrapped(info.looks_like)),
         section("Signature", &drawn(effect)),
         section("Confused with", &confusions(info)),
@@ -33,6 +34,16 @@ pub fn page(effect: &dyn Effect) -> String {
         section("Reference", &wrapped(info.reference)),
     ];
     sections.join("\n\n") + "\n"
+}
+
+/// Law and parameters there, in m and N.
+fn on_slide(effect: &dyn Effect) -> String {
+    match effect.slide_info() {
+        None if effect.info().scope == Scope::WholeRig => "The same.".to_string(),
+        None => "It does not act there.".to_string(),
+        Some(info) if std::ptr::eq(info, effect.info()) => "The same.".to_string(),
+        Some(info) => format!("{}\n{}", wrapped(info.law), parameters(info)),
+    }
 }
 
 fn heading(info: &EffectInfo) -> String {

@@ -4,7 +4,7 @@ use super::Report;
 use super::page::{Section, table};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::names::effect_name;
-use crate::effects::named;
+use crate::effects::{Axis, named, on_axis};
 use crate::fitting::FittedValue;
 use crate::output::number::{interval, short, unit};
 use crate::output::plot;
@@ -52,7 +52,9 @@ fn values(diagnosis: &Diagnosis) -> Markup {
 
 /// Value at which an effect vanishes.
 fn off(kind: &str, key: &str) -> Option<f64> {
-    let mut parameters = named(kind)?.info().parameters.iter();
+    let axes = [Axis::Hinge, Axis::Slide].into_iter();
+    let effects = axes.filter_map(|axis| on_axis(named(kind)?, axis));
+    let mut parameters = effects.flat_map(|effect| effect.info().parameters);
     parameters.find(|parameter| parameter.key == key)?.off
 }
 

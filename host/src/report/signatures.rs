@@ -4,7 +4,7 @@ use super::page::Section;
 use super::{AFTER, Report};
 use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
-use crate::effects::{Effect, named};
+use crate::effects::{Axis, Effect, named, on_axis};
 use crate::output::number::given;
 use crate::output::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
@@ -26,17 +26,35 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 /// Each kind once, however many joints have it.
 fn kinds(effects: &[FittedEffect]) -> Vec<&'static dyn Effect> {
     let mut kinds: Vec<&'static dyn Effect> = Vec::new();
-    for effect in effects.iter().filter_map(|effect| named(&effect.kind)) {
-        if !kinds.contains(&effect) {
+    for effect in effects.iter().filter_map(as_found) {
+        if !kinds
+            .iter()
+            .any(|known| std::ptr::eq(known.info(), effect.info()))
+        {
             kinds.push(effect);
         }
     }
     kinds
 }
 
-fn explained(effect: &dyn Effect) -> Markup {
+/// The effect in the units of the joint at which it was found.
+fn as_found(effect: &FittedEffect) -> Option<&'static dyn Effect> {
+    let hinge = named(&effect.kind)?;
+    let has = |of: &dyn Effect| {
+        let keys = of.info().parameters.iter().map(|parameter| parameter.key);
+        keys.eq(effect.parameters.iter().map(|value| value.key.as_str()))
+    };
+    match has(hinge) {
+        true => Some(hinge),
+        false => on_axis(hinge, Axis::Slide),
+    }
+}
+
+fn explained(effect: &'static dyn Effect) -> Markup {
     let info = effect.info();
-    let chart = chart(effect, &signature(effect));
+    // The shape is that on a bench arm, whatever the joint.
+    let hinge = on_axis(effect, Axis::Hinge);
+    let drawn = hinge.map(|hinge| chart(hinge, &signature(hinge)));
     html! {
         div.effect {
             div {
@@ -54,7 +72,9 @@ fn explained(effect: &dyn Effect) -> Markup {
                     dt { "Reference" } dd { (info.reference) }
                 }
             }
-            figure { (chart.svg(360.0, 234.0)) figcaption { (chart.legend()) } }
+            @if let Some(chart) = drawn {
+                figure { (chart.svg(360.0, 234.0)) figcaption { (chart.legend()) } }
+            }
         }
     }
 }

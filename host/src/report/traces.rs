@@ -112,6 +112,7 @@ fn chart(pair: &Pair) -> Markup {
     let trace = pair.before;
     let label_above = match trace.quantity {
         MeasuredSignal::Rate => "rate, rad/s",
+        MeasuredSignal::Displacement => "displacement, m",
         MeasuredSignal::Angle | MeasuredSignal::Nothing => "angle, rad",
     };
     let label_below = format!("residual, {}", trace.quantity.milli());
@@ -133,10 +134,11 @@ fn chart(pair: &Pair) -> Markup {
     }
 }
 
-/// Behind the figures of a rate in a column of mrad.
+/// Behind the figures of a rate, or a displacement, in a column of mrad.
 fn per_s(signal: &SignalError) -> &'static str {
     match signal.quantity {
         MeasuredSignal::Rate => " /s",
+        MeasuredSignal::Displacement => " mm",
         MeasuredSignal::Angle | MeasuredSignal::Nothing => "",
     }
 }

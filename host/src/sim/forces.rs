@@ -109,7 +109,7 @@ impl<R: Rows> Forces<R> {
                 _ => plan.drive_torque_nm(input, 0.0, speed),
             };
             let state = JointState {
-                angle_rad: at.angle[joint] - if joint == 0 { plant.zero_rad } else { 0.0 },
+                angle_rad: at.angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed,
                 drive_nm: drive,
                 shuffled_rad_s: input.shuffled_rad_s,

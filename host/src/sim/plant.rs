@@ -13,7 +13,10 @@ pub struct Plant {
     pub(super) joints: Vec<JointPlan>,
     /// Stands for gravity: see [`Chain::base_m_s2`].
     pub(super) base_m_s2: [f64; 2],
+    /// Angle from hanging of the zero of the log's angles, rad, where these are from the world.
     pub(super) zero_rad: f64,
+    /// Per joint, relative angle at which the log's is zero, rad.
+    pub(super) zeros_rad: Vec<f64>,
     pub(super) absolute: bool,
     /// Per joint: whether the log holds its rate alone, which is then what is predicted.
     pub(super) rates: Vec<bool>,
@@ -46,7 +49,7 @@ impl Plant {
             for instance in model.effects.iter().filter(|e| e.effect == *effect) {
                 for (index, joint) in joints.iter_mut().enumerate() {
                     if instance.acts_on(index, &model.joints[index]) {
-                        joint.add(*effect, &instance.values);
+                        joint.add(instance.effect, &instance.values);
                         needs.push(effect.info().needs);
                     }
                 }
@@ -74,6 +77,9 @@ impl Plant {
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),
+            zeros_rad: (0..joints.len())
+                .map(|joint| model.zero_rad(joint))
+                .collect(),
             absolute: model.angles == Angles::Absolute,
             step_s: model.step_s,
             torques_stay: joints.iter().all(JointPlan::torque_stays),
@@ -109,10 +115,8 @@ impl Plant {
     pub(super) fn encoded_rad(&self, joint: usize, angle_rad: &[f64]) -> f64 {
         let true_angle = if self.absolute {
             angle_rad[..=joint].iter().sum::<f64>() - self.zero_rad
-        } else if joint == 0 {
-            angle_rad[0] - self.zero_rad
         } else {
-            angle_rad[joint]
+            angle_rad[joint] - self.zeros_rad[joint]
         };
         self.joints[joint]
             .encode
@@ -172,10 +176,8 @@ impl Plant {
             if self.absolute {
                 angles.push(angle + self.zero_rad - if angles.is_empty() { 0.0 } else { before });
                 before = angle + self.zero_rad;
-            } else if angles.is_empty() {
-                angles.push(angle + self.zero_rad);
             } else {
-                angles.push(angle);
+                angles.push(angle + self.zeros_rad[angles.len()]);
             }
         }
         angles

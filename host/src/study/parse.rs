@@ -83,7 +83,9 @@ impl Study {
         {
             Some(Some(name)) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                Study::of(Model::load(&folder.join(name))?)
+                let model = Model::load(&folder.join(name))?;
+                model.hinges_only("studies are of robots on hinges")?;
+                Study::of(model)
             }
             _ => Study::paper()?,
         };

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::quantity::{Levels, Quantity, Spread, SpreadOver};
 use crate::effects;
-use crate::model::EffectInstance;
+use crate::model::{EffectInstance, effect_on};
 use crate::output::number::given;
 use crate::sim::closed_loop::Gyro;
 
@@ -279,7 +279,8 @@ fn factor(error: f64) -> f64 {
 }
 
 fn effect(case: &mut Case, id: &str, joint: Option<usize>, value: f64) {
-    if let Some(effect) = effects::named(id) {
+    let named = effects::named(id);
+    if let Some(effect) = named.and_then(|effect| effect_on(effect, joint, &case.robot.joints)) {
         case.robot.effects.push(EffectInstance {
             effect,
             joint,

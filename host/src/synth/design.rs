@@ -86,6 +86,10 @@ impl Design {
     /// # Errors
     /// Whatever stands in the way, with what to change.
     pub fn of(model: &Model, request: &Request) -> Result<Design, DesignError> {
+        let slide = model.joints.iter().position(|joint| joint.slide.is_some());
+        if let (Some(joint), true) = (slide, request.sensors.is_some()) {
+            return Err(DesignError::SlideFiltered { joint });
+        }
         let Linearisation {
             plant,
             inputs: u0,
@@ -116,7 +120,7 @@ impl Design {
             .map_or(0, |(sampled, _)| sampled.delayed_inputs);
         let mut design = Design {
             model: model.name.clone(),
-            states: states(model.link_count(), &inputs, delayed),
+            states: states(model, &inputs, delayed),
             x0: point(&request.pose_rad, &u0, delayed),
             u0,
             omitted,

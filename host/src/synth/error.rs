@@ -22,22 +22,32 @@ pub enum DesignError {
     #[error("the pose has an angle of {0}")]
     PoseAngle(f64),
     #[error(
-        "joint {} is passive and {torque_nm:.3e} N m would have to hold it at {angle_rad} rad: \
+        "joint {} is passive and {torque_nm:.3e} {} would have to hold it at {angle_rad} {}: \
          the pose is no equilibrium",
-        joint + 1
+        joint + 1,
+        units[2],
+        units[0]
     )]
     NoEquilibrium {
         joint: usize,
         torque_nm: f64,
         angle_rad: f64,
+        units: [&'static str; 3],
     },
     #[error("no equilibrium was found near this pose")]
     EquilibriumNotFound,
     #[error(
-        "joint {} needs {torque_nm:.3} N m to hold the pose, more than its drive can give",
-        joint + 1
+        "joint {} needs {torque_nm:.3} {} to hold the pose, more than its drive can give",
+        joint + 1,
+        units[2]
     )]
-    DriveTooWeak { joint: usize, torque_nm: f64 },
+    DriveTooWeak {
+        joint: usize,
+        torque_nm: f64,
+        units: [&'static str; 3],
+    },
+    #[error("joint {} slides, and the filter measures angles and a gyro", joint + 1)]
+    SlideFiltered { joint: usize },
 
     #[error("a sampling time of {0} s")]
     SamplingTime(f64),
@@ -231,6 +241,7 @@ impl Reason for DesignError {
                 "choose a pose in which every passive joint balances; --balance finds the nearest"
             }
             E::EquilibriumNotFound => "start from a pose nearer to balance",
+            E::SlideFiltered { .. } => "leave --lqg out",
             E::DriveTooWeak { .. } => "choose a pose that asks less of it",
             E::SamplingTime(_) => "give seconds above 0",
             E::Delay { most_samples, .. } => {

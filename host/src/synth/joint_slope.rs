@@ -34,6 +34,8 @@ pub(super) struct Held {
 /// One joint and what acts on it.
 pub(super) struct JointAt<'a> {
     joint: usize,
+    /// Of its place, speed and torque.
+    units: [&'static str; 3],
     drive: &'a Drive,
     effects: Vec<&'a EffectInstance>,
     angle_rad: f64,
@@ -56,15 +58,12 @@ impl<'a> JointAt<'a> {
         effects.extend(model.effects.iter().filter(users));
         effects
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
-        let zero = match joint {
-            0 => model.angle_zero.from_hanging_rad(),
-            _ => 0.0,
-        };
         JointAt {
             joint,
+            units: model.joints[joint].units(),
             drive: &model.joints[joint].drive,
             effects,
-            angle_rad: relative_rad[joint] - zero,
+            angle_rad: relative_rad[joint] - model.zero_rad(joint),
             pose_rad: pose_rad[joint],
         }
     }
@@ -139,6 +138,7 @@ impl<'a> JointAt<'a> {
                 joint: self.joint,
                 torque_nm: needed_nm,
                 angle_rad: self.pose_rad,
+                units: self.units,
             });
         };
         Ok(Held {
@@ -174,6 +174,7 @@ impl<'a> JointAt<'a> {
         Err(DesignError::DriveTooWeak {
             joint: self.joint,
             torque_nm: needed_nm,
+            units: self.units,
         })
     }
 

@@ -38,7 +38,9 @@ impl OperatingPoint {
         let equations = equations(model);
         let gravity_nm = equations.gravity(&relative_rad);
         let mut level_rad = relative_rad.clone();
-        level_rad[0] += std::f64::consts::FRAC_PI_2;
+        if let Some(hinge) = model.joints.iter().position(|joint| joint.slide.is_none()) {
+            level_rad[hinge] += std::f64::consts::FRAC_PI_2;
+        }
         let largest_nm = gravity_nm.amax().max(equations.gravity(&level_rad).amax());
         let mut point = OperatingPoint {
             inputs: Vec::new(),

@@ -2,6 +2,9 @@
 
 use crate::model::{Drive, Model};
 
+/// What a weight is by definition, m/s^2.
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
 /// A state or an input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signal {
@@ -15,26 +18,35 @@ pub struct Signal {
 pub(super) fn input(model: &Model, joint: usize) -> Signal {
     Signal {
         name: format!("u{}", joint + 1),
-        unit: match model.joints[joint].drive {
-            Drive::Passive | Drive::Duty(_) => "1",
-            Drive::Torque => "N m",
-            Drive::Position { .. } => "rad",
-            Drive::Speed { .. } => "rad/s",
+        unit: {
+            let [place, speed, torque] = model.joints[joint].units();
+            match model.joints[joint].drive {
+                Drive::Passive | Drive::Duty(_) => "1",
+                Drive::Torque => torque,
+                Drive::Position { .. } => place,
+                Drive::Speed { .. } => speed,
+            }
         },
     }
 }
 
 /// The largest input that makes sense for a drive: its torque limit where the model has one, else 2
-/// N m (the torque at which the paper's servos saturate); full duty; half a turn; the no-load
-/// speed.
+/// N m (the torque at which the paper's servos saturate), of a slide the weight of what it carries;
+/// full duty; half a turn, or a metre; the no-load speed.
 pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     let limit = model
         .effects_at(joint)
         .find(|e| e.effect.info().id == "torque_saturation")
         .and_then(|e| e.values.first().copied());
+    let slides = model.joints[joint].slide.is_some();
     match &model.joints[joint].drive {
         Drive::Passive | Drive::Duty(_) => 1.0,
+        Drive::Torque if slides => limit.unwrap_or_else(|| {
+            let carried = model.links[joint..].iter().map(|link| link.mass_kg);
+            STANDARD_GRAVITY_M_S2 * carried.sum::<f64>()
+        }),
         Drive::Torque => limit.unwrap_or(2.0),
+        Drive::Position { .. } if slides => 1.0,
         Drive::Position { .. } => std::f64::consts::PI,
         Drive::Speed { motor, .. } if motor.no_load_speed_rad_s.is_finite() => {
             motor.no_load_speed_rad_s
@@ -44,11 +56,11 @@ pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
 }
 
 /// Angles, speeds, then past inputs, the latest first.
-pub(super) fn states(joints: usize, inputs: &[Signal], delayed: usize) -> Vec<Signal> {
-    let of = |prefix: &'static str, unit: &'static str| {
-        (1..=joints).map(move |joint| Signal {
-            name: format!("{prefix}{joint}"),
-            unit,
+pub(super) fn states(model: &Model, inputs: &[Signal], delayed: usize) -> Vec<Signal> {
+    let of = |prefix: &'static str, order: usize| {
+        (0..model.link_count()).map(move |joint| Signal {
+            name: format!("{prefix}{}", joint + 1),
+            unit: model.joints[joint].units()[order],
         })
     };
     let past = (1..=delayed).flat_map(|k| {
@@ -57,8 +69,5 @@ pub(super) fn states(joints: usize, inputs: &[Signal], delayed: usize) -> Vec<Si
             unit: input.unit,
         })
     });
-    of("q", "rad")
-        .chain(of("dq", "rad/s"))
-        .chain(past)
-        .collect()
+    of("q", 0).chain(of("dq", 1)).chain(past).collect()
 }

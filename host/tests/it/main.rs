@@ -6,6 +6,7 @@ mod common;
 mod balance;
 mod begin;
 mod bus;
+mod cart_pole;
 mod cli;
 mod closed_loop;
 mod controllers;

@@ -77,12 +77,20 @@ impl HiddenEffect {
     }
 }
 
+/// Laws that are another's with two of its values equal: that one explains them rightly.
+const GENERAL: [(&str, &str); 1] = [("load_friction", "drive_asymmetry")];
+
 impl Case {
-    /// Effects that the library is to lack.
+    /// Effects that the library is to lack: what is hidden, and what holds it as a special case.
     pub fn without(&self) -> Vec<String> {
         match (self.truth, self.family) {
             (Truth::Own, Family::Outside) => {
-                self.hidden.iter().map(|kind| kind.to_string()).collect()
+                let general = GENERAL
+                    .into_iter()
+                    .filter(|(special, _)| self.hidden.contains(special))
+                    .map(|(_, general)| general);
+                let hidden = self.hidden.iter().copied();
+                hidden.chain(general).map(str::to_string).collect()
             }
             _ => Vec::new(),
         }

@@ -370,4 +370,14 @@ mod tests {
             Answer::Nominal
         );
     }
+    #[test]
+    fn a_library_lacks_what_holds_the_hidden_effect_too() {
+        let without = |kind| case(Family::Outside, &[kind]).without();
+        assert_eq!(without("mass"), ["mass"]);
+        assert_eq!(
+            without("load_friction"),
+            ["load_friction", "drive_asymmetry"]
+        );
+        assert!(case(Family::Single, &["mass"]).without().is_empty());
+    }
 }

@@ -26,6 +26,7 @@ pub(super) fn chain(n: usize) -> Chain {
         mass_kg,
         inertia_kg_m2,
         armature_kg_m2: 0.0,
+        slide: None,
     };
     Chain {
         links: rows.into_iter().map(link).collect(),

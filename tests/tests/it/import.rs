@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 const ROBOTS: u64 = 24;
+/// More of them whose joints may slide.
+const SLIDING: u64 = 24;
 const STATES: usize = 10;
 
 /// Splitmix64: numbers between -1 and 1.
@@ -44,8 +46,9 @@ fn joints(draws: &mut Draws) -> usize {
     1 + (draws.above(0.0, 3.999) as usize)
 }
 
-/// A turn about x, the axis of all joints, so that frames differ and axes stay parallel.
-fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
+/// A turn about x, the axis of all joints, so that frames differ and axes stay parallel. Joints may
+/// slide across that axis where `slides` says so.
+fn urdf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
     let count = joints(draws);
     let mut text = String::from("<robot name=\"drawn\"><link name=\"base\"/>");
     let link = |text: &mut String, name: &str, draws: &mut Draws| {
@@ -107,6 +110,11 @@ fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
         } else {
             "revolute"
         };
+        let across = format!("0 {} {}", draws.next(), draws.next() + 1.5);
+        let (axis, kind) = match slides && draws.next() > 0.0 {
+            true => (across.as_str(), "prismatic"),
+            false => (axis, kind),
+        };
         let turn = format!("{} 0 0", 3.0 * draws.next());
         joint(
             &mut text,
@@ -148,7 +156,7 @@ fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
     (text + "</robot>", names)
 }
 
-fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
+fn mjcf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
     let count = joints(draws);
     let mut text = format!(
         "<mujoco><compiler angle=\"degree\" eulerseq=\"zyx\"/><option gravity=\"{}\"><flag contact=\"disable\"/></option>\
@@ -163,6 +171,12 @@ fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
             "0 1 0"
         } else {
             "0 -3 0"
+        };
+        let across = format!("{} 0 {}\" type=\"slide", draws.next(), draws.next() + 1.5);
+        // Degrees, or metres.
+        let (axis, most) = match slides && draws.next() > 0.0 {
+            true => (across.as_str(), 0.3),
+            false => (axis, 20.0),
         };
         let shape = match index % 4 {
             0 => format!(
@@ -194,9 +208,9 @@ fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
             draws.next(),
             draws.next() + 1.5,
             draws.three(0.1),
-            20.0 * draws.next(),
+            most * draws.next(),
             draws.above(0.1, 2.0),
-            20.0 * draws.next(),
+            most * draws.next(),
             draws.above(0.001, 0.01),
             draws.three(0.2),
         );
@@ -250,11 +264,13 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
     };
     let folder = tempfile::tempdir().unwrap();
     let (mut cases, mut models) = (Vec::new(), Vec::new());
-    for robot in 0..ROBOTS {
+    let mut slides = 0;
+    for robot in 0..ROBOTS + SLIDING {
         let mut draws = Draws(robot);
+        let may_slide = robot >= ROBOTS;
         let (text, names) = match robot % 2 {
-            0 => urdf(&mut draws),
-            _ => mjcf(&mut draws),
+            0 => urdf(&mut draws, may_slide),
+            _ => mjcf(&mut draws, may_slide),
         };
         let ending = ["urdf", "xml"][robot as usize % 2];
         let file = folder.path().join(format!("{robot}.{ending}"));
@@ -276,6 +292,11 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
             "{held:?}"
         );
         let model = Model::parse(&imported.toml, Path::new("imported.toml")).unwrap();
+        slides += model
+            .joints
+            .iter()
+            .filter(|joint| joint.slide.is_some())
+            .count();
         let mut many =
             |size: f64| -> Vec<f64> { names.iter().map(|_| size * draws.next()).collect() };
         let states: Vec<[Vec<f64>; 3]> = (0..STATES)
@@ -307,5 +328,6 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
         "{} by Pinocchio, {} by MuJoCo, largest difference {worst:.1e}",
         compared[0], compared[1]
     );
-    assert_eq!(compared.iter().sum::<u64>(), ROBOTS);
+    assert_eq!(compared.iter().sum::<u64>(), ROBOTS + SLIDING);
+    assert!(slides > 20, "{slides} joints slide");
 }

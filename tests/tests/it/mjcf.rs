@@ -6,7 +6,7 @@ use handstand::challenge::{KINDS, Motions, bench};
 use handstand::log::Motion;
 use handstand::model::export::mjcf;
 use handstand::sim::{Plant, SensorState, Start, predict};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::Path;
 
 const PERIOD_S: f64 = 0.01;
@@ -75,6 +75,83 @@ fn ours(model: &Model, motion: &Motion, start: &Start) -> Vec<Vec<f64>> {
     (1..samples).map(row).collect()
 }
 
+/// What the script is asked, and the motion here.
+fn case(model: &Model, text: &str, file: &Path) -> (Value, Vec<Vec<f64>>) {
+    std::fs::write(file, text).unwrap();
+    let (motion, start) = (motion(model), start(model));
+    let inputs: Vec<Vec<f64>> = (0..PERIODS)
+        .map(|k| {
+            let inputs = motion.input.iter().flatten();
+            inputs.map(|input| input[k]).collect()
+        })
+        .collect();
+    let case = json!({
+        "file": file, "start_rad": start.angle_rad, "period_s": PERIOD_S, "inputs": inputs,
+    });
+    (case, ours(model, &motion, &start))
+}
+
+/// A trolley on a slope, a boom that swings below it, and a load that slides across the boom's end.
+const CRANE: &str = r#"
+[rig]
+name = "crane"
+angle_zero = "horizontal"
+step_s = 5e-4
+[[link]]
+length_m = 0.05
+com_m = 0.02
+mass_kg = 1.5
+inertia_kg_m2 = 2e-3
+[[link]]
+length_m = 0.3
+com_m = 0.15
+mass_kg = 0.4
+inertia_kg_m2 = 3e-3
+[[link]]
+com_m = 0.1
+mass_kg = 0.3
+inertia_kg_m2 = 1e-3
+[[joint]]
+axis = "slide"
+slide_rad = 1.4
+link_rad = 0.3
+drive = "duty"
+stall_force_n = 40.0
+no_load_speed_m_s = 2.0
+[[joint]]
+drive = "passive"
+[[joint]]
+axis = "slide"
+slide_rad = -1.2
+link_rad = -0.5
+drive = "position"
+stall_force_n = 20.0
+gain_per_m = 4.0
+[[effect]]
+kind = "viscous"
+joint = 1
+coefficient_n_s_m = 2.0
+[[effect]]
+kind = "armature"
+joint = 1
+inertia_kg = 0.5
+[[effect]]
+kind = "cable_spring"
+joint = 3
+stiffness_n_m = 30.0
+rest_m = 0.1
+[log]
+time = { column = "t", unit = "s" }
+[[log.joint]]
+position = { column = "x", unit = "m" }
+input = { column = "u", unit = "1" }
+[[log.joint]]
+position = { column = "q", unit = "rad" }
+[[log.joint]]
+position = { column = "z", unit = "m" }
+input = { column = "goal", unit = "m" }
+"#;
+
 #[test]
 fn exported_models_move_in_mujoco_as_here() {
     let Some(python) = python() else {
@@ -107,23 +184,14 @@ fn exported_models_move_in_mujoco_as_here() {
             continue;
         }
         let file = folder.path().join(format!("{seed}.xml"));
-        std::fs::write(&file, &exported.text).unwrap();
-        let (motion, start) = (motion(&model), start(&model));
-        let inputs: Vec<Vec<f64>> = (0..PERIODS)
-            .map(|k| {
-                motion
-                    .input
-                    .iter()
-                    .flatten()
-                    .map(|input| input[k])
-                    .collect()
-            })
-            .collect();
-        cases.push(json!({
-            "file": file, "start_rad": start.angle_rad, "period_s": PERIOD_S, "inputs": inputs,
-        }));
-        expected.push((format!("{kind} {seed}"), ours(&model, &motion, &start)));
+        let (case, found) = case(&model, &exported.text, &file);
+        cases.push(case);
+        expected.push((format!("{kind} {seed}"), found));
     }
+    let crane = Model::parse(CRANE, Path::new("crane.toml")).unwrap();
+    let (case, found) = case(&crane, &mjcf(&crane).text, &folder.path().join("crane.xml"));
+    cases.push(case);
+    expected.push(("crane".to_string(), found));
     let theirs = answers(&python, "mjcf_trajectories.py", &cases);
     for ((name, ours), theirs) in expected.iter().zip(theirs) {
         let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();

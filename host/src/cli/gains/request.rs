@@ -80,7 +80,12 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
     if args.balance {
         pose_rad = balanced(model, &pose_rad)?;
         let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
-        moved = Some(format!("balanced at q = [{}] rad", said.join(", ")));
+        let mut units: Vec<&str> = model.joints.iter().map(|joint| joint.units()[0]).collect();
+        if !model.slides() {
+            units.truncate(1);
+        }
+        let (said, units) = (said.join(", "), units.join(", "));
+        moved = Some(format!("balanced at q = [{said}] {units}"));
     }
     let time = match args.continuous {
         true => Time::Continuous,

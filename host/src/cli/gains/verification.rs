@@ -3,12 +3,19 @@
 use handstand::study::{Verification, Without};
 
 /// Whether the simulated loop is stabilised, from how far, and what limits it.
-pub fn text(verified: &Verification) -> String {
-    let degrees = |rad: f64| format!("{:.1} deg", rad.to_degrees());
+///
+/// Where joints slide, a spread in rad is as much in m.
+pub fn text(verified: &Verification, slides: bool) -> String {
+    let also_mm = |rad: f64| match slides {
+        true => format!(" and {:.1} mm", 1e3 * rad),
+        false => String::new(),
+    };
+    let degrees = |rad: f64| format!("{:.1} deg{}", rad.to_degrees(), also_mm(rad));
     let near = &verified.near;
     let mut lines = vec![format!(
-        "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg: {}.",
+        "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg{}: {}.",
         near.runs,
+        also_mm(0.5f64.to_radians()),
         match verified.stabilised {
             true => "stabilised".to_string(),
             false => format!(
@@ -20,8 +27,14 @@ pub fn text(verified: &Verification) -> String {
     )];
     if let (Some(cycle), Some(torque)) = (near.limit_cycle_rad, near.rms_torque_nm) {
         lines.push(format!(
-            "Limit cycle {:.2} deg peak to peak, {torque:.3} N m RMS (medians).",
-            cycle.to_degrees()
+            "Limit cycle {:.2} deg{} peak to peak, {torque:.3} N m{} RMS (medians).",
+            cycle.to_degrees(),
+            if slides {
+                format!(" or {:.2} mm", 1e3 * cycle)
+            } else {
+                String::new()
+            },
+            if slides { " or N" } else { "" }
         ));
     }
     lines.push(match verified.region_rad > 0.0 {

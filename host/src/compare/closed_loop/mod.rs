@@ -31,12 +31,13 @@ use series::{Both, DeviationSeries, pooled};
 /// a single sample, are left out.
 ///
 /// # Errors
-/// A plan of another number of joints or drives than the model's.
+/// A plan of another number of joints or drives than the model's; joints that slide.
 pub fn compare_closed_loop(
     model: &Model,
     plan: &StateFeedbackPlan,
     motions: &[Motion],
 ) -> Result<ClosedLoopComparison> {
+    model.hinges_only("the measured loop is compared in angles")?;
     let mut model = model.clone();
     if !model.effects.iter().any(|e| e.effect.info().id == "delay") {
         set_delay(&mut model, plan.delay_s);
@@ -161,7 +162,7 @@ fn measured(closed: &ClosedLoop, motion: &Motion, first: usize, time_s: &[f64]) 
         let reading_rad: Vec<f64> = angles.map(|joint| joint[first + k]).collect();
         let (angle_rad, _) = closed.plant.deviations(&reading_rad, &still);
         let known = angle_rad.iter().all(|angle| angle.is_finite());
-        known && closed.limits.has_fallen(&angle_rad, &still)
+        known && closed.limits.has_fallen(&closed.plant, &angle_rad, &still)
     };
     let fell = (0..time_s.len()).find(|&k| fallen(k));
     let end = first + fell.unwrap_or(time_s.len());

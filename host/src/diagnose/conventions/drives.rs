@@ -19,6 +19,8 @@ const GAINS_S_PER_RAD: [f64; 3] = [0.2, 1.0, 5.0];
 /// For each driven joint, the best drive of each other kind that the input may be meant for.
 pub(super) fn drives(bench: &RemedyTrial) -> Vec<Remedy> {
     let joints = bench.model.driven_joints().into_iter();
+    // Of a slide, torques that hold the chain level say nothing.
+    let joints = joints.filter(|joint| bench.model.joints[*joint].slide.is_none());
     let joints = joints.filter(|joint| bench.varies(LogColumn::Input(*joint)));
     joints.flat_map(|joint| of_joint(bench, joint)).collect()
 }

@@ -7,7 +7,7 @@ use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Motion, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
-use crate::model::{AngleZero, Angles, Model, Unit};
+use crate::model::{AngleZero, Angles, Dimension, Model, Unit};
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.
@@ -93,9 +93,12 @@ fn what(remedy: &Remedy, model: &Model) -> String {
         Remedy::Offset(quantity, offset) => {
             let given = quantity.column(model).map_or(0.0, |column| column.offset);
             format!(
-                "{} is {:.3} rad off",
+                "{} is {:.3} {} off",
                 name(*quantity, model),
-                given - offset
+                given - offset,
+                quantity
+                    .column(model)
+                    .map_or("rad", |column| si_name(column.unit.dimension))
             )
         }
         Remedy::Unit(columns) => {
@@ -136,12 +139,22 @@ fn what(remedy: &Remedy, model: &Model) -> String {
     }
 }
 
+fn si_name(dimension: Dimension) -> &'static str {
+    let mut units = dimension.plain_units();
+    units
+        .find(|unit| unit.si == 1.0)
+        .map_or("", |unit| unit.name)
+}
+
 /// In which unit a column is written, and in which the model says it is.
 fn written_in(quantity: LogColumn, unit: &Unit, model: &Model) -> String {
     let declared = quantity
         .column(model)
         .map_or("?", |column| column.unit.name);
     let ticks = match unit.name {
+        "ticks" if unit.dimension == Dimension::Length => {
+            format!(" of {:.0} a metre", 1.0 / unit.si)
+        }
         "ticks" => format!(" of {:.0} a turn", std::f64::consts::TAU / unit.si),
         _ => String::new(),
     };

@@ -137,7 +137,7 @@ impl Remedy {
 const TICKS_PER_TURN: [f64; 8] = [
     1000.0, 1024.0, 1228.8, 2048.0, 4000.0, 4096.0, 8192.0, 16384.0,
 ];
-/// Travel of a joint that a unit may make plausible, rad.
+/// Travel of a joint that a unit may make plausible, rad or m.
 const PLAUSIBLE_RAD: std::ops::Range<f64> = 0.01..60.0;
 
 /// Every alternative to how the model reads its logs that has no free number: signs, zeros, units,
@@ -151,7 +151,7 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
     ];
     let others = zeros.into_iter().filter(|zero| *zero != model.angle_zero);
     all.extend(others.map(Remedy::AngleZero));
-    if model.link_count() > 1 {
+    if model.link_count() > 1 && !model.slides() {
         all.push(Remedy::Angles(match model.angles {
             Angles::Relative => Angles::Absolute,
             Angles::Absolute => Angles::Relative,
@@ -190,7 +190,7 @@ fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
     let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
     let units = other_units(model, position).into_iter().filter(plausible);
     all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
-    if joint > 0 {
+    if joint > 0 && model.joints[joint].slide.is_none() {
         all.push(Remedy::Offset(position, column.offset + PI));
     }
     all
@@ -204,6 +204,9 @@ fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) ->
     let name = match unit.name {
         "deg" => Some("deg/s"),
         "rad" => Some("rad/s"),
+        "m" => Some("m/s"),
+        "cm" => Some("cm/s"),
+        "mm" => Some("mm/s"),
         _ => None,
     };
     let other = name.and_then(|name| Unit::named(name, None));

@@ -6,6 +6,7 @@ use crate::dynamics::Chain;
 use crate::dynamics::ChainLink;
 use std::collections::HashSet;
 
+mod diverged;
 mod infos;
 mod laws;
 mod off;
@@ -64,6 +65,7 @@ fn rig() -> Rig {
         mass_kg: 0.4,
         inertia_kg_m2: 8e-4,
         armature_kg_m2: 2e-3,
+        slide: None,
     };
     let chain = Chain {
         links: vec![link],

@@ -68,16 +68,18 @@ fn columns(names: &[String], model: &Model) -> Markup {
                         @let number = index + 1;
                         (column(names, &format!("joint{number}.position"),
                             &format!("Angle of joint {number}"),
-                            joint.position.as_ref().map(Picked::of), Dimension::Angle, false))
+                            joint.position.as_ref().map(Picked::of),
+                            Dimension::Angle.on(model.joints[index].axis()), false))
                         @if let Some(dimension) =
-                            Dimension::of_input(model.joints[index].drive.name()) {
+                            Dimension::of_input(model.joints[index].drive.name(), model.joints[index].axis()) {
                             (column(names, &format!("joint{number}.input"),
                                 &format!("Input of joint {number}"),
                                 joint.input.as_ref().map(Picked::of), dimension, true))
                         }
                         (column(names, &format!("joint{number}.velocity"),
                             &format!("Speed of joint {number}"),
-                            joint.velocity.as_ref().map(Picked::of), Dimension::Speed, false))
+                            joint.velocity.as_ref().map(Picked::of),
+                            Dimension::Speed.on(model.joints[index].axis()), false))
                     }
                     (column(names, "supply", "Supply voltage", log.supply.as_ref().map(Picked::One),
                         Dimension::Voltage, false))

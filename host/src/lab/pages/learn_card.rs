@@ -184,7 +184,7 @@ fn residual_over(x_label: &str, joint: usize, evaluation: &SessionEvaluation) ->
     Some(Chart::new(
         format!("residual over {}", variable.name),
         &label,
-        "residual, mrad",
+        &format!("residual, {}", run.data.signals[joint].milli()),
         vec![Curve::dots("", Tone::Blue, points)],
     ))
 }

@@ -162,6 +162,7 @@ fn parameter(model: &Model, path: ParameterPath) -> Option<&'static Parameter> {
         id,
         joint,
         parameter,
+        ..
     } = path
     else {
         return None;

@@ -7,7 +7,7 @@ use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
 use crate::lab::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation, aside};
-use crate::model::Drive;
+use crate::model::{Drive, Joint};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -147,7 +147,7 @@ pub(super) fn draw(
             arrays.push(format!("input_{joint}"), input.iter().copied());
         }
         inputs.push(motion.input[joint].as_ref().map(|_| {
-            let (name, unit) = input_of(&run.model.joints[joint].drive);
+            let (name, unit) = input_of(&run.model.joints[joint]);
             json!({ "name": name, "unit": unit })
         }));
     }
@@ -173,13 +173,14 @@ pub(super) fn draw(
 }
 
 /// What a drive is told, and its unit.
-fn input_of(drive: &Drive) -> (&'static str, &'static str) {
-    match drive {
+fn input_of(joint: &Joint) -> (&'static str, &'static str) {
+    let [place, speed, torque] = joint.units();
+    match joint.drive {
         Drive::Passive => ("input", ""),
-        Drive::Torque => ("torque", "N m"),
+        Drive::Torque => ("torque", torque),
         Drive::Duty(_) => ("duty", "1"),
-        Drive::Position { .. } => ("goal", "rad"),
-        Drive::Speed { .. } => ("goal speed", "rad/s"),
+        Drive::Position { .. } => ("goal", place),
+        Drive::Speed { .. } => ("goal speed", speed),
     }
 }
 

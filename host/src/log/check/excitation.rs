@@ -8,6 +8,8 @@ use crate::model::{ColumnMean, JointColumns, Model};
 
 /// Least swing that counts as a reversal where the encoder is fine, rad.
 const SWING_RAD: f64 = 0.02;
+/// Least such travel of a joint that slides, m.
+const STROKE_M: f64 = 0.005;
 /// Time without a swing that counts as a hold, s.
 const HOLD_S: f64 = 0.5;
 
@@ -19,6 +21,7 @@ pub(super) struct ExcitationCheck {
 
 struct JointExcitation {
     position_name: String,
+    slides: bool,
     input_name: Option<String>,
     driven: bool,
     swing_rad: f64,
@@ -52,7 +55,12 @@ impl ExcitationCheck {
                     position_name: name(&columns.position),
                     input_name: columns.input.as_ref().map(ColumnMean::name),
                     driven: joint.drive.is_driven(),
-                    swing_rad: SWING_RAD.max(4.0 * resolution_rad(columns)),
+                    slides: joint.slide.is_some(),
+                    swing_rad: match joint.slide {
+                        None => SWING_RAD,
+                        Some(_) => STROKE_M,
+                    }
+                    .max(4.0 * resolution_rad(columns)),
                     position_rad: Extremes::NONE,
                     input: Extremes::NONE,
                     reversals: 0,
@@ -126,8 +134,9 @@ impl JointExcitation {
     fn judge(&self, place: Option<&Place>, motions: usize, findings: &mut Findings) {
         let (name, kind) = (&self.position_name, "excitation");
         let (range, top) = (self.position_rad.range(), self.top_speed_rad_s);
+        let unit = if self.slides { "m" } else { "rad" };
         let what = format!(
-            "{name} in {}: {}, {range:.2} rad of travel, up to {top:.1} rad/s, {}",
+            "{name} in {}: {}, {range:.2} {unit} of travel, up to {top:.1} {unit}/s, {}",
             counted(motions, "motion"),
             counted(self.reversals, "reversal"),
             counted(self.holds, "hold")
@@ -141,16 +150,17 @@ impl JointExcitation {
                 format!("{name} shows {reversals}: friction and backlash can't be told apart");
             warn(what, "record motions that go to and fro");
         }
-        if range < 0.3 {
+        if range < 0.3 && !self.slides {
             let what = format!(
                 "{name} travels only {range:.3} rad: gravity and a constant torque can't be told \
                  apart"
             );
             warn(what, "record wider motions");
         }
-        if top < 0.5 {
+        let slow = if self.slides { 0.05 } else { 0.5 };
+        if top < slow {
             let what = format!(
-                "{name} never exceeds {top:.2} rad/s: what grows with speed can't be told from what \
+                "{name} never exceeds {top:.2} {unit}/s: what grows with speed can't be told from what \
                  does not"
             );
             warn(what, "record faster motions too");

@@ -94,7 +94,7 @@ pub(super) struct JointCheck {
     input: ColumnSeries,
     /// Rows seen.
     rows: usize,
-    /// Declared resolution of the position, rad.
+    /// Declared resolution of the position, rad, or m of a slide.
     declared_rad: Option<f64>,
     still: Option<Still>,
     stuck: Vec<Still>,
@@ -132,7 +132,9 @@ impl JointCheck {
             self.input.steps.previous = None;
         }
         let previous = self.position.steps.previous;
-        if previous.is_some_and(|previous| ((angle - previous).abs() - TAU).abs() < 0.5) {
+        let turns = self.signal == MeasuredSignal::Angle;
+        let jumped = |previous: f64| ((angle - previous).abs() - TAU).abs() < 0.5;
+        if turns && previous.is_some_and(jumped) {
             let column = self.position.name.clone();
             findings.refuse("wrap", place.clone(), &LogReason::AngleWraps { column });
         }
@@ -175,7 +177,8 @@ impl JointCheck {
         self.judge_extremes(place, drive, findings);
         self.judge_steps(place, findings);
         let (column, range) = (&self.position.name, self.position.extremes.range());
-        if matches!(drive, Drive::Position { .. }) && range > 4.0 * PI {
+        let turns = self.signal == MeasuredSignal::Angle;
+        if turns && matches!(drive, Drive::Position { .. }) && range > 4.0 * PI {
             let what = format!("{column} ranges over {range:.0} rad: degrees declared as rad?");
             let remedy = "check the column's unit in the model's [log]";
             findings.warn("unit", place.clone(), (what, remedy));
@@ -185,7 +188,7 @@ impl JointCheck {
     /// How many of the samples are gaps.
     fn judge_missing(&self, place: &Place, findings: &mut Findings) {
         let series = match self.signal {
-            MeasuredSignal::Angle => &self.position,
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => &self.position,
             MeasuredSignal::Rate => &self.rate,
             MeasuredSignal::Nothing => return,
         };
@@ -226,8 +229,9 @@ impl JointCheck {
         };
         let remedy =
             "an end stop, a hold, or a joint at rest: leave an end stop out by a row range";
+        let unit = format!(" {}", self.signal.unit());
         for extreme in self.position.crowded() {
-            warn(&self.position.name, " rad", extreme, remedy);
+            warn(&self.position.name, &unit, extreme, remedy);
         }
         let drawn = matches!(drive, Drive::Torque | Drive::Duty(_));
         let remedy =
@@ -246,9 +250,10 @@ impl JointCheck {
         let Some(found) = self.position.steps.grid() else {
             return;
         };
-        let steps = format!("{name} moves in steps of {found:.3e} rad");
+        let unit = self.signal.unit();
+        let steps = format!("{name} moves in steps of {found:.3e} {unit}");
         let remedy =
-            format!("set the resolution of {name} to {found:.3e} rad if that is the sensor's");
+            format!("set the resolution of {name} to {found:.3e} {unit} if that is the sensor's");
         let place = place.clone();
         match self.declared_rad {
             None => findings.note(

@@ -23,6 +23,8 @@ const SURE: f64 = 8.0;
 pub(super) struct Relations {
     zero: AngleZero,
     angles: Angles,
+    /// Whether any joint slides: what pushes and pulls it is then not judged.
+    slides: bool,
     /// Per joint: how the input drives it.
     drives: Vec<InputKind>,
     /// Recent samples' inputs, newest first.
@@ -57,6 +59,7 @@ impl Relations {
         Relations {
             zero: model.angle_zero,
             angles: model.angles,
+            slides: model.slides(),
             drives: model
                 .joints
                 .iter()
@@ -135,7 +138,7 @@ impl Relations {
             if row.velocity_rad_s[i].is_some() && stretch.logged_speed_rad_s[i].is_finite() {
                 self.speed[i].add(stretch.speed_rad_s[i], stretch.logged_speed_rad_s[i]);
             }
-            if relative(&stretch.speed_rad_s, i).abs() > MOVING_RAD_S {
+            if !self.slides && relative(&stretch.speed_rad_s, i).abs() > MOVING_RAD_S {
                 self.push[i].add(&x, relative(&stretch.acceleration_rad_s2, i));
             }
         }

@@ -141,6 +141,7 @@ impl Evidence {
 fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan {
     let motor = ["duty", "position", "speed"].contains(&joint.drive);
     LinkPlan {
+        slide: None,
         length_m,
         com_m: length_m / 2.0,
         mass_kg,

@@ -77,7 +77,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         gravity_m_s2: 9.81,
         step_s: 0.001,
         links: vec![link; log.joints.len()],
-        joints: vec![Joint { drive }; log.joints.len()],
+        joints: vec![Joint::from(drive); log.joints.len()],
         effects: Vec::new(),
         laws: Vec::new(),
         free: Vec::new(),

@@ -72,12 +72,15 @@ fn place(model: &Model, quantity: &str) -> Option<QuantityPlace> {
     let (key, dimension) = match (joint, name) {
         (None, "time") => ("time", Dimension::Time),
         (None, "supply") => ("supply", Dimension::Voltage),
-        (Some(_), "position") => ("position", Dimension::Angle),
-        (Some(_), "velocity") => ("velocity", Dimension::Speed),
-        (Some(joint), "input") => (
-            "input",
-            Dimension::of_input(model.joints.get(joint)?.drive.name())?,
-        ),
+        (Some(joint), name) => {
+            let own = model.joints.get(joint)?;
+            match name {
+                "position" => ("position", Dimension::Angle.on(own.axis())),
+                "velocity" => ("velocity", Dimension::Speed.on(own.axis())),
+                "input" => ("input", Dimension::of_input(own.drive.name(), own.axis())?),
+                _ => return None,
+            }
+        }
         _ => return None,
     };
     Some(QuantityPlace {

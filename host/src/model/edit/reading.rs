@@ -128,11 +128,12 @@ fn set_column(table: &mut dyn TableLike, old: &Column, new: &Column) {
     if old.unit != new.unit {
         put(table, "unit", new.unit.name.into());
         for unit in ["ticks", "A"] {
-            let key = Unit::scale_key(unit);
+            let dimension = new.unit.dimension;
+            let key = Unit::scale_key(unit, dimension);
             let own = new
                 .unit
                 .scale()
-                .filter(|_| Unit::scale_key(new.unit.name) == key);
+                .filter(|_| Unit::scale_key(new.unit.name, dimension) == key);
             if let Some(key) = key {
                 put_or_remove(table, key, own.map(number));
             }

@@ -1,5 +1,6 @@
 //! What of a model another format holds, and what it does not.
 
+use crate::dynamics::SlideAxis;
 use crate::model::{EffectInstance, Model};
 use serde::Serialize;
 
@@ -12,6 +13,12 @@ pub struct NotCarried {
     pub joint: Option<usize>,
     /// Why.
     pub why: &'static str,
+}
+
+/// Direction of a slide in the frame of its link, whose line points down: x to the right, z up.
+pub(super) fn slide_axis(slide: &SlideAxis) -> [f64; 3] {
+    let (sin, cos) = (slide.direction_rad - slide.link_rad).sin_cos();
+    [sin, 0.0, -cos]
 }
 
 /// The value of a joint's effect, if the model has it there.

@@ -4,7 +4,7 @@
 //! the right, about -y. Joint coordinates are relative angles, the first from hanging.
 
 use super::Exported;
-use super::carried::{NotCarried, not_carried, value};
+use super::carried::{NotCarried, not_carried, slide_axis, value};
 use super::xml::{comment, escaped, number, numbers};
 use crate::dynamics::ChainLink;
 use crate::effects::Rig;
@@ -74,12 +74,13 @@ fn bodies(text: &mut String, model: &Model, rig: &Rig) {
     for (joint, link) in rig.chain.links.iter().enumerate() {
         let _ = writeln!(
             text,
-            "{indent}<body name=\"link{}\" pos=\"{}\">",
+            "{indent}<body name=\"link{}\" pos=\"{}\"{}>",
             joint + 1,
-            numbers(&[0.0, 0.0, -above_m])
+            numbers(&[0.0, 0.0, -above_m]),
+            turned(link)
         );
         indent.push_str("  ");
-        let _ = writeln!(text, "{indent}{}", hinge(model, link, joint));
+        let _ = writeln!(text, "{indent}{}", of_joint(model, link, joint));
         let (sin, cos) = link.com_angle_rad.sin_cos();
         let inertia = link.inertia_kg_m2.max(LEAST_INERTIA);
         let _ = writeln!(
@@ -104,21 +105,29 @@ fn bodies(text: &mut String, model: &Model, rig: &Rig) {
     }
 }
 
-fn hinge(model: &Model, link: &ChainLink, joint: usize) -> String {
-    let mut hinge = format!(
-        "<joint name=\"joint{}\" type=\"hinge\" axis=\"0 -1 0\"",
-        joint + 1
-    );
+/// How a link that slides stands to the one before.
+fn turned(link: &ChainLink) -> String {
+    match link.slide.filter(|slide| slide.link_rad != 0.0) {
+        Some(slide) => format!(" axisangle=\"0 -1 0 {}\"", number(slide.link_rad)),
+        None => String::new(),
+    }
+}
+
+fn of_joint(model: &Model, link: &ChainLink, joint: usize) -> String {
+    let kind = match link.slide {
+        None => "type=\"hinge\" axis=\"0 -1 0\"".to_string(),
+        Some(slide) => {
+            let axis = numbers(&slide_axis(&slide));
+            format!("type=\"slide\" axis=\"{axis}\"")
+        }
+    };
+    let mut hinge = format!("<joint name=\"joint{}\" {kind}", joint + 1);
     let mut attribute = |name: &str, value: Option<f64>| {
         if let Some(value) = value.filter(|value| *value != 0.0) {
             let _ = write!(hinge, " {name}=\"{}\"", number(value));
         }
     };
-    let zero = if joint == 0 {
-        model.angle_zero.from_hanging_rad()
-    } else {
-        0.0
-    };
+    let zero = model.zero_rad(joint);
     attribute("armature", Some(link.armature_kg_m2));
     attribute("damping", value(model, "viscous", joint, 0));
     attribute("frictionloss", value(model, "coulomb", joint, 0));

@@ -1,7 +1,7 @@
 //! URDF: the chain with its joints' damping and friction.
 
 use super::Exported;
-use super::carried::{NotCarried, not_carried, value};
+use super::carried::{NotCarried, not_carried, slide_axis, value};
 use super::xml::{comment, escaped, number, numbers};
 use crate::effects::Rig;
 use crate::model::Model;
@@ -9,6 +9,9 @@ use std::fmt::Write as _;
 
 /// A moment of inertia of zero is refused by most readers, kg m^2.
 const LEAST_INERTIA: f64 = 1e-9;
+
+/// More than any joint does: m, m/s, N.
+const UNLIMITED: f64 = 1e5;
 
 /// Effects that URDF holds: in the links, and in the joints' `dynamics`.
 const HELD: [&str; 4] = ["com_angle", "coulomb", "mass", "viscous"];
@@ -62,18 +65,43 @@ fn joints(text: &mut String, model: &Model, rig: &Rig) {
             joint => format!("link{joint}"),
         };
         let of = |id| value(model, id, joint, 0).unwrap_or(0.0);
+        let (kind, axis, turn) = match link.slide {
+            None => ("continuous", "0 -1 0".to_string(), "0 0 0".to_string()),
+            Some(slide) => (
+                "prismatic",
+                numbers(&slide_axis(&slide)),
+                numbers(&[0.0, 0.0 - slide.link_rad, 0.0]),
+            ),
+        };
+        let limit = match link.slide {
+            None => String::new(),
+            Some(_) => limit(model.joints[joint].drive.is_driven()),
+        };
         let _ = write!(
             text,
-            "  <joint name=\"joint{0}\" type=\"continuous\">\n    <parent link=\"{parent}\"/>\n    \
-             <child link=\"link{0}\"/>\n    <origin xyz=\"{1}\" rpy=\"0 0 0\"/>\n    \
-             <axis xyz=\"0 -1 0\"/>\n    <dynamics damping=\"{2}\" friction=\"{3}\"/>\n  </joint>\n",
+            "  <joint name=\"joint{0}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
+             <child link=\"link{0}\"/>\n    <origin xyz=\"{1}\" rpy=\"{4}\"/>\n    \
+             <axis xyz=\"{5}\"/>\n    <dynamics damping=\"{2}\" friction=\"{3}\"/>\n{limit}  \
+             </joint>\n",
             joint + 1,
             numbers(&[0.0, 0.0, -above_m]),
             number(of("viscous")),
             number(of("coulomb")),
+            turn,
+            axis,
         );
         above_m = link.length_m;
     }
+}
+
+/// A prismatic joint must have limits, and the model knows none.
+fn limit(driven: bool) -> String {
+    let effort = number(if driven { UNLIMITED } else { 0.0 });
+    let unlimited = number(UNLIMITED);
+    format!(
+        "    <limit lower=\"-{unlimited}\" upper=\"{unlimited}\" effort=\"{effort}\" \
+         velocity=\"{unlimited}\"/>\n"
+    )
 }
 
 fn left_out(model: &Model, rig: &Rig) -> Vec<NotCarried> {

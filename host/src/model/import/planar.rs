@@ -1,8 +1,9 @@
 //! A planar chain out of a robot in space: the joints chosen, the rest held, all seen along the
 //! joints' common axis.
 
-use super::frame::{Frame, wrapped};
+use super::frame::{Frame, PARALLEL_RAD, wrapped};
 use super::tree::{Inertial, LeftOut, Motion, RobotTree, TreeJoint};
+use crate::dynamics::SlideAxis;
 use crate::error::{Error, Result};
 use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
@@ -16,8 +17,11 @@ pub(super) struct PlanarLink {
     pub joint: TreeJoint,
     /// Whether the file's joint counts clockwise.
     pub reversed: bool,
-    /// Relative angle here, the first from hanging, where the file's coordinate is 0, rad.
+    /// Relative angle here, the first from hanging, where the file's coordinate is 0, rad; of a
+    /// slide, displacement, m.
     pub offset_rad: f64,
+    /// Along what the joint slides; none of a hinge.
+    pub slide: Option<SlideAxis>,
     pub length_m: f64,
     pub com_m: f64,
     pub com_angle_rad: f64,
@@ -74,10 +78,19 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             true => wrapped(com.1 - direction_rad),
             false => 0.0,
         };
-        let reversed = frame.axis.dot(&(poses[body] * joint.axis)) < 0.0;
+        let axis = poses[body] * joint.axis;
+        let slide = (joint.motion == Motion::Slide).then(|| SlideAxis {
+            direction_rad: wrapped(frame.seen(&axis).1 - before_rad),
+            link_rad: wrapped(direction_rad - before_rad),
+        });
+        let reversed = slide.is_none() && frame.axis.dot(&axis) < 0.0;
         let sign = if reversed { -1.0 } else { 1.0 };
-        let mut offset = wrapped(direction_rad - before_rad) - sign * joint.reference_rad;
-        if joint.stiffness_nm > 0.0 {
+        let turned_rad = match slide {
+            Some(_) => 0.0,
+            None => wrapped(direction_rad - before_rad),
+        };
+        let mut offset = turned_rad - sign * joint.reference_rad;
+        if joint.stiffness_nm > 0.0 && slide.is_none() {
             // A spring tells whole turns apart: its rest lies within half a turn of zero.
             let rest = offset + sign * joint.spring_rest_rad;
             offset -= TAU * (rest / TAU).round();
@@ -87,6 +100,7 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             joint: joint.clone(),
             reversed,
             offset_rad: offset,
+            slide,
             length_m: if next.is_some() { along.0 } else { com.0 },
             com_m: if behind { -com.0 } else { com.0 },
             com_angle_rad: if behind || off_line.abs() < 1e-12 {
@@ -116,9 +130,14 @@ fn with_mass(mass: &Inertial, joint: &TreeJoint, file: &str) -> Result<()> {
     }
 }
 
+/// Whether a body has one joint, which moves so.
+fn moves(tree: &RobotTree, body: usize, motion: Motion) -> bool {
+    matches!(tree.bodies[body].joints.as_slice(), [joint] if joint.motion == motion)
+}
+
 /// Whether a body has one hinge.
 fn hinged(tree: &RobotTree, body: usize) -> bool {
-    matches!(tree.bodies[body].joints.as_slice(), [joint] if joint.motion == Motion::Hinge)
+    moves(tree, body, Motion::Hinge)
 }
 
 fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
@@ -128,6 +147,9 @@ fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<
         hinges[body] = before + usize::from(hinged(tree, body));
     }
     let most = hinges.iter().copied().max().unwrap_or(0);
+    if most == 0 {
+        return sliding(tree, file, left_out);
+    }
     let tips: Vec<usize> = (0..hinges.len())
         .filter(|&b| hinges[b] == most && hinged(tree, b))
         .collect();
@@ -146,10 +168,35 @@ fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<
         );
         left_out.push(LeftOut::new("branches", None, why));
     }
+    let poses = tree.world_poses();
+    let axis = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
+    let hinge = axis(tip);
+    // A slide across the plane of the hinges is held.
+    let in_plane = |body: usize| {
+        moves(tree, body, Motion::Slide) && axis(body).dot(&hinge).abs() < PARALLEL_RAD
+    };
     let chain = ancestors(tree, tip)
         .into_iter()
-        .filter(|&body| hinged(tree, body));
+        .filter(|&body| hinged(tree, body) || in_plane(body));
     Ok(chain.collect())
+}
+
+/// The chain of a robot without hinges: its first slide.
+fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
+    let mut slides = (0..tree.bodies.len()).filter(|&body| moves(tree, body, Motion::Slide));
+    let Some(first) = slides.next() else {
+        return Err(Error::usage(
+            format!("{file}: no joint turns about one axis or slides along one"),
+            "a chain needs hinges or slides: revolute, continuous or prismatic joints, \
+             <joint type=\"hinge\">",
+        ));
+    };
+    if slides.next().is_some() {
+        let name = &tree.bodies[first].joints[0].name;
+        let why = format!("nothing turns; {name} alone is taken, --joints names others");
+        left_out.push(LeftOut::new("slides", None, why));
+    }
+    Ok(vec![first])
 }
 
 /// A body and those that carry it, the base first.
@@ -178,10 +225,10 @@ fn named(tree: &RobotTree, names: &[String], file: &str) -> Result<Vec<usize>> {
                 format!("its joints: {}", all.join(", ")),
             ));
         };
-        if !hinged(tree, body) {
+        if !hinged(tree, body) && !moves(tree, body, Motion::Slide) {
             return Err(Error::usage(
-                format!("{file}: joint {name} does not turn about one axis of its own body"),
-                "name hinges, one for each body",
+                format!("{file}: joint {name} neither turns nor slides alone in its own body"),
+                "name hinges and slides, one for each body",
             ));
         }
         if chosen

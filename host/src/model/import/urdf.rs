@@ -189,7 +189,8 @@ fn tree_joint(joint: Element, left_out: &mut Vec<LeftOut>) -> Result<Option<Tree
     }
     if let Some(limit) = joint.first("limit") {
         let range = (limit.number("lower")?, limit.number("upper")?);
-        made.range_rad = (joint.required("type")? == "revolute")
+        made.range_rad = ["revolute", "prismatic"]
+            .contains(&joint.required("type")?)
             .then_some((range.0.unwrap_or(0.0), range.1.unwrap_or(0.0)));
         made.speed_rad_s = limit.number("velocity")?.filter(|speed| *speed > 0.0);
         let effort = limit.number("effort")?.filter(|effort| *effort > 0.0);

@@ -2,6 +2,7 @@
 
 use super::planar::{PlanarChain, PlanarLink};
 use super::tree::{LeftOut, TreeDrive};
+use crate::effects::{Axis, named, on_axis};
 use crate::error::Result;
 use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
 use std::fmt::Write as _;
@@ -79,11 +80,20 @@ fn link_plan(link: &PlanarLink) -> LinkPlan {
         gain,
         stall_torque_nm: stall,
         no_load_speed_rad_s: speed,
+        slide: link.slide,
     }
 }
 
 fn write_effects(text: &mut String, index: usize, link: &PlanarLink, left_out: &mut Vec<LeftOut>) {
     let joint = &link.joint;
+    let axis = match link.slide {
+        None => Axis::Hinge,
+        Some(_) => Axis::Slide,
+    };
+    let key = |kind: &str, index: usize| {
+        let effect = named(kind).and_then(|effect| on_axis(effect, axis));
+        effect.map_or("", |effect| effect.info().parameters[index].key)
+    };
     let mut effect = |kind: &str, values: &[(&str, f64)]| {
         let _ = write!(
             text,
@@ -101,15 +111,15 @@ fn write_effects(text: &mut String, index: usize, link: &PlanarLink, left_out: &
         effect("com_angle", &[("angle_rad", link.com_angle_rad)]);
     }
     if joint.damping_nm_s > 0.0 {
-        effect("viscous", &[("coefficient_nm_s_rad", joint.damping_nm_s)]);
+        effect("viscous", &[(key("viscous", 0), joint.damping_nm_s)]);
     }
     if joint.friction_nm > 0.0 {
-        effect("coulomb", &[("torque_nm", joint.friction_nm)]);
+        effect("coulomb", &[(key("coulomb", 0), joint.friction_nm)]);
     }
     if joint.armature_kg_m2 > 0.0 {
         match joint.drive {
             TreeDrive::None => leave("armature", "a rotor needs a drive: --driven makes it one"),
-            _ => effect("armature", &[("inertia_kg_m2", joint.armature_kg_m2)]),
+            _ => effect("armature", &[(key("armature", 0), joint.armature_kg_m2)]),
         }
     }
     if joint.stiffness_nm > 0.0 {
@@ -118,13 +128,16 @@ fn write_effects(text: &mut String, index: usize, link: &PlanarLink, left_out: &
         effect(
             "cable_spring",
             &[
-                ("stiffness_nm_rad", joint.stiffness_nm),
-                ("rest_angle_rad", rest_rad),
+                (key("cable_spring", 0), joint.stiffness_nm),
+                (key("cable_spring", 1), rest_rad),
             ],
         );
     }
     if let TreeDrive::Torque(Some(limit_nm)) = joint.drive {
-        effect("torque_saturation", &[("limit_nm", limit_nm)]);
+        effect(
+            "torque_saturation",
+            &[(key("torque_saturation", 0), limit_nm)],
+        );
     }
     if joint.range_rad.is_some() {
         leave("range", "links here have no end stops");
@@ -146,21 +159,25 @@ fn log_table(chain: &PlanarChain) -> String {
         } else {
             ""
         };
+        let [place, speed, torque] = match link.slide {
+            None => ["rad", "rad/s", "N m"],
+            Some(_) => ["m", "m/s", "N"],
+        };
         let offset = match link.offset_rad {
             0.0 => String::new(),
-            offset => format!(", offset_rad = {}", toml_edit::Value::from(offset)),
+            offset => format!(", offset_{place} = {}", toml_edit::Value::from(offset)),
         };
         let _ = write!(
             text,
-            "\n[[log.joint]]\nposition = {{ column = {}, unit = \"rad\"{reversed}{offset} }}\n",
+            "\n[[log.joint]]\nposition = {{ column = {}, unit = \"{place}\"{reversed}{offset} }}\n",
             column("position")
         );
         let (of, unit, offset) = match link.joint.drive {
             TreeDrive::None => continue,
-            TreeDrive::Torque(_) => ("effort", "N m", ""),
+            TreeDrive::Torque(_) => ("effort", torque, ""),
             TreeDrive::Duty { .. } => ("duty", "1", ""),
-            TreeDrive::Position { .. } => ("goal", "rad", offset.as_str()),
-            TreeDrive::Speed { .. } => ("goal_speed", "rad/s", ""),
+            TreeDrive::Position { .. } => ("goal", place, offset.as_str()),
+            TreeDrive::Speed { .. } => ("goal_speed", speed, ""),
         };
         let _ = writeln!(
             text,

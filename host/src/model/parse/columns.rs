@@ -7,12 +7,15 @@ use super::super::{
     ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, Unit,
 };
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
+use crate::effects::Axis;
 use crate::error::Result;
 
 /// Counts per turn; more than 2^32 is no encoder.
 const TICKS: Limits = Limits::within(1.0, 4_294_967_296.0);
-/// Torque of a drive per ampere of its motor, gear included, N m/A.
-const TORQUE_CONSTANT_NM_A: Limits = Limits::within(1e-6, 1e4);
+/// Counts of a linear encoder per metre; 10 to the 12th are counts of a picometre.
+const TICKS_PER_M: Limits = Limits::within(1.0, 1e12);
+/// Torque, or force, of a drive per ampere of its motor, gear included, N m/A or N/A.
+const MOTOR_CONSTANT: Limits = Limits::within(1e-6, 1e4);
 
 /// Columns whose samples may have been taken at another time than the row's.
 const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
@@ -79,9 +82,13 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
 
 fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     table.only(&["position", "velocity", "input"])?;
-    let position = mean(table, "position", Dimension::Angle)?;
-    let velocity = mean(table, "velocity", Dimension::Speed)?;
-    let wanted = Dimension::of_input(joint.drive.name());
+    let axis = joint.axis();
+    let position = mean(table, "position", Dimension::Angle.on(axis))?;
+    let velocity = mean(table, "velocity", Dimension::Speed.on(axis))?;
+    if axis == Axis::Slide && position.is_none() {
+        return Err(table.bad_table(ModelReason::SlideUnmeasured));
+    }
+    let wanted = Dimension::of_input(joint.drive.name(), axis);
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
         (Some(wanted), true) => mean(table, "input", wanted)?,
@@ -134,7 +141,8 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     if MOVABLE.contains(&quantity) {
         known.push("shift_s");
     }
-    known.extend(table.text("unit")?.and_then(Unit::scale_key));
+    let scale_key = |unit| Unit::scale_key(unit, dimension);
+    known.extend(table.text("unit")?.and_then(scale_key));
     if quantity == "payload" {
         known.push("at_m");
     }
@@ -155,12 +163,14 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
 
 fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit> {
     let name = table.required_text("unit")?;
-    let scale = match Unit::scale_key(name) {
+    let scale = match Unit::scale_key(name, wanted) {
         Some(key @ "ticks_per_turn") => table.number(key, TICKS)?,
-        Some(key) => table.number(key, TORQUE_CONSTANT_NM_A)?,
+        Some(key @ "ticks_per_m") => table.number(key, TICKS_PER_M)?,
+        Some(key) => table.number(key, MOTOR_CONSTANT)?,
         None => None,
     };
-    let Some(unit) = Unit::named(name, scale) else {
+    let unit = Unit::of(name, wanted, scale).or_else(|| Unit::named(name, scale));
+    let Some(unit) = unit else {
         let unit = name.to_string();
         return Err(table.bad("unit", ModelReason::UnknownUnit { unit, wanted }));
     };
@@ -173,7 +183,7 @@ fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit
         };
         return Err(table.bad("unit", reason));
     }
-    match Unit::scale_key(name).filter(|_| unit.si.is_nan()) {
+    match Unit::scale_key(name, wanted).filter(|_| unit.si.is_nan()) {
         Some(key) => Err(table.lacks(key)),
         None => Ok(unit),
     }

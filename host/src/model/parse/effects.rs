@@ -6,6 +6,7 @@ use super::super::reason::ModelReason;
 use super::super::{EffectInstance, Joint};
 use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
+use crate::model::effect_on;
 
 pub(super) fn read(
     root: &Table,
@@ -32,6 +33,10 @@ fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Resu
         .map(|effect| (effect.info().id, *effect));
     let kinds: Vec<(&str, &'static dyn Effect)> = kinds.collect();
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
+    let joint = at(table, effect, joints)?;
+    let id = effect.info().id;
+    let effect = effect_on(effect, joint, joints)
+        .ok_or_else(|| table.bad("kind", ModelReason::NotOnSlide { id }))?;
     let info = effect.info();
 
     let mut known = vec!["kind", "joint", "fitted"];
@@ -40,7 +45,6 @@ fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Resu
     // Where its values came from: for people and reports, so any content will do.
     table.table("fitted")?;
 
-    let joint = at(table, effect, joints)?;
     let values = info.parameters.iter().map(|parameter| {
         let (low, high) = parameter.bounds;
         table.required_number(parameter.key, Limits::within(low, high))

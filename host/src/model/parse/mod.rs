@@ -4,16 +4,21 @@ mod columns;
 mod effects;
 mod expressions;
 #[cfg(test)]
+mod slide_tests;
+#[cfg(test)]
 mod tests;
 
-use super::field::{JOINT_INERTIA, LinkField, POSITIVE};
+use super::field::{JOINT_INERTIA, JointField, LinkField, POSITIVE};
 use super::limits::Limits;
 use super::path::ParameterPath;
 use super::reader::Table;
 use super::reason::ModelReason;
 use super::source::TomlSource;
 use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor};
+use crate::dynamics::SlideAxis;
+use crate::effects::Axis;
 use crate::error::Result;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 const ABOVE_ZERO: Limits = Limits::above(0.0, POSITIVE.1);
@@ -21,6 +26,8 @@ const NOT_NEGATIVE: Limits = Limits::within(0.0, POSITIVE.1);
 const EITHER_SIGN: Limits = Limits::within(-POSITIVE.1, POSITIVE.1);
 /// Heavier gravity than Jupiter's is a slip of the unit.
 const GRAVITY: Limits = Limits::within(0.0, 100.0);
+/// Beyond a turn, a direction is a slip of the unit.
+const ONE_TURN: Limits = Limits::within(-TAU, TAU);
 /// A step beyond 0.1 s resolves no servo; one below 10 us only takes time.
 const STEP: Limits = Limits::within(1e-5, 0.1);
 
@@ -54,6 +61,9 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         free: Vec::new(),
         log,
     };
+    if model.slides() && model.angles == Angles::Absolute {
+        return Err(rig.bad("angles", ModelReason::AbsoluteSlides));
+    }
     model.free = free(&root, &model)?;
     Ok(model)
 }
@@ -123,42 +133,63 @@ fn joints(root: &Table, links: usize) -> Result<Vec<Joint>> {
     tables.iter().map(joint).collect()
 }
 
-/// Keys of a joint with a motor, and the key of its gain.
-const MOTOR: [&str; 4] = [
-    "drive",
-    "stall_torque_nm",
-    "no_load_speed_rad_s",
-    "nominal_supply_v",
-];
+/// The keys of what a motor and its regulator are, by how the joint moves: torque or force at
+/// standstill, speed without load, gains of a position and of a speed drive.
+fn motor_keys(axis: Axis) -> [&'static str; 4] {
+    let fields = JointField::ALL.into_iter();
+    let keys = fields
+        .filter(|field| field.axis() == axis)
+        .map(JointField::key);
+    let mut sorted = [""; 4];
+    for (place, key) in sorted.iter_mut().zip(keys) {
+        *place = key;
+    }
+    sorted
+}
 
 fn joint(table: &Table) -> Result<Joint> {
+    let axis = table.choice("axis", &AXES)?.unwrap_or(Axis::Hinge);
+    let [gain_per_angle, gain_per_speed, stall, no_load] = motor_keys(axis);
     let drive = table.required("drive", table.choice("drive", &DRIVES)?)?;
-    let gain = match drive {
-        "position" => Some("gain_per_rad"),
-        "speed" => Some("gain_s_per_rad"),
-        _ => None,
-    };
-    let known = match drive {
-        "passive" | "torque" => &MOTOR[..1],
-        _ => &MOTOR,
-    };
-    table.only(&[known, gain.as_slice()].concat())?;
+    let mut known = vec!["drive", "axis"];
+    if axis == Axis::Slide {
+        known.extend(["slide_rad", "link_rad"]);
+    }
+    if !matches!(drive, "passive" | "torque") {
+        known.extend([stall, no_load, "nominal_supply_v"]);
+    }
+    match drive {
+        "position" => known.push(gain_per_angle),
+        "speed" => known.push(gain_per_speed),
+        _ => {}
+    }
+    table.only(&known)?;
     let gain = |key: &str| table.required_number(key, ABOVE_ZERO);
+    let motor = || motor(table, stall, no_load);
     let drive = match drive {
         "passive" => Drive::Passive,
         "torque" => Drive::Torque,
-        "duty" => Drive::Duty(motor(table)?),
+        "duty" => Drive::Duty(motor()?),
         "position" => Drive::Position {
-            gain_per_rad: gain("gain_per_rad")?,
-            motor: motor(table)?,
+            gain_per_rad: gain(gain_per_angle)?,
+            motor: motor()?,
         },
         _ => Drive::Speed {
-            gain_s_per_rad: gain("gain_s_per_rad")?,
-            motor: motor(table)?,
+            gain_s_per_rad: gain(gain_per_speed)?,
+            motor: motor()?,
         },
     };
-    Ok(Joint { drive })
+    let slide = match axis {
+        Axis::Hinge => None,
+        Axis::Slide => Some(SlideAxis {
+            direction_rad: table.required_number("slide_rad", ONE_TURN)?,
+            link_rad: table.number("link_rad", ONE_TURN)?.unwrap_or(0.0),
+        }),
+    };
+    Ok(Joint { drive, slide })
 }
+
+const AXES: [(&str, Axis); 2] = [("hinge", Axis::Hinge), ("slide", Axis::Slide)];
 
 const DRIVES: [(&str, &str); 5] = [
     ("passive", "passive"),
@@ -168,10 +199,10 @@ const DRIVES: [(&str, &str); 5] = [
     ("speed", "speed"),
 ];
 
-fn motor(table: &Table) -> Result<Motor> {
-    let no_load_speed = table.number("no_load_speed_rad_s", ABOVE_ZERO)?;
+fn motor(table: &Table, stall: &str, no_load: &str) -> Result<Motor> {
+    let no_load_speed = table.number(no_load, ABOVE_ZERO)?;
     Ok(Motor {
-        stall_torque_nm: table.required_number("stall_torque_nm", ABOVE_ZERO)?,
+        stall_torque_nm: table.required_number(stall, ABOVE_ZERO)?,
         no_load_speed_rad_s: no_load_speed.unwrap_or(f64::INFINITY),
         nominal_supply_v: table.number("nominal_supply_v", ABOVE_ZERO)?,
     })

@@ -6,9 +6,12 @@ use std::f64::consts::{PI, TAU};
 
 impl PosedPlant {
     /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
-    /// masses in balance.
+    /// masses in balance. None where joints slide: no controller that asks for it takes such.
     pub fn balanced_rad(&self) -> Vec<f64> {
         let rig = &self.plant.rig;
+        if rig.chain.slides() {
+            return vec![0.0; self.joints()];
+        }
         let moments = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad).moments_kg_m();
         let upright = |[along, across]: &[f64; 2]| PI - across.atan2(*along) + rig.gravity_turn_rad;
         let absolute: Vec<f64> = moments.iter().map(upright).collect();

@@ -1,8 +1,10 @@
 //! A run in figures, and what counts as stabilised.
 
+use super::PosedPlant;
 use serde::Serialize;
 
-/// What counts as fallen, as stabilised and as settled: one definition for every study.
+/// What counts as fallen, as stabilised and as settled: one definition for every study. Of joints
+/// that slide, 1 mm counts as 1 mrad, and none falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StabilityCriteria {
     /// A link that leans further off its pose than this has fallen, rad.
@@ -28,14 +30,21 @@ impl Default for StabilityCriteria {
 }
 
 impl StabilityCriteria {
-    /// Whether a link leans too far, or the numbers have run away.
+    /// Whether a link of `plant` leans too far, or the numbers have run away.
     #[inline]
-    pub(crate) fn has_fallen(&self, angle_rad: &[f64], speed_rad_s: &[f64]) -> bool {
+    pub(crate) fn has_fallen(
+        &self,
+        plant: &PosedPlant,
+        angle_rad: &[f64],
+        speed_rad_s: &[f64],
+    ) -> bool {
         let mut lean = 0.0;
-        let upright = angle_rad.iter().all(|angle| {
-            lean += angle;
-            f64::abs(lean) <= self.fall_rad
-        });
+        let mut upright = true;
+        for (joint, angle) in angle_rad.iter().enumerate() {
+            // Links that slide lean as those before them.
+            lean += if plant.slides(joint) { 0.0 } else { *angle };
+            upright &= f64::abs(lean) <= self.fall_rad && angle.is_finite();
+        }
         !upright || !speed_rad_s.iter().all(|speed| speed.is_finite())
     }
 }

@@ -141,6 +141,12 @@ impl PosedPlant {
         self.plant.len()
     }
 
+    /// Whether a joint slides.
+    #[inline]
+    pub fn slides(&self, joint: usize) -> bool {
+        self.plant.rig.chain.links[joint].slide.is_some()
+    }
+
     /// Number of driven joints.
     pub fn drives(&self) -> usize {
         self.drives.len()

@@ -155,7 +155,7 @@ impl<'a> Run<'a> {
             command_step,
         } = self.closed;
         let angle_rad = &self.body.angle_rad;
-        if limits.has_fallen(angle_rad, &self.body.speed_rad_s) {
+        if limits.has_fallen(plant, angle_rad, &self.body.speed_rad_s) {
             return Some(self.outcome(true));
         }
         let late = self.now_s >= self.late_s;

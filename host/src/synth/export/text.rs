@@ -11,14 +11,28 @@ use nalgebra::DMatrix;
 /// Wider matrices are left to `--csv` and `--json`.
 const WIDEST: usize = 12;
 
+/// Unit of a pose: of each joint where some slide.
+fn pose_unit(design: &Design) -> String {
+    let joints = design.plant.a.nrows() / 2;
+    let units: Vec<&str> = design.states[..joints]
+        .iter()
+        .map(|state| state.unit)
+        .collect();
+    match units.iter().all(|unit| *unit == "rad") {
+        true => " rad".to_string(),
+        false => format!(" {}", units.join(", ")),
+    }
+}
+
 /// Gains, poles, zeros, what fixed point costs.
 pub fn text(design: &Design) -> String {
     let joints = design.plant.a.nrows() / 2;
     let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v)));
     let mut parts = vec![format!(
-        "`{}` at q = [{}] rad, held by u = [{}]",
+        "`{}` at q = [{}]{}, held by u = [{}]",
         design.model,
         joined(&design.x0[..joints]),
+        pose_unit(design),
         joined(&design.u0)
     )];
     parts.push(match &design.sampled {

@@ -212,7 +212,12 @@ impl Reader<'_> {
                 .and_then(|v| v.first().copied())
                 .unwrap_or(0.0))
         };
-        let angle = |key: &str| -> Result<f64> { Ok(self.compiler.rad(number(key)?)) };
+        // Of a slide it is metres, whatever the unit of angles.
+        let place = |value: f64| match motion {
+            Motion::Slide => value,
+            _ => self.compiler.rad(value),
+        };
+        let angle = |key: &str| -> Result<f64> { Ok(place(number(key)?)) };
         let mut joint = TreeJoint::new(name, motion, axis.normalize());
         joint.anchor_m = Point3::from(own.vector("pos")?.unwrap_or_default());
         joint.reference_rad = angle("ref")?;
@@ -224,7 +229,7 @@ impl Reader<'_> {
         let limited = own.text("limited").unwrap_or("auto");
         if let Some([low, high]) = own.numbers("range")?.as_deref() {
             let on = limited == "true" || (limited == "auto" && self.compiler.autolimits);
-            let range = (self.compiler.rad(*low), self.compiler.rad(*high));
+            let range = (place(*low), place(*high));
             joint.range_rad = on.then_some(range);
         }
         if own
