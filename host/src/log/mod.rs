@@ -12,6 +12,7 @@ pub mod init;
 mod iso;
 mod lines;
 mod log_set;
+pub(crate) mod mcap_messages;
 mod merge;
 mod motion;
 mod raw;

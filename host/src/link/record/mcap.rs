@@ -7,8 +7,9 @@ use super::recorder::Writer;
 use super::sample::{GyroSample, RobotSample, ServoSample};
 use crate::error::{Error, Place, Result};
 use crate::log::cdr::{IMU_NAME, IMU_SCHEMA, ImuMessage, JointStateMessage, NAME, SCHEMA};
+use crate::log::mcap_messages::{McapEnd, messages};
 use ::mcap::records::MessageHeader;
-use ::mcap::{McapError, MessageStream, WriteOptions, read::Options};
+use ::mcap::{McapError, WriteOptions};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
@@ -197,20 +198,14 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
     if !bytes.starts_with(::mcap::MAGIC) {
         return Err(refused("not an MCAP file".to_string()));
     }
-    let messages = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into());
-    let messages = messages.map_err(|error| refused(format!("not an MCAP file: {error}")))?;
-    let (mut ids, mut samples, mut torn) = (Vec::new(), Vec::<RobotSample>::new(), false);
+    let (mut ids, mut samples) = (Vec::new(), Vec::<RobotSample>::new());
     let mut begun_ns = None;
-    for message in messages {
-        let Ok(message) = message else {
-            // The chunk that was being written when the program died; what lies before it is whole.
-            torn = true;
-            break;
-        };
-        let begun_ns = *begun_ns.get_or_insert(message.log_time);
-        match message.channel.topic.as_str() {
+    let end = messages(bytes, |message| {
+        let time_ns = message.log_time_ns;
+        let begun_ns = *begun_ns.get_or_insert(time_ns);
+        match message.topic {
             STATES => {
-                let state = JointStateMessage::of(&message.data)
+                let state = JointStateMessage::of(message.data)
                     .ok_or_else(|| refused(format!("{STATES}: no joint states")))?;
                 let servos: Vec<u8> = (state.name.iter())
                     .filter_map(|name| name.strip_prefix("servo")?.parse().ok())
@@ -221,36 +216,34 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<(Vec<u8>, Vec<RobotSampl
                     return Err(refused(what));
                 }
                 ids = servos;
-                samples.push(sample(
-                    &state,
-                    (message.log_time - begun_ns.min(message.log_time)) as f64 * 1e-9,
-                ));
+                let time_s = (time_ns - begun_ns.min(time_ns)) as f64 * 1e-9;
+                samples.push(sample(&state, time_s));
             }
             GOALS => {
-                let goals = JointStateMessage::of(&message.data)
+                let goals = JointStateMessage::of(message.data)
                     .ok_or_else(|| refused(format!("{GOALS}: no joint states")))?;
                 for (joint, goal) in newest(&mut samples).iter_mut().zip(goals.position) {
                     joint.goal_rad = said(goal);
                 }
             }
             IMU => {
-                let imu = ImuMessage::of(&message.data)
+                let imu = ImuMessage::of(message.data)
                     .ok_or_else(|| refused(format!("{IMU}: no measurement of a gyro")))?;
                 if let Some(sample) = samples.last_mut() {
                     sample.gyro.get_or_insert_default().rate_rad_s = said(imu.rate_rad_s);
                 }
             }
             HEALTH => {
-                let health: Health = serde_json::from_slice(&message.data)
+                let health: Health = serde_json::from_slice(message.data)
                     .map_err(|error| refused(format!("{HEALTH}: {error}")))?;
                 add_health(&health, &mut samples);
             }
             _ => {}
         }
-    }
-    // A finished file ends in the magic it began with.
-    torn |= !bytes.ends_with(::mcap::MAGIC);
-    Ok((ids, samples, torn))
+        Ok(())
+    });
+    // What lies before the chunk that was being written when the program died is whole.
+    Ok((ids, samples, end? != McapEnd::Complete))
 }
 
 /// Adds what the board and its servos say of themselves to the newest sample.

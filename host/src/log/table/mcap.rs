@@ -6,33 +6,20 @@ use super::joint_states::JointStates;
 use super::{LogTable, TableFile};
 use crate::error::Result;
 use crate::log::cdr::{IMU_NAME, ImuMessage, JointStateMessage, NAME};
-use ::mcap::read::LinearReader;
-use ::mcap::records::Record;
-use ::mcap::{MAGIC, read::Options};
-use std::borrow::Cow;
-use std::collections::HashMap;
-use std::io::Read as _;
+use crate::log::mcap_messages::{McapEnd, McapMessage, messages};
+use ::mcap::MAGIC;
 
-/// Largest chunk, bytes; recorders write some MB.
-const LARGEST_CHUNK: u64 = 1 << 30;
 /// Health of servos, in recordings of `handstand record`.
 const HEALTH: &str = "handstand.ServoHealth";
 /// Begin of the names of its joints.
 const SERVO: &str = "servo";
 
-/// What a channel carries.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Carried {
-    States,
-    Imu,
-    Health,
-}
-
 #[derive(Default)]
 struct Messages {
-    schemas: HashMap<u16, String>,
-    channels: HashMap<u16, (String, Carried)>,
     states: JointStates,
+    /// Rates of gyros, rad/s, with their time, ns; none where a message is broken. Whose they are
+    /// is known at the end.
+    rates: Vec<(u64, Option<f64>)>,
     /// Whether `handstand record` wrote it.
     is_own: bool,
 }
@@ -42,24 +29,29 @@ pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
     if !bytes.starts_with(MAGIC) {
         return Err(file.wrong("not an MCAP file", remedy));
     }
-    let records = LinearReader::new_with_options(bytes, Options::IgnoreEndMagic.into());
-    let records = records.map_err(|error| file.wrong(error.to_string(), remedy))?;
-    let mut messages = Messages::default();
-    for record in records {
-        match record {
-            Ok(Record::Chunk { header, data }) => {
-                let plain = plain(&header.compression, header.uncompressed_size, &data, file)?;
-                for record in LinearReader::sans_magic(&plain).map_while(|record| record.ok()) {
-                    messages.take(record, file)?;
-                }
-            }
-            Ok(record) => messages.take(record, file)?,
-            // The chunk that was being written when the recorder died; before it all is whole.
-            Err(_) => break,
+    let mut taken = Messages::default();
+    match messages(bytes, |message| taken.take(message, file))? {
+        // What lies before the chunk that was being written when the recorder died is whole.
+        McapEnd::Complete | McapEnd::Torn => {}
+        McapEnd::Broken(why) => {
+            let remedy = "record it again, or repair it: mcap recover";
+            return Err(file.wrong(format!("a chunk is broken: {why}"), remedy));
+        }
+        McapEnd::Unknown(packing) => {
+            let remedy = "write it uncompressed, or with lz4 or zstd: mcap compress";
+            let what = format!("chunks are compressed by {packing:?}");
+            return Err(file.wrong(what, remedy));
         }
     }
-    let is_own = messages.is_own;
-    let mut table = messages.states.table(file)?;
+    let is_own = taken.is_own;
+    for (stamp_ns, rate_rad_s) in taken.rates.into_iter().filter(|_| is_own) {
+        let broken = || file.wrong("a measurement of the gyro is broken", "record it again");
+        let rate_rad_s = rate_rad_s.ok_or_else(broken)?;
+        taken
+            .states
+            .sample("gyro_rad_s".into(), stamp_ns, rate_rad_s);
+    }
+    let mut table = taken.states.table(file)?;
     if is_own {
         table
             .names
@@ -69,87 +61,30 @@ pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
     Ok(table)
 }
 
-/// A chunk's records.
-fn plain<'a>(kind: &str, size: u64, data: &'a [u8], file: TableFile) -> Result<Cow<'a, [u8]>> {
-    let broken = |why: &str| {
-        file.wrong(
-            format!("a chunk is broken: {why}"),
-            "record it again, or repair it: mcap recover",
-        )
-    };
-    if size > LARGEST_CHUNK {
-        return Err(broken("it says that it is larger than 1 GiB"));
-    }
-    // A byte more tells a chunk that is longer than it says.
-    let mut out = Vec::new();
-    let read = match kind {
-        "" => return Ok(Cow::Borrowed(data)),
-        "lz4" => lz4_flex::frame::FrameDecoder::new(data)
-            .take(size + 1)
-            .read_to_end(&mut out),
-        "zstd" => {
-            let decoder = ruzstd::decoding::StreamingDecoder::new(data);
-            let decoder = decoder.map_err(|error| broken(&error.to_string()))?;
-            decoder.take(size + 1).read_to_end(&mut out)
-        }
-        other => {
-            let remedy = "write it uncompressed, or with lz4 or zstd: mcap compress";
-            return Err(file.wrong(format!("chunks are compressed by {other:?}"), remedy));
-        }
-    };
-    read.map_err(|error| broken(&error.to_string()))?;
-    match out.len() as u64 == size {
-        true => Ok(Cow::Owned(out)),
-        false => Err(broken("it is not as long as it says")),
-    }
-}
-
 impl Messages {
-    fn take(&mut self, record: Record, file: TableFile) -> Result<()> {
-        match record {
-            Record::Schema { header, .. } => {
-                self.schemas.insert(header.id, header.name);
+    fn take(&mut self, message: McapMessage, file: TableFile) -> Result<()> {
+        let McapMessage {
+            topic, log_time_ns, ..
+        } = message;
+        let broken = || {
+            let what = format!("{topic}: message {} is broken", message.sequence);
+            file.wrong(what, "record it again")
+        };
+        match (message.schema, message.encoding) {
+            (NAME, "cdr") => {
+                let state = JointStateMessage::of(message.data).ok_or_else(broken)?;
+                self.states.take(topic, log_time_ns, &state, file)?;
             }
-            Record::Channel(channel) => {
-                let schema = self
-                    .schemas
-                    .get(&channel.schema_id)
-                    .map_or("", String::as_str);
-                let carried = match (schema, channel.message_encoding.as_str()) {
-                    (NAME, "cdr") => Carried::States,
-                    (IMU_NAME, "cdr") => Carried::Imu,
-                    (HEALTH, "json") => Carried::Health,
-                    _ => return Ok(()),
-                };
-                self.is_own |= carried == Carried::Health;
-                self.channels.insert(channel.id, (channel.topic, carried));
+            (IMU_NAME, "cdr") => {
+                let imu = ImuMessage::of(message.data);
+                self.rates
+                    .push((log_time_ns, imu.map(|imu| imu.rate_rad_s)));
             }
-            Record::Message { header, data } => {
-                let Some((topic, carried)) = self.channels.get(&header.channel_id) else {
-                    return Ok(());
-                };
-                let (topic, carried) = (topic.clone(), *carried);
-                let broken = || {
-                    let what = format!("{topic}: message {} is broken", header.sequence);
-                    file.wrong(what, "record it again")
-                };
-                match carried {
-                    Carried::States => {
-                        let state = JointStateMessage::of(&data).ok_or_else(broken)?;
-                        self.states.take(&topic, header.log_time, &state, file)?;
-                    }
-                    Carried::Imu if self.is_own => {
-                        let imu = ImuMessage::of(&data).ok_or_else(broken)?;
-                        self.states
-                            .sample("gyro_rad_s".into(), header.log_time, imu.rate_rad_s);
-                    }
-                    Carried::Imu => {}
-                    Carried::Health => {
-                        let health: serde_json::Value =
-                            serde_json::from_slice(&data).map_err(|_| broken())?;
-                        self.health(&health, header.log_time);
-                    }
-                }
+            (HEALTH, "json") => {
+                self.is_own = true;
+                let health: serde_json::Value =
+                    serde_json::from_slice(message.data).map_err(|_| broken())?;
+                self.health(&health, log_time_ns);
             }
             _ => {}
         }
