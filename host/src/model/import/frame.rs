@@ -19,10 +19,12 @@ pub(super) fn wrapped(angle_rad: f64) -> f64 {
 /// A direction across slides, of which one alone moves in the plane of gravity.
 fn across(along: &[Vector3<f64>], gravity_m_s2: &Vector3<f64>) -> Vector3<f64> {
     let first = along[0];
-    let others = along[1..].iter().chain([gravity_m_s2]);
-    let normals = others.map(|other| first.cross(other));
-    let normal = normals.max_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let normal = normal.filter(|normal| normal.norm() > PARALLEL_RAD);
+    let longest = |others: &[Vector3<f64>]| {
+        let normals = others.iter().map(|other| first.cross(other));
+        let longest = normals.max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        longest.filter(|normal| normal.norm() > PARALLEL_RAD)
+    };
+    let normal = longest(&along[1..]).or_else(|| longest(&[*gravity_m_s2]));
     let other = || match first.x.abs() < 0.9 {
         true => Vector3::x(),
         false => Vector3::y(),
