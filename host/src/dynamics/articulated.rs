@@ -81,6 +81,32 @@ impl Chain {
             (&angle_rad[..n], &speed_rad_s[..n], &torque_nm[..n]);
         let (held, out) = (&held[..n], &mut out[..n]);
 
+        self.find_motions(scratch, angle_rad, speed_rad_s);
+        self.gather(scratch, torque_nm, held);
+
+        let mut linear = base_m_s2;
+        let mut angular = 0.0;
+        for (i, (s, link)) in scratch.iter().zip(&self.links).enumerate() {
+            let value =
+                (s.own + s.carried * angular) + (s.pull[0] * linear[0] + s.pull[1] * linear[1]);
+            if link.slide.is_some() {
+                out[i] = value;
+                if !held[i] {
+                    linear = [0, 1].map(|k| linear[k] + value * s.along[k]);
+                }
+            } else if held[i] {
+                out[i] = value;
+            } else {
+                out[i] = value - angular;
+                angular = value;
+            }
+            linear = s.motion.end_m_s2(linear, angular);
+        }
+    }
+
+    /// From the base outwards: how every link lies and moves.
+    #[inline(always)]
+    fn find_motions(&self, scratch: &mut [Scratch], angle_rad: &[f64], speed_rad_s: &[f64]) {
         let (mut angle, mut speed) = (0.0, 0.0);
         let mut before: Option<&mut LinkMotion> = None;
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate() {
@@ -98,7 +124,11 @@ impl Chain {
             s.motion = LinkMotion::new(link, angle, speed);
             before = Some(&mut s.motion);
         }
+    }
 
+    /// From the tip inwards: what every subtree asks of its joint.
+    #[inline(always)]
+    fn gather(&self, scratch: &mut [Scratch], torque_nm: &[f64], held: &[bool]) {
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
             tree.shift(s.motion.lever, s.motion.centripetal);
@@ -120,25 +150,6 @@ impl Chain {
                 s.own = torque * inverse;
                 tree.yield_to(inverse, s.carried, torque);
             }
-        }
-
-        let mut linear = base_m_s2;
-        let mut angular = 0.0;
-        for (i, (s, link)) in scratch.iter().zip(&self.links).enumerate() {
-            let value =
-                (s.own + s.carried * angular) + (s.pull[0] * linear[0] + s.pull[1] * linear[1]);
-            if link.slide.is_some() {
-                out[i] = value;
-                if !held[i] {
-                    linear = [0, 1].map(|k| linear[k] + value * s.along[k]);
-                }
-            } else if held[i] {
-                out[i] = value;
-            } else {
-                out[i] = value - angular;
-                angular = value;
-            }
-            linear = s.motion.end_m_s2(linear, angular);
         }
     }
 }

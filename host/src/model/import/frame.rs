@@ -1,6 +1,6 @@
 //! The plane in which a chain moves.
 
-use super::tree::{Motion, RobotTree};
+use super::tree::{JointMotion, RobotTree};
 use crate::error::{Error, Result};
 use nalgebra::{Isometry3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -52,7 +52,7 @@ impl Frame {
         file: &str,
     ) -> Result<Self> {
         let axis_of = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
-        let slides = |body: usize| tree.bodies[body].joints[0].motion == Motion::Slide;
+        let slides = |body: usize| tree.bodies[body].joints[0].motion == JointMotion::Slide;
         let hinge = chosen.iter().copied().find(|&body| !slides(body));
         let name = |body: usize| &tree.bodies[body].joints[0].name;
         let Some(first) = hinge else {

@@ -2,7 +2,7 @@
 //! joints' common axis.
 
 use super::frame::{Frame, PARALLEL_RAD, wrapped};
-use super::tree::{Inertial, LeftOut, Motion, RobotTree, TreeJoint};
+use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeJoint};
 use crate::dynamics::SlideAxis;
 use crate::error::{Error, Result};
 use nalgebra::Isometry3;
@@ -74,12 +74,9 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         if along.0 > NO_LENGTH_M {
             direction_rad = along.1;
         }
-        let off_line = match com.0 > NO_LENGTH_M {
-            true => wrapped(com.1 - direction_rad),
-            false => 0.0,
-        };
+        let (com_m, com_angle_rad) = off_line(com, direction_rad);
         let axis = poses[body] * joint.axis;
-        let slide = (joint.motion == Motion::Slide).then(|| SlideAxis {
+        let slide = (joint.motion == JointMotion::Slide).then(|| SlideAxis {
             direction_rad: wrapped(frame.seen(&axis).1 - before_rad),
             link_rad: wrapped(direction_rad - before_rad),
         });
@@ -95,19 +92,14 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             let rest = offset + sign * joint.spring_rest_rad;
             offset -= TAU * (rest / TAU).round();
         }
-        let behind = (off_line.abs() - PI).abs() < 1e-12;
         links.push(PlanarLink {
             joint: joint.clone(),
             reversed,
             offset_rad: offset,
             slide,
             length_m: if next.is_some() { along.0 } else { com.0 },
-            com_m: if behind { -com.0 } else { com.0 },
-            com_angle_rad: if behind || off_line.abs() < 1e-12 {
-                0.0
-            } else {
-                off_line
-            },
+            com_m,
+            com_angle_rad,
             mass_kg: mass.mass_kg,
             inertia_kg_m2: frame.axis.dot(&(mass.inertia_kg_m2 * frame.axis)),
         });
@@ -117,6 +109,20 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         gravity_m_s2: frame.gravity_m_s2,
         left_out,
     })
+}
+
+/// A centre of mass at this distance, m, and angle, rad, along a link's line and off it: below 0 m
+/// where it lies behind the joint.
+fn off_line(com: (f64, f64), direction_rad: f64) -> (f64, f64) {
+    let off_rad = match com.0 > NO_LENGTH_M {
+        true => wrapped(com.1 - direction_rad),
+        false => 0.0,
+    };
+    match off_rad.abs() {
+        off if (off - PI).abs() < 1e-12 => (-com.0, 0.0),
+        off if off < 1e-12 => (com.0, 0.0),
+        _ => (com.0, off_rad),
+    }
 }
 
 /// Refuses a link that would turn without inertia.
@@ -131,13 +137,13 @@ fn with_mass(mass: &Inertial, joint: &TreeJoint, file: &str) -> Result<()> {
 }
 
 /// Whether a body has one joint, which moves so.
-fn moves(tree: &RobotTree, body: usize, motion: Motion) -> bool {
+fn moves(tree: &RobotTree, body: usize, motion: JointMotion) -> bool {
     matches!(tree.bodies[body].joints.as_slice(), [joint] if joint.motion == motion)
 }
 
 /// Whether a body has one hinge.
 fn hinged(tree: &RobotTree, body: usize) -> bool {
-    moves(tree, body, Motion::Hinge)
+    moves(tree, body, JointMotion::Hinge)
 }
 
 fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
@@ -173,7 +179,7 @@ fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<
     let hinge = axis(tip);
     // A slide across the plane of the hinges is held.
     let in_plane = |body: usize| {
-        moves(tree, body, Motion::Slide) && axis(body).dot(&hinge).abs() < PARALLEL_RAD
+        moves(tree, body, JointMotion::Slide) && axis(body).dot(&hinge).abs() < PARALLEL_RAD
     };
     let chain = ancestors(tree, tip)
         .into_iter()
@@ -183,7 +189,7 @@ fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<
 
 /// The chain of a robot without hinges: its first slide.
 fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
-    let mut slides = (0..tree.bodies.len()).filter(|&body| moves(tree, body, Motion::Slide));
+    let mut slides = (0..tree.bodies.len()).filter(|&body| moves(tree, body, JointMotion::Slide));
     let Some(first) = slides.next() else {
         return Err(Error::usage(
             format!("{file}: no joint turns about one axis or slides along one"),
@@ -225,7 +231,7 @@ fn named(tree: &RobotTree, names: &[String], file: &str) -> Result<Vec<usize>> {
                 format!("its joints: {}", all.join(", ")),
             ));
         };
-        if !hinged(tree, body) && !moves(tree, body, Motion::Slide) {
+        if !hinged(tree, body) && !moves(tree, body, JointMotion::Slide) {
             return Err(Error::usage(
                 format!("{file}: joint {name} neither turns nor slides alone in its own body"),
                 "name hinges and slides, one for each body",

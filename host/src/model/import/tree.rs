@@ -78,7 +78,7 @@ impl Inertial {
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Motion {
+pub(super) enum JointMotion {
     /// About an axis.
     Hinge,
     /// Along an axis.
@@ -111,7 +111,7 @@ pub(super) enum TreeDrive {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TreeJoint {
     pub name: String,
-    pub motion: Motion,
+    pub motion: JointMotion,
     /// In the body's frame, of length 1.
     pub axis: Vector3<f64>,
     /// A point of the axis in the body's frame, m.
@@ -131,7 +131,7 @@ pub(super) struct TreeJoint {
 }
 
 impl TreeJoint {
-    pub fn new(name: String, motion: Motion, axis: Vector3<f64>) -> Self {
+    pub fn new(name: String, motion: JointMotion, axis: Vector3<f64>) -> Self {
         TreeJoint {
             name,
             motion,
@@ -152,7 +152,7 @@ impl TreeJoint {
 
 /// A rigid body.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Body {
+pub(super) struct TreeBody {
     pub name: String,
     /// Index of the body that carries it, always a smaller one; none for the world.
     pub parent: Option<usize>,
@@ -168,7 +168,7 @@ pub(super) struct Body {
 pub(super) struct RobotTree {
     pub name: String,
     /// Parents before children; the first is the world, or what stands in it.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<TreeBody>,
     pub gravity_m_s2: Vector3<f64>,
     pub left_out: Vec<LeftOut>,
 }

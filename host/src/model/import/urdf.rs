@@ -1,6 +1,6 @@
 //! URDF: links and joints by name, poses as `xyz` and `rpy`.
 
-use super::tree::{Body, Inertial, LeftOut, Motion, RobotTree, TreeDrive, TreeJoint};
+use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeBody, TreeDrive, TreeJoint};
 use super::xml::Element;
 use crate::error::Result;
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -47,7 +47,7 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         .collect();
     let mut bodies = Vec::new();
     for link in order {
-        let mut body = Body {
+        let mut body = TreeBody {
             name: links[link].required("name")?.to_string(),
             parent: None,
             pose: Isometry3::identity(),
@@ -165,9 +165,9 @@ fn tree_joint(joint: Element, left_out: &mut Vec<LeftOut>) -> Result<Option<Tree
     let name = joint.required("name")?;
     let motion = match joint.required("type")? {
         "fixed" => return Ok(None),
-        "revolute" | "continuous" => Motion::Hinge,
-        "prismatic" => Motion::Slide,
-        "floating" | "planar" => Motion::Free,
+        "revolute" | "continuous" => JointMotion::Hinge,
+        "prismatic" => JointMotion::Slide,
+        "floating" | "planar" => JointMotion::Free,
         other => {
             let remedy = "revolute, continuous, prismatic, fixed, floating or planar";
             return Err(joint.wrong(format!("a joint of type \"{other}\""), remedy));

@@ -5,7 +5,7 @@ mod defaults;
 mod geometry;
 mod orientation;
 
-use super::tree::{Body, Inertial, LeftOut, Motion, RobotTree, TreeJoint};
+use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeBody, TreeJoint};
 use super::xml::Element;
 use crate::error::Result;
 use defaults::{Attributes, Defaults};
@@ -33,7 +33,7 @@ pub(super) const FLATTEN: &str = "let MuJoCo write it out flat: mujoco.mj_saveLa
 struct Reader<'a> {
     compiler: Compiler,
     defaults: Defaults<'a>,
-    bodies: Vec<Body>,
+    bodies: Vec<TreeBody>,
     left_out: Vec<LeftOut>,
     unnamed: usize,
 }
@@ -48,7 +48,7 @@ pub(super) fn tree(root: Element) -> Result<RobotTree> {
     let mut reader = Reader {
         compiler,
         defaults: Defaults::of(root)?,
-        bodies: vec![Body {
+        bodies: vec![TreeBody {
             name: "world".to_string(),
             parent: None,
             pose: Isometry3::identity(),
@@ -156,7 +156,7 @@ impl Reader<'_> {
         let name = body
             .text("name")
             .map_or(format!("body{}", self.unnamed), str::to_string);
-        self.bodies.push(Body {
+        self.bodies.push(TreeBody {
             name,
             parent: Some(parent),
             pose,
@@ -190,13 +190,13 @@ impl Reader<'_> {
             str::to_string,
         );
         if element.tag() == "freejoint" {
-            return Ok(TreeJoint::new(name, Motion::Free, Vector3::x()));
+            return Ok(TreeJoint::new(name, JointMotion::Free, Vector3::x()));
         }
         let own = self.defaults.attributes(element, class)?;
         let motion = match own.text("type").unwrap_or("hinge") {
-            "hinge" => Motion::Hinge,
-            "slide" => Motion::Slide,
-            "ball" | "free" => Motion::Free,
+            "hinge" => JointMotion::Hinge,
+            "slide" => JointMotion::Slide,
+            "ball" | "free" => JointMotion::Free,
             other => {
                 let what = format!("a joint of type \"{other}\"");
                 return Err(element.wrong(what, "hinge, slide, ball or free"));
@@ -214,7 +214,7 @@ impl Reader<'_> {
         };
         // Of a slide it is metres, whatever the unit of angles.
         let place = |value: f64| match motion {
-            Motion::Slide => value,
+            JointMotion::Slide => value,
             _ => self.compiler.rad(value),
         };
         let angle = |key: &str| -> Result<f64> { Ok(place(number(key)?)) };
