@@ -201,8 +201,7 @@ impl JointServos {
         }
     }
 
-    /// Drive the joint with the mean duty cycle of its servos, one delay and the lag late. Torque
-    /// goes off at once: a servo cuts its motor's current itself.
+    /// Drive the joint with the mean duty cycle of its servos, one delay and the lag late.
     fn drive(&mut self, plant: &mut dyn Plant, servos: &[Servo], now_s: f64, dt_s: f64) {
         let own = servos.iter().filter(|servo| self.ids.contains(&servo.id()));
         let own: Vec<&Servo> = own.collect();
@@ -214,8 +213,7 @@ impl JointServos {
         let Some((_, regulators)) = self.history.front() else {
             return;
         };
-        let energised =
-            regulators.iter().any(Regulator::is_on) && own.iter().any(|servo| servo.torque_is_on());
+        let energised = regulators.iter().any(Regulator::is_on);
         let duties = regulators.iter().zip(&own).map(|(regulator, servo)| {
             self.sign(servo.id()) * regulator.duty_in_motion(&servo.shaft)
         });

@@ -8,8 +8,6 @@ use handstand_shared::message::*;
 #[derive(Debug)]
 struct Tell {
     is_on: bool,
-    /// How late the motor obeys, s.
-    delay_s: f64,
 }
 
 impl Plant for Tell {
@@ -18,7 +16,7 @@ impl Plant for Tell {
     }
 
     fn delay_s(&self, _joint: usize) -> f64 {
-        self.delay_s
+        0.0
     }
 
     fn set_duty(&mut self, _joint: usize, duty: Option<f64>, _supply_v: f64) {
@@ -44,12 +42,9 @@ impl Plant for Tell {
 const TELLS: (u8, usize) = (18, 17);
 
 /// A CM-5 ready to be armed, and the token.
-fn ready(mode: Mode, delay_s: f64) -> (VirtualCm5, u16) {
+fn ready(mode: Mode) -> (VirtualCm5, u16) {
     let mut cm5 = with_wheels();
-    let tell = Tell {
-        is_on: false,
-        delay_s,
-    };
+    let tell = Tell { is_on: false };
     cm5.bus()
         .attach(Robot::new(Box::new(tell), [(0, vec![TELLS.0])]));
     let token = match mode {
@@ -103,7 +98,7 @@ fn each_tick_says_whether_torque_was_on_when_it_read_the_servos() {
     ];
     for (mode, end) in ways {
         for phase in 0..10 {
-            let (mut cm5, token) = ready(mode, 0.0);
+            let (mut cm5, token) = ready(mode);
             cm5.run_ms(0.3 + f64::from(phase));
             cm5.send(&arm_with(token));
             say(&mut cm5, &UPRIGHT, 100);
@@ -125,23 +120,4 @@ fn each_tick_says_whether_torque_was_on_when_it_read_the_servos() {
             }
         }
     }
-}
-
-/// What makes a motor obey late does not hold its torque.
-#[test]
-fn torque_goes_off_at_once_however_late_the_motor_obeys() {
-    let (mut cm5, token) = ready(Mode::Stream, 0.04);
-    cm5.send(&arm_with(token));
-    say(&mut cm5, &UPRIGHT, 200);
-    cm5.send(&Command::Disarm);
-    say(&mut cm5, &UPRIGHT, 200);
-    let all = told_and_read(&cm5);
-    let off = all.iter().rposition(|(told, _)| *told == Some(true));
-    let off = off.expect("it was on") + 1;
-    assert!(all[off - 1].1, "until then it is on");
-    assert!(
-        all[off..].iter().all(|(_, read)| !read),
-        "{:?}",
-        &all[off..]
-    );
 }
