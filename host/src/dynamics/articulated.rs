@@ -21,8 +21,8 @@ struct Scratch {
     /// Direction of a joint that slides.
     along: [f64; 2],
     /// Share of the link before's angular acceleration that the link takes on, the rest left to the
-    /// joint; of a held joint, its torque per unit of that acceleration. Of a joint that slides, its
-    /// own acceleration, or force, likewise: so in the two below.
+    /// joint; of a held joint, its torque per unit of that acceleration. Of a joint that slides,
+    /// its own acceleration, or force, likewise: so in the two below.
     carried: f64,
     /// Angular acceleration per unit of the joint's acceleration (x, y); of a held joint, torque
     /// instead.

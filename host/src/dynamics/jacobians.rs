@@ -4,13 +4,13 @@
 //! base as [`Chain::base_m_s2`] has it,
 //!
 //! ```text
-//! M_ij = sum_k (m_k J_ki . J_kj + I_k w_ki w_kj) + rotor_i [i = j]        G_i = sum_k m_k base . J_ki
-//! C_ij = sum_k m_k J_ki . sum_l H_kjl q_l'                            dG_i/dq_j = sum_k m_k base . H_kij
+//! M_ij = sum_k (m_k J_ki . J_kj + I_k w_ki w_kj) + rotor_i [i = j]       G_i = sum_k m_k base . J_ki
+//! C_ij = sum_k m_k J_ki . sum_l H_kjl q_l'                 dG_i/dq_j = sum_k m_k base . H_kij
 //! ```
 //!
 //! where H_k, the second derivatives of r_k, turn J_k of the later joint left if the earlier one is
-//! a hinge, and vanish if it slides; C are Christoffel's symbols, for in a plane at rest the rest of
-//! them cancels. (Siciliano, Sciavicco, Villani, Oriolo, Robotics (2009), section 7.1.)
+//! a hinge, and vanish if it slides; C are Christoffel's symbols, for in a plane at rest the rest
+//! of them cancels. (Siciliano, Sciavicco, Villani, Oriolo, Robotics (2009), section 7.1.)
 
 use super::chain::{Chain, ChainLink};
 use nalgebra::{DMatrix, DVector};
@@ -108,8 +108,8 @@ impl Jacobians {
         }
     }
 
-    /// n x n: over the links that both joints move, the sum of `entry` of the link, its Jacobian and
-    /// the joints.
+    /// n x n: over the links that both joints move, the sum of `entry` of the link, its Jacobian
+    /// and the joints.
     fn sum(
         &self,
         chain: &Chain,

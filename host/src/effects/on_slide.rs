@@ -23,8 +23,8 @@ static ON_SLIDE: LazyLock<Vec<OnSlide>> = LazyLock::new(|| {
     EFFECTS.iter().filter_map(other).collect()
 });
 
-/// An effect as it is at a joint of this kind; none where it cannot act. One of the whole rig is the
-/// same everywhere.
+/// An effect as it is at a joint of this kind; none where it cannot act. One of the whole rig is
+/// the same everywhere.
 pub fn on_axis(effect: &'static dyn Effect, axis: Axis) -> Option<&'static dyn Effect> {
     let id = effect.info().id;
     match (effect.axis(), axis) {

@@ -15,7 +15,8 @@ pub struct Residuals {
     pub gaps: usize,
 }
 
-/// A prediction that diverges counts as this far off, rad (m) or rad/s, so that a fit can turn back.
+/// A prediction that diverges counts as this far off, rad (m) or rad/s, so that a fit can turn
+/// back.
 const DIVERGED_RAD: f64 = 10.0;
 const DIVERGED_RAD_S: f64 = 100.0;
 

@@ -13,7 +13,8 @@ pub fn text(verified: &Verification, slides: bool) -> String {
     let degrees = |rad: f64| format!("{:.1} deg{}", rad.to_degrees(), also_mm(rad));
     let near = &verified.near;
     let mut lines = vec![format!(
-        "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg{}: {}.",
+        "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg{}: \
+         {}.",
         near.runs,
         also_mm(0.5f64.to_radians()),
         match verified.stabilised {

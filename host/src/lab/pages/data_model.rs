@@ -71,7 +71,10 @@ fn columns(names: &[String], model: &Model) -> Markup {
                             joint.position.as_ref().map(Picked::of),
                             Dimension::Angle.on(model.joints[index].axis()), false))
                         @if let Some(dimension) =
-                            Dimension::of_input(model.joints[index].drive.name(), model.joints[index].axis()) {
+                            Dimension::of_input(
+                                model.joints[index].drive.name(),
+                                model.joints[index].axis(),
+                            ) {
                             (column(names, &format!("joint{number}.input"),
                                 &format!("Input of joint {number}"),
                                 joint.input.as_ref().map(Picked::of), dimension, true))

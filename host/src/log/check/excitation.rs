@@ -160,8 +160,8 @@ impl JointExcitation {
         let slow = if self.slides { 0.05 } else { 0.5 };
         if top < slow {
             let what = format!(
-                "{name} never exceeds {top:.2} {unit}/s: what grows with speed can't be told from what \
-                 does not"
+                "{name} never exceeds {top:.2} {unit}/s: what grows with speed can't be told from \
+                 what does not"
             );
             warn(what, "record faster motions too");
         }
