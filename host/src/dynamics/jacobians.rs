@@ -4,8 +4,8 @@
 //! base as [`Chain::base_m_s2`] has it,
 //!
 //! ```text
-//! M_ij = sum_k (m_k J_ki . J_kj + I_k w_ki w_kj) + rotor_i [i = j]       G_i = sum_k m_k base . J_ki
-//! C_ij = sum_k m_k J_ki . sum_l H_kjl q_l'                 dG_i/dq_j = sum_k m_k base . H_kij
+//! M_ij = sum_k (m_k J_ki . J_kj + I_k w_ki w_kj) + rotor_i [i = j]     G_i = sum_k m_k base . J_ki
+//! C_ij = sum_k m_k J_ki . sum_l H_kjl q_l'               dG_i/dq_j = sum_k m_k base . H_kij
 //! ```
 //!
 //! where H_k, the second derivatives of r_k, turn J_k of the later joint left if the earlier one is
