@@ -1,0 +1,218 @@
+//! What each step does.
+
+use super::IDS;
+use super::judged::{Judged, list};
+use super::steps::{Step, Token};
+use crate::rig::{bytes, plan};
+use handstand_cm5_sim::{Bus, HostBoard, SimulatedCm5, VirtualCm5};
+use handstand_firmware::app::State;
+use handstand_shared::control_table::TORQUE_ENABLE;
+use handstand_shared::crc::crc32;
+use handstand_shared::message::*;
+use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::plan::Plan;
+
+impl Judged {
+    pub(super) fn step(&mut self, step: &Step) {
+        match step {
+            Step::Wait(ms) => self.run(*ms),
+            Step::Hello(version) => self.hello(*version),
+            Step::Mode(mode) => {
+                self.send(&Command::Mode(*mode));
+            }
+            Step::Arm(token, limits) => self.arm(*token, *limits),
+            Step::Disarm => {
+                self.send(&Command::Disarm);
+            }
+            Step::LetDown => {
+                self.send(&Command::LetDown);
+            }
+            Step::KeepAlive => {
+                self.send(&Command::KeepAlive);
+            }
+            Step::Attitude(angle) => {
+                let (angle, rate) = (*angle, 0);
+                self.send(&Command::Attitude(Attitude { angle, rate }));
+            }
+            Step::Goals(code) => {
+                self.send(&Command::Goals(Positions::pack([*code; SERVOS])));
+            }
+            Step::Ready(mode) => self.ready(*mode),
+            Step::Ask => {
+                self.send(&Command::Ask(Subject::Telemetry));
+            }
+            Step::PlanRead(offset) => {
+                self.send(&Command::PlanRead { offset: *offset });
+            }
+            Step::Chunk(at, own) => {
+                let table = table(*own);
+                let mut bytes = [0; PLAN_CHUNK];
+                let piece = table.chunks(PLAN_CHUNK).nth(*at).unwrap_or(&[]);
+                bytes[..piece.len()].copy_from_slice(piece);
+                let offset = (at * PLAN_CHUNK) as u16;
+                self.send(&Command::PlanChunk { offset, bytes });
+            }
+            Step::Store(own) => {
+                let table = table(*own);
+                let (length, check) = (table.len() as u16, crc32(&table));
+                self.send(&Command::PlanStore { length, check });
+            }
+            Step::List(whole) => {
+                let list = if *whole {
+                    Command::ServoList(ServoList::default())
+                } else {
+                    list()
+                };
+                self.send(&list);
+            }
+            Step::Button(down) => {
+                self.release_buttons();
+                self.cm5.board.buttons = *down;
+                self.button_ms = (*down != 0).then(|| self.cm5.now_ms());
+            }
+            Step::Supply(volts) => {
+                self.supply_ms = self.cm5.now_ms();
+                (0..IDS.len()).for_each(|at| self.servo(at).supply_v = *volts);
+            }
+            Step::Dead(at, dead) => {
+                let id = IDS[*at];
+                // What it missed it may hear again in 200 ms, or for ever in a fault.
+                if *dead || self.servo(*at).faults.dead {
+                    self.odd.push(id);
+                }
+                self.servo(*at).faults.dead = *dead;
+            }
+            Step::Overload(at) => {
+                // Without torque there was nothing to give up: arming, which for balancing switches
+                // torque on a tick later, brings it back.
+                let had_torque = self.servo(*at).torque_is_on();
+                self.servo(*at).overload();
+                if had_torque {
+                    self.gave_up.push(IDS[*at]);
+                }
+            }
+            Step::Hot(at, hot) => {
+                self.servo(*at).temperature = if *hot { 90.0 } else { 30.0 };
+            }
+            Step::TorqueLost(at) => self.servo(*at).set(TORQUE_ENABLE, 0),
+            Step::Shaft(at, code) => self.set_shaft(*at, *code),
+            Step::Noise(every_us) => {
+                let now_ns = self.cm5.board.now_ns();
+                let every_ns = every_us.map(|us| us * 1000);
+                self.cm5.board.bus.set_noise(now_ns, every_ns);
+            }
+            Step::Garbage(bytes) => {
+                self.garbage(bytes);
+            }
+            Step::Restart(cause) => self.restart(*cause),
+        }
+        self.judge();
+    }
+
+    pub(super) fn hello(&mut self, version: u8) {
+        // Its answer must be told from those before it: the line empties, noise ends, and an
+        // adapter gives up what was begun.
+        let now_ns = self.cm5.board.now_ns();
+        self.cm5.board.bus.set_noise(now_ns, None);
+        self.run(75.0);
+        // What an adapter passed on may have spoilt the first.
+        for _ in 0..3 {
+            self.send(&Command::Hello { version });
+            self.run(70.0);
+            let mut reports = self.cm5.reports().into_iter();
+            let hello = reports.find_map(|(_, report)| match report {
+                Report::Hello(hello) => Some(hello),
+                _ => None,
+            });
+            if let Some(hello) = hello {
+                self.tokens.push(hello.token);
+                self.fresh = (version == VERSION).then_some(hello.token);
+                return;
+            }
+        }
+        panic!("no answer to a greeting in {:?}", self.cm5.app.state());
+    }
+
+    pub(super) fn arm(&mut self, token: Token, limits: ArmLimits) {
+        let token = match token {
+            Token::Last => self.tokens.last().copied(),
+            Token::Earlier(back) => self.tokens.iter().rev().nth(back).copied(),
+            Token::Any(token) => Some(token),
+        };
+        let token = token.unwrap_or(0);
+        self.judge();
+        self.cm5.clear();
+        self.cm5.send(&Command::Arm { token, limits });
+        let arrived_ms = self.cm5.board.last_byte_ns() as f64 * 1e-6;
+        // A frame that arrives during a tick is taken at its end.
+        self.arms.push((arrived_ms + 25.0, token, limits));
+        while self.cm5.now_ms() < arrived_ms + 0.01 {
+            let left_ms = arrived_ms + 0.01 - self.cm5.now_ms();
+            self.cm5.run_ms(left_ms.clamp(0.01, 10.0));
+            self.judge();
+        }
+    }
+
+    pub(super) fn ready(&mut self, mode: Mode) {
+        for at in 0..IDS.len() {
+            let servo = self.servo(at);
+            servo.faults.dead = false;
+            servo.temperature = 30.0;
+            servo.supply_v = 9.6;
+            self.set_shaft(at, 512);
+        }
+        let now_ns = self.cm5.board.now_ns();
+        self.cm5.board.bus.set_noise(now_ns, None);
+        self.release_buttons();
+        self.supply_ms = self.cm5.now_ms();
+        self.hello(VERSION);
+        self.send(&Command::Mode(mode));
+        for _ in 0..16 {
+            self.send(&Command::Attitude(Attitude::default()));
+            self.run(8.0);
+        }
+        self.arm(Token::Last, ArmLimits::FULL);
+    }
+
+    pub(super) fn restart(&mut self, cause: u8) {
+        let bus = std::mem::replace(&mut self.cm5.board.bus, Bus::new([]));
+        let eeprom = std::mem::take(&mut self.cm5.board.eeprom);
+        let compiled = std::mem::take(&mut self.cm5.board.compiled);
+        let tokens = std::mem::take(&mut self.tokens);
+        let now_ns = self.cm5.board.now_ns();
+        let mut board = HostBoard::at(now_ns, bus);
+        (board.eeprom, board.compiled) = (eeprom, compiled);
+        board.reset_cause = ResetCause(cause);
+        let deaf = board.bus.servos.iter().filter(|servo| servo.faults.dead);
+        let odd = deaf.map(|servo| servo.id()).collect();
+        self.cm5 = VirtualCm5::start(board);
+        assert!(!self.cm5.app.is_armed());
+        (self.armed, self.fresh, self.tokens) = (false, None, tokens);
+        (self.off_ms, self.odd) = (Some(self.cm5.now_ms()), odd);
+        self.button_ms = None;
+    }
+
+    /// As an adapter it passes them on: any could be a packet that switches torque on.
+    pub(super) fn garbage(&mut self, bytes: &[u8]) {
+        if self.cm5.app.state() == State::Bridge {
+            return;
+        }
+        self.cm5.send_bytes(bytes);
+        self.cm5.send_bytes(&[0]);
+        self.run(4.0);
+    }
+}
+
+/// A plan's bytes: one that can be balanced with, or another one, shorter.
+fn table(own: bool) -> Vec<u8> {
+    match own {
+        true => bytes(&plan()),
+        false => {
+            let other = Plan {
+                range: 7000,
+                ..plan()
+            };
+            bytes(&other)[..60].to_vec()
+        }
+    }
+}

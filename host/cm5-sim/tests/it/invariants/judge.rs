@@ -1,0 +1,161 @@
+//! The invariants, each checked after every step.
+
+use super::judged::Judged;
+use handstand_cm5_sim::SimulatedCm5;
+use handstand_firmware::app::{State, Torque};
+use handstand_shared::control_table::{GOAL_POSITION, TORQUE_LIMIT};
+use handstand_shared::message::*;
+
+impl Judged {
+    pub(super) fn judge(&mut self) {
+        let now_ms = self.cm5.now_ms();
+        self.arms.retain(|(until_ms, ..)| now_ms <= *until_ms);
+        let is_armed = self.cm5.app.is_armed();
+        if is_armed && !self.armed {
+            let fresh = self.fresh;
+            let arms = self.arms.iter();
+            // Of two that came during one tick the first arms, or the second if the first was
+            // refused: which one is not known here.
+            let own = arms.filter(|(_, token, limits)| Some(*token) == fresh && limits.is_sound());
+            let arm = own.max_by_key(|(_, _, limits)| limits.torque.0);
+            let Some((_, _, limits)) = arm.copied() else {
+                panic!(
+                    "armed by none of {:?}, the token being {fresh:?}",
+                    self.arms
+                );
+            };
+            self.judge_arming(limits);
+        }
+        if self.armed && !is_armed {
+            self.off_ms = Some(now_ms);
+        }
+        self.armed = is_armed;
+        self.judge_torque(now_ms);
+        if is_armed {
+            self.judge_armed(now_ms);
+        }
+        self.goals = self.goals_now();
+        self.was_streaming = self.cm5.app.state() == State::Stream(Torque::On);
+        self.looked_ms = now_ms;
+        let unfed_ms = self.cm5.board.longest_unfed_ns as f64 * 1e-6;
+        assert!(
+            unfed_ms <= 22.0,
+            "{unfed_ms} ms without feeding the watchdog"
+        );
+    }
+
+    /// What the firmware must have refused, had it been so when it was armed.
+    pub(super) fn judge_arming(&mut self, limits: ArmLimits) {
+        // A token arms once, and only the last one.
+        self.fresh = None;
+        let now_ms = self.cm5.now_ms();
+        let supply_v = self.cm5.board.bus.servos.iter().map(|servo| servo.supply_v);
+        let lowest_v = supply_v.fold(f64::INFINITY, f64::min);
+        // As a round of the housekeeping told: it takes up to three ticks here, noise lets it last.
+        assert!(
+            lowest_v >= 8.75 || now_ms - self.supply_ms < 500.0,
+            "armed at {lowest_v} V"
+        );
+        self.plan = self.cm5.app.plan_fingerprint();
+        self.limit = limits.torque.0;
+        self.gave_up.clear();
+        self.off_ms = None;
+        self.odd.clear();
+        self.life_ms = self.cm5.now_ms();
+        let is_balance = matches!(self.cm5.app.state(), State::Balance(_));
+        if is_balance {
+            assert!(self.plan.is_some(), "balancing without a plan");
+            let age_ms = self.cm5.now_ms() - self.attitude_ms;
+            assert!(age_ms <= 30.5, "armed with an attitude {age_ms} ms old");
+        }
+        // Who did not answer was not switched on.
+        let bus = &self.cm5.board.bus;
+        let deaf = bus.servos.iter().filter(|servo| servo.faults.dead);
+        self.odd.extend(deaf.map(|servo| servo.id()));
+    }
+
+    /// Torque is off where nothing is armed, in every servo that hears.
+    pub(super) fn judge_torque(&self, now_ms: f64) {
+        let Some(off_ms) = self.off_ms else { return };
+        for servo in &self.cm5.board.bus.servos {
+            let id = servo.id();
+            let is_odd = servo.faults.dead || self.odd.contains(&id);
+            assert!(
+                is_odd || !servo.torque_is_on(),
+                "servo {id} is torqued, {:.1} ms after torque off, in {:?}",
+                now_ms - off_ms,
+                self.cm5.app.state()
+            );
+        }
+    }
+
+    pub(super) fn judge_armed(&mut self, now_ms: f64) {
+        let state = self.cm5.app.state();
+        assert_eq!(
+            self.cm5.app.plan_fingerprint(),
+            self.plan,
+            "the plan changed under an armed robot"
+        );
+        assert!(
+            !self.cm5.app.is_writing(),
+            "a plan is written under an armed robot"
+        );
+        let is_on = matches!(
+            state,
+            State::Stream(Torque::On) | State::Balance(Torque::On)
+        );
+        // Until it is noticed: a period, at most two ticks long; and one step of this test.
+        let silent_ms = now_ms - self.life_ms;
+        assert!(
+            !is_on || silent_ms <= 80.0 + 30.0,
+            "{silent_ms} ms without life"
+        );
+        assert!(
+            silent_ms <= 300.0 + 20.0,
+            "torque is on {silent_ms} ms after the last life"
+        );
+        if state == State::Balance(Torque::On) {
+            let age_ms = now_ms - self.attitude_ms;
+            assert!(
+                age_ms <= 30.0 + 30.0,
+                "balances with an attitude {age_ms} ms old"
+            );
+            let out_ms = self.out_ms.map_or(0.0, |since_ms| now_ms - since_ms);
+            assert!(
+                out_ms <= 60.0,
+                "a joint is out of its range for {out_ms} ms"
+            );
+        }
+        if let Some(since_ms) = self.button_ms {
+            assert!(now_ms - since_ms <= 70.0, "a button does not stop it");
+        }
+        let periods = ((now_ms - self.looked_ms) / 10.0).ceil() as u16 + 1;
+        for (servo, before) in self.cm5.board.bus.servos.iter().zip(&self.goals) {
+            let id = servo.id();
+            let limit = servo.get(TORQUE_LIMIT);
+            if !servo.faults.dead && !self.odd.contains(&id) && servo.torque_is_on() {
+                assert!(limit <= self.limit, "servo {id}: torque limit {limit}");
+            }
+            // Arming itself sets them to where the servos stand.
+            if self.was_streaming && state == State::Stream(Torque::On) {
+                let step = servo.get(GOAL_POSITION).abs_diff(*before);
+                let is_deaf = servo.faults.dead || self.odd.contains(&id);
+                assert!(is_deaf || step <= 20 * periods, "a goal jumped by {step}");
+            }
+        }
+        for id in &self.gave_up {
+            let servo = self
+                .cm5
+                .board
+                .bus
+                .servos
+                .iter()
+                .find(|servo| servo.id() == *id);
+            let since = servo.is_some_and(|servo| servo.torque_is_on() && !servo.faults.dead);
+            assert!(
+                !since || self.odd.contains(id) || is_on,
+                "servo {id} was woken"
+            );
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The firmware on its simulated board, and what must be remembered to judge it.
+
+use super::IDS;
+use crate::rig::{DRIVEN, bytes, plan};
+use handstand_cm5_sim::{Bus, SimulatedCm5, VirtualCm5};
+use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, GOAL_POSITION};
+use handstand_shared::message::*;
+use handstand_shared::packed::SERVOS;
+use handstand_shared::raw::Position;
+
+/// The firmware, and what must be remembered to judge it.
+#[derive(Debug)]
+pub(super) struct Judged {
+    pub(super) cm5: VirtualCm5,
+    pub(super) tokens: Vec<u16>,
+    /// The token that may arm: of the last greeting, unless it has armed.
+    pub(super) fresh: Option<u16>,
+    pub(super) armed: bool,
+    /// Fingerprint of the plan when it was armed.
+    pub(super) plan: Option<u32>,
+    /// When the last sign of life, and the last attitude, were said.
+    pub(super) life_ms: f64,
+    pub(super) attitude_ms: f64,
+    /// Since when torque may be on in a servo that hears: torque off was ordered.
+    pub(super) off_ms: Option<f64>,
+    /// Servos whose torque is not the firmware's doing: deaf, or switched by a fault.
+    pub(super) odd: Vec<u8>,
+    pub(super) button_ms: Option<f64>,
+    /// Since when a driven joint is out of its range.
+    pub(super) out_ms: Option<f64>,
+    pub(super) goals: Vec<u16>,
+    pub(super) was_streaming: bool,
+    pub(super) looked_ms: f64,
+    pub(super) limit: u16,
+    /// When the supply was changed last.
+    pub(super) supply_ms: f64,
+    /// Commands to arm that may still be taken: until when, token, limits.
+    pub(super) arms: Vec<(f64, u16, ArmLimits)>,
+    /// Servos that gave up since arming.
+    pub(super) gave_up: Vec<u8>,
+}
+
+impl Judged {
+    pub(super) fn new() -> Self {
+        let mut compiled = bytes(&plan());
+        // One that differs from the one that is uploaded.
+        let last = compiled.len() - 1;
+        compiled[last] ^= 1;
+        let mut cm5 = VirtualCm5::with_plan(compiled, vec![0xff; 4096], ResetCause(1));
+        cm5.board.bus = Bus::new(IDS);
+        for id in DRIVEN {
+            let servo = cm5.bus().servo(id).expect("it is there");
+            servo.set(CW_LIMIT, 0);
+            servo.set(CCW_LIMIT, 0);
+            servo.free = false;
+        }
+        let mut judged = Judged {
+            cm5,
+            tokens: Vec::new(),
+            fresh: None,
+            armed: false,
+            plan: None,
+            life_ms: f64::NEG_INFINITY,
+            attitude_ms: f64::NEG_INFINITY,
+            off_ms: Some(0.0),
+            odd: Vec::new(),
+            button_ms: None,
+            out_ms: None,
+            goals: vec![512; IDS.len()],
+            was_streaming: false,
+            looked_ms: 0.0,
+            limit: 0,
+            supply_ms: 0.0,
+            arms: Vec::new(),
+            gave_up: Vec::new(),
+        };
+        judged.hello(VERSION);
+        judged.send(&Command::Mode(Mode::Stream));
+        judged.send(&list());
+        judged
+    }
+
+    /// Says it, until it has arrived and was taken; but for arming, torque comes on by nothing.
+    pub(super) fn send(&mut self, command: &Command) -> Option<Result<(), Refusal>> {
+        self.cm5.clear();
+        let sequence = self.cm5.send(command);
+        let arrived_ms = self.cm5.board.last_byte_ns() as f64 * 1e-6;
+        let before_ms = self.cm5.now_ms();
+        self.run((arrived_ms - before_ms).max(0.0) + 0.01);
+        if command.is_life() {
+            self.life_ms = self.cm5.now_ms();
+        }
+        if let Command::Attitude(_) = command {
+            self.attitude_ms = self.cm5.now_ms();
+        }
+        self.cm5
+            .reports()
+            .into_iter()
+            .find_map(|(_, report)| match report {
+                Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome),
+                _ => None,
+            })
+    }
+
+    pub(super) fn run(&mut self, ms: f64) {
+        // Looked at often enough to see what lasts for a tick.
+        let until_ms = self.cm5.now_ms() + ms;
+        loop {
+            let left_ms = until_ms - self.cm5.now_ms();
+            if left_ms <= 0.0 {
+                break;
+            }
+            self.cm5.run_ms(left_ms.clamp(0.01, 10.0));
+            self.judge();
+        }
+    }
+
+    pub(super) fn goals_now(&self) -> Vec<u16> {
+        let servos = self.cm5.board.bus.servos.iter();
+        servos.map(|servo| servo.get(GOAL_POSITION)).collect()
+    }
+
+    pub(super) fn servo(&mut self, at: usize) -> &mut handstand_cm5_sim::Servo {
+        &mut self.cm5.board.bus.servos[at]
+    }
+
+    pub(super) fn set_shaft(&mut self, at: usize, code: u16) {
+        self.servo(at).shaft.angle_rad = Position(code).to_rad();
+        let [low, high] = [312, 692];
+        let out = [0, 2].into_iter().any(|at| {
+            let code = Position::from_rad(self.servo(at).shaft.angle_rad).0;
+            code < low || code > high
+        });
+        let now_ms = self.cm5.now_ms();
+        self.out_ms = match out {
+            true => Some(self.out_ms.unwrap_or(now_ms)),
+            false => None,
+        };
+    }
+
+    pub(super) fn release_buttons(&mut self) {
+        self.cm5.board.buttons = 0;
+        self.button_ms = None;
+    }
+}
+
+/// The list of the servos that are there.
+pub(super) fn list() -> Command {
+    let mut list = ServoList {
+        count: IDS.len() as u8,
+        ids: [0; SERVOS],
+    };
+    list.ids[..IDS.len()].copy_from_slice(&IDS);
+    Command::ServoList(list)
+}

@@ -1,0 +1,120 @@
+//! What may happen, drawn at random.
+
+use super::IDS;
+use handstand_shared::message::*;
+use handstand_shared::raw::{MovingSpeed, TorqueLimit};
+use proptest::prelude::*;
+use proptest_state_machine::ReferenceStateMachine;
+
+/// Which token is said.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Token {
+    /// The one of the last greeting.
+    Last,
+    /// One of an earlier greeting, so many before.
+    Earlier(usize),
+    Any(u16),
+}
+
+/// What happens next.
+#[derive(Debug, Clone)]
+pub(super) enum Step {
+    Wait(f64),
+    Hello(u8),
+    Mode(Mode),
+    Arm(Token, ArmLimits),
+    Disarm,
+    LetDown,
+    KeepAlive,
+    Attitude(i16),
+    Goals(u16),
+    /// Greets, chooses the mode, waits until all is known, and arms: else random commands seldom
+    /// arm.
+    Ready(Mode),
+    Ask,
+    PlanRead(u16),
+    /// A piece of the plan, or of another one.
+    Chunk(usize, bool),
+    Store(bool),
+    List(bool),
+    Button(u8),
+    Supply(f64),
+    Dead(usize, bool),
+    Overload(usize),
+    Hot(usize, bool),
+    TorqueLost(usize),
+    Shaft(usize, u16),
+    Noise(Option<u64>),
+    Garbage(Vec<u8>),
+    /// The controller restarts.
+    Restart(u8),
+}
+
+/// Steps do not depend on what went before: the model is the system's own account.
+#[derive(Debug)]
+pub(super) struct Steps;
+
+fn limits() -> impl Strategy<Value = ArmLimits> {
+    let full = Just(ArmLimits::FULL);
+    let any = (0u16..1100, 0u16..1100).prop_map(|(torque, speed)| ArmLimits {
+        torque: TorqueLimit(torque),
+        speed: MovingSpeed(speed),
+    });
+    prop_oneof![3 => full, 1 => any]
+}
+
+impl ReferenceStateMachine for Steps {
+    type State = ();
+    type Transition = Step;
+
+    fn init_state() -> BoxedStrategy<()> {
+        Just(()).boxed()
+    }
+
+    fn transitions((): &()) -> BoxedStrategy<Step> {
+        let mode = prop_oneof![
+            1 => Just(Mode::Bridge),
+            3 => Just(Mode::Stream),
+            3 => Just(Mode::Balance)
+        ];
+        let token = prop_oneof![
+            6 => Just(Token::Last),
+            2 => (1usize..4).prop_map(Token::Earlier),
+            1 => any::<u16>().prop_map(Token::Any)
+        ];
+        let servo = 0..IDS.len();
+        prop_oneof![
+            12 => (0.0..12.0).prop_map(Step::Wait),
+            1 => (12.0..120.0).prop_map(Step::Wait),
+            4 => prop_oneof![8 => Just(VERSION), 1 => any::<u8>()].prop_map(Step::Hello),
+            3 => mode.clone().prop_map(Step::Mode),
+            6 => (token, limits()).prop_map(|(token, limits)| Step::Arm(token, limits)),
+            1 => Just(Step::Disarm),
+            1 => Just(Step::LetDown),
+            14 => Just(Step::KeepAlive),
+            24 => prop_oneof![6 => -400i16..400, 1 => any::<i16>()].prop_map(Step::Attitude),
+            8 => (0u16..1024).prop_map(Step::Goals),
+            2 => mode.prop_map(Step::Ready),
+            2 => Just(Step::Ask),
+            1 => any::<u16>().prop_map(Step::PlanRead),
+            2 => (0usize..8, any::<bool>()).prop_map(|(at, own)| Step::Chunk(at, own)),
+            1 => any::<bool>().prop_map(Step::Store),
+            1 => any::<bool>().prop_map(Step::List),
+            1 => (0u8..32).prop_map(Step::Button),
+            1 => prop_oneof![3 => Just(9.6), 1 => 7.0..12.0].prop_map(Step::Supply),
+            2 => (servo.clone(), prop::bool::weighted(0.3)).prop_map(|(at, on)| Step::Dead(at, on)),
+            1 => servo.clone().prop_map(Step::Overload),
+            1 => (servo.clone(), prop::bool::weighted(0.2)).prop_map(|(at, on)| Step::Hot(at, on)),
+            1 => servo.clone().prop_map(Step::TorqueLost),
+            4 => (servo, prop_oneof![8 => 505u16..520, 1 => 0u16..1024])
+                .prop_map(|(at, code)| Step::Shaft(at, code)),
+            1 => prop_oneof![3 => Just(None), 1 => (10u64..400).prop_map(Some)]
+                .prop_map(Step::Noise),
+            1 => prop::collection::vec(any::<u8>(), 0..20).prop_map(Step::Garbage),
+            1 => prop_oneof![Just(1u8), Just(4), Just(8)].prop_map(Step::Restart),
+        ]
+        .boxed()
+    }
+
+    fn apply((): (), _: &Step) {}
+}
