@@ -133,7 +133,7 @@ impl Judged {
         panic!("no answer to a greeting in {:?}", self.cm5.app.state());
     }
 
-    pub(super) fn arm(&mut self, token: Token, limits: ArmLimits) {
+    fn arm(&mut self, token: Token, limits: ArmLimits) {
         let token = match token {
             Token::Last => self.tokens.last().copied(),
             Token::Earlier(back) => self.tokens.iter().rev().nth(back).copied(),
@@ -153,7 +153,7 @@ impl Judged {
         }
     }
 
-    pub(super) fn ready(&mut self, mode: Mode) {
+    fn ready(&mut self, mode: Mode) {
         for at in 0..IDS.len() {
             let servo = self.servo(at);
             servo.faults.dead = false;
@@ -174,7 +174,7 @@ impl Judged {
         self.arm(Token::Last, ArmLimits::FULL);
     }
 
-    pub(super) fn restart(&mut self, cause: u8) {
+    fn restart(&mut self, cause: u8) {
         let bus = std::mem::replace(&mut self.cm5.board.bus, Bus::new([]));
         let eeprom = std::mem::take(&mut self.cm5.board.eeprom);
         let compiled = std::mem::take(&mut self.cm5.board.compiled);
@@ -193,7 +193,7 @@ impl Judged {
     }
 
     /// As an adapter it passes them on: any could be a packet that switches torque on.
-    pub(super) fn garbage(&mut self, bytes: &[u8]) {
+    fn garbage(&mut self, bytes: &[u8]) {
         if self.cm5.app.state() == State::Bridge {
             return;
         }

@@ -45,7 +45,7 @@ impl Judged {
     }
 
     /// What the firmware must have refused, had it been so when it was armed.
-    pub(super) fn judge_arming(&mut self, limits: ArmLimits) {
+    fn judge_arming(&mut self, limits: ArmLimits) {
         // A token arms once, and only the last one.
         self.fresh = None;
         let now_ms = self.cm5.now_ms();
@@ -75,7 +75,7 @@ impl Judged {
     }
 
     /// Torque is off where nothing is armed, in every servo that hears.
-    pub(super) fn judge_torque(&self, now_ms: f64) {
+    fn judge_torque(&self, now_ms: f64) {
         let Some(off_ms) = self.off_ms else { return };
         for servo in &self.cm5.board.bus.servos {
             let id = servo.id();
@@ -89,7 +89,7 @@ impl Judged {
         }
     }
 
-    pub(super) fn judge_armed(&mut self, now_ms: f64) {
+    fn judge_armed(&mut self, now_ms: f64) {
         let state = self.cm5.app.state();
         assert_eq!(
             self.cm5.app.plan_fingerprint(),
