@@ -7,8 +7,8 @@ use crate::model::{EffectInstance, effect_on};
 use crate::output::number::given;
 use crate::sim::closed_loop::Gyro;
 
-/// Every quantity. A new one is an entry here.
-pub const QUANTITIES: &[Quantity] = &[
+/// Every quantity, each at one place in memory. A new one is an entry here.
+pub static QUANTITIES: &[Quantity] = &[
     Quantity {
         id: "float-fixed",
         title: "arithmetic",
