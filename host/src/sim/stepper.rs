@@ -2,8 +2,8 @@
 //!
 //! Between events every joint is free, sliding in a known direction, or held; the equations are
 //! then smooth and classical Runge-Kutta of fourth order integrates them. A sliding joint whose
-//! speed crosses zero ends the step there; a held joint is released when the torque that holds it
-//! exceeds the breakaway torque.
+//! speed crosses zero ends the step there, and so does a held joint where the torque that holds it
+//! exceeds the breakaway torque; it then slides.
 
 use super::drive::DriveInput;
 use super::forces::{At, Forces};
@@ -29,6 +29,16 @@ pub(super) enum Contact {
     Held,
 }
 
+/// A change of contact within a step.
+#[derive(Debug, Clone, Copy)]
+struct Event {
+    joint: usize,
+    /// Share of the step after which it comes.
+    share: f64,
+    /// What the contact is from then on.
+    contact: Contact,
+}
+
 /// State of a simulation; `R` says how its rows of one number per joint are kept.
 #[derive(Debug, Clone)]
 pub(super) struct Stepper<R: Rows> {
@@ -41,6 +51,8 @@ pub(super) struct Stepper<R: Rows> {
     start_speed: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
+    /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
+    excess: R::Of<f64>,
 }
 
 impl<R: Rows> Stepper<R> {
@@ -57,6 +69,7 @@ impl<R: Rows> Stepper<R> {
             start_angle: zeros(),
             start_speed: zeros(),
             slope: zeros(),
+            excess: zeros(),
         };
         for (joint, plan) in plant.joints.iter().enumerate() {
             stepper.angle[joint] = angle[joint];
@@ -87,15 +100,17 @@ impl<R: Rows> Stepper<R> {
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
             self.step(plant, inputs, left);
-            let Some((joint, share)) = self.first_stop() else {
+            let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
-            self.step(plant, inputs, share * left);
-            self.speed[joint] = 0.0;
-            self.contact[joint] = Contact::Held;
-            left *= 1.0 - share;
+            self.step(plant, inputs, event.share * left);
+            if event.contact == Contact::Held {
+                self.speed[event.joint] = 0.0;
+            }
+            self.contact[event.joint] = event.contact;
+            left *= 1.0 - event.share;
             if left <= 1e-12 {
                 return;
             }
@@ -115,44 +130,90 @@ impl<R: Rows> Stepper<R> {
         matches!(self.contact[joint], Contact::Sliding(direction) if direction * speed < 0.0)
     }
 
-    /// The joint whose speed first crosses zero in the step just taken, and at which share of it.
-    fn first_stop(&self) -> Option<(usize, f64)> {
+    /// What first changes a contact in the step just taken.
+    #[inline]
+    fn first_event(&mut self, plant: &Plant, inputs: &[DriveInput]) -> Option<Event> {
+        let stop = self.first_stop();
+        let release = self.first_release(plant, inputs);
+        match (stop, release) {
+            (Some(stop), Some(release)) if release.share < stop.share => Some(release),
+            (stop, release) => stop.or(release),
+        }
+    }
+
+    /// The joint whose speed first crosses zero.
+    fn first_stop(&self) -> Option<Event> {
         (0..self.len())
             .filter(|&joint| self.stopped(joint))
             .map(|joint| {
                 let before = self.start_speed[joint];
-                (joint, before / (before - self.speed[joint]))
+                Event {
+                    joint,
+                    share: before / (before - self.speed[joint]),
+                    contact: Contact::Held,
+                }
             })
-            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .min_by(|a, b| a.share.total_cmp(&b.share))
+    }
+
+    /// The held joint that the motion of others first pushes beyond its breakaway torque.
+    fn first_release(&mut self, plant: &Plant, inputs: &[DriveInput]) -> Option<Event> {
+        let is_held = |contact: &Contact| *contact == Contact::Held;
+        let held = self.contact.as_ref().iter().filter(|c| is_held(c)).count();
+        if held == 0 || held == self.len() {
+            return None;
+        }
+        let before = self.excess.clone();
+        self.find_excess(plant, inputs);
+        (0..self.len())
+            .filter(|&joint| is_held(&self.contact[joint]) && self.excess[joint] > 0.0)
+            .map(|joint| Event {
+                joint,
+                share: (before[joint] / (before[joint] - self.excess[joint])).clamp(0.0, 1.0),
+                contact: Contact::Sliding(self.push_direction(joint)),
+            })
+            .min_by(|a, b| a.share.total_cmp(&b.share))
     }
 
     /// Lets go of held joints that are pushed beyond their breakaway torque, the most pushed first.
     fn release(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         while self.contact.as_ref().contains(&Contact::Held) {
-            let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
-            let contact = self.contact.as_ref();
-            let at = At {
-                angle,
-                speed,
-                contact,
-            };
-            self.forces
-                .accelerate(plant, inputs, at, self.slope.as_mut());
+            self.find_excess(plant, inputs);
             let pushed = (0..self.len())
                 .filter(|&joint| self.contact[joint] == Contact::Held)
-                .map(|joint| {
-                    let push = -self.slope[joint];
-                    let breakaway = self.forces.friction_nm(plant, joint, 0.0, push.signum());
-                    (joint, push.signum(), push.abs() - breakaway)
-                })
-                .max_by(|a, b| a.2.total_cmp(&b.2));
+                .max_by(|a, b| self.excess[*a].total_cmp(&self.excess[*b]));
             match pushed {
-                Some((joint, direction, excess)) if excess > 0.0 => {
-                    self.contact[joint] = Contact::Sliding(direction);
+                Some(joint) if self.excess[joint] > 0.0 => {
+                    self.contact[joint] = Contact::Sliding(self.push_direction(joint));
                 }
                 _ => return,
             }
         }
+    }
+
+    /// By how much held joints are pushed beyond their breakaway torque at the present state.
+    fn find_excess(&mut self, plant: &Plant, inputs: &[DriveInput]) {
+        let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
+        let contact = self.contact.as_ref();
+        let at = At {
+            angle,
+            speed,
+            contact,
+        };
+        self.forces
+            .accelerate(plant, inputs, at, self.slope.as_mut());
+        for joint in 0..angle.len() {
+            if contact[joint] == Contact::Held {
+                let push = -self.slope[joint];
+                let breakaway = self.forces.friction_nm(plant, joint, 0.0, push.signum());
+                self.excess[joint] = push.abs() - breakaway;
+            }
+        }
+    }
+
+    /// Where a held joint is pushed, +1 or -1.
+    fn push_direction(&self, joint: usize) -> f64 {
+        (-self.slope[joint]).signum()
     }
 
     fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
