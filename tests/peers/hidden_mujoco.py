@@ -109,6 +109,38 @@ EFFECTS = {
         },
     ),
     "torque_scale": (DRIVEN, {"factor": (factor(0.08, 0.25), factor(0.08, 0.25))}),
+    "slew_limit": (DRIVEN, {"rate_per_s": (within(0.6, 2.0), within(0.6, 2.0))}),
+    "thermal_drift": (
+        DRIVEN,
+        {
+            "rise": (within(10.0, 30.0), within(10.0, 30.0)),
+            "time_constant_s": (within(4.0, 12.0), within(4.0, 12.0)),
+        },
+    ),
+    "fold_back": (
+        DRIVEN,
+        {
+            "remaining_share": (within(0.3, 0.7), within(0.3, 0.7)),
+            "level": (within(0.06, 0.12), within(0.06, 0.12)),
+            "after_s": (within(0.15, 0.4), within(0.15, 0.4)),
+        },
+    ),
+    "pre_sliding": (
+        ANY,
+        {
+            "torque_nm": (within(0.02, 0.06), within(0.03, 0.08)),
+            "stiffness_nm_rad": (within(0.3, 1.5), within(0.5, 2.0)),
+        },
+    ),
+    "torque_offset": (ANY, {"offset_nm": (signed(0.01, 0.04), signed(0.02, 0.06))}),
+    "position_friction": (
+        ANY,
+        {
+            "below_nm": (within(0.02, 0.06), within(0.03, 0.08)),
+            "above_nm": (within(0.0, 0.02), within(0.0, 0.02)),
+            "span_rad": (within(0.4, 1.0), within(0.4, 1.0)),
+        },
+    ),
 }
 
 OUTSIDE = {
@@ -133,12 +165,13 @@ OUTSIDE = {
     ),
     # Something that dangles from the end of the last link.
     "hidden_pendulum": ("last", {"mass_kg": (within(0.03, 0.06), within(0.08, 0.15))}),
-    # A part that rubs beyond an angle only.
-    "one_sided_friction": (
+    # A part that rubs within a range of angles only.
+    "rub": (
         ANY,
         {
             "torque_nm": (within(0.04, 0.08), within(0.06, 0.15)),
-            "from_rad": (within(-0.1, 0.2), within(-0.1, 0.2)),
+            "at_rad": (within(-0.2, 0.2), within(-0.2, 0.2)),
+            "half_width_rad": (within(0.1, 0.2), within(0.1, 0.2)),
         },
     ),
     # Friction of cold grease, gone after some seconds.

@@ -65,6 +65,10 @@ class Rig:
         }
         self.sent = []
         self.encoders = [Encoder(self, j) for j in range(self.n)]
+        self.drivers = [Driver(self, drive, j) for drive, j in enumerate(self.driven)]
+        self.bristles = [Bristles(self, j) for j in range(self.n) if self.has(j, "pre_sliding")]
+        self.hooks += [d.step for d in self.drivers if d.remembers]
+        self.hooks += [bristles.step for bristles in self.bristles]
         self.dense = bool(self.hooks) or any(e.remembers for e in self.encoders)
 
     def smooth(self):
@@ -148,7 +152,8 @@ class Rig:
         )
 
     def _varies(self, j):
-        return any(self.has(j, kind) for kind in ("stribeck", "one_sided_friction", "warm_up"))
+        kinds = ("stribeck", "position_friction", "rub", "warm_up")
+        return any(self.has(j, kind) for kind in kinds)
 
     def _hooks(self, j):
         """What happens before each step."""
@@ -175,7 +180,10 @@ class Rig:
         for kind, values in self.by_joint[j]:
             if kind == "stribeck":
                 loss += values["excess_nm"] * math.exp(-speed / values["speed_rad_s"])
-            elif kind == "one_sided_friction" and angle > values["from_rad"]:
+            elif kind == "position_friction":
+                side = values["below_nm" if angle < 0.0 else "above_nm"]
+                loss += side * min(abs(angle) / values["span_rad"], 1.0)
+            elif kind == "rub" and abs(angle - values["at_rad"]) < values["half_width_rad"]:
                 loss += values["torque_nm"]
             elif kind == "warm_up":
                 loss += values["torque_nm"] * math.exp(-self.data.time / values["time_constant_s"])
@@ -190,6 +198,8 @@ class Rig:
             elif kind == "direction_asymmetry":
                 # With Coulomb friction of at least the half: the limits of both directions.
                 yield j, lambda q, half=values["half_difference_nm"]: -half
+            elif kind == "torque_offset":
+                yield j, lambda q, offset=values["offset_nm"]: offset
             elif kind == "position_trap":
                 a, at, w = (values[k] for k in ("peak_nm", "at_rad", "width_rad"))
 
@@ -209,8 +219,8 @@ class Rig:
         self.data.qpos[: self.n] = angles
         self.data.qvel[: self.n] = 0.0 if speeds is None else speeds
         self.sent = []
-        for encoder in self.encoders:
-            encoder.start()
+        for part in (*self.encoders, *self.drivers, *self.bristles):
+            part.start()
 
     def advance(self, duty, supply_v, torque_on):
         """One sample: the duties (of driven joints) are sent at its beginning."""
@@ -240,13 +250,11 @@ class Rig:
             sent = self.sent[-1 - ago] if ago < len(self.sent) else None
             duty = sent[0][drive] if sent is not None else 0.0
             on = torque_on
-            self.data.ctrl[drive] = self._applied(j, duty, supply_v) if on else 0.0
+            self.drivers[drive].command(duty, supply_v, on)
             self.model.actuator_biasprm[drive, 2] = self.back_emf[drive] if on else 0.0
 
-    def _applied(self, j, duty, supply_v):
-        width = self.value(j, "dead_zone", "width", 0.0)
-        if abs(duty) <= width:
-            duty = 0.0
+    def applied(self, j, duty, supply_v):
+        """Duty that reaches the motor of a joint, the supply's part in it included."""
         sensitivity = self.value(j, "supply_sensitivity", "sensitivity", 0.0)
         sag = self.value(j, "supply_sag", "drop_share", 0.0)
         share = 1.0 + sensitivity * (supply_v / self.nominal_supply_v - 1.0)
@@ -261,6 +269,69 @@ class Rig:
     def sensed(self):
         """What the encoders would read without steps."""
         return np.array([encoder.sensed() for encoder in self.encoders])
+
+
+class Driver:
+    """Dead zone, ramp, winding and overload protection of one joint's drive."""
+
+    def __init__(self, rig, drive, joint):
+        value = lambda kind, key, otherwise: rig.value(joint, kind, key, otherwise)
+        self.rig, self.drive, self.joint = rig, drive, joint
+        self.dead = value("dead_zone", "width", 0.0)
+        self.reach = value("slew_limit", "rate_per_s", math.inf) * STEP_S
+        self.rise = value("thermal_drift", "rise", 0.0)
+        self.kept = math.exp(-STEP_S / value("thermal_drift", "time_constant_s", math.inf))
+        self.share = value("fold_back", "remaining_share", 1.0)
+        self.level = value("fold_back", "level", math.inf)
+        self.after_s = value("fold_back", "after_s", math.inf)
+        kinds = ("slew_limit", "thermal_drift", "fold_back")
+        self.remembers = any(rig.has(joint, kind) for kind in kinds)
+        self.start()
+
+    def start(self):
+        self.reached, self.warmth, self.overloaded_s = None, 0.0, 0.0
+
+    def command(self, duty, supply_v, on):
+        self.wanted = (duty, supply_v, on)
+        if not self.remembers:
+            self.push(duty, supply_v, on)
+
+    def push(self, duty, supply_v, on, share=1.0):
+        duty = duty if abs(duty) > self.dead and on else 0.0
+        applied = self.rig.applied(self.joint, duty, supply_v)
+        self.rig.data.ctrl[self.drive] = share * applied
+        return duty
+
+    def step(self):
+        """Before each step: what the drive gives during it, and what that leaves behind."""
+        duty, supply_v, on = self.wanted
+        before = duty if self.reached is None or not on else self.reached
+        self.reached = min(max(duty, before - self.reach), before + self.reach)
+        share = 1.0 / (1.0 + self.rise * self.warmth)
+        if self.overloaded_s >= self.after_s:
+            share *= self.share
+        duty = self.push(self.reached, supply_v, on, share)
+        self.warmth = self.kept * self.warmth + (1.0 - self.kept) * duty * duty
+        counts = STEP_S if abs(duty) > self.level else -STEP_S
+        self.overloaded_s = min(max(self.overloaded_s + counts, 0.0), 2.0 * self.after_s)
+
+
+class Bristles:
+    """Dry friction that is a spring until it slides: Dahl's law."""
+
+    def __init__(self, rig, joint):
+        self.rig, self.joint = rig, joint
+        self.torque_nm = rig.value(joint, "pre_sliding", "torque_nm", 0.0)
+        self.stiffness = rig.value(joint, "pre_sliding", "stiffness_nm_rad", 1.0)
+        self.start()
+
+    def start(self):
+        self.bent_nm = 0.0
+
+    def step(self):
+        way = STEP_S * self.rig.data.qvel[self.joint]
+        self.bent_nm += self.stiffness * (way - abs(way) * self.bent_nm / self.torque_nm)
+        self.rig.data.qfrc_applied[self.joint] = -self.bent_nm
 
 
 class Encoder:

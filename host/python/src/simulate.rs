@@ -8,7 +8,7 @@ use crate::motion::Motion;
 use crate::work;
 use handstand::log::MotionSource;
 use handstand::model::{MeasuredSignal, hanging};
-use handstand::sim::{Plant, SensorState, Start, predict};
+use handstand::sim::{Memory, Plant, Start, predict};
 use pyo3::prelude::*;
 
 /// Simulates a model at the times `time_s`. `input` is a row per joint (or one row for one joint),
@@ -82,7 +82,7 @@ fn simulated(model: &Model, motion: Motion, start: &Start) -> Motion {
     let (joints, samples) = (motion.position_rad.len(), motion.len());
     let plant = Plant::new(&model.inner, &motion);
     let mut readings = vec![0.0; joints * samples];
-    let mut sensors = SensorState::default();
+    let mut sensors = Memory::default();
     predict(
         &plant,
         &motion,

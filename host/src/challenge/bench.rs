@@ -102,7 +102,7 @@ const FRICTION: [(&str, f64, f64); 2] = [("viscous", 0.01, 0.03), ("coulomb", 0.
 /// First of the streams from which the robot's hidden effects are drawn.
 const SECRETS: u64 = 200;
 /// Kinds that only driven joints have.
-const OF_DRIVES: [&str; 11] = [
+const OF_DRIVES: [&str; 14] = [
     "load_friction",
     "drive_asymmetry",
     "direction_asymmetry",
@@ -114,6 +114,9 @@ const OF_DRIVES: [&str; 11] = [
     "speed_limit",
     "cogging",
     "torque_scale",
+    "slew_limit",
+    "thermal_drift",
+    "fold_back",
 ];
 /// Kinds that a regulator may know: they have a derivative and act on the motion, not on what is
 /// read of it.

@@ -44,7 +44,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-const EFFECTS: [(&str, Parameters); 24] = [
+const EFFECTS: [(&str, Parameters); 30] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -101,6 +101,38 @@ const EFFECTS: [(&str, Parameters); 24] = [
         &[
             ("motor_factor", Within(0.1, 0.25)),
             ("outside_factor", Within(0.0, 0.05)),
+        ],
+    ),
+    ("slew_limit", &[("rate_per_s", Within(0.6, 2.0))]),
+    (
+        "thermal_drift",
+        &[
+            ("rise", Within(10.0, 30.0)),
+            ("time_constant_s", Within(4.0, 12.0)),
+        ],
+    ),
+    (
+        "fold_back",
+        &[
+            ("remaining_share", Within(0.3, 0.7)),
+            ("level", Within(0.06, 0.12)),
+            ("after_s", Within(0.15, 0.4)),
+        ],
+    ),
+    (
+        "pre_sliding",
+        &[
+            ("torque_nm", Within(0.02, 0.06)),
+            ("stiffness_nm_rad", Within(0.3, 1.5)),
+        ],
+    ),
+    ("torque_offset", &[("offset_nm", Signed(0.01, 0.04))]),
+    (
+        "position_friction",
+        &[
+            ("below_nm", Within(0.02, 0.06)),
+            ("above_nm", Within(0.0, 0.02)),
+            ("span_rad", Within(0.4, 1.0)),
         ],
     ),
 ];
@@ -165,9 +197,16 @@ impl HiddenEffect {
     pub fn weaker(&self) -> HiddenEffect {
         let parameters = self.parameters.iter().map(|&(key, value)| {
             let value = match (self.kind, key) {
-                (_, "limit_nm" | "no_load_speed_rad_s") => 1.25 * value,
+                (_, "limit_nm" | "no_load_speed_rad_s" | "rate_per_s" | "level") => 1.25 * value,
+                (_, "remaining_share") => 1.0 - 0.8 * (1.0 - value),
                 (_, "factor") if self.kind != "load_friction" => 1.0 + 0.8 * (value - 1.0),
-                (_, "rest_angle_rad" | "periods_per_turn" | "phase_rad" | "speed_rad_s") => value,
+                (
+                    _,
+                    "rest_angle_rad" | "periods_per_turn" | "phase_rad" | "speed_rad_s" | "after_s"
+                    | "span_rad",
+                )
+                | ("pre_sliding", "stiffness_nm_rad")
+                | ("thermal_drift", "time_constant_s") => value,
                 _ => 0.8 * value,
             };
             (key, rounded(value, 6))

@@ -8,6 +8,7 @@ mod bench_arm;
 mod encoder;
 mod error;
 mod hidden_effect;
+mod history;
 mod motion;
 mod physics;
 mod played;

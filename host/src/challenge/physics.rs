@@ -54,6 +54,25 @@ pub struct Physics {
     pub gap: f64,
     /// Time constant of the encoder's filter, s.
     pub lag_s: f64,
+    /// Fastest change of the duty, 1/s.
+    pub duty_per_s: f64,
+    /// Relative rise of the winding's resistance, warm from full duty, and how long that takes, s.
+    pub warming: f64,
+    /// See `warming`.
+    pub warming_s: f64,
+    /// Share of the torque that is left once the duty was above `fold_level` for `fold_after_s`.
+    pub fold_share: f64,
+    /// See `fold_share`.
+    pub fold_level: f64,
+    /// See `fold_share`; 0 means never.
+    pub fold_after_s: f64,
+    /// Dry friction of bristles, N m, and their stiffness, N m/rad.
+    pub bristle_nm: f64,
+    /// See `bristle_nm`.
+    pub bristle_nm_rad: f64,
+    constant_nm: f64,
+    side_friction: [f64; 2],
+    side_span: f64,
 }
 
 /// Conditions of one motion.
@@ -97,6 +116,9 @@ impl Physics {
             torque_limit: f64::INFINITY,
             ripple_periods: 1.0,
             encoder_factor: 1.0,
+            duty_per_s: f64::INFINITY,
+            fold_share: 1.0,
+            side_span: 1.0,
             ..Physics::default()
         }
     }
@@ -136,6 +158,18 @@ impl Physics {
             ("encoder_zero", &[offset]) => self.encoder_offset = offset,
             ("backlash", &[gap]) => self.gap = gap,
             ("sensor_lag", &[constant]) => self.lag_s = constant,
+            ("slew_limit", &[rate]) => self.duty_per_s = rate,
+            ("thermal_drift", &[rise, time]) => (self.warming, self.warming_s) = (rise, time),
+            ("fold_back", &[share, level, after]) => {
+                (self.fold_share, self.fold_level, self.fold_after_s) = (share, level, after);
+            }
+            ("pre_sliding", &[friction, stiffness]) => {
+                (self.bristle_nm, self.bristle_nm_rad) = (friction, stiffness);
+            }
+            ("torque_offset", &[torque]) => self.constant_nm = torque,
+            ("position_friction", &[below, above, span]) => {
+                (self.side_friction, self.side_span) = ([below, above], span);
+            }
             _ => return false,
         }
         true
@@ -157,18 +191,21 @@ impl Physics {
         GRAVITY_M_S2 * (link + payload)
     }
 
+    /// Duty that the dead zone lets through.
+    pub fn applied(&self, duty: f64) -> f64 {
+        if duty.abs() <= self.dead_width {
+            return 0.0;
+        }
+        let through = (duty.abs() + self.dead_punch).clamp(0.0, 1.0);
+        through.copysign(duty)
+    }
+
     /// Torque of the motor at the joint, N m.
     pub fn drive(&self, push: DriveCommand, speed: f64) -> f64 {
         if !push.torque_on {
             return 0.0;
         }
-        let duty = if push.duty.abs() <= self.dead_width {
-            0.0
-        } else {
-            (push.duty.abs() + self.dead_punch)
-                .clamp(0.0, 1.0)
-                .copysign(push.duty)
-        };
+        let duty = self.applied(push.duty);
         let mut torque = self.stall_nm * duty;
         torque *= 1.0 + self.sensitivity * (push.supply_v / self.nominal_supply_v - 1.0);
         torque *= 1.0 - self.sag * duty.abs();
@@ -181,18 +218,27 @@ impl Physics {
     pub fn smooth(&self, angle: f64, speed: f64) -> f64 {
         let mut torque = -self.viscous * speed - self.drag * speed * speed.abs();
         torque -= self.stiffness * (angle - self.rest_angle);
+        torque += self.constant_nm;
         if self.ripple != 0.0 {
             torque += self.ripple * (self.ripple_periods * angle + self.ripple_phase).sin();
         }
         torque
     }
 
-    /// Magnitude of dry friction, N m, against `direction`; the motor gives `drive` N m, and
-    /// `holding` N m would hold the joint against the load.
-    pub fn friction(&self, speed: f64, direction: f64, drive: f64, holding: f64) -> f64 {
+    /// Magnitude of dry friction, N m, at an angle and speed, against `direction`; the motor gives
+    /// `drive` N m, and `holding` N m would hold the joint against the load.
+    pub fn friction(
+        &self,
+        [angle, speed]: [f64; 2],
+        direction: f64,
+        drive: f64,
+        holding: f64,
+    ) -> f64 {
         let gear_load = (drive + holding).abs();
         let mut magnitude =
             self.coulomb + self.load_factor * gear_load + self.half_difference * direction;
+        let side = self.side_friction[usize::from(angle > 0.0)];
+        magnitude += side * (angle.abs() / self.side_span).min(1.0);
         let [motor, outside] = self.gear_factors;
         magnitude += (motor * drive + outside * holding).abs();
         if self.excess != 0.0 {

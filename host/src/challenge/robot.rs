@@ -6,6 +6,7 @@
 //! shortest; state, drives and friction are the joints'.
 
 use super::encoder::Encoder;
+use super::history::History;
 use super::physics::{DriveCommand, GRAVITY_M_S2, Physics};
 
 /// Links of the robot.
@@ -131,6 +132,7 @@ pub struct Robot<'a> {
     /// Joint speeds, rad/s.
     pub speed: Joints,
     encoders: [Encoder; LINKS],
+    histories: [History; LINKS],
     /// Torques of dry friction in the last kick, N m: where the next one begins to settle.
     dry: Joints,
 }
@@ -144,6 +146,7 @@ impl<'a> Robot<'a> {
             angle,
             speed,
             encoders: std::array::from_fn(encoder),
+            histories: Default::default(),
             dry: [0.0; LINKS],
         }
     }
@@ -159,13 +162,17 @@ impl<'a> Robot<'a> {
     }
 
     fn step(&mut self, h: f64, push: &[DriveCommand; LINKS]) {
+        let (joints, before) = (&self.laws.joints, self.angle);
+        let push: &[DriveCommand; LINKS] =
+            &std::array::from_fn(|k| self.histories[k].ramp(&joints[k], push[k], h));
         self.drift(0.5 * h);
         let (halfway, dry) = self.kicked(0.5 * h, push, &self.speed);
         self.dry = dry;
         (self.speed, self.dry) = self.kicked(h, push, &halfway);
         self.drift(0.5 * h);
         for (k, encoder) in self.encoders.iter_mut().enumerate() {
-            let physics = &self.laws.joints[k];
+            let physics = &joints[k];
+            self.histories[k].pass(physics, push[k], self.angle[k] - before[k], h);
             encoder.follow(physics, physics.encoded(self.angle[k]), h);
         }
     }
@@ -181,10 +188,15 @@ impl<'a> Robot<'a> {
     fn kicked(&self, h: f64, push: &[DriveCommand; LINKS], at_speed: &Joints) -> (Joints, Joints) {
         let joints = &self.laws.joints;
         let ChainForces { mass, needed } = self.laws.forces(&self.angle, at_speed);
-        let drive = self.laws.drives(push, at_speed);
+        let histories = &self.histories;
+        let mut drive = self.laws.drives(push, at_speed);
+        for (k, drive) in drive.iter_mut().enumerate() {
+            *drive *= histories[k].share(&joints[k]);
+        }
         let inverse = inverse(&mass);
         let pull: Joints = std::array::from_fn(|k| {
-            drive[k] - needed[k] + joints[k].smooth(self.angle[k], at_speed[k])
+            let bristle = histories[k].bristle_nm(&joints[k]);
+            drive[k] - needed[k] + joints[k].smooth(self.angle[k], at_speed[k]) + bristle
         });
         let mut speed: Joints = std::array::from_fn(|k| {
             let gained: f64 = (0..LINKS).map(|l| inverse[k][l] * pull[l]).sum();
@@ -196,7 +208,8 @@ impl<'a> Robot<'a> {
                 true => (drive[k], needed[k]),
                 false => (0.0, 0.0),
             };
-            let most = |direction| h * joints[k].friction(at_speed[k], direction, motor, holding);
+            let state = [self.angle[k], at_speed[k]];
+            let most = |direction| h * joints[k].friction(state, direction, motor, holding);
             (-most(1.0), most(-1.0))
         });
         let mut impulse: Joints =

@@ -6,6 +6,7 @@
 //! than the breakaway torque.
 
 use super::encoder::Encoder;
+use super::history::History;
 use super::physics::{DriveCommand, Mount, Physics};
 
 /// Longest integration step, s.
@@ -22,6 +23,7 @@ pub struct Arm<'a> {
     /// Speed, rad/s.
     pub speed: f64,
     encoder: Encoder,
+    history: History,
 }
 
 impl<'a> Arm<'a> {
@@ -34,6 +36,7 @@ impl<'a> Arm<'a> {
             angle,
             speed: 0.0,
             encoder: Encoder::at_rest(physics.encoded(angle)),
+            history: History::default(),
         }
     }
 
@@ -61,10 +64,13 @@ impl<'a> Arm<'a> {
 
     /// `push` is that of the middle of the step.
     fn step(&mut self, h: f64, push: DriveCommand) {
+        let (push, before) = (self.history.ramp(self.physics, push, h), self.angle);
         self.angle += 0.5 * h * self.speed;
         let halfway = self.kicked(0.5 * h, push, self.speed);
         self.speed = self.kicked(h, push, halfway);
         self.angle += 0.5 * h * self.speed;
+        self.history
+            .pass(self.physics, push, self.angle - before, h);
         let encoded = self.physics.encoded(self.angle);
         self.encoder.follow(self.physics, encoded, h);
     }
@@ -73,11 +79,12 @@ impl<'a> Arm<'a> {
     /// `at_speed`.
     fn kicked(&self, h: f64, push: DriveCommand, at_speed: f64) -> f64 {
         let holding = self.physics.holding(self.mount, self.angle);
-        let drive = self.physics.drive(push, at_speed);
-        let smooth = self.physics.smooth(self.angle, at_speed);
+        let (physics, history) = (self.physics, &self.history);
+        let drive = history.share(physics) * physics.drive(push, at_speed);
+        let smooth = physics.smooth(self.angle, at_speed) + history.bristle_nm(physics);
         let pushed = self.speed + h / self.inertia * (drive + smooth - holding);
         let direction = if pushed < 0.0 { -1.0 } else { 1.0 };
-        let friction = self.physics.friction(at_speed, direction, drive, holding);
+        let friction = physics.friction([self.angle, at_speed], direction, drive, holding);
         direction * (pushed.abs() - h / self.inertia * friction).max(0.0)
     }
 

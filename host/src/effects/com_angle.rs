@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "a static error that follows the cosine of the angle from hanging; the arm hangs \
      off its zero",
     confused_with: &[
+        "torque_offset: near hanging both pull one way; turn the arm by 90 degrees",
         "encoder_zero: both shift the angle at which gravity vanishes; in a chain an encoder \
          offset turns the outer links too",
         "base_tilt: both shift the angle at which gravity vanishes; turn the rig by 180 degrees: \

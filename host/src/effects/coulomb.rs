@@ -25,6 +25,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the residual torque is a square wave in step with the sign of the speed; a free \
      swing loses the same angle every half period (straight envelope) and stops off the bottom",
     confused_with: &[
+        "pre_sliding: over large angles both are one torque; within a degree only one is sprung",
+        "position_friction: both oppose the motion; compare the width of the loop over angle",
         "drive_asymmetry: the same at one load; change the mass or the length of the arm",
         "dead_zone: both swallow small commands; with the torque off only friction remains",
         "stribeck: both jump at reversal; Stribeck's part fades as speed grows",

@@ -37,6 +37,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "lifting a load loses another share of the torque than lowering it; with torque \
                  off the arm swings with less friction, or more, than under its drive",
     confused_with: &[
+        "position_friction: lifting and lowering differ over angle too; change the mass",
         "load_friction: the same where both factors are equal; compare a swing with torque off \
          with slow lifting",
         "coulomb: the same at one load; change the mass or the length of the arm",

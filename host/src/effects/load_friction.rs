@@ -25,6 +25,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the resistance grows where the arm is held level and falls where it hangs; a \
      heavier load sticks harder",
     confused_with: &[
+        "position_friction: gravity loads the gear more the farther the arm is raised; change the \
+         mass",
         "drive_asymmetry: the same where both of its factors are equal; compare a swing with torque \
          off with slow lifting",
         "coulomb: the same at one load; change the mass or the length of the arm",

@@ -20,18 +20,24 @@ mod drive_asymmetry;
 mod encoder_scale;
 mod encoder_zero;
 pub mod expression;
+mod fold_back;
 mod info;
 mod load_friction;
 mod mass;
 mod on_slide;
 mod placebo;
+mod position_friction;
+mod pre_sliding;
 mod probe;
 mod sensor_lag;
+mod slew_limit;
 mod speed_limit;
 mod state;
 mod stribeck;
 mod supply_sag;
 mod supply_sensitivity;
+mod thermal_drift;
+mod torque_offset;
 mod torque_saturation;
 mod torque_scale;
 mod viscous;
@@ -45,29 +51,35 @@ pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site};
 pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
-pub use state::{AtRest, DriveState, JointState, Rig, Slide, Slope};
+pub use state::{AtRest, DriveState, JointState, MemoryCell, Rig, Slide, Slope, StepState};
 
 use std::fmt;
 
 /// Every effect there is, in the order in which those of one site act.
 pub const EFFECTS: &[&dyn Effect] = &[
     &delay::Delay,
+    &slew_limit::SlewLimit,
     &dead_zone::DeadZone,
     &supply_sensitivity::SupplySensitivity,
     &supply_sag::SupplySag,
     &torque_scale::TorqueScale,
     &speed_limit::SpeedLimit,
     &torque_saturation::TorqueSaturation,
+    &thermal_drift::ThermalDrift,
+    &fold_back::FoldBack,
     &coulomb::Coulomb,
     &stribeck::Stribeck,
     &load_friction::LoadFriction,
     &drive_asymmetry::DriveAsymmetry,
     &bearing_friction::BearingFriction,
     &direction_asymmetry::DirectionAsymmetry,
+    &position_friction::PositionFriction,
     &viscous::Viscous,
     &air_drag::AirDrag,
     &cable_spring::CableSpring,
     &cogging::Cogging,
+    &torque_offset::TorqueOffset,
+    &pre_sliding::PreSliding,
     &com_angle::ComAngle,
     &mass::Mass,
     &armature::Armature,
@@ -183,6 +195,26 @@ pub trait Effect: Sync + fmt::Debug {
     /// turns back. Such a law is simulated faster.
     fn friction_is_constant(&self) -> bool {
         false
+    }
+
+    /// Command, drive or joint, with memory: whether what it does depends on what was before. It
+    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// What it remembers where a motion begins in this state and nothing earlier is known.
+    fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
+        [0.0; 2]
+    }
+
+    /// What it remembers after a step of `step_s` that ended in this state.
+    fn remember(&self, _values: &[f64], _memory: &mut MemoryCell, _at: &StepState, _step_s: f64) {}
+
+    /// Command, with memory: the mean input that the drive follows during a step of `step_s` in
+    /// which `input` arrives.
+    fn obey(&self, _values: &[f64], _memory: MemoryCell, input: f64, _step_s: f64) -> f64 {
+        input
     }
 
     /// Sensor, static: what the encoder reads at this joint angle, rad.

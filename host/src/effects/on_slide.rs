@@ -1,7 +1,8 @@
 //! Effects at joints that slide: the laws are those of hinges, in metres and newtons.
 
 use super::{
-    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, JointState, Rig, Scope, Slide, Slope,
+    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, JointState, MemoryCell, Rig, Scope,
+    Slide, Slope, StepState,
 };
 use std::sync::LazyLock;
 
@@ -88,6 +89,22 @@ impl Effect for OnSlide {
 
     fn friction_is_constant(&self) -> bool {
         self.effect.friction_is_constant()
+    }
+
+    fn remembers(&self) -> bool {
+        self.effect.remembers()
+    }
+
+    fn recall(&self, values: &[f64], at: &StepState) -> MemoryCell {
+        self.effect.recall(values, at)
+    }
+
+    fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
+        self.effect.remember(values, memory, at, step_s);
+    }
+
+    fn obey(&self, values: &[f64], memory: MemoryCell, input: f64, step_s: f64) -> f64 {
+        self.effect.obey(values, memory, input, step_s)
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -1,5 +1,9 @@
 //! The curve an effect leaves, computed from its own law: what a student should look for in a plot.
 
+mod remembered;
+#[cfg(test)]
+mod tests;
+
 use super::{DriveState, Effect, JointState, Needs, Parameter, Rig, Site, Slide};
 use crate::dynamics::{Chain, ChainLink};
 use std::ops::Range;
@@ -77,6 +81,17 @@ fn parted(signature: &Signature) -> f64 {
 
 fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
     let off = off_values(effect);
+    if effect.remembers() {
+        let (x_label, y_label) = remembered::labels(effect.info().site);
+        let span_s = remembered::span_s(effect, &values);
+        return Signature {
+            x_label,
+            y_label,
+            without: remembered::curve(effect, &off, span_s),
+            with: remembered::curve(effect, &values, span_s),
+            values,
+        };
+    }
     let (x_label, y_label, range, y) = law(effect, &values, &off);
     let points = |values: &[f64]| match effect.info().site {
         Site::Encoder | Site::Sensor => reading(effect, values),
@@ -111,9 +126,10 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
     let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);
     let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
     let over_duty: Height = |e, v, duty| drive(e, v, duty, 0.0, 1.0);
-    let by_gear: Height = |e, v, load_nm| friction(e, v, 1.0, load_nm, 0.0);
-    let by_bearing: Height = |e, v, load_n| friction(e, v, 1.0, 0.0, load_n);
-    let by_speed: Height = |e, v, speed| friction(e, v, speed, 0.0, 0.0);
+    let by_gear: Height = |e, v, load_nm| friction(e, v, [0.0, 1.0], [load_nm, 0.0]);
+    let by_bearing: Height = |e, v, load_n| friction(e, v, [0.0, 1.0], [0.0, load_n]);
+    let by_speed: Height = |e, v, speed| friction(e, v, [0.0, speed], [0.0, 0.0]);
+    let by_angle: Height = |e, v, angle| friction(e, v, [angle, 1.0], [0.0, 0.0]);
     let at_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
     let at_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
     let command: Height = |e, v, duty| e.command(v, duty);
@@ -141,6 +157,9 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
             0.0..30.0,
             by_bearing,
         ),
+        (Site::Friction, _) if varies(by_angle, 0.1, 0.2) => {
+            ("angle, rad", "friction, N m", -1.6..1.6, by_angle)
+        }
         (Site::Friction, _) => ("speed, rad/s", "resisting torque, N m", -2.0..2.0, by_speed),
         (Site::Joint, _) if varies(at_angle, 0.1, 0.2) => {
             ("angle, rad", joint, -1.6..1.6, at_angle)
@@ -170,14 +189,21 @@ fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64
         duty,
         full_torque_nm: FULL_TORQUE_NM,
         supply_ratio: supply,
+        memory: [0.0; 2],
     };
     effect.drive(values, FULL_TORQUE_NM * duty, &at)
 }
 
 /// The hook's answer with the sign of the speed, so that what resists forwards is drawn upward.
-fn friction(effect: &dyn Effect, values: &[f64], speed: f64, gear_nm: f64, bearing_n: f64) -> f64 {
+fn friction(
+    effect: &dyn Effect,
+    values: &[f64],
+    [angle_rad, speed]: [f64; 2],
+    [gear_nm, bearing_n]: [f64; 2],
+) -> f64 {
     let direction = if speed < 0.0 { -1.0 } else { 1.0 };
     let slide = Slide {
+        angle_rad,
         speed_rad_s: speed.abs(),
         direction,
         gear_load_nm: gear_nm,
@@ -225,15 +251,17 @@ fn inertia_nm(effect: &dyn Effect, values: &[f64], acceleration_rad_s2: f64) -> 
     about_joint * acceleration_rad_s2
 }
 
-/// Two periods of a triangle of 0.2 rad and 2 s, of which the second is drawn.
+/// Angle of a triangle of 0.2 rad at a point of a curve; a period is a curve.
+fn triangle(index: usize) -> f64 {
+    let phase = (index as f64 / (POINTS - 1) as f64).rem_euclid(1.0);
+    0.2 * (1.0 - 4.0 * (phase - 0.5).abs())
+}
+
+/// Two periods of the triangle, 2 s each, of which the second is drawn.
 fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
     let step_s = 2.0 / (POINTS - 1) as f64;
-    let triangle = |time_s: f64| {
-        let phase = (time_s / 2.0).rem_euclid(1.0);
-        0.2 * (1.0 - 4.0 * (phase - 0.5).abs())
-    };
     let mut memory = None;
-    let angles = (0..2 * POINTS - 1).map(|index| triangle(index as f64 * step_s));
+    let angles = (0..2 * POINTS - 1).map(triangle);
     let read = angles.map(|angle_rad| {
         let encoded_rad = effect.encode(values, angle_rad);
         (
@@ -242,56 +270,4 @@ fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
         )
     });
     read.skip(POINTS - 1).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{EFFECTS, named};
-    use super::*;
-
-    #[test]
-    fn every_effect_has_one_that_can_be_seen() {
-        for effect in EFFECTS {
-            let signature = signature(*effect);
-            let id = effect.info().id;
-            assert_eq!(signature.with.len(), signature.without.len(), "{id}");
-            let finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
-            assert!(
-                signature.with.iter().chain(&signature.without).all(finite),
-                "{id}"
-            );
-            assert!(
-                parted(&signature) >= VISIBLE_SHARE,
-                "{id}: {}",
-                parted(&signature)
-            );
-        }
-    }
-
-    #[test]
-    fn values_drawn_are_possible_ones() {
-        for effect in EFFECTS {
-            let values = signature(*effect).values;
-            for (parameter, value) in effect.info().parameters.iter().zip(values) {
-                let (low, high) = parameter.bounds;
-                assert!(
-                    (low..=high).contains(&value),
-                    "{} {}",
-                    effect.info().id,
-                    parameter.key
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn axes_follow_the_law() {
-        let x_label = |id| signature(named(id).unwrap()).x_label;
-        assert_eq!(x_label("cogging"), "angle, rad");
-        assert_eq!(x_label("viscous"), "speed, rad/s");
-        assert_eq!(x_label("speed_limit"), "speed, rad/s");
-        assert_eq!(x_label("supply_sag"), "duty, 1");
-        assert_eq!(x_label("armature"), "acceleration, rad/s^2");
-        assert_eq!(x_label("mass"), "angle from hanging, rad");
-    }
 }

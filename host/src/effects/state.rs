@@ -61,6 +61,8 @@ pub struct DriveState {
     pub full_torque_nm: f64,
     /// Supply over nominal supply; 1 where either is unknown.
     pub supply_ratio: f64,
+    /// What the effect remembers, if it does.
+    pub memory: MemoryCell,
 }
 
 /// A joint at an instant.
@@ -74,6 +76,8 @@ pub struct JointState {
     pub drive_nm: f64,
     /// Measured speed of another moment, rad/s: what a placebo acts on.
     pub shuffled_rad_s: f64,
+    /// What the effect remembers, if it does.
+    pub memory: MemoryCell,
 }
 
 impl JointState {
@@ -84,6 +88,39 @@ impl JointState {
             speed_rad_s,
             drive_nm: 0.0,
             shuffled_rad_s: 0.0,
+            memory: [0.0; 2],
+        }
+    }
+}
+
+/// What an effect carries from one step of a simulation to the next; each says what its two numbers
+/// are.
+pub type MemoryCell = [f64; 2];
+
+/// A joint and its drive at the end of a step, for an effect to remember.
+#[derive(Debug, Clone, Copy)]
+pub struct StepState {
+    /// Input that arrived at the drive during the step, in SI of its kind.
+    pub input: f64,
+    /// Duty after the command effects, -1 to 1; 0 while the drive is not energised.
+    pub duty: f64,
+    /// Whether the drive is energised.
+    pub energised: bool,
+    /// Angle from the previous link, rad; of the first joint from the model's zero.
+    pub angle_rad: f64,
+    /// Speed relative to the previous link, rad/s.
+    pub speed_rad_s: f64,
+}
+
+impl StepState {
+    /// An energised drive without input, and its joint at rest.
+    pub fn at_rest(angle_rad: f64) -> Self {
+        StepState {
+            input: 0.0,
+            duty: 0.0,
+            energised: true,
+            angle_rad,
+            speed_rad_s: 0.0,
         }
     }
 }
@@ -91,6 +128,8 @@ impl JointState {
 /// A joint that slides, or is about to.
 #[derive(Debug, Clone, Copy)]
 pub struct Slide {
+    /// Angle from the previous link, rad; of the first joint from the model's zero.
+    pub angle_rad: f64,
     /// Magnitude of the joint speed, rad/s; 0 asks for breakaway.
     pub speed_rad_s: f64,
     /// +1 or -1: the direction of motion, or of the push at rest.

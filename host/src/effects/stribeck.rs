@@ -39,6 +39,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that \
      fades as the speed grows",
     confused_with: &[
+        "pre_sliding: both make joints stick; only a spring moves on small pushes",
         "coulomb: both jump at reversal; Coulomb friction stays at every speed",
         "dead_zone: both leave small commands without motion; a dead zone is gone with the torque \
          off",

@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "strong commands give less than their share of torque; the torque bends over duty, \
      alike in both directions",
     confused_with: &[
+        "thermal_drift: both weaken strong commands; sag is there at once and gone at once",
         "supply_sensitivity: both weaken the torque as the volts fall; log the volts and repeat \
          from a stiff source",
         "torque_saturation: both bend the torque at strong commands; sag bends from zero on, a \

@@ -25,6 +25,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \
      zero below it",
     confused_with: &[
+        "slew_limit: both blunt strong commands; a ramp ends while the command stays",
+        "fold_back: both hold strong commands down; folding back comes after a while",
         "supply_sag: both bend the torque at strong commands; sag bends from zero on, a limit \
          only above one torque",
         "speed_limit: both cap the acceleration at full duty; a torque limit acts at rest too",

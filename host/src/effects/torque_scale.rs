@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "every response to the drive is too strong or too weak by one share, at every \
      speed and in both directions",
     confused_with: &[
+        "thermal_drift: both weaken every command; warmth comes with time and goes with rest",
         "mass: a heavier arm answers the drive less too, and one log may not tell; weigh the \
          link, or hold a known added mass",
         "supply_sag: the same at one duty; compare weak and strong commands",

@@ -7,7 +7,7 @@ use crate::dynamics::EquationsOfMotion;
 use crate::experiment::excite::Excitation;
 use crate::log::Motion;
 use crate::model::{Drive, Model, hanging};
-use crate::sim::{Plant, SensorState, Start, predict};
+use crate::sim::{Memory, Plant, Start, predict};
 
 /// Stiffness and damping of the regulator per inertia: 1/s^2 and 1/s.
 const STIFFNESS: f64 = 130.0;
@@ -56,7 +56,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     let plant = Plant::new(model, &motion);
     let regulator = GoalRegulator::new(model, &motion, limits);
     let mut state = at_rest(&plant, &start_rad);
-    let mut sensors = SensorState::default();
+    let mut memory = Memory::default();
     let joints = model.link_count();
     let mut readings = vec![0.0; 2 * joints];
     for k in 0..motion.len() {
@@ -85,7 +85,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
                 &motion,
                 k..k + 2,
                 &state,
-                &mut sensors,
+                &mut memory,
                 &mut readings,
             );
         }

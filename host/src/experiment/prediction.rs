@@ -6,7 +6,7 @@ use super::limits::signal;
 use crate::fitting::{FitData, Horizon};
 use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
-use crate::sim::{Plant, SensorState, predict};
+use crate::sim::{Memory, Plant, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -18,13 +18,13 @@ pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion
     let start = at_rest(&plant, &experiment.start_rad);
     let count = motion.len();
     let mut readings = vec![0.0; count * model.link_count()];
-    let mut sensors = SensorState::default();
+    let mut memory = Memory::default();
     predict(
         &plant,
         &motion,
         0..count,
         &start,
-        &mut sensors,
+        &mut memory,
         &mut readings,
     );
     for (joint, readings) in readings.chunks(count).enumerate() {

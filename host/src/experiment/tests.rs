@@ -11,7 +11,7 @@ use crate::effects;
 use crate::fitting::{Candidate, FitData, Horizon};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
-use crate::sim::{Plant, SensorState, predict};
+use crate::sim::{Memory, Plant, predict};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -84,8 +84,8 @@ fn swing(model: &Model) -> Motion {
     let plant = Plant::new(model, &motion);
     let mut readings = vec![0.0; motion.len()];
     let start = at_rest(&plant, &[0.0]);
-    let (all, sensors) = (0..motion.len(), &mut SensorState::default());
-    predict(&plant, &motion, all, &start, sensors, &mut readings);
+    let (all, memory) = (0..motion.len(), &mut Memory::default());
+    predict(&plant, &motion, all, &start, memory, &mut readings);
     motion.position_rad[0] = readings
         .iter()
         .map(|q| 0.005 * (q / 0.005).round())

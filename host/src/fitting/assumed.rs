@@ -9,7 +9,7 @@ use super::node::Node;
 use super::residual::{weighted, worst};
 use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model, hanging};
-use crate::sim::{Plant, SensorState, predict};
+use crate::sim::{Memory, Plant, predict};
 use std::f64::consts::TAU;
 
 /// Angles tried in a turn for the one at which a rate begins.
@@ -148,7 +148,7 @@ fn cost(
         let samples = window.samples.clone();
         let mut values = vec![0.0; samples.len() * plant.len()];
         let start = Node::guess(motion, sigma, states, &window).start(&plant);
-        let mut memory = SensorState::default();
+        let mut memory = Memory::default();
         predict(
             &plant,
             motion,
@@ -179,7 +179,7 @@ fn run_free(
 ) {
     let plant = Plant::new(model, motion);
     let mut start = Node::guess(motion, sigma, states, whole).start(&plant);
-    let mut memory = SensorState::default();
+    let mut memory = Memory::default();
     let mut readings = vec![0.0; plant.len()];
     for k in 0..motion.len() {
         for (joint, state) in states.iter_mut().enumerate() {

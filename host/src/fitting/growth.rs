@@ -10,7 +10,7 @@ use super::data::{Horizon, Window};
 use super::node::Node;
 use crate::log::Motion;
 use crate::model::Model;
-use crate::sim::{Plant, SensorState, Start, predict};
+use crate::sim::{Memory, Plant, Start, predict};
 use nalgebra::DMatrix;
 
 /// Growth of a small start error beyond which a run says little about the model.
@@ -115,7 +115,7 @@ fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) ->
             Some(i) => from.speed_rad_s[i - joints] += DIFFERENCE,
             None => {}
         }
-        let (samples, mut memory) = (window.samples.clone(), SensorState::default());
+        let (samples, mut memory) = (window.samples.clone(), Memory::default());
         let to = predict(plant, motion, samples, &from, &mut memory, &mut readings);
         [to.angle_rad, to.speed_rad_s].concat()
     };

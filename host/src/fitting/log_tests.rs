@@ -4,7 +4,7 @@
 use super::*;
 use crate::log::{Motion, Split};
 use crate::model::{MeasuredSignal, Model, ParameterPath};
-use crate::sim::{Plant, SensorState, Start, predict};
+use crate::sim::{Memory, Plant, Start, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
@@ -44,7 +44,7 @@ fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
     };
     let plant = Plant::new(model, &motion);
     let mut readings = vec![0.0; joints * motion.len()];
-    let mut memory = SensorState::default();
+    let mut memory = Memory::default();
     let whole = 0..motion.len();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
     for (joint, values) in readings.chunks(motion.len()).enumerate() {

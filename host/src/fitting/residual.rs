@@ -3,7 +3,7 @@
 use super::data::FitData;
 use super::node::Node;
 use crate::model::{MeasuredSignal, Model};
-use crate::sim::{Plant, SensorState, predict};
+use crate::sim::{Memory, Plant, predict};
 use rayon::prelude::*;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, joint after joint.
@@ -78,11 +78,11 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
 
 /// What a model predicts for one motion's windows, in order, joint after joint: readings, rad, and
 /// rates, rad/s, of joints whose rate alone is logged. Every window starts from its node, and the
-/// sensors' memory runs on from window to window.
+/// memory runs on from window to window.
 pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = SensorState::default();
+    let mut memory = Memory::default();
     let windows = data.windows_of(motion);
     windows
         .map(|(index, window)| {

@@ -31,6 +31,7 @@ const SUFFIXES: &[(&str, &str)] = &[
     ("_n_m", "N/m"),
     ("_s_per_m", "s/m"),
     ("_per_m", "1/m"),
+    ("_per_s", "1/s"),
     ("_s_per_rad", "s/rad"),
     ("_per_rad", "1/rad"),
     ("_kg_m2", "kg m^2"),

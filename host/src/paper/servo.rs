@@ -8,7 +8,7 @@ use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::output::number::interval;
 use crate::output::plot::{Chart, Curve, Tone};
-use crate::sim::{Plant, SensorState, Start, predict};
+use crate::sim::{Memory, Plant, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
     BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks,
@@ -135,8 +135,8 @@ pub(super) fn predicted(
 ) -> (Vec<f64>, Start) {
     let plant = Plant::new(model, motion);
     let mut readings = vec![0.0; stretch.len()];
-    let sensors = &mut SensorState::default();
-    let end = predict(&plant, motion, stretch, start, sensors, &mut readings);
+    let memory = &mut Memory::default();
+    let end = predict(&plant, motion, stretch, start, memory, &mut readings);
     (readings, end)
 }
 

@@ -2,7 +2,7 @@
 //! them.
 
 use super::joint_plan::{ActiveEffect, JointPlan};
-use crate::effects::{AtRest, DriveState};
+use crate::effects::{AtRest, DriveState, MemoryCell};
 use crate::model::Drive;
 
 /// Input of a drive at an instant.
@@ -59,21 +59,44 @@ impl JointPlan {
         at: DriveInput,
         reading_rad: f64,
         speed_rad_s: f64,
+        memory: &[MemoryCell],
     ) -> f64 {
+        if !at.energised || self.drive == Drive::Passive {
+            return 0.0;
+        }
+        let duty = self.duty(at, reading_rad, speed_rad_s);
+        let slope = self
+            .drive
+            .motor()
+            .map_or(0.0, |motor| 1.0 / motor.no_load_speed_rad_s);
+        let mut state = DriveState {
+            speed_rad_s,
+            duty,
+            full_torque_nm: self.full_torque_nm,
+            supply_ratio: at.supply_ratio,
+            memory: [0.0; 2],
+        };
+        let torque = self.full_torque_nm * (duty - slope * speed_rad_s);
+        self.output.iter().fold(torque, |torque, e| {
+            state.memory = e.recall(memory);
+            e.effect.drive(e.values(), torque, &state)
+        })
+    }
+
+    /// Duty that the drive applies, -1 to 1, at a reading of the joint's own encoder and a speed: 0
+    /// while it is not energised.
+    #[inline]
+    pub(super) fn duty(&self, at: DriveInput, reading_rad: f64, speed_rad_s: f64) -> f64 {
         if !at.energised {
             return 0.0;
         }
-        let (duty, slope) = match &self.drive {
+        let duty = match &self.drive {
             Drive::Passive => return 0.0,
-            Drive::Torque => (at.input / self.full_torque_nm, 0.0),
-            Drive::Duty(motor) => (at.input, 1.0 / motor.no_load_speed_rad_s),
-            Drive::Position {
-                gain_per_rad,
-                motor,
-            } => (
-                (gain_per_rad * (at.input - reading_rad)).clamp(-1.0, 1.0),
-                1.0 / motor.no_load_speed_rad_s,
-            ),
+            Drive::Torque => at.input / self.full_torque_nm,
+            Drive::Duty(_) => at.input,
+            Drive::Position { gain_per_rad, .. } => {
+                (gain_per_rad * (at.input - reading_rad)).clamp(-1.0, 1.0)
+            }
             Drive::Speed {
                 gain_s_per_rad,
                 motor,
@@ -83,25 +106,11 @@ impl JointPlan {
                 } else {
                     0.0
                 };
-                (
-                    (forward + gain_s_per_rad * (at.input - speed_rad_s)).clamp(-1.0, 1.0),
-                    1.0 / motor.no_load_speed_rad_s,
-                )
+                (forward + gain_s_per_rad * (at.input - speed_rad_s)).clamp(-1.0, 1.0)
             }
         };
-        let duty = self
-            .command
+        self.command
             .iter()
-            .fold(duty, |duty, e| e.effect.command(e.values(), duty));
-        let state = DriveState {
-            speed_rad_s,
-            duty,
-            full_torque_nm: self.full_torque_nm,
-            supply_ratio: at.supply_ratio,
-        };
-        let torque = self.full_torque_nm * (duty - slope * speed_rad_s);
-        self.output.iter().fold(torque, |torque, e| {
-            e.effect.drive(e.values(), torque, &state)
-        })
+            .fold(duty, |duty, e| e.effect.command(e.values(), duty))
     }
 }

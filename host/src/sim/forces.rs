@@ -1,6 +1,7 @@
 //! Accelerations of a plant at a state: drives, joint torques and friction on the chain.
 
 use super::drive::DriveInput;
+use super::memory::EffectMemory;
 use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
@@ -27,6 +28,8 @@ pub(super) struct Forces<R: Rows> {
     loads: R::Of<f64>,
     bearing: R::Of<f64>,
     zeros: R::Of<f64>,
+    /// What effects remember; it stays through a step.
+    pub memory: EffectMemory,
 }
 
 impl<R: Rows> Forces<R> {
@@ -43,6 +46,7 @@ impl<R: Rows> Forces<R> {
             loads: zeros(),
             bearing: zeros(),
             zeros: zeros(),
+            memory: EffectMemory::default(),
         }
     }
 
@@ -51,7 +55,8 @@ impl<R: Rows> Forces<R> {
     pub fn command(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         for (joint, plan) in plant.joints.iter().enumerate() {
             if plan.follows_input {
-                self.drive_torque[joint] = plan.drive_torque_nm(inputs[joint], 0.0, 0.0);
+                self.drive_torque[joint] =
+                    plan.drive_torque_nm(inputs[joint], 0.0, 0.0, &self.memory.0);
             }
         }
     }
@@ -104,21 +109,23 @@ impl<R: Rows> Forces<R> {
                 _ if plan.follows_input => self.drive_torque[joint],
                 Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, at.angle);
-                    plan.drive_torque_nm(input, reading, speed)
+                    plan.drive_torque_nm(input, reading, speed, &self.memory.0)
                 }
-                _ => plan.drive_torque_nm(input, 0.0, speed),
+                _ => plan.drive_torque_nm(input, 0.0, speed, &self.memory.0),
             };
-            let state = JointState {
+            let mut state = JointState {
                 angle_rad: at.angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed,
                 drive_nm: drive,
                 shuffled_rad_s: input.shuffled_rad_s,
+                memory: [0.0; 2],
             };
             self.drive_torque[joint] = drive;
             self.torque[joint] = plan
                 .torque
                 .iter()
                 .fold(drive + input.disturbance_nm, |sum, e| {
+                    state.memory = e.recall(&self.memory.0);
                     sum + e.effect.torque(e.values(), &state)
                 });
         }
@@ -131,20 +138,23 @@ impl<R: Rows> Forces<R> {
         for joint in 0..n {
             if let Contact::Sliding(direction) = at.contact[joint] {
                 let speed = (direction * at.speed[joint]).max(0.0);
-                self.torque[joint] -= direction * self.friction_nm(plant, joint, speed, direction);
+                let friction = self.friction_nm(plant, joint, [at.angle[joint], speed], direction);
+                self.torque[joint] -= direction * friction;
             }
         }
     }
 
-    /// Friction of a joint at the loads found last, N m; at speed 0 the breakaway torque.
+    /// Friction of a joint at this relative angle and speed and the loads found last, N m; at speed
+    /// 0 the breakaway torque.
     pub fn friction_nm(
         &self,
         plant: &Plant,
         joint: usize,
-        speed_rad_s: f64,
+        [angle_rad, speed_rad_s]: [f64; 2],
         direction: f64,
     ) -> f64 {
         let slide = Slide {
+            angle_rad: angle_rad - plant.zeros_rad[joint],
             speed_rad_s,
             direction,
             gear_load_nm: (self.loads[joint] + self.drive_torque[joint]).abs(),

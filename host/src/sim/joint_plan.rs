@@ -1,6 +1,6 @@
 //! What acts on one joint, sorted by where it acts.
 
-use crate::effects::{Effect, Site};
+use crate::effects::{Effect, MemoryCell, Site};
 use crate::model::Drive;
 
 /// Most values an effect has.
@@ -12,12 +12,20 @@ pub(super) struct ActiveEffect {
     pub effect: &'static dyn Effect,
     values: [f64; MOST_VALUES],
     count: usize,
+    /// Place of what it remembers, if it does.
+    pub cell: Option<usize>,
 }
 
 impl ActiveEffect {
     #[inline]
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
+    }
+
+    /// What it remembers, among the cells of the plant.
+    #[inline]
+    pub fn recall(&self, cells: &[MemoryCell]) -> MemoryCell {
+        self.cell.map_or([0.0; 2], |cell| cells[cell])
     }
 }
 
@@ -64,6 +72,25 @@ impl JointPlan {
         self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
     }
 
+    /// Gives each effect that remembers a cell from `next` on; the place behind the last.
+    pub fn place_memory(&mut self, mut next: usize) -> usize {
+        let lists = [&mut self.command, &mut self.output, &mut self.torque];
+        for e in lists.into_iter().flatten().filter(|e| e.effect.remembers()) {
+            e.cell = Some(next);
+            next += 1;
+        }
+        next
+    }
+
+    /// Effects that remember, with the places of their cells.
+    pub fn remembering(&self) -> impl Iterator<Item = (&ActiveEffect, usize)> {
+        let lists = [&self.command, &self.output, &self.torque];
+        lists
+            .into_iter()
+            .flatten()
+            .filter_map(|e| Some((e, e.cell?)))
+    }
+
     /// Change of the encoder's reading per change of the joint's angle.
     pub fn reading_slope(&self) -> f64 {
         if self.encode.is_empty() {
@@ -83,6 +110,7 @@ impl JointPlan {
             effect,
             values: [0.0; MOST_VALUES],
             count: values.len(),
+            cell: None,
         };
         active.values[..values.len()].copy_from_slice(values);
         match effect.info().site {

@@ -11,6 +11,7 @@ mod forces;
 mod input;
 mod joint_plan;
 mod live;
+mod memory;
 mod plant;
 mod rows;
 mod run;
@@ -18,6 +19,6 @@ mod sensor_state;
 mod stepper;
 
 pub use live::{Live, bare_motors};
+pub use memory::Memory;
 pub use plant::Plant;
 pub use run::{Start, predict};
-pub use sensor_state::SensorState;

@@ -22,6 +22,8 @@ pub struct Plant {
     pub(super) rates: Vec<bool>,
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
+    /// How many cells its effects remember things in.
+    pub(super) remembers: usize,
     pub(super) step_s: f64,
     /// Whether every torque stays until an input changes or a joint stops or starts.
     pub(super) torques_stay: bool,
@@ -70,10 +72,14 @@ impl Plant {
             .map(|columns| columns.signal() == MeasuredSignal::Rate)
             .collect();
         rates.resize(joints.len(), false);
+        let remembers = joints
+            .iter_mut()
+            .fold(0, |next, joint| joint.place_memory(next));
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
             rates,
             senses,
+            remembers,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),

@@ -2,9 +2,9 @@
 
 use super::drive::DriveInput;
 use super::input::held_mean;
+use super::memory::Memory;
 use super::plant::Plant;
 use super::rows::{Few, Many, Rows};
-use super::sensor_state::SensorState;
 use super::stepper::Stepper;
 use crate::log::Motion;
 use crate::model::Drive;
@@ -38,14 +38,14 @@ pub fn predict(
     motion: &Motion,
     stretch: Range<usize>,
     start: &Start,
-    sensors: &mut SensorState,
+    memory: &mut Memory,
     readings: &mut [f64],
 ) -> Start {
     match plant.len() {
-        1 => predicted::<Few<1>>(plant, motion, stretch, start, sensors, readings),
-        2 => predicted::<Few<2>>(plant, motion, stretch, start, sensors, readings),
-        3 => predicted::<Few<3>>(plant, motion, stretch, start, sensors, readings),
-        _ => predicted::<Many>(plant, motion, stretch, start, sensors, readings),
+        1 => predicted::<Few<1>>(plant, motion, stretch, start, memory, readings),
+        2 => predicted::<Few<2>>(plant, motion, stretch, start, memory, readings),
+        3 => predicted::<Few<3>>(plant, motion, stretch, start, memory, readings),
+        _ => predicted::<Many>(plant, motion, stretch, start, memory, readings),
     }
 }
 
@@ -54,7 +54,7 @@ fn predicted<R: Rows>(
     motion: &Motion,
     stretch: Range<usize>,
     start: &Start,
-    sensors: &mut SensorState,
+    memory: &mut Memory,
     readings: &mut [f64],
 ) -> Start {
     let n = plant.len();
@@ -62,6 +62,18 @@ fn predicted<R: Rows>(
     let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
     let mut inputs = vec![DriveInput::ZERO; n];
     let mut cursors = vec![0; n];
+    let is_before = |ended: &usize| plant.remembers > 0 && *ended <= stretch.start;
+    if let Some(ended) = memory.ended.filter(is_before) {
+        *stepper.memory() = std::mem::take(&mut memory.effects);
+        // No stretch holds the time from its last sample to the first of the next.
+        for k in ended..stretch.start {
+            let [from, to] = [motion.time_s[k], motion.time_s[k + 1]];
+            set_inputs(plant, motion, k, from..to, &mut cursors, &mut inputs);
+            let state = (start.angle_rad.as_slice(), start.speed_rad_s.as_slice());
+            stepper.memory().remember(plant, &inputs, state, to - from);
+        }
+    }
+    let sensors = &mut memory.sensors;
     sensors.begin(plant, start);
     sensors.step(plant, stepper.angle.as_ref(), 0.0);
     sensors.record(plant, stepper.speed.as_ref(), readings, 0, samples);
@@ -91,6 +103,8 @@ fn predicted<R: Rows>(
         let at = k + 1 - stretch.start;
         sensors.record(plant, stepper.speed.as_ref(), readings, at, samples);
     }
+    memory.ended = Some(stretch.end.saturating_sub(1));
+    memory.effects = std::mem::take(stepper.memory());
     Start {
         angle_rad: stepper.angle.as_ref().to_vec(),
         speed_rad_s: stepper.speed.as_ref().to_vec(),

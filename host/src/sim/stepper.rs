@@ -7,9 +7,11 @@
 
 use super::drive::DriveInput;
 use super::forces::{At, Forces};
+use super::memory::EffectMemory;
 use super::plant::Plant;
 use super::rows::Rows;
 use crate::dynamics::RungeKutta;
+use crate::effects::MemoryCell;
 
 /// Into how many steps of what length, s, a span is cut by the longest step.
 #[inline]
@@ -53,6 +55,8 @@ pub(super) struct Stepper<R: Rows> {
     slope: R::Of<f64>,
     /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
     excess: R::Of<f64>,
+    /// Inputs as the drives follow them, where effects remember.
+    obeyed: Vec<DriveInput>,
 }
 
 impl<R: Rows> Stepper<R> {
@@ -70,7 +74,9 @@ impl<R: Rows> Stepper<R> {
             start_speed: zeros(),
             slope: zeros(),
             excess: zeros(),
+            obeyed: Vec::new(),
         };
+        stepper.forces.memory = EffectMemory::beginning(plant, angle, speed);
         for (joint, plan) in plant.joints.iter().enumerate() {
             stepper.angle[joint] = angle[joint];
             stepper.speed[joint] = speed[joint];
@@ -89,8 +95,34 @@ impl<R: Rows> Stepper<R> {
         self.angle.as_ref().len()
     }
 
+    /// What the effects remember.
+    pub fn memory(&mut self) -> &mut EffectMemory {
+        &mut self.forces.memory
+    }
+
+    /// The cells of the effects that remember.
+    pub fn remembered(&self) -> &[MemoryCell] {
+        &self.forces.memory.0
+    }
+
     /// Advances by `step_s` under constant inputs.
+    #[inline]
     pub fn advance(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
+        if plant.remembers == 0 {
+            return self.advance_bodies(plant, inputs, step_s);
+        }
+        let mut obeyed = std::mem::take(&mut self.obeyed);
+        obeyed.clear();
+        obeyed.extend_from_slice(inputs);
+        self.forces.memory.obey(plant, &mut obeyed, step_s);
+        self.advance_bodies(plant, &obeyed, step_s);
+        self.obeyed = obeyed;
+        let state = (self.angle.as_ref(), self.speed.as_ref());
+        (self.forces.memory).remember(plant, inputs, state, step_s);
+    }
+
+    /// Advances by `step_s` under inputs that the drives follow at once.
+    fn advance_bodies(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
         self.forces.command(plant, inputs);
         // Chatter between contacts can't go on for ever: after this many events the step is taken
@@ -205,7 +237,8 @@ impl<R: Rows> Stepper<R> {
         for joint in 0..angle.len() {
             if contact[joint] == Contact::Held {
                 let push = -self.slope[joint];
-                let breakaway = self.forces.friction_nm(plant, joint, 0.0, push.signum());
+                let at_rest = [angle[joint], 0.0];
+                let breakaway = (self.forces).friction_nm(plant, joint, at_rest, push.signum());
                 self.excess[joint] = push.abs() - breakaway;
             }
         }
@@ -246,61 +279,4 @@ impl<R: Rows> Stepper<R> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::effects::named;
-    use crate::model::{EffectInstance, Model};
-    use crate::sim::rows::{Few, Many};
-    use std::path::Path;
-
-    /// Joints that stop, stick and let go, by the equations in closed form and by recursion.
-    fn farthest(effects: &[(&str, usize, &[f64])]) -> (f64, usize) {
-        let text = include_str!("../../models/handstand.toml");
-        let mut model = Model::parse(text, Path::new("handstand.toml")).unwrap();
-        let instance = |&(id, joint, values): &(&str, usize, &[f64])| EffectInstance {
-            effect: named(id).unwrap(),
-            joint: Some(joint),
-            values: values.to_vec(),
-        };
-        model.effects = effects.iter().map(instance).collect();
-        let plant = Plant::without_log(&model);
-        let (angle, speed) = ([0.3, 0.2, -0.4], [0.0, 0.5, -0.2]);
-        let mut closed = Stepper::<Few<3>>::new(&plant, &angle, &speed);
-        let mut recursive = Stepper::<Many>::new(&plant, &angle, &speed);
-        let (mut off, mut held) = (0.0_f64, 0);
-        for step in 0..600 {
-            let pull = if step / 100 % 2 == 0 { 0.06 } else { -0.03 };
-            let input = |share: f64| DriveInput {
-                input: share * pull,
-                ..DriveInput::ZERO
-            };
-            let inputs = [DriveInput::ZERO, input(1.0), input(-0.5)];
-            closed.advance(&plant, &inputs, 1e-3);
-            recursive.advance(&plant, &inputs, 1e-3);
-            let count =
-                |contact: &[Contact]| contact.iter().filter(|c| **c == Contact::Held).count();
-            assert_eq!(
-                count(&closed.contact),
-                count(&recursive.contact),
-                "step {step}"
-            );
-            held += count(&closed.contact);
-            for joint in 0..3 {
-                off = off.max((closed.angle[joint] - recursive.angle[joint]).abs());
-            }
-        }
-        (off, held)
-    }
-
-    #[test]
-    fn closed_form_and_recursion_are_one_motion() {
-        let coulomb: [(&str, usize, &[f64]); 2] =
-            [("coulomb", 1, &[0.05]), ("coulomb", 2, &[0.02])];
-        let viscous: [(&str, usize, &[f64]); 1] = [("viscous", 2, &[0.01])];
-        for effects in [coulomb.to_vec(), [&coulomb[..], &viscous].concat()] {
-            let (off, held) = farthest(&effects);
-            assert!(off < 1e-9, "{off}");
-            assert!(held > 50, "{held}");
-        }
-    }
-}
+mod tests;

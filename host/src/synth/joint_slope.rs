@@ -2,7 +2,9 @@
 
 use super::error::DesignError;
 use super::omitted::OmittedEffect;
-use crate::effects::{AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope};
+use crate::effects::{
+    AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope, StepState,
+};
 use crate::model::{Drive, EffectInstance, Model};
 
 /// Most steps of Newton's iteration for the duty that holds a torque.
@@ -97,9 +99,11 @@ impl<'a> JointAt<'a> {
     /// Torque of the smooth joint effects, N m, and its slope; those that are not smooth are added
     /// to `omitted`.
     pub fn torque(&self, omitted: &mut Vec<OmittedEffect>) -> (f64, Slope) {
-        let state = JointState::undriven(self.angle_rad, 0.0);
+        let mut state = JointState::undriven(self.angle_rad, 0.0);
+        let at = StepState::at_rest(self.angle_rad);
         let (mut torque_nm, mut sum) = (0.0, Slope::NONE);
         for (effect, values, slope) in self.slopes(Site::Joint, self.at_rest(), omitted) {
+            state.memory = effect.recall(values, &at);
             torque_nm += effect.torque(values, &state);
             sum.per_rad += slope.per_rad;
             sum.per_rad_s += slope.per_rad_s;
@@ -186,6 +190,7 @@ impl<'a> JointAt<'a> {
             duty: at.duty,
             full_torque_nm: at.full_torque_nm,
             supply_ratio: 1.0,
+            memory: [0.0; 2],
         };
         at.torque_nm = at.full_torque_nm * at.duty;
         let no_load = self.drive.motor().map(|m| m.no_load_speed_rad_s);

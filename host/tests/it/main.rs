@@ -21,6 +21,7 @@ mod fuzz;
 mod gains;
 mod golden;
 mod lab;
+mod laws;
 #[cfg(unix)]
 mod mcap;
 mod mixed_motions;

@@ -7,7 +7,7 @@ use handstand::log::{LogRequest, Motion, MotionSource, read};
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Sensor, StateFeedback, stream,
 };
-use handstand::sim::{Plant, SensorState, Start, predict};
+use handstand::sim::{Memory, Plant, Start, predict};
 use handstand::synth::StateFeedbackPlan;
 use handstand_shared::raw::Position;
 use std::fmt::Write as _;
@@ -79,7 +79,7 @@ fn hanging(bench: &Bench, seed: f64, seconds: f64) -> String {
         speed_rad_s: vec![0.0; 3],
         reading_rad_s: None,
     };
-    let (mut readings, mut sensors) = (vec![0.0; 3 * samples], SensorState::default());
+    let (mut readings, mut sensors) = (vec![0.0; 3 * samples], Memory::default());
     predict(
         &plant,
         &motion,

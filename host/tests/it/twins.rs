@@ -6,7 +6,7 @@ use handstand::diagnose::{
 };
 use handstand::fitting::Candidate;
 use handstand::log::{LogRequest, Motion, MotionSource, read};
-use handstand::sim::{Plant, SensorState, Start, predict};
+use handstand::sim::{Memory, Plant, Start, predict};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -82,7 +82,7 @@ fn log(truth: &Model, seed: f64) -> String {
         speed_rad_s: vec![0.0; 2],
         reading_rad_s: None,
     };
-    let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], SensorState::default());
+    let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], Memory::default());
     predict(
         &plant,
         &motion,

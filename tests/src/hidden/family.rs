@@ -55,7 +55,7 @@ pub const OUTSIDE: [&str; 6] = [
     "quadratic_stiffness",
     "viscoelastic",
     "hidden_pendulum",
-    "one_sided_friction",
+    "rub",
     "warm_up",
 ];
 

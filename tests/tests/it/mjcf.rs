@@ -5,7 +5,7 @@ use handstand::Model;
 use handstand::challenge::{KINDS, Motions, bench};
 use handstand::log::Motion;
 use handstand::model::export::mjcf;
-use handstand::sim::{Plant, SensorState, Start, predict};
+use handstand::sim::{Memory, Plant, Start, predict};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn ours(model: &Model, motion: &Motion, start: &Start) -> Vec<Vec<f64>> {
     let plant = Plant::new(model, motion);
     let samples = motion.len();
     let mut readings = vec![0.0; samples * plant.len()];
-    let mut sensors = SensorState::default();
+    let mut sensors = Memory::default();
     predict(
         &plant,
         motion,

@@ -21,6 +21,7 @@ fn drives_weaken_as_their_laws_say() {
         duty: 0.5,
         full_torque_nm: 1.5,
         supply_ratio: 0.9,
+        memory: [0.0; 2],
     };
     let drive = |id, value| effect(id).drive(&[value], 0.75, &at);
     near(drive("supply_sensitivity", 1.0), 0.675);
@@ -106,8 +107,9 @@ fn friction_called_constant_is_that_and_no_other() {
             .iter()
             .map(|p| p.typical.1)
             .collect();
-        let at = |speed_rad_s, gear_load_nm, bearing_load_n| {
+        let at = |angle_rad, speed_rad_s, gear_load_nm, bearing_load_n| {
             let slide = Slide {
+                angle_rad,
                 speed_rad_s,
                 direction: 1.0,
                 gear_load_nm,
@@ -117,15 +119,16 @@ fn friction_called_constant_is_that_and_no_other() {
             };
             effect.friction(&values, &slide)
         };
-        let rest = at(0.0, 0.0, 0.0);
+        let rest = at(0.0, 0.0, 0.0, 0.0);
         let changes = [
-            (0.05, 0.0, 0.0),
-            (3.0, 0.0, 0.0),
-            (0.0, 1.0, 0.0),
-            (0.0, 0.0, 1.0),
+            (0.3, 0.0, 0.0, 0.0),
+            (0.0, 0.05, 0.0, 0.0),
+            (0.0, 3.0, 0.0, 0.0),
+            (0.0, 0.0, 1.0, 0.0),
+            (0.0, 0.0, 0.0, 1.0),
         ]
         .into_iter()
-        .any(|(speed, gear, bearing)| at(speed, gear, bearing) != rest);
+        .any(|(angle, speed, gear, bearing)| at(angle, speed, gear, bearing) != rest);
         assert_eq!(
             effect.friction_is_constant(),
             !changes,

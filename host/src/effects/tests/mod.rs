@@ -15,6 +15,7 @@ mod sensors;
 /// Units and what a key of that unit ends in.
 const SUFFIXES: &[(&str, &str)] = &[
     ("s", "_s"),
+    ("1/s", "_per_s"),
     ("m", "_m"),
     ("kg", "_kg"),
     ("kg m^2", "_kg_m2"),
@@ -48,6 +49,7 @@ fn near(left: f64, right: f64) {
 
 fn slide(speed_rad_s: f64, direction: f64) -> Slide {
     Slide {
+        angle_rad: 0.0,
         speed_rad_s: speed_rad_s.abs(),
         direction,
         gear_load_nm: 0.5,

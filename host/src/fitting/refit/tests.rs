@@ -3,7 +3,7 @@
 use super::*;
 use crate::effects;
 use crate::log::{Motion, MotionSource};
-use crate::sim::{Plant, SensorState, Start, predict};
+use crate::sim::{Memory, Plant, Start, predict};
 use std::path::Path;
 
 const PENDULUM: &str = r#"
@@ -64,7 +64,7 @@ fn swing(model: &Model, angle: f64) -> Motion {
     };
     let mut readings = vec![0.0; motion.len()];
     let plant = Plant::new(model, &motion);
-    let mut memory = SensorState::default();
+    let mut memory = Memory::default();
     let whole = 0..motion.len();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
     motion.position_rad[0] = readings

@@ -1,9 +1,11 @@
 //! The general simulation as a closed loop advances it: every effect, friction that sticks.
 
+use crate::effects::MemoryCell;
 use crate::sim::drive::DriveInput;
 use crate::sim::rows::{Few, Many, Rows};
+use crate::sim::sensor_state::SensorState;
 use crate::sim::stepper::Stepper;
-use crate::sim::{Plant, SensorState, Start};
+use crate::sim::{Plant, Start};
 use std::fmt;
 
 /// A state of any number of joints.
@@ -19,6 +21,9 @@ pub(super) trait General: fmt::Debug {
 
     /// Readings of the encoders, rad in the log's convention.
     fn reading_rad(&self) -> &[f64];
+
+    /// What the effects remember.
+    fn memory(&self) -> &[MemoryCell];
 }
 
 /// A state whose rows `R` keeps.
@@ -79,5 +84,9 @@ impl<R: Rows + fmt::Debug> General for GeneralState<R> {
 
     fn reading_rad(&self) -> &[f64] {
         &self.sensors.reading_rad
+    }
+
+    fn memory(&self) -> &[MemoryCell] {
+        self.stepper.remembered()
     }
 }

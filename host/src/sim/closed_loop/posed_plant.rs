@@ -177,10 +177,10 @@ impl PosedPlant {
         inputs[joint] = input;
         let plan = &self.plant.joints[joint];
         body.drive_nm[drive] = match &body.general {
-            None => plan.drive_torque_nm(input, 0.0, 0.0),
+            None => plan.drive_torque_nm(input, 0.0, 0.0, &[]),
             Some(general) => {
                 let reading = self.plant.encoded_rad(joint, general.angle_rad());
-                plan.drive_torque_nm(input, reading, body.speed_rad_s[joint])
+                plan.drive_torque_nm(input, reading, body.speed_rad_s[joint], general.memory())
             }
         };
     }

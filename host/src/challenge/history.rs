@@ -1,0 +1,62 @@
+//! What a joint's drive and friction carry from one step of the truth to the next.
+
+use super::physics::{DriveCommand, Physics};
+
+/// Memory of one joint.
+#[derive(Debug, Clone, Default)]
+pub struct History {
+    /// Duty that a ramp has reached; none before the first command.
+    ramped: Option<f64>,
+    /// 0 cold, 1 after long at full duty.
+    warmth: f64,
+    /// For how long the drive has been overloaded, s.
+    overloaded_s: f64,
+    /// How far the bristles of dry friction are bent, rad.
+    bristle: f64,
+}
+
+impl History {
+    /// The command that the drive follows `h` s later, having ramped.
+    pub fn ramp(&mut self, physics: &Physics, push: DriveCommand, h: f64) -> DriveCommand {
+        let before = self.ramped.filter(|_| push.torque_on).unwrap_or(push.duty);
+        let reach = physics.duty_per_s * h;
+        let duty = push.duty.clamp(before - reach, before + reach);
+        self.ramped = Some(duty);
+        DriveCommand { duty, ..push }
+    }
+
+    /// After `h` s under this command during which the joint has turned by `turned` rad.
+    pub fn pass(&mut self, physics: &Physics, push: DriveCommand, turned: f64, h: f64) {
+        let duty = match push.torque_on {
+            true => physics.applied(push.duty),
+            false => 0.0,
+        };
+        if physics.warming > 0.0 {
+            self.warmth += h / physics.warming_s * (duty * duty - self.warmth);
+        }
+        let counts = if duty.abs() > physics.fold_level {
+            h
+        } else {
+            -h
+        };
+        self.overloaded_s = (self.overloaded_s + counts).clamp(0.0, 2.0 * physics.fold_after_s);
+        if physics.bristle_nm > 0.0 {
+            let bent = self.bristle * physics.bristle_nm_rad / physics.bristle_nm;
+            self.bristle += turned - turned.abs() * bent;
+        }
+    }
+
+    /// Share of its torque that the drive gives.
+    pub fn share(&self, physics: &Physics) -> f64 {
+        let warm = 1.0 / (1.0 + physics.warming * self.warmth);
+        match physics.fold_after_s > 0.0 && self.overloaded_s >= physics.fold_after_s {
+            true => warm * physics.fold_share,
+            false => warm,
+        }
+    }
+
+    /// Torque of the bent bristles on the joint, N m.
+    pub fn bristle_nm(&self, physics: &Physics) -> f64 {
+        -physics.bristle_nm_rad * self.bristle
+    }
+}

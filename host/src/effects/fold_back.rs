@@ -1,0 +1,107 @@
+//! Protective fold-back: a servo that has pushed hard for too long gives less.
+
+use super::StepState;
+use super::{
+    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+};
+
+/// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0 to
+/// at most twice as long. It remembers that time, s, and for which share of the next step the torque
+/// is folded back if the duty stays, for it may be within the step that it falls.
+#[derive(Debug)]
+pub struct FoldBack;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "fold_back",
+    title: "protective fold-back of the torque",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque * remaining_share once |u| > level for after_s; as long below the level ends it",
+    parameters: &[
+        Parameter {
+            key: "remaining_share",
+            unit: "1",
+            meaning: "share of the torque that remains",
+            off: Some(1.0),
+            typical: (0.2, 0.7),
+            bounds: (0.0, 1.0),
+            starts: &[0.5],
+        },
+        Parameter {
+            key: "level",
+            unit: "1",
+            meaning: "duty above which the time counts",
+            off: None,
+            typical: (0.1, 0.9),
+            bounds: (0.02, 0.99),
+            starts: &[0.1, 0.05, 0.3],
+        },
+        Parameter {
+            key: "after_s",
+            unit: "s",
+            meaning: "time above the level until the torque falls",
+            off: None,
+            typical: (0.1, 2.0),
+            bounds: (0.02, 30.0),
+            starts: &[0.25, 1.0],
+        },
+    ],
+    looks_like: "under a strong, lasting command the torque falls at one instant, and comes back \
+     only after a rest",
+    confused_with: &[
+        "thermal_drift: both weaken a strong command that lasts; a motor warms slowly",
+        "torque_saturation: both hold strong commands down; a limit does so from the first instant",
+    ],
+    experiment: "hold a load for some seconds at three commands; the strong ones must give way at \
+     one instant, the weak ones never",
+    reference: "ROBOTIS AX-12 manual, alarm shutdown by overload; its torque limit falls",
+};
+
+impl Effect for FoldBack {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
+    fn difference(&self) -> f64 {
+        2e-2
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
+        let (level, after_s) = (values[1], values[2]);
+        let way_s = if at.duty.abs() > level {
+            step_s
+        } else {
+            -step_s
+        };
+        let passed = |from_s: f64| (from_s + way_s).max(0.0).min(2.0 * after_s);
+        let now_s = passed(memory[0]);
+        *memory = [now_s, share_above(after_s, now_s, passed(now_s))];
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm * (1.0 - (1.0 - values[0]) * at.memory[1])
+    }
+
+    /// Rested.
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope::NONE)
+    }
+}
+
+/// Share of a way from one time to another that lies above a third.
+fn share_above(limit_s: f64, from_s: f64, to_s: f64) -> f64 {
+    let (low_s, high_s) = (from_s.min(to_s), from_s.max(to_s));
+    match high_s > low_s {
+        true => ((high_s - limit_s) / (high_s - low_s)).clamp(0.0, 1.0),
+        false => f64::from(from_s >= limit_s),
+    }
+}

@@ -1,0 +1,86 @@
+//! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
+
+use super::StepState;
+use super::{AtRest, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope};
+
+/// |d input / dt| <= r. It remembers the input that it has reached.
+#[derive(Debug)]
+pub struct SlewLimit;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "slew_limit",
+    title: "slew limit of the drive",
+    site: Site::Command,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "the input that is obeyed follows the one that arrives by at most rate_per_s a second",
+    parameters: &[Parameter {
+        key: "rate_per_s",
+        unit: "1/s",
+        meaning: "fastest change of the input: full duties a second, or goal in rad (m) a second",
+        off: Some(f64::INFINITY),
+        typical: (1.0, 20.0),
+        bounds: (0.01, 10000.0),
+        starts: &[5.0, 2.0, 15.0],
+    }],
+    looks_like: "small changes of the input are obeyed at once, large steps arrive late and as a \
+     ramp; the delay grows with the height of the step",
+    confused_with: &[
+        "delay: both are late after a step; a delay is the same for small and large ones",
+        "torque_saturation: both blunt strong commands; the limit of torque stays while the \
+         command stays, a ramp ends",
+    ],
+    experiment: "step the input by three heights, from rest: the time until it is obeyed must grow \
+     with the height",
+    reference: "ROBOTIS e-Manual, XL330-M288, profile acceleration and profile velocity",
+};
+
+impl Effect for SlewLimit {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    /// Not a number: the first input is obeyed at once.
+    fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
+        [f64::NAN, 0.0]
+    }
+
+    fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
+        memory[0] = match at.energised {
+            true => reached(values[0], memory[0], at.input, step_s),
+            false => at.input,
+        };
+    }
+
+    /// The mean over the step of a ramp that may end within it.
+    fn obey(&self, values: &[f64], memory: MemoryCell, input: f64, step_s: f64) -> f64 {
+        let (rate, way) = (values[0], input - memory[0]);
+        if way.is_nan() || !rate.is_finite() || step_s <= 0.0 {
+            return input;
+        }
+        match way.abs() > rate * step_s {
+            true => memory[0] + 0.5 * rate * step_s * way.signum(),
+            false => input - 0.5 * way * way.abs() / (rate * step_s),
+        }
+    }
+
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope::NONE)
+    }
+}
+
+/// Input that is obeyed at the end of a step.
+fn reached(rate: f64, before: f64, input: f64, step_s: f64) -> f64 {
+    match (input - before).abs() > rate * step_s {
+        true => before + rate * step_s * (input - before).signum(),
+        false => input,
+    }
+}

@@ -1,0 +1,77 @@
+//! Thermal drift: the winding warms up under load, its resistance rises, and the torque falls.
+
+use super::StepState;
+use super::{
+    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+};
+
+/// tau / (1 + r x), T x' = u^2 - x. It remembers x, the warmth: 0 cold, 1 after long at full duty.
+#[derive(Debug)]
+pub struct ThermalDrift;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "thermal_drift",
+    title: "thermal drift of the motor",
+    site: Site::Drive,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
+     begins",
+    parameters: &[
+        Parameter {
+            key: "rise",
+            unit: "1",
+            meaning: "relative rise of the winding's resistance once warm from full duty",
+            off: Some(0.0),
+            typical: (0.5, 5.0),
+            bounds: (0.0, 300.0),
+            starts: &[3.0, 15.0],
+        },
+        Parameter {
+            key: "time_constant_s",
+            unit: "s",
+            meaning: "time in which the winding warms up by 63 %",
+            off: None,
+            typical: (5.0, 120.0),
+            bounds: (1.0, 3600.0),
+            starts: &[10.0, 40.0],
+        },
+    ],
+    looks_like: "the same command gives less torque the longer the log; cold again, it starts anew",
+    confused_with: &[
+        "torque_scale: both weaken every command; a scale is there from the first second",
+        "supply_sag: both weaken strong commands; sag is there at once and gone at once",
+        "fold_back: both come after a while; folding back comes at one instant",
+    ],
+    experiment: "repeat one motion without a break until nothing changes any more, let the motor \
+     cool, and repeat it once",
+    reference: "Mellor, Roberts, Turner, IEE Proceedings B 138 (1991) 205, with one body",
+};
+
+impl Effect for ThermalDrift {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&INFO)
+    }
+
+    fn remembers(&self) -> bool {
+        true
+    }
+
+    fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
+        let share = 1.0 - (-step_s / values[1]).exp();
+        memory[0] += share * (at.duty.powi(2) - memory[0]);
+    }
+
+    fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
+        torque_nm / (1.0 + values[0] * at.memory[0])
+    }
+
+    /// Cold.
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope::NONE)
+    }
+}

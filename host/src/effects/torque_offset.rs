@@ -1,0 +1,71 @@
+//! Torque offset: something pulls at the joint, always alike.
+
+use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+
+/// A constant torque.
+#[derive(Debug)]
+pub struct TorqueOffset;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "torque_offset",
+    title: "constant torque offset",
+    site: Site::Joint,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "torque = offset_nm, at every angle and speed, whether the drive is on or off",
+    parameters: &[Parameter {
+        key: "offset_nm",
+        unit: "N m",
+        meaning: "torque on the joint",
+        off: Some(0.0),
+        typical: (-0.05, 0.05),
+        bounds: (-5.0, 5.0),
+        starts: &[0.01, -0.01],
+    }],
+    looks_like: "the same error of torque everywhere: the joint rests beside where it should, and \
+     goes one way more easily than the other",
+    confused_with: &[
+        "direction_asymmetry: while the joint moves they are one law; at rest friction pulls \
+         nowhere",
+        "com_angle: near hanging both pull one way; turn the arm by 90 degrees",
+        "cable_spring: over a short range a spring far from its rest angle pulls alike; go further",
+        "encoder_zero: near hanging both move the point of rest; far from it gravity tells",
+    ],
+    experiment: "hold the joint still at angles all around: the difference to the model must be \
+     the same torque at each",
+    reference: "Gautier, Khalil, Proc. IEEE CDC (1988) 2331: offset of a joint's amplifier",
+};
+
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force = offset_n, everywhere, whether the drive is on or off",
+    parameters: &[Parameter {
+        key: "offset_n",
+        unit: "N",
+        meaning: "force on the joint",
+        off: Some(0.0),
+        typical: (-5.0, 5.0),
+        bounds: (-1000.0, 1000.0),
+        starts: &[0.1, -0.1],
+    }],
+    ..INFO
+};
+
+impl Effect for TorqueOffset {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
+    }
+
+    fn torque(&self, values: &[f64], _at: &JointState) -> f64 {
+        values[0]
+    }
+
+    /// What the drive holds against it is found with the pose.
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        Some(Slope::NONE)
+    }
+}

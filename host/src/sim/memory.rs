@@ -1,0 +1,78 @@
+//! What carries over from one step to the next, and from one stretch of a motion to the stretch
+//! after it: readings of encoders with memory, and what drives and joints remember.
+
+use super::drive::DriveInput;
+use super::plant::Plant;
+use super::sensor_state::SensorState;
+use crate::effects::{MemoryCell, StepState};
+
+/// Memory of a plant between the stretches of one motion.
+#[derive(Debug, Clone, Default)]
+pub struct Memory {
+    pub(super) sensors: SensorState,
+    pub(super) effects: EffectMemory,
+    /// Sample at which the stretch before ended.
+    pub(super) ended: Option<usize>,
+}
+
+/// One cell per effect that remembers and joint at which it acts; its place is that of
+/// [`ActiveEffect::cell`](super::joint_plan::ActiveEffect).
+#[derive(Debug, Clone, Default)]
+pub(super) struct EffectMemory(pub Vec<MemoryCell>);
+
+impl EffectMemory {
+    /// Where a motion begins at these angles and speeds, nothing being known of before.
+    pub fn beginning(plant: &Plant, angle: &[f64], speed: &[f64]) -> EffectMemory {
+        let mut memory = EffectMemory(vec![[0.0; 2]; plant.remembers]);
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            let at = StepState {
+                speed_rad_s: speed[joint],
+                ..StepState::at_rest(angle[joint] - plant.zeros_rad[joint])
+            };
+            for (e, cell) in plan.remembering() {
+                memory.0[cell] = e.effect.recall(e.values(), &at);
+            }
+        }
+        memory
+    }
+
+    /// Inputs as the drives follow them through a step.
+    pub fn obey(&self, plant: &Plant, inputs: &mut [DriveInput], step_s: f64) {
+        for (plan, at) in plant.joints.iter().zip(inputs) {
+            for e in plan.command.iter().filter(|_| at.energised) {
+                at.input = (e.effect).obey(e.values(), e.recall(&self.0), at.input, step_s);
+            }
+        }
+    }
+
+    /// After a step of `step_s` with these inputs that ended at these angles and speeds.
+    pub fn remember(
+        &mut self,
+        plant: &Plant,
+        inputs: &[DriveInput],
+        (angle, speed): (&[f64], &[f64]),
+        step_s: f64,
+    ) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            let mut remembering = plan.remembering().peekable();
+            if remembering.peek().is_none() {
+                continue;
+            }
+            let mut input = inputs[joint];
+            for e in &plan.command {
+                input.input = (e.effect).obey(e.values(), e.recall(&self.0), input.input, step_s);
+            }
+            let reading = plant.encoded_rad(joint, angle);
+            let at = StepState {
+                input: inputs[joint].input,
+                duty: plan.duty(input, reading, speed[joint]),
+                energised: input.energised,
+                angle_rad: angle[joint] - plant.zeros_rad[joint],
+                speed_rad_s: speed[joint],
+            };
+            for (e, cell) in remembering {
+                (e.effect).remember(e.values(), &mut self.0[cell], &at, step_s);
+            }
+        }
+    }
+}

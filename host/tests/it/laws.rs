@@ -1,0 +1,48 @@
+//! Every law of the library against the truth of the challenges, which states it a second time with
+//! another integrator: the true model must predict the logs to their noise.
+
+use crate::common::Bench;
+use handstand::Model;
+use handstand::challenge::{KINDS, Motions, bench};
+use handstand::compare::compare;
+use handstand::fitting::Horizon;
+use handstand::log::{LogRequest, read};
+use rayon::prelude::*;
+
+/// How long the model runs freely. A joint that sticks and slips forgets where it began: over a
+/// whole motion noise decides when it lets go.
+fn horizon(kind: &str) -> Horizon {
+    match kind {
+        "stribeck" => Horizon::Seconds(1.0),
+        _ => Horizon::Whole,
+    }
+}
+
+/// Worst error of the true model over an arm's motions, in shares of the readings' noise.
+fn error_over_floor(kind: &'static str, seed: u64) -> f64 {
+    let files = Bench::new();
+    let bench = bench(Motions::Arm, seed, &[kind]).unwrap();
+    files.put("true.toml", &bench.true_model_toml);
+    let model = Model::load(&files.path("true.toml")).unwrap();
+    let error = |log: &handstand::challenge::BenchLog| {
+        files.put(&log.name, &log.csv);
+        let motions = read(&[LogRequest::whole(files.path(&log.name))], &model.log).unwrap();
+        let compared = compare(&model, "true.toml", &motions, Some(horizon(kind)));
+        let of_floor = compared
+            .signals
+            .iter()
+            .map(|signal| signal.rms / signal.floor);
+        of_floor.fold(0.0, f64::max)
+    };
+    bench.logs.iter().map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_true_model_predicts_the_truth_of_every_kind() {
+    let off: Vec<(&str, f64)> = KINDS
+        .par_iter()
+        .map(|kind| (*kind, error_over_floor(kind, 2)))
+        .filter(|(_, error)| *error > 1.3)
+        .collect();
+    assert!(off.is_empty(), "{off:?}");
+}
