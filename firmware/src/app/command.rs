@@ -222,6 +222,11 @@ impl App {
         self.link.send(board, &report);
     }
 
+    /// The token that armed since the last greeting; none if none has, or torque went off since.
+    pub fn used_token(&self) -> Option<u16> {
+        self.token.filter(|_| self.is_used)
+    }
+
     /// Whether torque is on, falling included.
     pub fn is_armed(&self) -> bool {
         match self.state {

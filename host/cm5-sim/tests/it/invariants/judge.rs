@@ -11,7 +11,10 @@ impl Judged {
         let now_ms = self.cm5.now_ms();
         self.arms.retain(|(until_ms, ..)| now_ms <= *until_ms);
         let is_armed = self.cm5.app.is_armed();
-        if is_armed && !self.armed {
+        // Commands that came during one tick are obeyed one right after the other: torque that went
+        // off and came on again between two looks shows in the token alone.
+        let armed_again = self.fresh.is_some() && self.cm5.app.used_token() == self.fresh;
+        if is_armed && (!self.armed || armed_again) {
             let fresh = self.fresh;
             let arms = self.arms.iter();
             // Of two that came during one tick the first arms, or the second if the first was

@@ -9,11 +9,12 @@ mod judge;
 mod judged;
 mod steps;
 
+use handstand_shared::message::{ArmLimits, Mode, VERSION};
 use judged::Judged;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest};
-use steps::{Step, Steps};
+use steps::{Step, Steps, Token};
 
 /// Runs in each of two tests, of [`STEPS`] each.
 const RUNS: u32 = 500;
@@ -67,4 +68,26 @@ fn the_invariants_hold_whatever_happens() {
 #[test]
 fn the_invariants_hold_whatever_else_happens() {
     the_invariants_hold(2);
+}
+
+/// What was found among ten million steps: a greeting while torque falls, a change of the mode that
+/// arrives during a tick, and arming, all taken at its end.
+#[test]
+fn torque_off_and_on_again_between_two_looks_is_a_new_arming() {
+    let mut judged = Judged::new();
+    let steps = [
+        Step::Wait(7.533492278783457),
+        Step::Hello(VERSION),
+        Step::Wait(12.0),
+        Step::Wait(0.0),
+        Step::Ready(Mode::Stream),
+        Step::Chunk(0, false),
+        Step::Hello(VERSION),
+        Step::Mode(Mode::Stream),
+        Step::Arm(Token::Last, ArmLimits::FULL),
+    ];
+    for step in &steps {
+        judged.step(step);
+    }
+    assert!(judged.armed, "the last step arms");
 }
