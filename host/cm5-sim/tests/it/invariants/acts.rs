@@ -12,6 +12,9 @@ use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::plan::Plan;
 
+/// A frame that arrives during a tick is taken at its end: so much later at most, ms.
+pub(super) const TAKEN_MS: f64 = 25.0;
+
 impl Judged {
     pub(super) fn step(&mut self, step: &Step) {
         match step {
@@ -144,8 +147,7 @@ impl Judged {
         self.cm5.clear();
         self.cm5.send(&Command::Arm { token, limits });
         let arrived_ms = self.cm5.board.last_byte_ns() as f64 * 1e-6;
-        // A frame that arrives during a tick is taken at its end.
-        self.arms.push((arrived_ms + 25.0, token, limits));
+        self.arms.push((arrived_ms + TAKEN_MS, token, limits));
         while self.cm5.now_ms() < arrived_ms + 0.01 {
             let left_ms = arrived_ms + 0.01 - self.cm5.now_ms();
             self.cm5.run_ms(left_ms.clamp(0.01, 10.0));

@@ -1,5 +1,6 @@
 //! The invariants, each checked after every step.
 
+use super::acts::TAKEN_MS;
 use super::judged::Judged;
 use handstand_cm5_sim::SimulatedCm5;
 use handstand_firmware::app::{State, Torque};
@@ -20,14 +21,16 @@ impl Judged {
             // Of two that came during one tick the first arms, or the second if the first was
             // refused: which one is not known here.
             let own = arms.filter(|(_, token, limits)| Some(*token) == fresh && limits.is_sound());
-            let arm = own.max_by_key(|(_, _, limits)| limits.torque.0);
+            let arm = own.clone().max_by_key(|(_, _, limits)| limits.torque.0);
+            let first_ms = own.map(|(until_ms, ..)| until_ms - TAKEN_MS);
+            let first_ms = first_ms.fold(f64::INFINITY, f64::min);
             let Some((_, _, limits)) = arm.copied() else {
                 panic!(
                     "armed by none of {:?}, the token being {fresh:?}",
                     self.arms
                 );
             };
-            self.judge_arming(limits);
+            self.judge_arming(limits, first_ms.max(self.looked_ms));
         }
         if self.armed && !is_armed {
             self.off_ms = Some(now_ms);
@@ -47,8 +50,9 @@ impl Judged {
         );
     }
 
-    /// What the firmware must have refused, had it been so when it was armed.
-    fn judge_arming(&mut self, limits: ArmLimits) {
+    /// What the firmware must have refused, had it been so when it was armed, which it was not
+    /// before `since_ms`: a tick may have come between, and lasts up to 18 ms.
+    fn judge_arming(&mut self, limits: ArmLimits, since_ms: f64) {
         // A token arms once, and only the last one.
         self.fresh = None;
         let now_ms = self.cm5.now_ms();
@@ -68,7 +72,7 @@ impl Judged {
         let is_balance = matches!(self.cm5.app.state(), State::Balance(_));
         if is_balance {
             assert!(self.plan.is_some(), "balancing without a plan");
-            let age_ms = self.cm5.now_ms() - self.attitude_ms;
+            let age_ms = since_ms - self.attitude_ms;
             assert!(age_ms <= 30.5, "armed with an attitude {age_ms} ms old");
         }
         // Who did not answer was not switched on.
