@@ -31,7 +31,10 @@ impl Balance {
             return;
         }
         let code = i32::from(gyro as i16) << CODE_PLACES;
-        let code = code.wrapping_sub(self.zero >> (ZERO_PLACES - CODE_PLACES));
+        // Rounded: the mean comes near a code from below, and cut off it would be 1/16 off for ever.
+        const DROPPED: u8 = ZERO_PLACES - CODE_PLACES;
+        let zero = self.zero.wrapping_add(1 << (DROPPED - 1)) >> DROPPED;
+        let code = code.wrapping_sub(zero);
         let rate = code.wrapping_mul(i32::from(self.plan.gyro.scale)) >> (4 + CODE_PLACES);
         self.rate = rate.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
         // 1e-3 rad/s for 10 ms are 1e-5 rad: 1/10 of the angle's step.
@@ -53,6 +56,30 @@ impl Balance {
                 ..self.plan.gyro
             },
             None => Plan::ZERO.gyro,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From either side, so that no rate is seen at rest; a code more is one.
+    #[test]
+    fn the_zero_is_the_code_at_rest() {
+        for code in [505, 511, 512, 513, 520] {
+            let mut balance = Balance::NONE;
+            balance.plan.gyro = Gyro {
+                from_host: false,
+                zero: 512,
+                scale: 2793,
+            };
+            balance.zero = 512 << ZERO_PLACES;
+            (0..300).for_each(|_| balance.rest(code));
+            balance.sense(Attitude::default(), code);
+            assert_eq!((balance.rate, balance.angle), (0, 0), "{code}");
+            balance.sense(Attitude::default(), code + 1);
+            assert_eq!(balance.rate, 2793 >> 4, "{code}");
         }
     }
 }
