@@ -33,6 +33,20 @@ enum Goal {
     Speeds(Speeds),
 }
 
+/// Torque comes on in steps, a tick each: in one tick all of it would make its report late, and with
+/// it the host's attitude for the next one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Onset {
+    /// It comes on in those that balance, with the law's first command.
+    Balance,
+    /// The others get goals where they stand.
+    Goals,
+    /// The others have torque, too.
+    Others,
+    /// All have it.
+    Done,
+}
+
 /// The firmware, apart from its hardware.
 #[derive(Debug)]
 pub struct App {
@@ -72,8 +86,8 @@ pub struct App {
     fading: Age,
     /// What arming brought.
     limits: ArmLimits,
-    /// Whether torque comes on with the law's first command, and has not yet.
-    begins: bool,
+    /// How far torque has come on while balancing.
+    onset: Onset,
     /// Ticks since one was too long.
     calm: u8,
     /// Rounds in a row with a low supply, and the round last looked at.
@@ -121,7 +135,7 @@ impl App {
             off: Age::from(board.clock()),
             fading: Age::NEVER,
             limits: ArmLimits::NONE,
-            begins: false,
+            onset: Onset::Done,
             calm: 0,
             low: (0, 0),
             overruns: 0,

@@ -156,6 +156,12 @@ impl Balance {
         self.fingerprint.map(|_| [shoulder.id, hip.id])
     }
 
+    /// All servos it commands; 255 where a joint has one only.
+    pub fn servos(&self) -> [u8; 4] {
+        let [shoulder, hip] = &self.plan.joints;
+        [shoulder.id, shoulder.mirror, hip.id, hip.mirror]
+    }
+
     /// Whether all servos it commands turn without end: others would take its commands for speeds
     /// on the way to their goals.
     pub fn are_wheels(&self, servos: &Servos) -> bool {

@@ -54,6 +54,8 @@ pub struct Servos {
     /// The first commanded servo since arming that said it was overloaded or too hot, or that its
     /// torque was off.
     pub tripped: Option<TrippedServo>,
+    /// Whether torque was switched on in all that are commanded.
+    has_torque: bool,
 }
 
 impl Servos {
@@ -85,6 +87,7 @@ impl Servos {
             lowest: Supply(u8::MAX),
             rounds: 0,
             tripped: None,
+            has_torque: false,
         }
     }
 

@@ -1,11 +1,9 @@
 //! When torque comes on.
 
-use super::{App, Goal, State, Torque};
+use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
-use crate::bus;
 use crate::design::{CALM_TICKS, LOW_SUPPLY};
-use handstand_shared::control_table::TORQUE_LIMIT;
 use handstand_shared::message::{ArmLimits, Refusal};
 
 impl App {
@@ -55,11 +53,13 @@ impl App {
         self.longest_silence_ms = 0;
         self.off = Age::NEVER;
         self.limits = limits;
-        self.begins = is_balance;
-        self.servos.tripped = None;
+        self.onset = match is_balance {
+            true => Onset::Balance,
+            false => Onset::Done,
+        };
         match is_balance {
             // A servo that missed torque off has these limits from now on, too.
-            true => bus::write_all(board, TORQUE_LIMIT, limits.torque.0),
+            true => self.servos.choose(board, limits),
             false => self.servos.arm(board, limits),
         }
         self.state = match is_balance {

@@ -1,6 +1,6 @@
 //! What a tick does in each state.
 
-use super::{App, Goal, State};
+use super::{App, Goal, Onset, State};
 use crate::balance::Stop;
 use crate::board::{Board, since_us};
 use crate::bus;
@@ -78,19 +78,33 @@ impl App {
             Err(Stop::JointSpeed) => return self.give_up(board, Cause::JointSpeed),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
-        if self.begins {
+        let is_first = self.onset == Onset::Balance;
+        if is_first {
             // It was held until now: the estimate begins here, and not where it was armed.
             self.balance.begin(&readings);
         }
         let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
         self.longest_law_us = self.longest_law_us.max(law_us);
-        if self.begins {
-            // With the first command, not before: without one the robot would fall.
-            self.begins = false;
-            self.servos.arm(board, self.limits);
-        }
         self.servos.turn(board, commands);
+        let balancing = self.balance.servos();
+        match self.onset {
+            // With the first command, not before: without one the robot would fall.
+            Onset::Balance => {
+                self.servos
+                    .switch_on_only(board, balancing, self.limits.torque);
+                self.onset = Onset::Goals;
+            }
+            Onset::Goals => {
+                self.servos.hold_but(board, balancing);
+                self.onset = Onset::Others;
+            }
+            Onset::Others => {
+                self.servos.switch_on(board);
+                self.onset = Onset::Done;
+            }
+            Onset::Done => {}
+        }
         self.balance.begin_update();
     }
 

@@ -1,6 +1,6 @@
 //! How torque goes off, and when it must.
 
-use super::{App, Goal, State, Torque};
+use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
 use crate::bus;
@@ -96,7 +96,7 @@ impl App {
     pub(super) fn disarm<B: Board>(&mut self, board: &mut B) {
         self.servos.disarm(board);
         self.off = Age::from(board.clock());
-        self.begins = false;
+        self.onset = Onset::Done;
         self.token = None;
         self.goal = Goal::Hold;
     }

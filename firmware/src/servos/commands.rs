@@ -7,17 +7,22 @@ use crate::design::GOAL_SLEW;
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
+use handstand_shared::dynamixel::BROADCAST;
 use handstand_shared::message::ArmLimits;
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_shared::raw::{Position, Signed};
+use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
 
+/// Ids that no servo has.
+const NOBODY: [u8; 4] = [BROADCAST; 4];
+
 impl Servos {
-    /// Torque on where a servo answered, within these limits, and the goal where it stands. What
-    /// limits the speed of a servo with a goal is the speed of one that turns without end: that
-    /// gets 0, and so does one whose mode is not known.
-    pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
+    /// Those that answered are commanded from now on, within these limits, and their goal is where
+    /// they stand. What limits the speed of a servo with a goal is the speed of one that turns
+    /// without end: that gets 0, and so does one whose mode is not known. Torque stays as it is.
+    pub fn choose<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.tripped = None;
+        self.has_torque = false;
         for servo in self.all_mut() {
             servo.armed = servo.present;
             servo.goal = servo.position;
@@ -27,8 +32,47 @@ impl Servos {
             Some(false) => limits.speed.0,
             Some(true) | None => 0,
         });
-        self.write_each(board, GOAL_POSITION, |servo| servo.goal.0);
-        self.write_each(board, TORQUE_ENABLE, |_| 1);
+    }
+
+    /// Torque on where a servo answered, within these limits, and the goal where it stands.
+    pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
+        self.choose(board, limits);
+        self.hold_but(board, NOBODY);
+        self.switch_on(board);
+    }
+
+    /// Torque on in all that are commanded.
+    pub fn switch_on<B: Board>(&mut self, board: &mut B) {
+        self.write_to(board, TORQUE_ENABLE, false, NOBODY);
+        self.has_torque = true;
+    }
+
+    /// Torque on in those of these servos that are commanded; within this limit, which a servo that
+    /// missed it before has now.
+    pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4], limit: TorqueLimit) {
+        bus::write_all(board, TORQUE_LIMIT, limit.0);
+        self.write_to(board, TORQUE_ENABLE, true, ids);
+    }
+
+    /// Has all that are commanded but these stay where they stand now.
+    pub fn hold_but<B: Board>(&mut self, board: &mut B, ids: [u8; 4]) {
+        for servo in self.all_mut() {
+            servo.goal = servo.position;
+        }
+        self.write_to(board, GOAL_POSITION, false, ids);
+    }
+
+    /// Writes its goal, or else 1, to each servo that is commanded and is one of these, or is none.
+    // One function for all, for it is long.
+    #[inline(never)]
+    fn write_to<B: Board>(&self, board: &mut B, register: Register, is_one: bool, ids: [u8; 4]) {
+        let is_goal = register == GOAL_POSITION;
+        let all = || self.all().iter();
+        let is_meant = |servo: &&Servo| servo.armed && ids.contains(&servo.id) == is_one;
+        let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
+        let values = all().filter(is_meant).map(|servo| (servo.id, value(servo)));
+        let count = all().filter(is_meant).count() as u8;
+        bus::write_each(board, register, count, values);
     }
 
     /// Torque off everywhere.
@@ -96,10 +140,7 @@ impl Servos {
 
     /// Goals where the servos stand now.
     pub fn hold<B: Board>(&mut self, board: &mut B) {
-        for servo in self.all_mut() {
-            servo.goal = servo.position;
-        }
-        self.write_each(board, GOAL_POSITION, |servo| servo.goal.0);
+        self.hold_but(board, NOBODY);
     }
 
     /// How many are commanded.

@@ -172,6 +172,7 @@ impl Servos {
     fn take(&mut self, place: u8, answer: &Answer, statistics: &mut Statistics) -> bool {
         let turn = self.turn_of(place);
         let tells_torque = self.tells_torque(place);
+        let must_have_torque = self.has_torque;
         let Some(servo) = self.servos.get_mut(usize::from(place)) else {
             return false;
         };
@@ -206,7 +207,7 @@ impl Servos {
             let code = u16::from_le_bytes(position) & Position::MAX.0;
             servo.position = Position(code);
             self.positions.set(usize::from(place), code);
-            if servo.armed && (error.0 & GAVE_UP != 0 || !has_torque) {
+            if servo.armed && (error.0 & GAVE_UP != 0 || (must_have_torque && !has_torque)) {
                 servo.armed = false;
                 let (id, error) = (servo.id, error.0);
                 self.tripped = self.tripped.or(Some(TrippedServo { id, error }));

@@ -4,7 +4,7 @@ use super::rig::*;
 use handstand_cm5_sim::{Plant, Robot, SimulatedCm5, VirtualCm5};
 use handstand_shared::message::*;
 
-/// A joint whose angle tells whether its motor has torque: 1 rad, else 0.
+/// A joint whose angle tells whether its motor has torque: 6 position codes, else 0.
 #[derive(Debug)]
 struct Tell {
     is_on: bool,
@@ -26,7 +26,7 @@ impl Plant for Tell {
     fn advance(&mut self, _span_s: f64) {}
 
     fn angle_rad(&self, _joint: usize) -> f64 {
-        f64::from(u8::from(self.is_on))
+        0.03 * f64::from(u8::from(self.is_on))
     }
 
     fn speed_rad_s(&self, _joint: usize) -> f64 {
@@ -38,8 +38,8 @@ impl Plant for Tell {
     }
 }
 
-/// The servo that tells, and its place in the servo list.
-const TELLS: (u8, usize) = (18, 17);
+/// The servo that tells, one that balances, and its place in the servo list.
+const TELLS: (u8, usize) = (11, 10);
 
 /// A CM-5 ready to be armed, and the token.
 fn ready(mode: Mode) -> (VirtualCm5, u16) {
@@ -73,7 +73,7 @@ fn told_and_read(cm5: &VirtualCm5) -> Vec<(Option<bool>, bool)> {
     pairs
         .map(|pair| {
             let code = pair[1].position(TELLS.1).expect("it answers");
-            (pair[1].torque_was_on(Some(&pair[0])), code > 600)
+            (pair[1].torque_was_on(Some(&pair[0])), code > 514)
         })
         .collect()
 }
