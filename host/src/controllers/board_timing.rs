@@ -26,15 +26,15 @@ pub(super) const ROUNDED: f64 = 0.288_675_134_594_812_9;
 
 impl BoardTiming {
     /// The law on the CM-5 between 18 servos with return delay 0, its moment being the end of the
-    /// last answer, which is the hip's after the shoulder's. The attitude's age and the effect were
-    /// measured by `cargo xtask bench-firmware --only "age of readings"`; the joints' follow from
-    /// the 0.22 ms that a servo's turn takes. The host says the first link's attitude every period,
-    /// as it hears a report. Its rate counts no more than a gyro's of 10 deg/s: trusted more, what
-    /// the linear model makes of one so old fells the robot from 2 deg. The torque follows at once.
+    /// last answer, which is the hip's after the shoulder's. Ages and effect were measured by
+    /// `cargo xtask bench-firmware --only "age of readings"`. The host says the first link's
+    /// attitude every period, as it hears a report. Its rate counts no more than a gyro's of 10
+    /// deg/s: trusted more, what the linear model makes of one so old fells the robot from 2 deg.
+    /// The torque follows at once.
     pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
-        effect_s: 0.8e-3,
+        effect_s: 0.9e-3,
         lag_s: 0.0,
-        age_s: [8.7e-3, 0.5e-3, 0.3e-3, 8.7e-3],
+        age_s: [8.2e-3, 0.4e-3, 0.2e-3, 8.2e-3],
         deviation: [
             EXACT_RAD,
             Position::LSB_RAD * ROUNDED,

@@ -96,11 +96,9 @@ impl ElfCm5 {
     pub fn new(elf: &Path) -> Result<ElfCm5, String> {
         let mut core = Core::load(elf)?;
         release(&mut core);
-        // The gyro at rest.
-        core.adc(3, 2500);
         // Erased, not zero.
         core.eeprom().fill(0xff);
-        Ok(ElfCm5 {
+        let mut cm5 = ElfCm5 {
             core,
             bus: Bus::new(1..=18),
             bus_ahead_ns: 0,
@@ -113,7 +111,10 @@ impl ElfCm5 {
             link_free: 0,
             to_link: VecDeque::new(),
             pc: Pc::default(),
-        })
+        };
+        // At rest, as on the board in process.
+        cm5.set_gyro(512);
+        Ok(cm5)
     }
 
     /// Puts a boot loader in front of the program, which waits so long after every reset.

@@ -46,7 +46,7 @@ impl Source {
         Board {
             gyro,
             joint_range_rad: 1.5,
-            joint_speed_rad_s: 12.0,
+            joint_speed_rad_s: 20.0,
             ..Board::BIOLOID
         }
     }
@@ -188,6 +188,8 @@ pub fn balance(
 ) -> Result<Balanced, Option<Refusal>> {
     let mut robot = Robot::new(conditions);
     robot.place(bench);
+    // The firmware takes the mean code before arming for the gyro's zero.
+    bench.set_gyro(robot.gyro());
     let (token, before) = ready(bench, plan, robot.attitude())?;
     bench.clear();
     let sequence = bench.send(&arm(token));

@@ -72,6 +72,51 @@ fn the_elf_holds_three_links_up() {
     assert_eq!(rig.core.lost(0), 0);
 }
 
+/// The longest ways back, which a reading that is older than designed for fells.
+#[test]
+fn the_elf_stands_from_the_farthest_corners() {
+    let built = built();
+    let two = 2f64.to_radians();
+    let (_, plan) = plan();
+    for start_rad in [[two; 3], [two, two, -two], [-two, -two, two], [-two; 3]] {
+        let conditions = Conditions {
+            dead_zone: 0.08,
+            eccentric_m: [0.0; 3],
+            start_rad,
+        };
+        let mut rig = ElfCm5::new(&built.elf).unwrap();
+        let run = balance(&mut rig, &plan, &conditions, 5.0).expect("it arms");
+        assert!(
+            run.stood_s >= 5.0 - 1e-6,
+            "{start_rad:?}: {:.2} s, {:?}",
+            run.stood_s,
+            run.condition
+        );
+    }
+}
+
+/// The zero that the firmware finds at rest is that of the run.
+#[test]
+fn the_elf_stands_by_its_gyro_alone() {
+    let built = built();
+    let (_, plan) = Source::Gyro.plan();
+    for degrees in [0.0f64, 0.5] {
+        let conditions = Conditions {
+            dead_zone: 0.08,
+            eccentric_m: [0.0; 3],
+            start_rad: [degrees.to_radians(); 3],
+        };
+        let mut rig = ElfCm5::new(&built.elf).unwrap();
+        let run = balance(&mut rig, &plan, &conditions, 5.0).expect("it arms");
+        assert!(
+            run.stood_s >= 5.0 - 1e-6,
+            "{degrees}: {:.2} s, {:?}",
+            run.stood_s,
+            run.condition
+        );
+    }
+}
+
 /// Built here: it is quick after the plain one.
 #[test]
 fn the_elf_balances_by_the_plan_compiled_in() {
