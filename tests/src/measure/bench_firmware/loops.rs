@@ -151,8 +151,8 @@ pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
             "{least} to {longest} us in {starts} starts, {:.1} % of the period, the law {law} us, {overruns} overruns",
             100.0 * share
         ),
-        limit: "60 %",
-        holds: Some(share <= 0.6 && overruns == 0),
+        limit: super::LONGEST_TICK,
+        holds: Some(longest <= super::LONGEST_TICK_US && overruns == 0),
         values: json!({"longest_tick_us": longest, "longest_law_us": law, "overruns": overruns, "starts": starts}),
     }];
     rows.extend(

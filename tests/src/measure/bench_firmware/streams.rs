@@ -120,8 +120,8 @@ fn longest_tick(built: &Built, args: &Args) -> Row {
             "{least} to {longest} us in {starts} starts, {:.1} % of the period, {overruns} overruns",
             100.0 * share
         ),
-        limit: "60 %",
-        holds: Some(share <= 0.6 && overruns == 0),
+        limit: super::LONGEST_TICK,
+        holds: Some(longest <= super::LONGEST_TICK_US && overruns == 0),
         values: json!({"longest_tick_us": longest, "overruns": overruns, "starts": starts}),
     }
 }
