@@ -33,8 +33,8 @@ enum Goal {
     Speeds(Speeds),
 }
 
-/// Torque comes on in steps, a tick each: in one tick all of it would make its report late, and with
-/// it the host's attitude for the next one.
+/// Torque comes on in steps, a tick each: in one tick all of it would make its report late, and
+/// with it the host's attitude for the next one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Onset {
     /// It comes on in those that balance, with the law's first command.

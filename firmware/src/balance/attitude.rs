@@ -31,7 +31,7 @@ impl Balance {
             return;
         }
         let code = i32::from(gyro as i16) << CODE_PLACES;
-        // Rounded: the mean comes near a code from below, and cut off it would be 1/16 off for ever.
+        // Rounded: the mean comes near a code from below, and cut off it would stay 1/16 off.
         const DROPPED: u8 = ZERO_PLACES - CODE_PLACES;
         let zero = self.zero.wrapping_add(1 << (DROPPED - 1)) >> DROPPED;
         let code = code.wrapping_sub(zero);

@@ -37,7 +37,7 @@ impl StreamReport {
     /// Whether torque was on when the servos were read in this tick, the report before being
     /// `before`; none where it is not known. While balancing, torque comes on with the law's first
     /// command and goes off where the law gives up: after the reading, while `condition` is that of
-    /// the tick's end.
+    /// the tick's end. Servos that do not balance have it two ticks later.
     pub fn torque_was_on(&self, before: Option<&StreamReport>) -> Option<bool> {
         let before = before.filter(|before| self.tick == before.tick.wrapping_add(1));
         let was = |condition| before.is_some_and(|before| before.condition == condition);
