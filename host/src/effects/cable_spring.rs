@@ -36,7 +36,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "a static error that is a straight line over the joint angle, the same at every \
      speed",
     confused_with: &[
-        "torque_offset: over a short range far from its rest angle a spring pulls alike; go further",
+        "torque_offset: over a short range far from its rest angle a spring pulls alike; go \
+         further",
         "pre_sliding: both are sprung about a point; that of a cable stays where it is",
         "mass: near hanging, gravity is a straight line over angle too; turn the rig or add a \
          mass, which leaves the cable alone",

@@ -5,9 +5,9 @@ use super::{
     AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
 };
 
-/// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0 to
-/// at most twice as long. It remembers that time, s, and for which share of the next step the torque
-/// is folded back if the duty stays, for it may be within the step that it falls.
+/// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0
+/// to at most twice as long. It remembers that time, s, and for which share of the next step the
+/// torque is folded back if the duty stays, for it may be within the step that it falls.
 #[derive(Debug)]
 pub struct FoldBack;
 
