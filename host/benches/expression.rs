@@ -7,7 +7,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::log::Motion;
-use handstand::sim::{Plant, SensorState, Start, predict};
+use handstand::sim::{Memory, Plant, Start, predict};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::path::Path;
@@ -79,7 +79,7 @@ fn predictions(c: &mut Criterion) {
         let mut out = vec![0.0; motion.len()];
         c.bench_function(&format!("predict 20 s, drag by {name}"), |b| {
             b.iter(|| {
-                let (all, mut memory) = (0..motion.len(), SensorState::default());
+                let (all, mut memory) = (0..motion.len(), Memory::default());
                 predict(
                     &plant,
                     &motion,

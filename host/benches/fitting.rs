@@ -10,7 +10,7 @@ use handstand::diagnose::{DiagnoseOptions, diagnose};
 use handstand::fitting::{FitData, FitOptions, Horizon, fit};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
-use handstand::sim::{Plant, SensorState, predict};
+use handstand::sim::{Memory, Plant, predict};
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
@@ -53,7 +53,7 @@ fn identify(c: &mut Criterion) {
     let mut out = vec![0.0; motion.len()];
     c.bench_function("predict 20 s", |b| {
         b.iter(|| {
-            let mut memory = SensorState::default();
+            let mut memory = Memory::default();
             predict(
                 &plant,
                 motion,

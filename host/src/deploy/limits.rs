@@ -150,7 +150,8 @@ mod tests {
             ..BoardTiming::HOST_ATTITUDE
         };
         for (mode, late) in at_once.iter().zip(limits(&slower, &Board::BIOLOID)) {
-            let grown = (mode.pole_per_s * (20e-3 - 0.8e-3)).exp();
+            let grown =
+                (mode.pole_per_s * (slower.effect_s - BoardTiming::HOST_ATTITUDE.effect_s)).exp();
             assert!((late.growth / mode.growth - grown).abs() < 1e-9);
         }
     }
