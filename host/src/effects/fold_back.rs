@@ -35,7 +35,7 @@ static INFO: EffectInfo = EffectInfo {
             off: None,
             typical: (0.1, 0.9),
             bounds: (0.02, 0.99),
-            starts: &[0.1, 0.05, 0.3],
+            starts: &[0.1, 0.25, 0.05, 0.5],
         },
         Parameter {
             key: "after_s",
@@ -44,7 +44,7 @@ static INFO: EffectInfo = EffectInfo {
             off: None,
             typical: (0.1, 2.0),
             bounds: (0.02, 30.0),
-            starts: &[0.25, 1.0],
+            starts: &[0.3, 0.15, 1.0],
         },
     ],
     looks_like: "under a strong, lasting command the torque falls at one instant, and comes back \
