@@ -14,7 +14,7 @@ use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
 
 /// Ids that no servo has.
-const NOBODY: [u8; 4] = [BROADCAST; 4];
+const NO_SERVO: [u8; 4] = [BROADCAST; 4];
 
 impl Servos {
     /// Those that answered are commanded from now on, within these limits, and their goal is where
@@ -37,13 +37,13 @@ impl Servos {
     /// Torque on where a servo answered, within these limits, and the goal where it stands.
     pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.choose(board, limits);
-        self.hold_but(board, NOBODY);
+        self.hold_but(board, NO_SERVO);
         self.switch_on(board);
     }
 
     /// Torque on in all that are commanded.
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
-        self.write_to(board, TORQUE_ENABLE, false, NOBODY);
+        self.write_to(board, TORQUE_ENABLE, false, NO_SERVO);
         self.has_torque = true;
     }
 
@@ -140,7 +140,7 @@ impl Servos {
 
     /// Goals where the servos stand now.
     pub fn hold<B: Board>(&mut self, board: &mut B) {
-        self.hold_but(board, NOBODY);
+        self.hold_but(board, NO_SERVO);
     }
 
     /// How many are commanded.

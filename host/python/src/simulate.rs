@@ -82,13 +82,13 @@ fn simulated(model: &Model, motion: Motion, start: &Start) -> Motion {
     let (joints, samples) = (motion.position_rad.len(), motion.len());
     let plant = Plant::new(&model.inner, &motion);
     let mut readings = vec![0.0; joints * samples];
-    let mut sensors = Memory::default();
+    let mut memory = Memory::default();
     predict(
         &plant,
         &motion,
         0..samples,
         start,
-        &mut sensors,
+        &mut memory,
         &mut readings,
     );
     for (joint, read) in readings.chunks(samples).enumerate() {

@@ -2,6 +2,7 @@
 //! after it: readings of encoders with memory, and what drives and joints remember.
 
 use super::drive::DriveInput;
+use super::joint_plan::JointPlan;
 use super::plant::Plant;
 use super::sensor_state::SensorState;
 use crate::effects::{MemoryCell, StepState};
@@ -39,10 +40,16 @@ impl EffectMemory {
     /// Inputs as the drives follow them through a step.
     pub fn obey(&self, plant: &Plant, inputs: &mut [DriveInput], step_s: f64) {
         for (plan, at) in plant.joints.iter().zip(inputs) {
-            for e in plan.command.iter().filter(|_| at.energised) {
-                at.input = (e.effect).obey(e.values(), e.recall(&self.0), at.input, step_s);
-            }
+            *at = self.obeyed(plan, *at, step_s);
         }
+    }
+
+    fn obeyed(&self, plan: &JointPlan, at: DriveInput, step_s: f64) -> DriveInput {
+        let effects = plan.command.iter().filter(|_| at.energised);
+        let input = effects.fold(at.input, |input, e| {
+            (e.effect).obey(e.values(), e.recall(&self.0), input, step_s)
+        });
+        DriveInput { input, ..at }
     }
 
     /// After a step of `step_s` with these inputs that ended at these angles and speeds.
@@ -58,10 +65,7 @@ impl EffectMemory {
             if remembering.peek().is_none() {
                 continue;
             }
-            let mut input = inputs[joint];
-            for e in &plan.command {
-                input.input = (e.effect).obey(e.values(), e.recall(&self.0), input.input, step_s);
-            }
+            let input = self.obeyed(plan, inputs[joint], step_s);
             let reading = plant.encoded_rad(joint, angle);
             let at = StepState {
                 input: inputs[joint].input,
