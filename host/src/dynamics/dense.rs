@@ -6,7 +6,7 @@
 
 use super::chain::Chain;
 use super::equations::{LinkTerms, Turned, coupling, weight};
-use super::lanes::{Lane, Lanes};
+use super::lanes::{Lane, Lanes, each};
 use super::runge_kutta::runge_kutta;
 use std::array::from_fn;
 
@@ -78,7 +78,7 @@ impl<const N: usize> Dense<N> {
         if held.contains(&true) {
             let accelerate = |angle: &[f64; N], speed: &[f64; N]| {
                 let found = self.forward(angle, speed, torque_nm, held);
-                from_fn(|i| if held[i] { 0.0 } else { found[i] })
+                each(|i| if held[i] { 0.0 } else { found[i] })
             };
             let state = (*angle_rad, *speed_rad_s);
             (*angle_rad, *speed_rad_s) = runge_kutta(state, step_s, accelerate);

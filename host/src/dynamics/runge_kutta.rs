@@ -4,8 +4,7 @@
 //! Two forms of one method, bit for bit the same: three links in four lanes take 344 ns a step by
 //! value and 358 ns in place.
 
-use super::lanes::Lane;
-use std::array::from_fn;
+use super::lanes::{Lane, each};
 
 /// Angles and speeds after `step_s`; `accelerate` gives the accelerations at angles and speeds.
 ///
@@ -18,7 +17,7 @@ pub fn runge_kutta<const N: usize, V: Lane>(
     accelerate: impl Fn(&[V; N], &[V; N]) -> [V; N],
 ) -> ([V; N], [V; N]) {
     let (half_s, sixth_s) = (step_s * V::splat(0.5), step_s * V::splat(1.0 / 6.0));
-    let ahead = |x: &[V; N], span: V, slope: &[V; N]| from_fn(|i| x[i] + span * slope[i]);
+    let ahead = |x: &[V; N], span: V, slope: &[V; N]| each(|i| x[i] + span * slope[i]);
     let a1 = accelerate(&q, &w);
     let w2 = ahead(&w, half_s, &a1);
     let a2 = accelerate(&ahead(&q, half_s, &w), &w2);
@@ -29,8 +28,8 @@ pub fn runge_kutta<const N: usize, V: Lane>(
     let mean =
         |x: [&[V; N]; 4], i: usize| (x[0][i] + x[3][i]) + V::splat(2.0) * (x[1][i] + x[2][i]);
     (
-        from_fn(|i| q[i] + sixth_s * mean([&w, &w2, &w3, &w4], i)),
-        from_fn(|i| w[i] + sixth_s * mean([&a1, &a2, &a3, &a4], i)),
+        each(|i| q[i] + sixth_s * mean([&w, &w2, &w3, &w4], i)),
+        each(|i| w[i] + sixth_s * mean([&a1, &a2, &a3, &a4], i)),
     )
 }
 
@@ -102,7 +101,8 @@ fn ahead<V: Lane, R: AsRef<[V]> + AsMut<[V]>>(out: &mut R, from: &R, span: V, sl
 /// `out` += `sixth` (k0 + 2 k1 + 2 k2 + k3).
 #[inline(always)]
 fn mean<V: Lane, R: AsRef<[V]> + AsMut<[V]>>(out: &mut R, sixth: V, k: [&R; 4]) {
-    let [a, b, c, d] = k.map(AsRef::as_ref);
+    let [a, b, c, d] = k;
+    let (a, b, c, d) = (a.as_ref(), b.as_ref(), c.as_ref(), d.as_ref());
     for (i, out) in out.as_mut().iter_mut().enumerate() {
         *out = *out + sixth * ((a[i] + d[i]) + V::splat(2.0) * (b[i] + c[i]));
     }
