@@ -1,4 +1,4 @@
-//! The integration step of a diagnosis: as coarse as the measurement allows.
+//! The integration step of a diagnosis and of a check: as coarse as the measurement allows.
 
 use crate::fitting::{FitData, Node, residuals};
 use crate::log::Motion;

@@ -1,7 +1,7 @@
 //! Effects added to a model's text, their values fitted along with the free ones.
 
 use super::candidate::{Candidate, CandidateError};
-use super::data::Horizon;
+use super::horizon::Horizon;
 use super::refit::{Refitted, Undetermined, refit_with};
 use crate::error::Result;
 use crate::log::{Motion, Split};

@@ -4,7 +4,7 @@
 //! nothing is measured moves as the model does that begins hanging at rest. Each window's start
 //! state is then fitted within wide limits around the guess.
 
-use super::data::Window;
+use super::horizon::Window;
 use super::node::Node;
 use super::residual::{weighted, worst};
 use crate::log::Motion;

@@ -2,53 +2,15 @@
 
 use super::assumed::{AssumedStates, assumed};
 use super::growth::stable_horizon;
+use super::horizon::{Horizon, Window, cut};
 use super::node::{Node, StartGuess};
 use super::noise::noise;
 use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::{ColumnMean, MeasuredSignal, Model};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
-
-/// How long the model runs at most before it starts again from a state fitted to the measurement.
-/// Where start errors grow fast, it starts again earlier.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Horizon {
-    /// From the first sample of a motion to the last where that motion is stable: free run.
-    Whole,
-    /// Windows of about this many seconds, or shorter: multiple shooting.
-    Seconds(f64),
-}
-
-impl Horizon {
-    /// Length of a window, s; absent for whole motions.
-    pub fn seconds(self) -> Option<f64> {
-        match self {
-            Horizon::Whole => None,
-            Horizon::Seconds(seconds) => Some(seconds),
-        }
-    }
-
-    /// Windows of this many seconds; whole motions without.
-    pub fn from_seconds(seconds: Option<f64>) -> Self {
-        seconds.map_or(Horizon::Whole, Horizon::Seconds)
-    }
-
-    /// The shorter of two.
-    pub fn shorter(self, other: Horizon) -> Self {
-        let seconds = [self, other].into_iter().filter_map(Horizon::seconds);
-        Horizon::from_seconds(seconds.min_by(f64::total_cmp))
-    }
-}
-
-/// A stretch of one motion that is simulated without a restart.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Window {
-    /// Index of the motion.
-    pub motion: usize,
-    /// Its samples.
-    pub samples: Range<usize>,
-}
 
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
@@ -75,6 +37,25 @@ impl FitData {
     /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
     /// allow; the noise is estimated from the motions and the declared resolution.
     pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
+        FitData::growing(model, motions, horizon, None)
+    }
+
+    /// The same of motions in which start errors grow as in those of `other`, one by one.
+    pub fn growing_like(
+        model: &Model,
+        motions: Vec<Motion>,
+        horizon: Horizon,
+        other: &FitData,
+    ) -> FitData {
+        FitData::growing(model, motions, horizon, Some(&other.stable))
+    }
+
+    fn growing(
+        model: &Model,
+        motions: Vec<Motion>,
+        horizon: Horizon,
+        stable: Option<&[Horizon]>,
+    ) -> FitData {
         let columns = model.log.joints.iter();
         let signals: Vec<MeasuredSignal> = columns.map(|columns| columns.signal()).collect();
         let sigma: Vec<f64> = (0..model.link_count())
@@ -87,9 +68,13 @@ impl FitData {
                 }
             })
             .collect();
-        let prepared = motions.par_iter().map(|motion| {
+        let prepared = motions.par_iter().enumerate().map(|(index, motion)| {
             let assumed = assumed(model, &signals, &sigma, motion);
-            (stable_horizon(model, &sigma, &assumed, motion), assumed)
+            let stable = match stable {
+                Some(stable) => stable[index],
+                None => stable_horizon(model, &sigma, &assumed, motion),
+            };
+            (stable, assumed)
         });
         let (stable, assumed): (Vec<Horizon>, Vec<AssumedStates>) = prepared.unzip();
         FitData {
@@ -242,6 +227,19 @@ impl FitData {
         StartGuess::of(motion, &self.sigma, assumed, window)
     }
 
+    /// The start states of windows of `other`, the same motions cut otherwise, that begin where
+    /// windows of this data do; elsewhere what the samples suggest.
+    pub fn nodes_from(&self, other: &FitData, nodes: &[Node]) -> Vec<Node> {
+        let begins = |window: &Window| (window.motion, window.samples.start);
+        let known: HashMap<(usize, usize), &Node> =
+            other.windows.iter().map(begins).zip(nodes).collect();
+        let node = |window: &Window| match known.get(&begins(window)) {
+            Some(&node) => node.clone(),
+            None => self.guessed(window),
+        };
+        self.windows.iter().map(node).collect()
+    }
+
     /// Number of samples in all windows.
     pub fn samples(&self) -> usize {
         self.windows.iter().map(|w| w.samples.len()).sum()
@@ -275,23 +273,4 @@ impl FitData {
         }
         (squares / f64::from(count.max(1))).sqrt()
     }
-}
-
-fn cut(motions: &[Motion], stable: &[Horizon], horizon: Horizon) -> Vec<Window> {
-    let mut windows = Vec::new();
-    for (motion, (log, stable)) in motions.iter().zip(stable).enumerate() {
-        let pieces = match stable.shorter(horizon) {
-            Horizon::Whole => 1,
-            Horizon::Seconds(seconds) => {
-                let most = (log.len() / 5).max(1);
-                ((log.duration_s() / seconds).round() as usize).clamp(1, most)
-            }
-        };
-        let edge = |piece: usize| piece * log.len() / pieces;
-        windows.extend((0..pieces).map(|piece| Window {
-            motion,
-            samples: edge(piece)..edge(piece + 1),
-        }));
-    }
-    windows
 }

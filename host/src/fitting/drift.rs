@@ -1,8 +1,9 @@
 //! Whether values differ from session to session, or from servo to servo: each log fitted by
 //! itself, then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
 
-use super::data::{FitData, Horizon};
+use super::data::FitData;
 use super::fitted_value::{FittedValue, fitted_values};
+use super::horizon::Horizon;
 use super::refit::{Undetermined, blind};
 use super::staged::fit_staged;
 use crate::log::Motion;

@@ -6,7 +6,7 @@
 //! the motion long before (Lyapunov growth: Benettin et al. 1980, Meccanica 15, 9).
 
 use super::assumed::AssumedStates;
-use super::data::{Horizon, Window};
+use super::horizon::{Horizon, Window};
 use super::node::Node;
 use crate::log::Motion;
 use crate::model::Model;

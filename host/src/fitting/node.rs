@@ -2,7 +2,7 @@
 //! to the guess.
 
 use super::assumed::{AssumedJoint, AssumedStates};
-use super::data::Window;
+use super::horizon::Window;
 use crate::log::Motion;
 use crate::sim::{Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};

@@ -4,10 +4,11 @@
 #[cfg(test)]
 mod tests;
 
-use super::data::{FitData, Horizon};
+use super::data::FitData;
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
+use super::horizon::Horizon;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
@@ -23,6 +24,7 @@ const SCREENING_S: f64 = 1.0;
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: FitOptions = FitOptions {
     rough: true,
+    glance: false,
     iterations: 8,
     tolerance: 1e-3,
 };

@@ -4,8 +4,9 @@
 //! long one the values are known best. Each stage starts where the one before ended (Bock 1981,
 //! multiple shooting; homotopy in the length of the windows).
 
-use super::data::{FitData, Horizon, Window};
+use super::data::FitData;
 use super::fit::{Fit, FitOptions};
+use super::horizon::{Horizon, Window};
 use super::node::Node;
 use super::solve::{fit, guessed_nodes};
 use crate::model::{Model, ParameterPath};
@@ -18,6 +19,7 @@ const STAGE: FitOptions = FitOptions {
     iterations: 15,
     tolerance: 1e-3,
     rough: true,
+    glance: false,
 };
 
 /// Root-mean-square weighted residual that leaves nothing to look for.

@@ -31,10 +31,17 @@ pub(super) struct ModelReading {
 impl ModelReading {
     /// Cut into windows of a second, or shorter where start errors grow fast.
     pub fn new(model: Model, motions: Vec<Motion>) -> ModelReading {
-        let samples: usize = motions.iter().map(Motion::len).sum();
-        let seconds: f64 = motions.iter().map(Motion::duration_s).sum();
-        let samples_s = WINDOW_SAMPLES * seconds / samples.max(1) as f64;
-        ModelReading::cut(model, motions, WINDOW_S.max(samples_s))
+        let horizon_s = longest_s(&motions);
+        ModelReading::cut(model, motions, horizon_s)
+    }
+
+    /// The same of motions in which start errors grow as in another reading's, one by one.
+    pub fn growing_like(&self, model: Model, motions: Vec<Motion>) -> ModelReading {
+        let horizon = Horizon::Seconds(longest_s(&motions));
+        ModelReading {
+            data: FitData::growing_like(&model, motions, horizon, &self.data),
+            model,
+        }
     }
 
     /// Cut into windows of so many seconds, or shorter where start errors grow fast.
@@ -95,6 +102,13 @@ impl ModelReading {
         let fitted = fit(&self.model, &free, &self.data, None, options);
         Rating::of(&fitted.model, &self.data, &fitted.nodes)
     }
+}
+
+/// The longest window of motions, s.
+fn longest_s(motions: &[Motion]) -> f64 {
+    let samples: usize = motions.iter().map(Motion::len).sum();
+    let seconds: f64 = motions.iter().map(Motion::duration_s).sum();
+    WINDOW_S.max(WINDOW_SAMPLES * seconds / samples.max(1) as f64)
 }
 
 /// Error of a model, window by window.

@@ -3,8 +3,10 @@
 use super::continuous::{LEAST_ZERO_RAD, continuous};
 use super::drives::drives;
 use super::excerpts::excerpts;
+use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Effort, RemedyTrial, Trial};
+use crate::diagnose::step_size::coarsened;
 use crate::log::Motion;
 use crate::model::{Model, Unit};
 use rayon::prelude::*;
@@ -78,8 +80,10 @@ const FREE_NUMBER: f64 = 0.7;
 const AS_GOOD: f64 = 1.15;
 
 fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
+    let few = ModelReading::new(model.clone(), excerpts(motions, SAMPLES_CONTINUOUS));
+    let model = &coarsened(model, &few.data);
     let bench = RemedyTrial::new(model, excerpts(motions, SAMPLES));
-    let few = RemedyTrial::new(model, excerpts(motions, SAMPLES_CONTINUOUS));
+    let few = RemedyTrial::new(model, few.data.motions);
     let mut remedies = alternatives(model, motions);
     remedies.extend(drives(&few));
     remedies.extend(continuous(&few));

@@ -90,15 +90,20 @@ impl RemedyTrial {
     /// The remedy's effect, on windows in which start errors grow in neither reading.
     pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
         let motions = remedy.reread(&self.model, &self.motions);
-        let after = ModelReading::new(remedy.applied(&self.model), motions);
+        let model = remedy.applied(&self.model);
         let Some(reading) = &self.reading else {
+            let after = ModelReading::new(model, motions);
             let before = after.read_as(&self.model, self.motions.clone());
             return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
         };
-        // A shift shortens the motions; nothing else does.
+        // A shift shortens the motions and leaves how errors grow in them; nothing else does.
         let shortened = match remedy {
-            Remedy::Shift(..) => Some(self.shortened_as(&after.data.motions)),
+            Remedy::Shift(..) => Some(self.shortened_as(reading, &motions)),
             _ => None,
+        };
+        let after = match shortened {
+            Some(_) => reading.growing_like(model, motions),
+            None => ModelReading::new(model, motions),
         };
         let before = shortened.as_ref().unwrap_or(reading);
         let windows = before.common_windows(&after);
@@ -107,14 +112,14 @@ impl RemedyTrial {
     }
 
     /// The motions without the ends that others lack.
-    fn shortened_as(&self, others: &[Motion]) -> ModelReading {
+    fn shortened_as(&self, reading: &ModelReading, others: &[Motion]) -> ModelReading {
         let motions = self.motions.iter().zip(others);
         let motions = motions.map(|(motion, other)| {
             let first_s = other.time_s.first().copied().unwrap_or(f64::INFINITY);
             let begin = motion.time_s.partition_point(|t| *t < first_s);
             motion.part(begin..begin + other.len())
         });
-        ModelReading::new(self.model.clone(), motions.collect())
+        reading.growing_like(self.model.clone(), motions.collect())
     }
 
     /// Whether the column is there and not the same all the time.
