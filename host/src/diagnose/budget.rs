@@ -9,6 +9,9 @@ pub(super) const EVALUATE: usize = 12;
 /// A hypothesis whose squared error on the windows, fitted to the end, is so many times the best
 /// one's is only looked at over the evaluation horizon.
 pub(super) const FAR_BEHIND: f64 = 9.0;
+/// A hypothesis whose squared error on the windows is so many times the best one's, six times the
+/// error, is taken no further.
+pub(super) const HOPELESS: f64 = 36.0;
 /// Finalists of each size.
 pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.
@@ -27,12 +30,12 @@ pub(super) const START_ITERATIONS: usize = 30;
 
 /// Steps of progress are short fits. To evaluate a hypothesis takes as long as so many:
 pub(super) const EVALUATION_STEPS: usize = 2;
-/// The base model and the placebos, likewise.
-pub(super) const BASE_STEPS: usize = 10;
+/// The base model, likewise.
+pub(super) const BASE_STEPS: usize = 5;
 /// The finals of one size.
 const FINALS_STEPS: usize = SECOND_LOOKS + FINALISTS * (1 + EVALUATION_STEPS);
-/// The residual structure.
-pub(super) const STRUCTURE_STEPS: usize = 10;
+/// The placebos and the residual structure.
+pub(super) const STRUCTURE_STEPS: usize = 15;
 
 /// Steps until sets of `size` are done.
 pub(super) fn steps_up_to(size: usize, candidates: usize) -> usize {

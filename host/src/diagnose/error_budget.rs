@@ -88,7 +88,10 @@ fn alone(evidence: &VerdictEvidence, part: &Part) -> Hypothesis {
             known.next().cloned().unwrap_or_else(|| {
                 let instance = chosen.search.model.effects.iter().find(|e| effect.is(e));
                 let values = instance.map_or(&[][..], |instance| &instance.values);
-                evaluator.base.with(effect, values, &evaluator.search, LOOK)
+                let options = FitOptions::iterations(LOOK).rough();
+                evaluator
+                    .base
+                    .with(effect, values, &evaluator.search, options)
             })
         }
         Part::Values => {

@@ -1,7 +1,7 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, LOOK, planned_steps};
+use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::horizon::search_horizon;
@@ -35,7 +35,6 @@ pub(super) struct Evaluator<'a> {
     pub horizon_given: bool,
     /// How long the windows of `search` are.
     pub search_horizon: Horizon,
-    pub placebos: Vec<Hypothesis>,
     pub candidates: Vec<Candidate>,
     /// What each start of each candidate changes in the base model's prediction.
     pub changes: Vec<Vec<PredictionChange>>,
@@ -78,9 +77,19 @@ impl<'a> Evaluator<'a> {
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
             .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
-        base.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
+        base.evaluate(
+            &search,
+            &training,
+            held_out.as_ref(),
+            FitOptions::iterations(FINISH),
+        );
         let mut given = as_given(model, &search);
-        given.evaluate(&training, held_out.as_ref(), FitOptions::iterations(FINISH));
+        given.evaluate(
+            &search,
+            &training,
+            held_out.as_ref(),
+            FitOptions::iterations(FINISH),
+        );
         let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
@@ -92,7 +101,6 @@ impl<'a> Evaluator<'a> {
             horizon: longest,
             horizon_given: options.horizon.is_some(),
             search_horizon,
-            placebos: Vec::new(),
             candidates,
             changes,
             start: model.clone(),
@@ -128,6 +136,7 @@ impl<'a> Evaluator<'a> {
     /// Evaluates a hypothesis over the evaluation horizon.
     pub fn evaluate(&self, hypothesis: &mut Hypothesis) {
         hypothesis.evaluate(
+            &self.search,
             &self.training,
             self.held_out.as_ref(),
             FitOptions::iterations(EVALUATE),
@@ -135,18 +144,40 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Evaluates hypotheses fitted to the end on short windows, the best first; what is far behind
-    /// gets a look. Calls `done` after each.
-    pub fn evaluate_all(&self, hypotheses: &mut [Hypothesis], done: impl Fn() + Sync) {
+    /// them, or behind a squared error that others left, gets a look. Calls `done` after each.
+    pub fn evaluate_all(&self, hypotheses: &mut [Hypothesis], least: f64, done: impl Fn() + Sync) {
         let best = hypotheses.iter().map(|h| h.search_mean);
-        let far = FAR_BEHIND * best.fold(f64::INFINITY, f64::min);
+        let far = FAR_BEHIND * best.fold(least, f64::min);
         hypotheses.par_iter_mut().for_each(|hypothesis| {
             let options = match hypothesis.search_mean > far {
                 true => FitOptions::iterations(LOOK).rough(),
                 false => FitOptions::iterations(EVALUATE),
             };
-            hypothesis.evaluate(&self.training, self.held_out.as_ref(), options);
+            hypothesis.evaluate(
+                &self.search,
+                &self.training,
+                self.held_out.as_ref(),
+                options,
+            );
             done();
         });
+    }
+
+    /// The squared error above which a hypothesis is hopeless beside the best of these, or beside
+    /// the squared error that others left; infinite where simulations are cheap.
+    pub fn limit<'h>(&self, hypotheses: impl Iterator<Item = &'h Hypothesis>, least: f64) -> f64 {
+        let means = hypotheses.map(|hypothesis| hypothesis.search_mean);
+        match self.small() {
+            true => f64::INFINITY,
+            false => HOPELESS * means.fold(least, f64::min),
+        }
+    }
+
+    /// How many of the hypotheses, sorted by their error, are not hopeless.
+    pub fn promising(&self, sorted: &[Hypothesis], least: f64) -> usize {
+        let limit = self.limit(sorted.iter().take(1), least);
+        let promising = sorted.iter().take_while(|h| h.search_mean <= limit);
+        promising.count()
     }
 
     /// Few samples and nothing held out: simulations are cheap, and a single motion has more false

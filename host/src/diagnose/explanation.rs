@@ -25,6 +25,8 @@ pub(super) struct VerdictEvidence<'a> {
     pub explanation: Explanation<'a>,
     /// Those whose predictions no noise lets these motions tell from it.
     pub equivalents: &'a [Hypothesis],
+    /// Placebo regressors that gain anything, evaluated, where effects are the explanation.
+    pub placebos: Vec<Hypothesis>,
     pub residual_structure: Option<ResidualStructure>,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: Option<f64>,
@@ -189,7 +191,7 @@ impl<'a> VerdictEvidence<'a> {
     pub fn placebo_ranks(&self) -> bool {
         let base = &self.evaluator.base;
         let gain = |t: &Hypothesis| (base.deciding_mean() / t.deciding_mean()).ln();
-        self.evaluator.placebos.iter().any(|placebo| {
+        self.placebos.iter().any(|placebo| {
             self.evaluator.improves(base, placebo) && gain(placebo) > 0.5 * gain(self.chosen())
         })
     }

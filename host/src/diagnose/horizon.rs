@@ -80,7 +80,7 @@ impl Evaluator<'_> {
             let mut hypothesis = hypothesis.clone();
             hypothesis.evaluation = None;
             let options = FitOptions::iterations(EVALUATE).rough();
-            hypothesis.evaluate(&training, held_out.as_ref(), options);
+            hypothesis.evaluate(&self.search, &training, held_out.as_ref(), options);
             hypothesis
         };
         let base = evaluated(&self.base);
@@ -101,10 +101,10 @@ impl Evaluator<'_> {
         self.horizon = horizon;
         self.training = self.training.recut(horizon);
         self.held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
-        let placebos = self.placebos.iter_mut();
-        for hypothesis in placebos.chain([&mut self.base, &mut self.given]) {
+        for hypothesis in [&mut self.base, &mut self.given] {
             hypothesis.evaluation = None;
             hypothesis.evaluate(
+                &self.search,
                 &self.training,
                 self.held_out.as_ref(),
                 FitOptions::iterations(FINISH),

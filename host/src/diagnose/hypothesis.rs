@@ -103,19 +103,17 @@ impl Hypothesis {
         set
     }
 
-    /// Adds an effect at these values and refits everything on short windows, for at most
-    /// `iterations`.
+    /// Adds an effect at these values and refits everything on short windows.
     pub fn with(
         &self,
         candidate: Candidate,
         values: &[f64],
         data: &FitData,
-        iterations: usize,
+        options: FitOptions,
     ) -> Hypothesis {
         let mut model = self.search.model.clone();
         model.effects.push(candidate.instance(values));
         let paths: Vec<ParameterPath> = candidate.paths().collect();
-        let options = FitOptions::iterations(iterations).rough();
         let search = self.search.with_free(&model, &paths, data, options);
         Hypothesis::new(self.set_with(candidate), search)
     }
@@ -149,9 +147,11 @@ impl Hypothesis {
         Hypothesis::new(set, fit(&model, &free, data, Some(nodes), options))
     }
 
-    /// Refits over the evaluation horizon from the values found, and predicts the held-out motions.
+    /// Refits over the evaluation horizon from the values and start states found on the short
+    /// windows, and predicts the held-out motions.
     pub fn evaluate(
         &mut self,
+        short: &FitData,
         training: &FitData,
         held_out: Option<&FitData>,
         options: FitOptions,
@@ -160,10 +160,8 @@ impl Hypothesis {
             return;
         }
         let search = &self.search;
-        // Start states carry over where the windows are the same.
-        let same = search.nodes.len() == training.windows.len();
-        let nodes = same.then_some(&search.nodes[..]);
-        let fit = fit(&search.model, &search.free, training, nodes, options);
+        let nodes = training.nodes_from(short, &search.nodes);
+        let fit = fit(&search.model, &search.free, training, Some(&nodes), options);
         let held_out = held_out
             .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
         self.evaluation = Some(Evaluation {

@@ -12,6 +12,7 @@ mod error_budget;
 mod evaluator;
 mod explanation;
 mod findings;
+mod first_look;
 mod horizon;
 mod hypothesis;
 mod initial_guess;

@@ -26,8 +26,9 @@ use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// A guess that promises less than this share of what the candidate's best one does is not tried.
-const WORTH: f64 = 0.05;
+/// A placebo that gains this share of what the chosen set does on the short windows, both in
+/// factors of the error, is evaluated: half of the share that would make it rank.
+const RANKING: f64 = 0.25;
 
 /// Searches for the effects a model is missing.
 ///
@@ -43,13 +44,13 @@ pub fn diagnose(
     let mut model = model.clone();
     model.free.retain(|path| !options.known.contains(path));
     let mut evaluator = Evaluator::new(&model, training, held_out, options, progress);
-    evaluator.placebos = evaluator.try_placebos();
     let (best, hypotheses) = evaluator.search();
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
+    let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
     let tried = Tried {
-        values: evaluator.try_values(),
-        values_refitted: evaluator.try_values_refitted(),
+        values: evaluator.try_values(least),
+        values_refitted: evaluator.try_values_refitted(least),
         hypotheses,
         best,
     };
@@ -60,6 +61,10 @@ pub fn diagnose(
         tried: &tried,
         explanation,
         equivalents: &equivalents,
+        placebos: match explanation {
+            Explanation::Effects(chosen) => evaluator.try_placebos(chosen),
+            _ => Vec::new(),
+        },
         residual_structure: None,
         per_motion_reduction: None,
         folds: Vec::new(),
@@ -76,8 +81,9 @@ pub fn diagnose(
 }
 
 impl Evaluator<'_> {
-    /// A placebo regressor at each joint, fitted and evaluated like a candidate.
-    fn try_placebos(&self) -> Vec<Hypothesis> {
+    /// A placebo regressor at each joint, fitted and evaluated like a candidate; those that gain
+    /// next to nothing on the short windows are not evaluated.
+    fn try_placebos(&self, chosen: &Hypothesis) -> Vec<Hypothesis> {
         let placebo = CONTROLS.iter().filter(|e| e.info().id == PLACEBO);
         let at_joints = |&effect| {
             let joints = (0..self.start.link_count()).map(Some);
@@ -86,6 +92,8 @@ impl Evaluator<'_> {
         let placebos: Vec<Candidate> = placebo.flat_map(at_joints).collect();
         let changes = every_change(&self.base, &placebos, &self.search);
         let mut placebos = self.first_look(&self.base, &changes, 1);
+        let gain = |h: &Hypothesis| (self.base.search_mean / h.search_mean).ln();
+        placebos.retain(|placebo| gain(placebo) > RANKING * gain(chosen));
         for placebo in &mut placebos {
             self.evaluate(placebo);
         }
@@ -134,39 +142,10 @@ impl Evaluator<'_> {
         self.evaluated(hypotheses)
     }
 
-    /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most
-    /// `starts`; the better one counts. `changes` are those of each candidate.
-    fn first_look(
-        &self,
-        from: &Hypothesis,
-        changes: &[Vec<PredictionChange>],
-        starts: usize,
-    ) -> Vec<Hypothesis> {
-        let residual = ProjectedResidual::new(&from.search);
-        let look = |changes: &Vec<PredictionChange>| {
-            let mut guesses = residual.guesses(changes);
-            let best = guesses.first().map_or(0.0, |guess| guess.gain);
-            guesses.truncate(starts);
-            if !self.small() {
-                guesses.retain(|guess| guess.gain >= WORTH * best);
-            }
-            self.steps.step(1);
-            self.best_of(from, &guesses)
-        };
-        changes.par_iter().filter_map(look).collect()
-    }
-
-    fn best_of(&self, from: &Hypothesis, guesses: &[InitialGuess]) -> Option<Hypothesis> {
-        let looks = guesses.iter().map(|guess| self.look(from, guess));
-        let first = guesses.first().filter(|_| self.small());
-        let restarts = first.map(|guess| self.random_starts(from, guess));
-        let all = looks.chain(restarts.into_iter().flatten());
-        all.min_by(Hypothesis::by_error)
-    }
-
     /// A short fit of one more effect.
     fn look(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
-        from.with(guess.candidate, &guess.values, &self.search, LOOK)
+        let options = FitOptions::iterations(LOOK).rough();
+        from.with(guess.candidate, &guess.values, &self.search, options)
     }
 
     /// Sorts hypotheses by training error and fits the best to the end: many get a second look, few
@@ -178,7 +157,8 @@ impl Evaluator<'_> {
         ];
         for (survivors, options) in rounds {
             hypotheses.sort_by(Hypothesis::by_error);
-            let best = hypotheses.par_iter_mut().take(survivors);
+            let survivors = survivors.min(self.promising(&hypotheses, f64::INFINITY));
+            let best = hypotheses[..survivors].par_iter_mut();
             best.for_each(|hypothesis| {
                 hypothesis.resume(&self.search, options);
                 self.steps.step(1);
@@ -190,8 +170,8 @@ impl Evaluator<'_> {
 
     /// Evaluates the finalists.
     fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let count = hypotheses.len().min(FINALISTS);
-        self.evaluate_all(&mut hypotheses[..count], || {
+        let count = self.promising(&hypotheses, f64::INFINITY).min(FINALISTS);
+        self.evaluate_all(&mut hypotheses[..count], f64::INFINITY, || {
             self.steps.step(EVALUATION_STEPS)
         });
         hypotheses

@@ -10,20 +10,22 @@ use crate::model::{JointField, LinkField, Model, ParameterPath};
 use rayon::prelude::*;
 
 impl Evaluator<'_> {
-    /// Every value of the given model fitted alone, free or not; the best are evaluated.
-    pub fn try_values(&self) -> Vec<Hypothesis> {
-        self.fit_values(&self.given, &self.open_values())
+    /// Every value of the given model fitted alone, free or not; the best are evaluated, unless
+    /// `least`, the squared error that others leave, makes them hopeless.
+    pub fn try_values(&self, least: f64) -> Vec<Hypothesis> {
+        self.fit_values(&self.given, &self.open_values(), least)
     }
 
-    /// Every value that is not free fitted along with those that are; the best are evaluated.
-    pub fn try_values_refitted(&self) -> Vec<Hypothesis> {
+    /// Every value that is not free fitted along with those that are; the best are evaluated, with
+    /// `least` as above.
+    pub fn try_values_refitted(&self, least: f64) -> Vec<Hypothesis> {
         let free = &self.base.search.free;
         if free.is_empty() {
             return Vec::new();
         }
         let mut paths = self.open_values();
         paths.retain(|path| !free.contains(path));
-        self.fit_values(&self.base, &paths)
+        self.fit_values(&self.base, &paths, least)
     }
 
     /// Values of the given model that may be wrong.
@@ -33,23 +35,33 @@ impl Evaluator<'_> {
         open
     }
 
-    fn fit_values(&self, from: &Hypothesis, paths: &[ParameterPath]) -> Vec<Hypothesis> {
-        let look = |&path: &ParameterPath| {
+    fn fit_values(
+        &self,
+        from: &Hypothesis,
+        paths: &[ParameterPath],
+        least: f64,
+    ) -> Vec<Hypothesis> {
+        let glance = |&path: &ParameterPath| {
             let from = &from.search;
-            let options = FitOptions::iterations(LOOK).rough();
+            let options = FitOptions::iterations(LOOK).glance();
             let search = from.with_free(&from.model, &[path], &self.search, options);
             Hypothesis {
                 values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
             }
         };
-        let mut values: Vec<Hypothesis> = paths.par_iter().map(look).collect();
-        values.sort_by(Hypothesis::by_error);
+        let mut values: Vec<Hypothesis> = paths.par_iter().map(glance).collect();
+        let go_on = |values: &mut [Hypothesis], options: FitOptions| {
+            let limit = self.limit(values.iter(), least);
+            let promising = values.par_iter_mut().filter(|v| v.search_mean <= limit);
+            promising.for_each(|value| value.resume(&self.search, options));
+            values.sort_by(Hypothesis::by_error);
+        };
+        go_on(&mut values, FitOptions::iterations(LOOK).rough());
         values.truncate(FINALISTS);
-        values.par_iter_mut().for_each(|value| {
-            value.resume(&self.search, FitOptions::iterations(FINISH));
-        });
-        self.evaluate_all(&mut values, || {});
+        go_on(&mut values, FitOptions::iterations(FINISH));
+        let promising = self.promising(&values, least);
+        self.evaluate_all(&mut values[..promising], least, || {});
         values
     }
 }

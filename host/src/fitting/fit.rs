@@ -16,6 +16,9 @@ pub struct FitOptions {
     /// Whether to leave out the derivatives at the end: for a fit that is only compared, or
     /// [resumed](Fit::resume).
     pub rough: bool,
+    /// Whether to stop where the derivatives it began with lead down no further: for a fit that
+    /// only tells whether more of it is worth while.
+    pub glance: bool,
 }
 
 impl Default for FitOptions {
@@ -24,6 +27,7 @@ impl Default for FitOptions {
             iterations: 30,
             tolerance: 1e-5,
             rough: false,
+            glance: false,
         }
     }
 }
@@ -42,6 +46,14 @@ impl FitOptions {
         FitOptions {
             rough: true,
             ..self
+        }
+    }
+
+    /// The same as long as the derivatives at hand lead down.
+    pub fn glance(self) -> Self {
+        FitOptions {
+            glance: true,
+            ..self.rough()
         }
     }
 }

@@ -56,6 +56,9 @@ impl<'a> LevenbergMarquardt<'a> {
                     self.fit.converged = true;
                     break;
                 }
+                if options.glance {
+                    break;
+                }
                 damping = DAMPING;
                 self.linearise();
                 continue;

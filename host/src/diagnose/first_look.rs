@@ -1,0 +1,105 @@
+//! A first look at every candidate on top of a hypothesis.
+//!
+//! All get a glance, a fit as far as derivatives known before lead; the best third, unless it is
+//! hopeless beside the first, gets a look, for which derivatives are taken again.
+
+use super::budget::{LOOK, SECOND_LOOKS};
+use super::evaluator::Evaluator;
+use super::hypothesis::Hypothesis;
+use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual};
+use crate::fitting::FitOptions;
+use rayon::prelude::*;
+
+/// A guess that promises less than this share of what the candidate's best one does is not tried.
+const WORTH: f64 = 0.05;
+
+/// A guess and the fit from it.
+type Glance = (InitialGuess, Hypothesis);
+
+impl Evaluator<'_> {
+    /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most
+    /// `starts`; the better one counts. `changes` are those of each candidate.
+    pub fn first_look(
+        &self,
+        from: &Hypothesis,
+        changes: &[Vec<PredictionChange>],
+        starts: usize,
+    ) -> Vec<Hypothesis> {
+        let residual = ProjectedResidual::new(&from.search);
+        let glances = changes.par_iter().map(|changes| {
+            let guesses = self.guesses(&residual, changes, starts);
+            let glances = guesses.into_iter().map(|guess| {
+                let glance = self.glance(from, &guess);
+                (guess, glance)
+            });
+            self.steps.step(1);
+            glances.collect()
+        });
+        let glances: Vec<Vec<Glance>> = glances.collect();
+        let limit = self.worth_a_look(&glances);
+        let looks = glances.into_par_iter();
+        looks
+            .filter_map(|glances| self.best_of(from, glances, limit))
+            .collect()
+    }
+
+    /// The best guesses of a candidate.
+    fn guesses(
+        &self,
+        residual: &ProjectedResidual,
+        changes: &[PredictionChange],
+        starts: usize,
+    ) -> Vec<InitialGuess> {
+        let mut guesses = residual.guesses(changes);
+        let best = guesses.first().map_or(0.0, |guess| guess.gain);
+        guesses.truncate(starts);
+        if !self.small() {
+            guesses.retain(|guess| guess.gain >= WORTH * best);
+        }
+        guesses
+    }
+
+    /// The largest squared error after a glance that deserves a look: the best third of the
+    /// candidates, unless they are hopeless beside the first.
+    fn worth_a_look(&self, glances: &[Vec<Glance>]) -> f64 {
+        let means = |glances: &Vec<Glance>| {
+            let means = glances.iter().map(|(_, glance)| glance.search_mean);
+            means.min_by(f64::total_cmp)
+        };
+        let mut best: Vec<f64> = glances.iter().filter_map(means).collect();
+        best.sort_by(f64::total_cmp);
+        let looks = SECOND_LOOKS.max(best.len() / 3);
+        let all = glances.iter().flatten().map(|(_, glance)| glance);
+        let hopeless = self.limit(all, f64::INFINITY);
+        match best.get(looks) {
+            Some(next) if !self.small() => next.min(hopeless),
+            _ => hopeless,
+        }
+    }
+
+    /// The best of a candidate's fits: those not hopeless after a glance go on.
+    fn best_of(
+        &self,
+        from: &Hypothesis,
+        mut glances: Vec<Glance>,
+        limit: f64,
+    ) -> Option<Hypothesis> {
+        for (_, hypothesis) in &mut glances {
+            if hypothesis.search_mean <= limit {
+                hypothesis.resume(&self.search, FitOptions::iterations(LOOK).rough());
+            }
+        }
+        let first = glances.first().filter(|_| self.small());
+        let restarts = first.map(|(guess, _)| self.random_starts(from, guess));
+        let looks = glances.into_iter().map(|(_, hypothesis)| hypothesis);
+        looks
+            .chain(restarts.into_iter().flatten())
+            .min_by(Hypothesis::by_error)
+    }
+
+    /// A fit of one more effect as far as the derivatives known before lead.
+    fn glance(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
+        let options = FitOptions::iterations(LOOK).glance();
+        from.with(guess.candidate, &guess.values, &self.search, options)
+    }
+}
