@@ -3,6 +3,7 @@
 use super::excitation::name;
 use super::extremes::Extremes;
 use super::finding::Findings;
+use super::held::HeldReadings;
 use crate::error::Place;
 use crate::log::LogReason;
 use crate::log::row::LogRow;
@@ -98,6 +99,7 @@ pub(super) struct JointCheck {
     declared_rad: Option<f64>,
     still: Option<Still>,
     stuck: Vec<Still>,
+    held: HeldReadings,
 }
 
 impl JointCheck {
@@ -112,6 +114,7 @@ impl JointCheck {
             declared_rad: declared,
             still: None,
             stuck: Vec::new(),
+            held: HeldReadings::default(),
         }
     }
 
@@ -130,6 +133,7 @@ impl JointCheck {
         if fresh {
             self.position.steps.previous = None;
             self.input.steps.previous = None;
+            self.held.restart();
         }
         let previous = self.position.steps.previous;
         let turns = self.signal == MeasuredSignal::Angle;
@@ -141,6 +145,8 @@ impl JointCheck {
         if previous != Some(angle) {
             self.end_still();
         }
+        let smallest = self.position.steps.smallest;
+        self.held.take(angle, smallest, || place.clone());
         self.position.take(angle);
         let still = self.still.get_or_insert(Still {
             begin: place,
@@ -174,6 +180,7 @@ impl JointCheck {
         self.end_still();
         self.judge_missing(place, findings);
         self.judge_stuck(findings);
+        self.held.judge(&self.position.name, findings);
         self.judge_extremes(place, drive, findings);
         self.judge_steps(place, findings);
         let (column, range) = (&self.position.name, self.position.extremes.range());

@@ -8,6 +8,7 @@ mod excitation;
 mod extremes;
 mod finding;
 mod fit;
+mod held;
 mod joint;
 mod relation;
 mod sampling;

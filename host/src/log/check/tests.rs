@@ -287,3 +287,34 @@ fn torque_and_gravity_show_their_direction() {
     zero.angle_zero = crate::model::AngleZero::Horizontal;
     finds(&found(&text, &zero), Severity::Warn, "gravity pulls");
 }
+
+/// A motion at 100 Hz that swings by 0.6 rad, read in steps of 1.5 mrad, with the reading of the
+/// row before wherever `lost` says so.
+fn swing(lost: impl Fn(usize) -> bool) -> Motion {
+    let mut log = motion("swing", 600);
+    let step = 1.5e-3;
+    for k in 0..log.len() {
+        let angle = 0.6 * (6.0 * log.time_s[k]).sin();
+        log.position_rad[0][k] = match lost(k) && k > 0 {
+            true => log.position_rad[0][k - 1],
+            false => step * (angle / step).round(),
+        };
+    }
+    log
+}
+
+#[test]
+fn frames_that_were_lost_and_a_slow_sensor_are_told() {
+    let held = |lost: &dyn Fn(usize) -> bool| {
+        let mut findings = found(&text(&swing(lost)), &servo());
+        findings.retain(|finding| finding.kind == "held");
+        findings
+    };
+    assert_eq!(held(&|_| false), []);
+    // One in fifty, two on end at times; then every second row.
+    let lost = held(&|k| k % 50 == 0 || k % 150 == 1);
+    finds(&lost, Severity::Warn, "frames were lost");
+    let slow = held(&|k| k % 2 == 1);
+    finds(&slow, Severity::Warn, "slower than the log");
+    assert_eq!(held(&|k| k == 100 || k == 300), []);
+}
