@@ -73,10 +73,12 @@ impl HeldReadings {
         let shown = percent(share);
         let what = match share < SLOW_SENSOR {
             true => format!(
-                "{name} repeats the reading before in {shown} of the rows in motion, and catches up after: frames were lost"
+                "{name} repeats the reading before in {shown} of the rows in motion, and catches \
+                 up after: frames were lost"
             ),
             false => format!(
-                "{name} repeats the reading before in {shown} of the rows in motion: its sensor is slower than the log"
+                "{name} repeats the reading before in {shown} of the rows in motion: its sensor is \
+                 slower than the log"
             ),
         };
         let remedy = "leave the field empty, or `nan`, where nothing new was read: a held reading \
