@@ -16,6 +16,14 @@ const WORTH: f64 = 0.05;
 /// A guess and the fit from it.
 type Glance = (InitialGuess, Hypothesis);
 
+/// The squared error up to which a candidate belongs to the best third, or to the best few.
+fn best_third(mut of_candidates: Vec<f64>) -> f64 {
+    of_candidates.sort_by(f64::total_cmp);
+    let looks = SECOND_LOOKS.max(of_candidates.len() / 3);
+    let last = of_candidates.get(looks.saturating_sub(1)).copied();
+    last.unwrap_or(f64::INFINITY)
+}
+
 impl Evaluator<'_> {
     /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most
     /// `starts`; the better one counts. `changes` are those of each candidate.
@@ -66,14 +74,12 @@ impl Evaluator<'_> {
             let means = glances.iter().map(|(_, glance)| glance.search_mean);
             means.min_by(f64::total_cmp)
         };
-        let mut best: Vec<f64> = glances.iter().filter_map(means).collect();
-        best.sort_by(f64::total_cmp);
-        let looks = SECOND_LOOKS.max(best.len() / 3);
+        let best: Vec<f64> = glances.iter().filter_map(means).collect();
         let all = glances.iter().flatten().map(|(_, glance)| glance);
         let hopeless = self.limit(all, f64::INFINITY);
-        match best.get(looks) {
-            Some(next) if !self.small() => next.min(hopeless),
-            _ => hopeless,
+        match self.small() {
+            true => hopeless,
+            false => best_third(best).min(hopeless),
         }
     }
 
@@ -101,5 +107,19 @@ impl Evaluator<'_> {
     fn glance(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
         let options = FitOptions::iterations(LOOK).glance();
         from.with(guess.candidate, &guess.values, &self.search, options)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_of_many_candidates_gets_a_look_and_all_of_a_few() {
+        let many = (0..90).rev().map(f64::from).collect();
+        assert_eq!(best_third(many), 29.0);
+        let some = (0..20).map(f64::from).collect();
+        assert_eq!(best_third(some), (SECOND_LOOKS - 1) as f64);
+        assert_eq!(best_third(vec![3.0, 1.0]), f64::INFINITY);
     }
 }

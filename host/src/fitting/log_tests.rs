@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
 /// A pendulum with friction, swung by hand: period 1.4 s.
-fn pendulum(columns: &str, torque_nm: f64) -> Model {
+pub(super) fn pendulum(columns: &str, torque_nm: f64) -> Model {
     let text = format!(
         "[rig]\nname = \"p\"\nangle_zero = \"hanging\"\nstep_s = 0.005\n\
          [[link]]\ncom_m = 0.1\nmass_kg = 0.2\ninertia_kg_m2 = 0.008\n\
@@ -21,12 +21,13 @@ fn pendulum(columns: &str, torque_nm: f64) -> Model {
     Model::parse(&text, Path::new("p.toml")).unwrap()
 }
 
-const ANGLE: &str = "position = { column = \"q\", unit = \"rad\", resolution_rad = 0.001 }";
+pub(super) const ANGLE: &str =
+    "position = { column = \"q\", unit = \"rad\", resolution_rad = 0.001 }";
 const RATE: &str = "velocity = { column = \"w\", unit = \"rad/s\", resolution_rad_s = 0.01 }";
 
 /// What a model does from this angle, at these times, let go at rest: what it predicts goes into
 /// the angles, or into the rates where it has those alone.
-fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
+pub(super) fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
     let joints = model.link_count();
     let gaps = vec![f64::NAN; time_s.len()];
     let mut motion = Motion {
@@ -65,7 +66,7 @@ fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
     motion
 }
 
-fn even(samples: u32, hz: f64) -> Vec<f64> {
+pub(super) fn even(samples: u32, hz: f64) -> Vec<f64> {
     (0..samples).map(|k| f64::from(k) / hz).collect()
 }
 

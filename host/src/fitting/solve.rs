@@ -100,3 +100,45 @@ pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
 fn guesses(data: &FitData) -> Vec<StartGuess> {
     data.windows.iter().map(|w| data.guess(w)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::log_tests::{ANGLE, even, pendulum, swing};
+    use super::*;
+    use crate::fitting::{Candidate, Horizon};
+
+    #[test]
+    fn a_glance_takes_no_derivatives_again_and_goes_on_as_a_look() {
+        let motions = [1.0, 0.5].map(|from_rad| {
+            let truth = pendulum(ANGLE, 0.006);
+            swing(&truth, &[from_rad], even(600, 100.0))
+        });
+        let believed = pendulum(ANGLE, 0.003);
+        let data = FitData::new(&believed, motions.to_vec(), Horizon::Seconds(1.0));
+        let friction: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
+        let base = fit(&believed, &[friction], &data, None, FitOptions::default());
+        // A spring that is not there: nothing leads down but derivatives of its own.
+        let spring = Candidate::named("cable_spring@1", &base.model).unwrap();
+        let mut model = base.model.clone();
+        model.effects.push(spring.instance(&spring.starts()[0]));
+        let added: Vec<ParameterPath> = spring.paths().collect();
+        let tried = |options| base.with_free(&model, &added, &data, options);
+        let look = tried(FitOptions::iterations(30).rough());
+        let glance = tried(FitOptions::iterations(30).glance());
+        // The start, a column for each value, and at most two tries a step.
+        assert!(
+            glance.simulations < look.simulations,
+            "{}",
+            glance.simulations
+        );
+        assert!(!glance.converged);
+        let on = glance.resume(&data, FitOptions::iterations(30).rough());
+        let cost = |fit: &Fit| fit.residuals.cost();
+        assert!(
+            (cost(&on) / cost(&look) - 1.0).abs() < 0.02,
+            "{} {}",
+            cost(&on),
+            cost(&look)
+        );
+    }
+}
