@@ -16,6 +16,13 @@ use heapless::Vec;
 /// Ids that no servo has.
 const NO_SERVO: [u8; 4] = [BROADCAST; 4];
 
+/// What a servo is sent. Apart from its register, whose name the AVR would hold in RAM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sent {
+    Goal,
+    TorqueOn,
+}
+
 impl Servos {
     /// Those that answered are commanded from now on, within these limits, and their goal is where
     /// they stand. What limits the speed of a servo with a goal is the speed of one that turns
@@ -43,7 +50,7 @@ impl Servos {
 
     /// Torque on in all that are commanded.
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
-        self.write_to(board, TORQUE_ENABLE, false, NO_SERVO);
+        self.write_to(board, Sent::TorqueOn, false, NO_SERVO);
         self.has_torque = true;
     }
 
@@ -51,7 +58,7 @@ impl Servos {
     /// missed it before has now.
     pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4], limit: TorqueLimit) {
         bus::write_all(board, TORQUE_LIMIT, limit.0);
-        self.write_to(board, TORQUE_ENABLE, true, ids);
+        self.write_to(board, Sent::TorqueOn, true, ids);
     }
 
     /// Has all that are commanded but these stay where they stand now.
@@ -59,19 +66,24 @@ impl Servos {
         for servo in self.all_mut() {
             servo.goal = servo.position;
         }
-        self.write_to(board, GOAL_POSITION, false, ids);
+        self.write_to(board, Sent::Goal, false, ids);
     }
 
-    /// Writes its goal, or else 1, to each servo that is commanded and is one of these, or is none.
+    /// Writes to each servo that is commanded and is one of these ids, or is none of them.
     // One function for all, for it is long.
     #[inline(never)]
-    fn write_to<B: Board>(&self, board: &mut B, register: Register, is_one: bool, ids: [u8; 4]) {
-        let is_goal = register == GOAL_POSITION;
+    fn write_to<B: Board>(&self, board: &mut B, sent: Sent, is_one: bool, ids: [u8; 4]) {
+        let is_goal = sent == Sent::Goal;
         let all = || self.all().iter();
         let is_meant = |servo: &&Servo| servo.armed && ids.contains(&servo.id) == is_one;
         let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
         let values = all().filter(is_meant).map(|servo| (servo.id, value(servo)));
         let count = all().filter(is_meant).count() as u8;
+        let register = if is_goal {
+            GOAL_POSITION
+        } else {
+            TORQUE_ENABLE
+        };
         bus::write_each(board, register, count, values);
     }
 
