@@ -39,10 +39,10 @@ enum Goal {
 enum Onset {
     /// It comes on in those that balance, with the law's first command.
     Balance,
-    /// The others get goals where they stand.
-    Goals,
-    /// The others have torque, too.
-    Others,
+    /// The others get goals where they stand, half of the servo list from this place on.
+    Goals(u8),
+    /// The others have torque, too, half of the list from this place on.
+    Others(u8),
     /// All have it.
     Done,
 }

@@ -93,15 +93,15 @@ impl App {
             Onset::Balance => {
                 self.servos
                     .switch_on_only(board, balancing, self.limits.torque);
-                self.onset = Onset::Goals;
+                self.onset = Onset::Goals(0);
             }
-            Onset::Goals => {
-                self.servos.hold_but(board, balancing);
-                self.onset = Onset::Others;
+            Onset::Goals(from) => {
+                let next = self.servos.hold_half(board, from, balancing);
+                self.onset = next.map_or(Onset::Others(0), Onset::Goals);
             }
-            Onset::Others => {
-                self.servos.switch_on(board);
-                self.onset = Onset::Done;
+            Onset::Others(from) => {
+                let next = self.servos.switch_on_half(board, from);
+                self.onset = next.map_or(Onset::Done, Onset::Others);
             }
             Onset::Done => {}
         }

@@ -16,6 +16,19 @@ use heapless::Vec;
 /// Ids that no servo has.
 const NO_SERVO: [u8; 4] = [BROADCAST; 4];
 
+/// The servo list from its first place on.
+const ALL: Part = Part {
+    from: 0,
+    places: SERVOS as u8,
+};
+
+/// A part of the servo list.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    from: u8,
+    places: u8,
+}
+
 /// What a servo is sent. Apart from its register, whose name the AVR would hold in RAM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sent {
@@ -44,41 +57,79 @@ impl Servos {
     /// Torque on where a servo answered, within these limits, and the goal where it stands.
     pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.choose(board, limits);
-        self.hold_but(board, NO_SERVO);
+        self.hold(board);
         self.switch_on(board);
     }
 
     /// Torque on in all that are commanded.
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
-        self.write_to(board, Sent::TorqueOn, false, NO_SERVO);
+        self.write_to(board, Sent::TorqueOn, ALL, false, NO_SERVO);
         self.has_torque = true;
+    }
+
+    /// Torque on in those that are commanded of half of the servo list, from this place on. The
+    /// place to go on from; none at the end of the list.
+    pub fn switch_on_half<B: Board>(&mut self, board: &mut B, from: u8) -> Option<u8> {
+        let (half, next) = self.half(from);
+        self.write_to(board, Sent::TorqueOn, half, false, NO_SERVO);
+        self.has_torque = next.is_none();
+        next
     }
 
     /// Torque on in those of these servos that are commanded; within this limit, which a servo that
     /// missed it before has now.
     pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4], limit: TorqueLimit) {
         bus::write_all(board, TORQUE_LIMIT, limit.0);
-        self.write_to(board, Sent::TorqueOn, true, ids);
+        self.write_to(board, Sent::TorqueOn, ALL, true, ids);
     }
 
-    /// Has all that are commanded but these stay where they stand now.
-    pub fn hold_but<B: Board>(&mut self, board: &mut B, ids: [u8; 4]) {
-        for servo in self.all_mut() {
+    /// Has all that are commanded stay where they stand now.
+    pub fn hold<B: Board>(&mut self, board: &mut B) {
+        self.hold_but(board, ALL, NO_SERVO);
+    }
+
+    /// Has those that are commanded but these stay where they stand now, in half of the servo list,
+    /// from this place on. The place to go on from; none at the end of the list.
+    pub fn hold_half<B: Board>(&mut self, board: &mut B, from: u8, but: [u8; 4]) -> Option<u8> {
+        let (half, next) = self.half(from);
+        self.hold_but(board, half, but);
+        next
+    }
+
+    /// The half of the servo list that begins at this place, and the place behind it, if one is.
+    fn half(&self, from: u8) -> (Part, Option<u8>) {
+        let places = self.count.div_ceil(2);
+        let next = Some(from.saturating_add(places)).filter(|next| *next < self.count);
+        (Part { from, places }, next)
+    }
+
+    #[inline(never)]
+    fn hold_but<B: Board>(&mut self, board: &mut B, part: Part, ids: [u8; 4]) {
+        let all = self.all_mut().iter_mut().skip(part.from.into());
+        for servo in all.take(part.places.into()) {
             servo.goal = servo.position;
         }
-        self.write_to(board, Sent::Goal, false, ids);
+        self.write_to(board, Sent::Goal, part, false, ids);
     }
 
-    /// Writes to each servo that is commanded and is one of these ids, or is none of them.
+    /// Writes to each servo of a part that is commanded and is one of these ids, or is none of them.
     // One function for all, for it is long.
     #[inline(never)]
-    fn write_to<B: Board>(&self, board: &mut B, sent: Sent, is_one: bool, ids: [u8; 4]) {
+    fn write_to<B: Board>(
+        &self,
+        board: &mut B,
+        sent: Sent,
+        part: Part,
+        is_one: bool,
+        ids: [u8; 4],
+    ) {
         let is_goal = sent == Sent::Goal;
-        let all = || self.all().iter();
+        let all = self.all().iter().skip(part.from.into());
+        let all = all.take(part.places.into());
         let is_meant = |servo: &&Servo| servo.armed && ids.contains(&servo.id) == is_one;
         let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
-        let values = all().filter(is_meant).map(|servo| (servo.id, value(servo)));
-        let count = all().filter(is_meant).count() as u8;
+        let count = all.clone().filter(is_meant).count() as u8;
+        let values = all.filter(is_meant).map(|servo| (servo.id, value(servo)));
         let register = if is_goal {
             GOAL_POSITION
         } else {
@@ -148,11 +199,6 @@ impl Servos {
             known.len() as u8,
             known.iter().copied(),
         );
-    }
-
-    /// Goals where the servos stand now.
-    pub fn hold<B: Board>(&mut self, board: &mut B) {
-        self.hold_but(board, NO_SERVO);
     }
 
     /// How many are commanded.

@@ -2,7 +2,10 @@
 
 use super::rig::*;
 use handstand_cm5_sim::{Plant, Robot, SimulatedCm5, VirtualCm5};
+use handstand_shared::control_table::{GOAL_POSITION, TORQUE_ENABLE};
 use handstand_shared::message::*;
+use handstand_shared::packed::SERVOS;
+use handstand_shared::raw::Position;
 
 /// A joint whose angle tells whether its motor has torque: 6 position codes, else 0.
 #[derive(Debug)]
@@ -118,6 +121,121 @@ fn each_tick_says_whether_torque_was_on_when_it_read_the_servos() {
                     "{mode:?}, {end:?}, {phase}: tick {tick}"
                 );
             }
+        }
+    }
+}
+
+/// Where the servos that do not balance stand, and another goal that they were given before.
+const STAND: Position = Position(600);
+const BEFORE: u16 = 100;
+
+/// Places of the servos that have torque, and of those that do not balance and have their goals.
+fn onset(cm5: &mut VirtualCm5) -> (Vec<usize>, Vec<usize>) {
+    let places = |is_one: &dyn Fn(&handstand_cm5_sim::Servo) -> bool, cm5: &mut VirtualCm5| {
+        let servos = cm5.bus().servos.iter().enumerate();
+        let found = servos.filter(|(_, servo)| is_one(servo));
+        found.map(|(place, _)| place).collect()
+    };
+    let torqued = places(&|servo| servo.torque_is_on(), cm5);
+    let held = places(&|servo| servo.get(GOAL_POSITION) == STAND.0, cm5);
+    (torqued, held)
+}
+
+/// A CM-5 ready to balance whose other servos stand elsewhere than their goals.
+fn ready_elsewhere() -> (VirtualCm5, u16) {
+    let (mut cm5, token) = ready(Mode::Balance);
+    for servo in &mut cm5.bus().servos {
+        if !DRIVEN.contains(&servo.id()) {
+            servo.shaft.angle_rad = STAND.to_rad();
+            servo.set(GOAL_POSITION, BEFORE);
+            servo.free = false;
+        }
+    }
+    say(&mut cm5, &UPRIGHT, 50);
+    (cm5, token)
+}
+
+/// Half of the servo list in a tick, and no servo has torque before its goal is where it stands; a
+/// goal switches it on.
+#[test]
+fn those_that_do_not_balance_come_on_in_halves() {
+    let (mut cm5, token) = ready_elsewhere();
+    cm5.send(&arm_with(token));
+    let mut steps = vec![onset(&mut cm5)];
+    for _ in 0..10 {
+        say(&mut cm5, &UPRIGHT, 10);
+        let now = onset(&mut cm5);
+        if steps.last() != Some(&now) {
+            steps.push(now);
+        }
+    }
+    let balancing = DRIVEN.map(|id| usize::from(id) - 1);
+    let others = |places: std::ops::Range<usize>| -> Vec<usize> {
+        places.filter(|place| !balancing.contains(place)).collect()
+    };
+    let half = SERVOS / 2;
+    let first_half: Vec<usize> = (0..half).chain([10, 11]).collect();
+    let expected = [
+        (vec![], vec![]),
+        (balancing.to_vec(), vec![]),
+        (first_half, others(0..half)),
+        ((0..SERVOS).collect(), others(0..SERVOS)),
+    ];
+    assert_eq!(steps, expected);
+}
+
+/// A servo that its goal did not switch on, in either half, has torque two ticks later.
+#[test]
+fn a_servo_whose_goal_does_not_switch_it_on_has_torque_too() {
+    let (mut cm5, token) = ready_elsewhere();
+    cm5.send(&arm_with(token));
+    let late = [5, 16];
+    let mut ticks = 0;
+    while onset(&mut cm5).0.len() < SERVOS {
+        say(&mut cm5, &UPRIGHT, 10);
+        ticks += 1;
+        assert!(ticks < 10, "torque comes on everywhere");
+    }
+    for id in late {
+        cm5.bus().servo(id).unwrap().set(TORQUE_ENABLE, 0);
+    }
+    say(&mut cm5, &UPRIGHT, 10);
+    assert_eq!(onset(&mut cm5).0.len(), SERVOS - 1);
+    say(&mut cm5, &UPRIGHT, 10);
+    assert_eq!(onset(&mut cm5).0.len(), SERVOS);
+    // From then on one that has none has lost it.
+    cm5.bus().servo(16).unwrap().set(TORQUE_ENABLE, 0);
+    say(&mut cm5, &UPRIGHT, 400);
+    assert_eq!(cm5.app.condition(), Condition::Fault(Cause::TorqueLost));
+}
+
+/// However far torque has come on, what stops the robot stops it at once, and no servo gets torque
+/// after it.
+#[test]
+fn torque_stops_coming_on_when_the_robot_is_stopped() {
+    for end in [Command::Disarm, Command::LetDown, FALLEN] {
+        for ticks in 1..=6 {
+            let (mut cm5, token) = ready_elsewhere();
+            cm5.send(&arm_with(token));
+            say(&mut cm5, &UPRIGHT, 10 * ticks);
+            cm5.send(&end);
+            cm5.run_ms(20.0);
+            let stopped = match end {
+                Command::LetDown => Condition::Soft,
+                Command::Disarm => Condition::Balance,
+                _ => Condition::Fault(Cause::Fallen),
+            };
+            assert_eq!(cm5.app.condition(), stopped, "{end:?} after {ticks}");
+            let (mut before, _) = onset(&mut cm5);
+            assert!(end == Command::LetDown || before.is_empty(), "{end:?}");
+            for _ in 0..30 {
+                say(&mut cm5, &UPRIGHT, 10);
+                let (now, _) = onset(&mut cm5);
+                let is_fewer = now.iter().all(|place| before.contains(place));
+                assert!(is_fewer, "{end:?} after {ticks}: {before:?} {now:?}");
+                before = now;
+            }
+            assert!(before.is_empty(), "{end:?} after {ticks}: {before:?}");
         }
     }
 }
