@@ -45,6 +45,10 @@ impl App {
         cause: Cause,
         within: fn(Torque) -> State,
     ) {
+        if self.onset == Onset::Balance {
+            // No servo has torque yet: soft would say that it has.
+            return self.give_up(board, cause);
+        }
         self.log_fault(cause);
         if self.servos.tripped.is_some() {
             self.servos.release(board);

@@ -34,20 +34,26 @@ impl StreamReport {
         (self.missing.get(place / 8)).is_some_and(|bits| bits >> (place % 8) & 1 == 0)
     }
 
-    /// Whether torque was on when the servos were read in this tick, the report before being
-    /// `before`; none where it is not known. While balancing, torque comes on with the law's first
-    /// command and goes off where the law gives up: after the reading, while `condition` is that of
-    /// the tick's end. Servos that do not balance have it two ticks later.
+    /// Whether torque was on when the servos were read in this tick, the last report heard before it
+    /// being `before`; none where it is not known. While balancing, torque comes on with the law's
+    /// first command and goes off where the law gives up: after the reading, while `condition` is
+    /// that of the tick's end, so that a report that was lost leaves it open. Servos that do not
+    /// balance have it up to four ticks later.
     pub fn torque_was_on(&self, before: Option<&StreamReport>) -> Option<bool> {
-        let before = before.filter(|before| self.tick == before.tick.wrapping_add(1));
-        let was = |condition| before.is_some_and(|before| before.condition == condition);
+        let last = before.map(|before| before.condition);
+        let is_next = before.is_some_and(|before| self.tick == before.tick.wrapping_add(1));
+        let was_balancing = last == Some(Condition::BalanceArmed);
         match self.condition {
             Condition::Bridge => None,
-            Condition::BalanceArmed => Some(!was(Condition::Balance)),
+            Condition::BalanceArmed if was_balancing => Some(true),
+            Condition::BalanceArmed => is_next.then_some(false),
             Condition::StreamArmed | Condition::Soft => Some(true),
             Condition::Fault(
                 Cause::Fallen | Cause::JointRange | Cause::JointSpeed | Cause::ServoLost,
-            ) => Some(was(Condition::BalanceArmed)),
+            ) if is_next => Some(was_balancing),
+            Condition::Fault(
+                Cause::Fallen | Cause::JointRange | Cause::JointSpeed | Cause::ServoLost,
+            ) => (last == Some(self.condition)).then_some(false),
             Condition::Stream | Condition::Balance | Condition::Fault(_) => Some(false),
         }
     }

@@ -162,3 +162,51 @@ proptest! {
         let _ = (decode::<Command>(&body), decode::<Report>(&body));
     }
 }
+
+/// Around a report that was lost torque may have come on or gone off, or it cannot.
+#[test]
+fn torque_is_not_known_where_a_lost_report_would_tell() {
+    use Condition::{Balance, BalanceArmed, Soft, Stream, StreamArmed};
+    let fallen = Condition::Fault(Cause::Fallen);
+    let lost = Condition::Fault(Cause::LinkLost);
+    let report = |tick, condition| StreamReport {
+        tick,
+        condition,
+        obeyed: 0,
+        positions: Positions::pack([0; SERVOS]),
+        missing: [0; 3],
+        housekeeping_from: 0,
+        housekeeping: [Housekeeping::default(); 2],
+        gyro: 0,
+    };
+    // The condition before, the one now, torque when none was lost between them, and when one was.
+    let cases = [
+        (Balance, BalanceArmed, Some(false), None),
+        (Stream, BalanceArmed, Some(false), None),
+        (BalanceArmed, BalanceArmed, Some(true), Some(true)),
+        (BalanceArmed, fallen, Some(true), None),
+        (Balance, fallen, Some(false), None),
+        (fallen, fallen, Some(false), Some(false)),
+        (Soft, lost, Some(false), Some(false)),
+        (BalanceArmed, Balance, Some(false), Some(false)),
+        (BalanceArmed, Soft, Some(true), Some(true)),
+        (Stream, StreamArmed, Some(true), Some(true)),
+        (StreamArmed, Stream, Some(false), Some(false)),
+        (Stream, Condition::Bridge, None, None),
+    ];
+    for (before, now, next, later) in cases {
+        let was_on = |gap: u16| {
+            let before = report(u16::MAX, before);
+            report(u16::MAX.wrapping_add(gap), now).torque_was_on(Some(&before))
+        };
+        assert_eq!(was_on(1), next, "{before:?}, {now:?}");
+        assert_eq!(was_on(2), later, "{before:?}, a lost one, {now:?}");
+    }
+    for (first, torque) in [
+        (BalanceArmed, None),
+        (fallen, None),
+        (StreamArmed, Some(true)),
+    ] {
+        assert_eq!(report(7, first).torque_was_on(None), torque, "{first:?}");
+    }
+}

@@ -125,6 +125,26 @@ fn each_tick_says_whether_torque_was_on_when_it_read_the_servos() {
     }
 }
 
+/// Let down between arming and the law's first command no servo has torque, and no report says so.
+#[test]
+fn a_robot_that_has_no_torque_yet_is_not_soft() {
+    let mut without = 0;
+    for phase in 0..10 {
+        let (mut cm5, token) = ready(Mode::Balance);
+        cm5.run_ms(0.3 + f64::from(phase));
+        cm5.send(&arm_with(token));
+        cm5.send(&Command::LetDown);
+        say(&mut cm5, &UPRIGHT, 300);
+        assert_eq!(cm5.app.condition(), Condition::Fault(Cause::LetDown));
+        let all = told_and_read(&cm5);
+        without += usize::from(all.iter().all(|(_, read)| !read));
+        for (tick, (told, read)) in all.iter().enumerate() {
+            assert_eq!(*told, Some(*read), "{phase}: tick {tick}");
+        }
+    }
+    assert!((1..10).contains(&without), "{without}");
+}
+
 /// Where the servos that do not balance stand, and another goal that they were given before.
 const STAND: Position = Position(600);
 const BEFORE: u16 = 100;
