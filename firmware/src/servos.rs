@@ -11,6 +11,9 @@ mod round;
 /// Error bits of a servo that drops its torque, or is about to.
 const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
 
+/// The lowest supply of a round that is not heard whole: none.
+const PART_OF_A_ROUND: Supply = Supply(0);
+
 /// One servo.
 #[derive(Debug, Clone, Copy)]
 pub struct Servo {
@@ -162,6 +165,14 @@ impl Servos {
     pub fn is_wheel(&self, id: u8) -> bool {
         self.with_id(id)
             .is_some_and(|servo| servo.is_wheel == Some(true))
+    }
+
+    /// No supply is known before the end of a whole round of housekeeping: nothing was read in an
+    /// adapter's time. What is armed after a whole round stands where it was read.
+    pub fn forget_supply(&mut self) {
+        self.supply = None;
+        // What is left of this round tells of some servos only.
+        self.lowest = PART_OF_A_ROUND;
     }
 
     /// Asks all for their return delay and mode once more, one per tick.

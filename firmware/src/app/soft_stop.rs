@@ -111,6 +111,9 @@ impl App {
         self.disarm(board);
         // An adapter's user may have changed them.
         self.servos.ask_again();
+        if self.state == State::Bridge {
+            self.servos.forget_supply();
+        }
         self.state = match mode {
             Mode::Bridge => State::Bridge,
             Mode::Stream => State::Stream(Torque::Off),

@@ -1,6 +1,6 @@
 //! Reading: every tick all positions, and the housekeeping of two servos in turn.
 
-use super::{GAVE_UP, Servos};
+use super::{GAVE_UP, PART_OF_A_ROUND, Servos};
 use crate::board::{Board, since_us};
 use crate::bus::{self, Answer, ReadPacket, look};
 use crate::design::{LAST_RETRY_US, ROUND_US};
@@ -220,7 +220,8 @@ impl Servos {
     fn begin_round(&mut self) {
         let next = self.after(self.housekeeping_second);
         if next <= self.housekeeping_from {
-            self.supply = Some(self.lowest).filter(|lowest| *lowest != Supply(u8::MAX));
+            let is_none = [Supply(u8::MAX), PART_OF_A_ROUND].contains(&self.lowest);
+            self.supply = (!is_none).then_some(self.lowest);
             self.lowest = Supply(u8::MAX);
             self.rounds = self.rounds.wrapping_add(1);
         }

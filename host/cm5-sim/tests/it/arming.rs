@@ -215,3 +215,35 @@ fn a_robot_far_from_its_pose_is_not_balanced() {
         }
     }
 }
+
+/// While the CM-5 is an adapter it reads no servo: what it read before arms nothing, neither with a
+/// supply that has fallen since nor towards where a servo stood.
+#[test]
+fn what_was_read_before_an_adapter_s_time_arms_nothing() {
+    let mut cm5 = with_wheels();
+    let token = greet(&mut cm5).token;
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Bridge)), Some(Ok(())));
+    let servo = cm5.bus().servo(5).unwrap();
+    servo.shaft.angle_rad = Position(700).to_rad();
+    servo.free = false;
+    let set_supply = |cm5: &mut VirtualCm5, volts| {
+        for servo in &mut cm5.bus().servos {
+            servo.supply_v = volts;
+        }
+    };
+    set_supply(&mut cm5, 8.4);
+    cm5.run_ms(600.0);
+    cm5.send_bytes(&[0]);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    let refused = Some(Err(Refusal::Supply));
+    assert_eq!(ask(&mut cm5, &arm_with(token)), refused);
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), refused);
+    set_supply(&mut cm5, 9.6);
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+    let goal = handstand_shared::control_table::GOAL_POSITION;
+    assert_eq!(cm5.bus().servo(5).unwrap().get(goal), 700);
+}
