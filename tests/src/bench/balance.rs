@@ -14,6 +14,20 @@ use handstand_shared::message::{
 };
 use handstand_shared::plan::{Gyro, Plan};
 
+/// The longest that a tick may take, us: what else must fit into the period is what it did not meet
+/// while it was measured, and what is done between ticks.
+pub const LONGEST_TICK_US: u16 = {
+    use handstand_firmware::design::{FIRST_BYTE_US, TICK_US};
+    use handstand_shared::packed::SERVOS;
+    /// Every servo's answer meets the whole of a motor interrupt.
+    const STALLS_US: u16 = 130 * SERVOS as u16;
+    /// A servo does not answer and is asked again.
+    const SILENT_US: u16 = 2 * FIRST_BYTE_US;
+    /// A command of the host's is received and obeyed: 0.2 ms by the program counter of simavr.
+    const COMMAND_US: u16 = 250;
+    TICK_US - STALLS_US - SILENT_US - COMMAND_US
+};
+
 /// Where the CM-5 has the first link's attitude from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {

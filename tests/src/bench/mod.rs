@@ -23,7 +23,9 @@ mod stream;
 pub use ages::{Ages, Spread, ages};
 pub use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 
-pub use balance::{Balanced, Conditions, Source, Tick, arm_balance, balance, plan};
+pub use balance::{
+    Balanced, Conditions, LONGEST_TICK_US, Source, Tick, arm_balance, balance, plan,
+};
 #[cfg(simavr)]
 pub use boot::{Boot, boot, eeprom_with, noise};
 pub use frames::{FrameTally, bit_flips, patterns, random_bytes, resynchronised};

@@ -120,24 +120,10 @@ const ROWS: &[(&str, Measure)] = &[
     ("frames", frames::frames),
 ];
 
-/// The longest that a tick may take, us: what else must fit into the period is what it did not meet
-/// while it was measured, and what is done between ticks.
-#[cfg(simavr)]
-const LONGEST_TICK_US: u16 = {
-    use handstand_firmware::design::{FIRST_BYTE_US, TICK_US};
-    use handstand_shared::packed::SERVOS;
-    /// Every servo's answer meets the whole of a motor interrupt.
-    const STALLS_US: u16 = 130 * SERVOS as u16;
-    /// A servo does not answer and is asked again.
-    const SILENT_US: u16 = 2 * FIRST_BYTE_US;
-    /// A command of the host's is received and obeyed: 0.2 ms by the program counter of simavr.
-    const COMMAND_US: u16 = 250;
-    TICK_US - STALLS_US - SILENT_US - COMMAND_US
-};
 #[cfg(simavr)]
 const LONGEST_TICK: &str = "6.77 ms, so that all fits";
 #[cfg(simavr)]
-const _: () = assert!(LONGEST_TICK_US == 6770);
+const _: () = assert!(handstand_tests::bench::LONGEST_TICK_US == 6770);
 
 fn table(rows: &[Row]) -> Table {
     let mut table = Table::new();

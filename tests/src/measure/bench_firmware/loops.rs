@@ -152,7 +152,7 @@ pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
             100.0 * share
         ),
         limit: super::LONGEST_TICK,
-        holds: Some(longest <= super::LONGEST_TICK_US && overruns == 0),
+        holds: Some(longest <= handstand_tests::bench::LONGEST_TICK_US && overruns == 0),
         values: json!({"longest_tick_us": longest, "longest_law_us": law, "overruns": overruns, "starts": starts}),
     }];
     rows.extend(

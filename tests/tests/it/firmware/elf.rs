@@ -72,7 +72,8 @@ fn the_elf_holds_three_links_up() {
     assert_eq!(rig.core.lost(0), 0);
 }
 
-/// The longest ways back, which a reading that is older than designed for fells.
+/// The longest ways back, which a reading that is older than designed for fells; and the longest
+/// ticks, those in which torque comes on.
 #[test]
 fn the_elf_stands_from_the_farthest_corners() {
     let built = built();
@@ -92,6 +93,13 @@ fn the_elf_stands_from_the_farthest_corners() {
             run.stood_s,
             run.condition
         );
+        let telemetry = run.telemetry.expect("it was asked for");
+        let longest_us = telemetry.longest_tick_us;
+        assert!(
+            longest_us <= LONGEST_TICK_US,
+            "{start_rad:?}: {longest_us} us"
+        );
+        assert_eq!(telemetry.overruns, 0, "{start_rad:?}");
     }
 }
 
