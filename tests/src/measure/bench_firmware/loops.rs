@@ -1,10 +1,16 @@
 //! The robot in closed loop, the laws side by side.
 
 use super::{Args, Row};
-use handstand_tests::bench::{Balanced, Conditions, Sides, Source, VirtualCm5, side_by_side};
+use handstand::Model;
+use handstand::deploy::mode_limits;
+use handstand_tests::bench::{
+    Balanced, Conditions, Fixed, Float, HostLaw, Sides, Source, VirtualCm5, balance_by_host,
+    corners, side_by_side,
+};
 use handstand_tests::firmware::Built;
 use rayon::prelude::*;
 use serde_json::json;
+use std::path::{Path, PathBuf};
 
 /// A start with all angles this far off, with these signs.
 fn corner(degrees: f64, signs: [f64; 3]) -> Conditions {
@@ -56,7 +62,71 @@ pub(super) fn gyros(args: &Args, built: Option<&Built>) -> Vec<Row> {
         let sides = loop_sides(built, conditions, Source::Gyro, seconds);
         loop_rows(GYRO_NAMES, start, &sides, seconds)
     };
-    starts.par_iter().flat_map_iter(of_start).collect()
+    let mut rows: Vec<Row> = starts.par_iter().flat_map_iter(of_start).collect();
+    rows.push(gyro_corners(seconds));
+    rows.push(gyro_limit());
+    rows
+}
+
+/// From how many corners of 1 deg the host's laws stand by the gyro.
+fn gyro_corners(seconds: f64) -> Row {
+    let (machine, plan) = Source::Gyro.plan();
+    let starts = corners(1f64.to_radians());
+    let stands = |is_float: bool, start_rad: [f64; 3]| {
+        let conditions = Conditions {
+            start_rad,
+            ..corner(1.0, [1.0; 3])
+        };
+        let (mut float, mut fixed) = (Float::new(&plan, &machine), Fixed::new(&plan));
+        let law: &mut dyn HostLaw = match is_float {
+            true => &mut float,
+            false => &mut fixed,
+        };
+        let timing = Source::Gyro.timing();
+        let run = balance_by_host(law, &conditions, &timing, Source::Gyro, seconds);
+        run.stood_s >= seconds - 1e-6
+    };
+    let count = |is_float| {
+        let stood = starts.iter().filter(|start| stands(is_float, **start));
+        stood.count()
+    };
+    let (float, fixed) = (count(true), count(false));
+    let of = starts.len();
+    Row {
+        name: "gyro alone, host laws from the corners of 1 deg",
+        measured: format!("float {float}, fixed {fixed} of {of} stood {seconds} s"),
+        limit: "-",
+        holds: None,
+        values: json!({"float": float, "fixed": fixed, "starts": of, "seconds": seconds}),
+    }
+}
+
+/// What the torque limit leaves, computed for the slowest unstable mode, which it limits most.
+fn gyro_limit() -> Row {
+    let model = Model::load(&model_file()).expect("the repository's own model");
+    let limits = mode_limits(&model, &Source::Gyro.board(), &Source::Gyro.timing());
+    let limits = limits.expect("the repository's own model");
+    let slowest = limits.last().expect("an upright robot is unstable");
+    let (start, step) = (slowest.degree_share, slowest.half_step_share);
+    Row {
+        name: "gyro alone, share of the recoverable states in the slowest mode, computed",
+        measured: format!(
+            "pole {:.1} /s: 1 deg in the worst corner {:.1} %, half a step of every sensor, grown \
+             {:.2}-fold until an answer acts, {:.1} %",
+            slowest.pole_per_s,
+            100.0 * start,
+            slowest.growth,
+            100.0 * step
+        ),
+        limit: "100 %: above, no law recovers",
+        holds: Some(start + step < 1.0),
+        values: json!({"pole_per_s": slowest.pole_per_s, "degree_share": start, "half_step_share": step, "growth": slowest.growth}),
+    }
+}
+
+/// The paper's robot.
+fn model_file() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/models/handstand.toml")
 }
 
 const LOOP_NAMES: [&str; 3] = [
