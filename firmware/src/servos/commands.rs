@@ -112,7 +112,7 @@ impl Servos {
         self.write_to(board, Sent::Goal, part, false, ids);
     }
 
-    /// Writes to each servo of a part that is commanded and is one of these ids, or is none of them.
+    /// Writes to each servo of a part that is commanded and is one of these ids, or none of them.
     // One function for all, for it is long.
     #[inline(never)]
     fn write_to<B: Board>(

@@ -34,8 +34,8 @@ impl StreamReport {
         (self.missing.get(place / 8)).is_some_and(|bits| bits >> (place % 8) & 1 == 0)
     }
 
-    /// Whether torque was on when the servos were read in this tick, the last report heard before it
-    /// being `before`; none where it is not known. While balancing, torque comes on with the law's
+    /// Whether torque was on when the servos were read in this tick, the last report heard before
+    /// it being `before`; none where it is not known. While balancing, it comes on with the law's
     /// first command and goes off where the law gives up: after the reading, while `condition` is
     /// that of the tick's end, so that a report that was lost leaves it open. Servos that do not
     /// balance have it up to four ticks later.
