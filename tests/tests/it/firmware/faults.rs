@@ -135,8 +135,13 @@ pub fn a_servo_gives_up_while_streaming(bench: &mut impl SimulatedCm5, way: Give
 pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: GivesUp) {
     let (_, plan) = plan();
     arm_balance(bench, &plan).expect("armed");
-    // The hip's mirror: nobody reads its angle.
     let upright = Command::Attitude(Attitude::default());
+    // Until all of them have torque.
+    for _ in 0..10 {
+        bench.send(&upright);
+        bench.run_ms(10.0);
+    }
+    // The hip's mirror: nobody reads its angle.
     is_let_down(bench, 12, way, Condition::BalanceArmed, &upright);
     for id in [1, 2, 11] {
         let servo = bench.bus().servo(id).expect("18 servos");

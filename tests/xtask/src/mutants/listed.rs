@@ -120,8 +120,8 @@ pub const LISTED: &[ListedMutant] = &[
     logic(
         "fault not logged",
         "firmware/src/app/soft_stop.rs",
-        "    ) {\n        self.log_fault(cause);",
-        "    ) {",
+        "        self.log_fault(cause);\n        if self.servos.tripped",
+        "        if self.servos.tripped",
     ),
     logic(
         "check of the fault log ignored",
