@@ -20,8 +20,10 @@ type Glance = (InitialGuess, Hypothesis);
 fn best_third(mut of_candidates: Vec<f64>) -> f64 {
     of_candidates.sort_by(f64::total_cmp);
     let looks = SECOND_LOOKS.max(of_candidates.len() / 3);
-    let last = of_candidates.get(looks.saturating_sub(1)).copied();
-    last.unwrap_or(f64::INFINITY)
+    of_candidates
+        .get(looks - 1)
+        .copied()
+        .unwrap_or(f64::INFINITY)
 }
 
 impl Evaluator<'_> {

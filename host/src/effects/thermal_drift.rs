@@ -37,7 +37,8 @@ static INFO: EffectInfo = EffectInfo {
             starts: &[10.0, 40.0],
         },
     ],
-    looks_like: "the same command gives less torque the longer the log; cold again, it is as at first",
+    looks_like: "the same command gives less torque the longer the log; cold again, it is as at \
+     first",
     confused_with: &[
         "torque_scale: both weaken every command; a scale is there from the first second",
         "supply_sag: both weaken strong commands; sag is there at once and gone at once",

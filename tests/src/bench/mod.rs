@@ -36,6 +36,7 @@ pub use laws::{Fixed, Float, HostLaw, Sides, balance_by_host, different, side_by
 pub use loss::hang;
 pub use loss::{Loss, Worst, arm, link_loss, worst_of};
 pub use power::{PowerCuts, power_cuts};
+pub use robot::model;
 pub use run::REPORT_MS;
 #[cfg(unix)]
 pub use serve::serve;

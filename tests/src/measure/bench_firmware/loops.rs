@@ -1,16 +1,14 @@
 //! The robot in closed loop, the laws side by side.
 
 use super::{Args, Row};
-use handstand::Model;
 use handstand::deploy::mode_limits;
 use handstand_tests::bench::{
     Balanced, Conditions, Fixed, Float, HostLaw, Sides, Source, VirtualCm5, balance_by_host,
-    corners, side_by_side,
+    corners, model, side_by_side,
 };
 use handstand_tests::firmware::Built;
 use rayon::prelude::*;
 use serde_json::json;
-use std::path::{Path, PathBuf};
 
 /// A start with all angles this far off, with these signs.
 fn corner(degrees: f64, signs: [f64; 3]) -> Conditions {
@@ -103,8 +101,7 @@ fn gyro_corners(seconds: f64) -> Row {
 
 /// What the torque limit leaves, computed for the slowest unstable mode, which it limits most.
 fn gyro_limit() -> Row {
-    let model = Model::load(&model_file()).expect("the repository's own model");
-    let limits = mode_limits(&model, &Source::Gyro.board(), &Source::Gyro.timing());
+    let limits = mode_limits(&model(), &Source::Gyro.board(), &Source::Gyro.timing());
     let limits = limits.expect("the repository's own model");
     let slowest = limits.last().expect("an upright robot is unstable");
     let (start, step) = (slowest.degree_share, slowest.half_step_share);
@@ -120,13 +117,13 @@ fn gyro_limit() -> Row {
         ),
         limit: "100 %: above, no law recovers",
         holds: Some(start + step < 1.0),
-        values: json!({"pole_per_s": slowest.pole_per_s, "degree_share": start, "half_step_share": step, "growth": slowest.growth}),
+        values: json!({
+            "pole_per_s": slowest.pole_per_s,
+            "degree_share": start,
+            "half_step_share": step,
+            "growth": slowest.growth,
+        }),
     }
-}
-
-/// The paper's robot.
-fn model_file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/models/handstand.toml")
 }
 
 const LOOP_NAMES: [&str; 3] = [

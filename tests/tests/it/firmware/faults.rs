@@ -141,7 +141,7 @@ pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: Give
         bench.send(&upright);
         bench.run_ms(10.0);
     }
-    // The hip's mirror: nobody reads its angle.
+    // The hip's mirror: its angle is not read.
     is_let_down(bench, 12, way, Condition::BalanceArmed, &upright);
     for id in [1, 2, 11] {
         let servo = bench.bus().servo(id).expect("18 servos");
