@@ -108,7 +108,7 @@ fn the_elf_stands_from_the_farthest_corners() {
 fn the_elf_stands_by_its_gyro_alone() {
     let built = built();
     let (_, plan) = Source::Gyro.plan();
-    for degrees in [0.0f64, 0.5] {
+    for degrees in [0.0f64, 0.5, 1.0] {
         let conditions = Conditions {
             dead_zone: 0.08,
             eccentric_m: [0.0; 3],
