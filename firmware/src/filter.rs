@@ -153,7 +153,50 @@ mod tests {
         for byte in [0xff, 0xff, 1, 200] {
             filter.push(byte);
         }
-        assert!((0..=GIVEN_UP).any(|_| filter.tick()));
+        // 50 ms, and once.
+        assert_eq!(
+            [(); 8].map(|()| filter.tick()),
+            [false, false, false, false, false, true, false, false]
+        );
+        assert_eq!(filter.push(0), Way::Frame);
+        // Every byte begins the wait again.
+        let mut filter = Filter::default();
+        for byte in [0xff, 0xff, 1, 200, 7, 7] {
+            filter.push(byte);
+            assert_eq!([(); 5].map(|()| filter.tick()), [false; 5]);
+        }
+        assert!(filter.tick());
+    }
+
+    /// With no more than one `FF`, a wrong length or the last of its bytes a packet is over.
+    #[test]
+    fn what_follows_a_packet_is_told_by_its_first_byte() {
+        for packet in [
+            &[0xff, 7][..],
+            &[0xff, 0xff, 1, 2, 9, 9],
+            &[0xff, 0xff, 0xff, 1, 1, 9],
+            &[0xff, 0xff, 1, 0, 9],
+            &[0xff, 0xff, 0xfd, 0, 1, 0, 4],
+            &[0xff, 0xff, 0xfd, 0, 1, 2, 0, 9, 9],
+        ] {
+            let mut filter = Filter::default();
+            for byte in packet {
+                assert_eq!(filter.push(*byte), Way::Bus, "{packet:x?}");
+            }
+            assert_eq!(filter.push(0), Way::Frame, "{packet:x?}");
+            // One byte less, and the zero belongs to it.
+            let mut filter = Filter::default();
+            let (_, begun) = packet.split_last().unwrap();
+            begun.iter().for_each(|byte| {
+                filter.push(*byte);
+            });
+            assert_eq!(filter.push(0), Way::Bus, "{packet:x?}");
+        }
+        // The longest of Protocol 2.0 has 1023 bytes behind its length.
+        let mut filter = Filter::default();
+        for byte in [0xff, 0xff, 0xfd, 0, 1, 0xff, 3].iter().chain(&[0; 1023]) {
+            assert_eq!(filter.push(*byte), Way::Bus);
+        }
         assert_eq!(filter.push(0), Way::Frame);
     }
 }

@@ -112,6 +112,52 @@ mod tests {
     }
 
     #[test]
+    fn a_button_is_pressed_when_it_has_been_down_for_three_ticks() {
+        let mut buttons = Buttons::default();
+        assert!(!buttons.is_down());
+        let mut presses = |down: [u8; 5]| down.map(|down| buttons.pressed(down));
+        assert_eq!(presses([16; 5]), [0, 0, 16, 0, 0]);
+        // Another one along with it is another press; letting go is none.
+        assert_eq!(presses([17; 5]), [0, 0, 17, 0, 0]);
+        assert_eq!(presses([0; 5]), [0; 5]);
+        assert_eq!(presses([2, 2, 0, 2, 2]), [0; 5]);
+        assert!(buttons.is_down());
+    }
+
+    /// In the first 320 ms of 640 a mode whose torque is off is lit.
+    #[test]
+    fn each_state_has_its_leds() {
+        use Condition::*;
+        for (condition, first, then) in [
+            (Bridge, led::MANAGE, led::MANAGE),
+            (Stream, led::PROGRAM, 0),
+            (StreamArmed, led::PROGRAM, led::PROGRAM),
+            (Balance, led::PLAY, 0),
+            (BalanceArmed, led::PLAY, led::PLAY),
+            (Soft, led::AUX, led::AUX),
+        ] {
+            for ticks in 0..64 {
+                let state = if ticks < 32 { first } else { then };
+                for (heard, all_answer) in [(true, true), (true, false), (false, true)] {
+                    let lines = u8::from(heard) * led::TXD + u8::from(all_answer) * led::RXD;
+                    let lit = leds(condition, ticks, heard, all_answer);
+                    assert_eq!(lit, led::POWER + state + lines, "{condition:?} {ticks}");
+                }
+            }
+        }
+    }
+
+    /// Of the first cause once, in the first 160 ms of 5.12 s.
+    #[test]
+    fn a_fault_s_flash_lasts_16_ticks() {
+        let lit = |ticks| leds(Condition::Fault(Cause::LinkLost), ticks, false, false);
+        for ticks in 0..1024 {
+            let aux = if ticks % 512 < 16 { led::AUX } else { 0 };
+            assert_eq!(lit(ticks), led::POWER + aux, "{ticks}");
+        }
+    }
+
+    #[test]
     fn a_fault_flashes_as_often_as_its_number() {
         for (cause, number) in [
             (Cause::LinkLost, 1),

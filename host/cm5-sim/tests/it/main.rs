@@ -2,13 +2,17 @@
 
 mod arming;
 mod attitude;
+mod boot_counter;
 mod bus;
 mod fault_log;
 mod invariants;
 mod joints;
+mod law;
 mod let_down;
 mod life;
+mod line;
 mod plan_store;
+mod reports;
 mod rig;
 mod start;
 mod supply;

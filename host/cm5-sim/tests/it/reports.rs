@@ -1,0 +1,258 @@
+//! What the CM-5 reads, in which order, and what it tells of it.
+
+use super::rig::*;
+use handstand_cm5_sim::{Plant, Robot, SimulatedCm5, VirtualCm5};
+use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
+use handstand_shared::dynamixel::ErrorBits;
+use handstand_shared::message::*;
+use handstand_shared::packed::SERVOS;
+use handstand_shared::raw::Position;
+
+/// One joint that turns on and on, and tells by its angle when it was read: a position code takes
+/// 0.1 ms.
+#[derive(Debug)]
+struct Clock {
+    time_s: f64,
+}
+
+/// Of the clock, rad/s.
+const SPEED_RAD_S: f64 = 50.0;
+
+impl Plant for Clock {
+    fn joint_count(&self) -> usize {
+        1
+    }
+
+    fn delay_s(&self, _joint: usize) -> f64 {
+        0.0
+    }
+
+    fn set_duty(&mut self, _joint: usize, _duty: Option<f64>, _supply_v: f64) {}
+
+    fn advance(&mut self, span_s: f64) {
+        self.time_s += span_s;
+    }
+
+    fn angle_rad(&self, _joint: usize) -> f64 {
+        // It begins again with every tick.
+        SPEED_RAD_S * (self.time_s % 0.01)
+    }
+
+    fn speed_rad_s(&self, _joint: usize) -> f64 {
+        SPEED_RAD_S
+    }
+
+    fn shaft(&self, joint: usize) -> (f64, f64) {
+        (self.angle_rad(joint), SPEED_RAD_S)
+    }
+}
+
+/// The last report of a stream.
+fn report(cm5: &mut VirtualCm5) -> StreamReport {
+    cm5.clear();
+    cm5.run_ms(40.0);
+    let reports = cm5.reports().into_iter().rev();
+    let last = reports.into_iter().find_map(|(_, report)| match report {
+        Report::Stream(report) => Some(report),
+        _ => None,
+    });
+    last.expect("a report")
+}
+
+fn list(ids: &[u8]) -> ServoList {
+    let mut all = [0; SERVOS];
+    all[..ids.len()].copy_from_slice(ids);
+    ServoList {
+        count: ids.len() as u8,
+        ids: all,
+    }
+}
+
+/// When each servo of a list was read, ms after `from_ms` in a period.
+fn read_at(cm5: &mut VirtualCm5, from_ms: f64) -> Vec<f64> {
+    let report = report(cm5);
+    let codes = (0..SERVOS).map(|place| report.position(place).expect("it answers"));
+    // Mirrored servos turn the other way.
+    let at_ms = codes.map(|code| Position(code).to_rad().abs() / SPEED_RAD_S * 1e3);
+    at_ms
+        .map(|at| (at.round() - from_ms).rem_euclid(10.0))
+        .collect()
+}
+
+/// In the list's order without a plan; with one, those that measure what balances come last.
+#[test]
+fn those_that_balance_are_read_last() {
+    let mut cm5 = with_wheels();
+    let clock = Clock { time_s: 0.0 };
+    cm5.bus()
+        .attach(Robot::new(Box::new(clock), [(0, (1..=18).collect())]));
+    greet(&mut cm5);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    cm5.run_ms(300.0);
+    let from_ms = read_at(&mut cm5, 0.0)[0];
+    let plain = read_at(&mut cm5, from_ms);
+    assert!(plain.is_sorted() && plain[17] >= 3.0, "{plain:?}");
+
+    // The others keep the list's order.
+    upload(&mut cm5, &plan());
+    cm5.run_ms(100.0);
+    let at = read_at(&mut cm5, from_ms);
+    let is_other = |place: &usize| ![0, 10].contains(place);
+    let others: Vec<f64> = (0..18).filter(is_other).map(|place| at[place]).collect();
+    assert!(others.is_sorted() && others[0] < 1.0, "{at:?}");
+    assert!(
+        at[0] >= others[15] && at[10] >= at[0] && at[0] >= 3.0,
+        "{at:?}"
+    );
+
+    // Also where a list has them elsewhere.
+    let ids: Vec<u8> = [11, 1].into_iter().chain(2..=10).chain(12..=18).collect();
+    let order = Command::ServoList(list(&ids));
+    assert_eq!(ask(&mut cm5, &order), Some(Ok(())));
+    cm5.run_ms(300.0);
+    let at = read_at(&mut cm5, from_ms);
+    assert!(at[2..].is_sorted() && at[2] < 1.0, "{at:?}");
+    assert!(at[1] >= at[17] && at[0] >= at[1] && at[1] >= 3.0, "{at:?}");
+}
+
+#[test]
+fn a_servo_list_is_read_and_told_in_its_order() {
+    let mut cm5 = VirtualCm5::new();
+    greet(&mut cm5);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    for wrong in [list(&[]), list(&[3, 254]), list(&[3, 5, 3])] {
+        let refused = Some(Err(Refusal::ServoList));
+        assert_eq!(ask(&mut cm5, &Command::ServoList(wrong)), refused);
+    }
+    let ids = [11, 3, 5, 1];
+    for (id, code) in ids.into_iter().zip([100, 200, 300, 400]) {
+        let servo = cm5.bus().servo(id).unwrap();
+        servo.free = false;
+        servo.shaft.angle_rad = Position(code).to_rad();
+    }
+    assert_eq!(ask(&mut cm5, &Command::ServoList(list(&ids))), Some(Ok(())));
+    cm5.run_ms(100.0);
+    let told = report(&mut cm5);
+    let codes = [0, 1, 2, 3].map(|place| told.position(place));
+    assert_eq!(codes, [100, 200, 300, 400].map(Some));
+    assert_eq!(told.missing, [0; 3]);
+    cm5.bus().servo(5).unwrap().faults.dead = true;
+    cm5.run_ms(30.0);
+    assert_eq!(report(&mut cm5).missing, [4, 0, 0]);
+    // Armed, none is taken.
+    cm5.bus().servo(5).unwrap().faults.dead = false;
+    arm(&mut cm5);
+    let again = Command::ServoList(list(&[1, 2]));
+    assert_eq!(ask(&mut cm5, &again), Some(Err(Refusal::Armed)));
+}
+
+#[test]
+fn reports_say_who_is_missing() {
+    for id in 1..=18 {
+        let mut cm5 = VirtualCm5::new();
+        greet(&mut cm5);
+        ask(&mut cm5, &Command::Mode(Mode::Stream));
+        cm5.bus().servo(id).unwrap().faults.dead = true;
+        let [m0, m1, m2] = report(&mut cm5).missing;
+        assert_eq!(u32::from_le_bytes([m0, m1, m2, 0]), 1 << (id - 1));
+    }
+}
+
+/// What the CM-5 has counted.
+pub fn statistics(cm5: &mut VirtualCm5) -> Statistics {
+    cm5.clear();
+    cm5.send(&Command::Ask(Subject::Statistics));
+    cm5.run_ms(60.0);
+    let mut reports = cm5.reports().into_iter();
+    let told = reports.find_map(|(_, report)| match report {
+        Report::Statistics(statistics) => Some(statistics),
+        _ => None,
+    });
+    told.expect("statistics")
+}
+
+#[test]
+fn statistics_count_answers_and_what_is_missing() {
+    let mut cm5 = VirtualCm5::new();
+    greet(&mut cm5);
+    ask(&mut cm5, &Command::Mode(Mode::Stream));
+    // Until all were asked for their modes.
+    cm5.run_ms(400.0);
+    let before = statistics(&mut cm5);
+    cm5.bus().servo(4).unwrap().faults.dead = true;
+    cm5.run_ms(100.0);
+    cm5.bus().servo(4).unwrap().faults.dead = false;
+    cm5.run_ms(40.0);
+    let after = statistics(&mut cm5);
+    // The first time it is asked once more.
+    assert_eq!(after.missed[3] - before.missed[3], 10);
+    assert_eq!(after.timeouts - before.timeouts, 11);
+    assert_eq!(after.retries - before.retries, 1);
+    assert_eq!((after.garbled, after.strangers), (0, 0));
+    let ticks = 20;
+    assert_eq!(after.answers - before.answers, 18 * ticks - 10);
+    let elsewhere = (0..SERVOS).filter(|place| *place != 3);
+    assert!(
+        elsewhere
+            .into_iter()
+            .all(|place| after.missed[place] == before.missed[place])
+    );
+}
+
+#[test]
+fn spoilt_answers_and_strangers_are_told_apart() {
+    for (flip, wrong_id) in [(1.0, 0.0), (0.0, 1.0)] {
+        let mut cm5 = VirtualCm5::new();
+        greet(&mut cm5);
+        ask(&mut cm5, &Command::Mode(Mode::Stream));
+        let faults = &mut cm5.bus().servo(4).unwrap().faults;
+        (faults.flip, faults.wrong_id) = (flip, wrong_id);
+        cm5.run_ms(200.0);
+        let told = statistics(&mut cm5);
+        let (garbled, strangers) = (told.garbled > 10, told.strangers > 10);
+        assert_eq!(
+            (garbled, strangers),
+            (flip > 0.0, wrong_id > 0.0),
+            "{told:?}"
+        );
+    }
+}
+
+/// A mode says anew which servos turn without end.
+#[test]
+fn modes_are_asked_again() {
+    let mut cm5 = with_wheels();
+    let token = ready_to_balance(&mut cm5, &plan());
+    cm5.bus().servo(11).unwrap().set(CCW_LIMIT, 1023);
+    say(&mut cm5, &UPRIGHT, 300);
+    // Not asked since.
+    assert_eq!(ask_upright(&mut cm5, &arm_with(token)), Some(Ok(())));
+    for (limit, outcome) in [(1023, Err(Refusal::Wheel)), (0, Ok(()))] {
+        cm5.bus().servo(11).unwrap().set(CW_LIMIT, 0);
+        cm5.bus().servo(11).unwrap().set(CCW_LIMIT, limit);
+        let token = greet(&mut cm5).token;
+        assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Balance)), Some(Ok(())));
+        say(&mut cm5, &UPRIGHT, 300);
+        assert_eq!(ask_upright(&mut cm5, &arm_with(token)), Some(outcome));
+    }
+}
+
+/// An overloaded servo, and one that is too hot.
+#[test]
+fn a_servo_that_gives_up_says_why() {
+    for bit in [ErrorBits::OVERLOAD, ErrorBits::OVERHEAT] {
+        let mut cm5 = VirtualCm5::new();
+        arm(&mut cm5);
+        say(&mut cm5, &Command::KeepAlive, 100);
+        let servo = cm5.bus().servo(7).unwrap();
+        match bit {
+            ErrorBits::OVERLOAD => servo.overload(),
+            _ => servo.temperature = 95.0,
+        }
+        say(&mut cm5, &Command::KeepAlive, 500);
+        let told = telemetry(&mut cm5);
+        assert_eq!(told.condition, Condition::Fault(Cause::ServoError));
+        let tripped = told.tripped.expect("a servo");
+        assert_eq!((tripped.id, tripped.error), (7, bit.0));
+    }
+}
