@@ -119,6 +119,10 @@ impl HostBoard {
             if self.now_ns >= until_ns || (until_byte && has_arrived) {
                 return;
             }
+            if self.now_ns >= self.next_tick_ns {
+                // A tick was longer than its period: the next one begins at once.
+                continue;
+            }
             let next = [
                 Some(self.next_tick_ns),
                 self.from_pc.front().map(|(ends, _)| *ends),
