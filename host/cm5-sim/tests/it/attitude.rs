@@ -132,3 +132,24 @@ fn the_gyro_s_sign_is_that_of_the_attitude() {
         assert_eq!(turning(false, sign), host);
     }
 }
+
+/// The zero that is told is the one measured while torque is off, and only then.
+#[test]
+fn the_gyro_s_zero_is_measured_while_torque_is_off() {
+    let mut cm5 = with_wheels();
+    let own = plan();
+    let gyro = Gyro {
+        from_host: false,
+        ..own.gyro
+    };
+    cm5.set_gyro(530);
+    let token = ready_to_balance(&mut cm5, &Plan { gyro, ..own });
+    say(&mut cm5, &Command::KeepAlive, 3000);
+    let told = telemetry(&mut cm5);
+    assert_eq!((told.gyro_zero, told.gyro_scale), (530, 279));
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+    cm5.set_gyro(531);
+    say(&mut cm5, &Command::KeepAlive, 200);
+    assert_eq!(telemetry(&mut cm5).gyro_zero, 530);
+    assert_eq!(cm5.app.condition(), Condition::BalanceArmed);
+}

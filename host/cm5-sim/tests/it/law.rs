@@ -296,7 +296,7 @@ fn the_commands_are_those_of_the_law() {
                 let plan = Plan {
                     gyro,
                     moments,
-                    ..law.clone()
+                    ..law
                 };
                 let random = &mut ChaCha8Rng::seed_from_u64(1);
                 let mut cm5 = with_wheels();

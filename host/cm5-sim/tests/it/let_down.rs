@@ -3,7 +3,7 @@
 use super::rig::*;
 use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 use handstand_shared::control_table::{
-    GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, TORQUE_LIMIT,
+    GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, SHUTDOWN, TORQUE_LIMIT,
 };
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS, Speeds};
@@ -96,5 +96,42 @@ fn the_torque_limit_falls_in_equal_steps() {
         let steps = (0..16).rev().map(|left| left * sixteenth).chain([0]);
         let steps: Vec<u16> = steps.collect();
         assert_eq!(seen, steps, "of {limit}");
+    }
+}
+
+/// Said again while torque falls it changes nothing; said without torque it is refused.
+#[test]
+fn let_down_may_be_said_twice() {
+    let mut cm5 = VirtualCm5::new();
+    arm(&mut cm5);
+    assert_eq!(ask(&mut cm5, &Command::LetDown), Some(Ok(())));
+    assert_eq!(cm5.app.condition(), Condition::Soft);
+    assert_eq!(ask(&mut cm5, &Command::LetDown), Some(Ok(())));
+    let (_, off_ms) = times_to_off(&mut cm5, Some(&Command::KeepAlive));
+    assert!(off_ms.is_some_and(|ms| ms < 180.0), "{off_ms:?}");
+    assert_eq!(cm5.app.condition(), Condition::Fault(Cause::LetDown));
+    assert_eq!(ask(&mut cm5, &Command::LetDown), Some(Err(Refusal::State)));
+}
+
+/// One that gave up without switching its torque off: the limits that are written while the others
+/// are let down would wake it.
+#[test]
+fn a_servo_that_gave_up_is_let_go_at_once() {
+    let mut cm5 = VirtualCm5::new();
+    arm(&mut cm5);
+    say(&mut cm5, &Command::KeepAlive, 100);
+    let servo = cm5.bus().servo(7).unwrap();
+    servo.set(SHUTDOWN, 0);
+    servo.overload();
+    for _ in 0..20 {
+        say(&mut cm5, &Command::KeepAlive, 10);
+        if cm5.app.condition() == Condition::Soft {
+            break;
+        }
+    }
+    assert_eq!(cm5.app.condition(), Condition::Soft);
+    for id in 1..=18 {
+        let is_on = cm5.bus().servo(id).unwrap().torque_is_on();
+        assert_eq!(is_on, id != 7, "servo {id}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use handstand_cm5_sim::{Plant, Robot, SimulatedCm5, VirtualCm5};
-use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
+use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, RETURN_DELAY};
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::*;
 use handstand_shared::packed::SERVOS;
@@ -254,5 +254,74 @@ fn a_servo_that_gives_up_says_why() {
         assert_eq!(told.condition, Condition::Fault(Cause::ServoError));
         let tripped = told.tripped.expect("a servo");
         assert_eq!((tripped.id, tripped.error), (7, bit.0));
+    }
+}
+
+/// What a tick takes is what its packets take: of every servo a request of 8 bytes, 22 us of
+/// nothing, and its position in 8 bytes; of one servo the housekeeping in 14, of another it and the
+/// torque in 26; and the motor interrupts that stall answers, 330 us at least.
+#[test]
+fn a_tick_takes_no_longer_than_its_packets() {
+    let mut cm5 = VirtualCm5::new();
+    greet(&mut cm5);
+    ask(&mut cm5, &Command::Mode(Mode::Stream));
+    cm5.run_ms(400.0);
+    let us = 18 * (80 + 22) + 10 * (16 * 8 + 14 + 26);
+    let ticks = (0..40).map(|_| telemetry(&mut cm5).tick_us - us);
+    let least_us = ticks.min().expect("ticks");
+    // One request more would be 80.
+    assert!(
+        (300..370).contains(&least_us),
+        "{least_us} beside the packets"
+    );
+}
+
+/// Silent servos are asked until 14 ms have passed; those that were left out are missed like the
+/// others, and none is asked twice.
+#[test]
+fn a_round_of_silent_servos_ends_in_time() {
+    let mut cm5 = VirtualCm5::new();
+    for servo in &mut cm5.bus().servos {
+        servo.faults.dead = true;
+    }
+    greet(&mut cm5);
+    ask(&mut cm5, &Command::Mode(Mode::Stream));
+    cm5.run_ms(200.0);
+    let before = statistics(&mut cm5);
+    cm5.run_ms(500.0);
+    let after = statistics(&mut cm5);
+    let missed: Vec<u8> = (0..SERVOS)
+        .map(|place| after.missed[place] - before.missed[place])
+        .collect();
+    assert!(missed.iter().all(|times| *times == missed[0]), "{missed:?}");
+    assert!(missed[0] > 20, "{missed:?}");
+    assert_eq!(after.retries, 0);
+    let asked = (after.timeouts - before.timeouts) / u16::from(missed[0]);
+    assert!((14..18).contains(&asked), "{asked} a tick");
+    let told = telemetry(&mut cm5);
+    assert!((14_000..16_000).contains(&told.tick_us), "{told:?}");
+    // All that is told of them is that they are missing.
+    let report = report(&mut cm5);
+    assert_eq!(report.missing, [0xff, 0xff, 3]);
+    assert!(report.housekeeping.iter().all(|servo| servo.error == 0xff));
+}
+
+/// A servo that falls silent late in a tick is not asked again: what follows needs the time.
+#[test]
+fn no_servo_is_asked_again_too_late() {
+    // With a return delay of 0.1 ms each the round takes more than 7.6 ms of which they are 1.8.
+    for (delay, asked_again) in [(0, 1), (120, 0)] {
+        let mut cm5 = VirtualCm5::new();
+        for servo in &mut cm5.bus().servos {
+            servo.set(RETURN_DELAY, delay);
+        }
+        greet(&mut cm5);
+        ask(&mut cm5, &Command::Mode(Mode::Stream));
+        cm5.run_ms(600.0);
+        let before = statistics(&mut cm5);
+        cm5.bus().servo(4).unwrap().faults.dead = true;
+        cm5.run_ms(200.0);
+        let after = statistics(&mut cm5);
+        assert_eq!(after.retries - before.retries, asked_again, "{delay}");
     }
 }

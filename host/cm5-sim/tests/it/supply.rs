@@ -59,3 +59,26 @@ fn a_low_supply_is_not_armed_with() {
     say(&mut cm5, &Command::KeepAlive, 250);
     assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
 }
+
+/// An adapter reads nothing: what it knew of the supply before is old. A change between other modes
+/// forgets nothing.
+#[test]
+fn an_adapter_forgets_the_supply() {
+    let mut cm5 = VirtualCm5::new();
+    let mut arm_after = |mode: Mode| {
+        let token = greet(&mut cm5).token;
+        for mode in [mode, Mode::Stream] {
+            assert_eq!(ask(&mut cm5, &Command::Mode(mode)), Some(Ok(())));
+        }
+        let outcome = ask(&mut cm5, &arm_with(token));
+        ask(&mut cm5, &Command::Disarm);
+        greet(&mut cm5);
+        assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+        cm5.run_ms(400.0);
+        outcome
+    };
+    arm_after(Mode::Stream);
+    assert_eq!(arm_after(Mode::Balance), Some(Ok(())));
+    assert_eq!(arm_after(Mode::Bridge), Some(Err(Refusal::Supply)));
+    assert_eq!(arm_after(Mode::Stream), Some(Ok(())));
+}
