@@ -21,8 +21,9 @@ pub const LEAST_ROWS: usize = 10;
 /// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
 /// not judged.
 ///
-/// An empty field is a gap. An angle or a rate is not a number there; an input and the supply hold
-/// the value before. A motion begins when all its inputs are known, or while torque is off.
+/// An empty field is a gap. An angle or a rate is not a number there; an input, the supply and
+/// whether torque is on hold the value before. A motion begins when that is known, and all its
+/// inputs are or torque is off.
 ///
 /// # Errors
 /// Columns without any value, unreadable cells and rows, time that does not increase, a payload or
@@ -47,6 +48,7 @@ fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> 
         columns,
         pieces: Vec::new(),
         without_input: None,
+        without_torque: false,
     };
     let facts = visit(
         &request.path,
@@ -104,10 +106,16 @@ struct Cutter<'a> {
     pieces: Vec<Piece>,
     /// Joint without input in the rows that were left out last.
     without_input: Option<usize>,
+    /// Whether rows were left out that do not say if torque is on.
+    without_torque: bool,
 }
 
 impl Cutter<'_> {
     fn take(&mut self, row: &LogRow) -> Result<()> {
+        if self.columns.torque_on.is_some() && row.torque_on.is_none() {
+            self.without_torque = true;
+            return Ok(());
+        }
         let previous = self.pieces.last().map(Piece::before);
         let split_at_gap_s = self.columns.split_at_gap_s;
         match previous.and_then(|previous| row.follows(&previous, split_at_gap_s)) {
@@ -159,8 +167,11 @@ impl Cutter<'_> {
         if self.pieces.is_empty() {
             let place = Place::file(&self.request.path);
             let input = |joint: usize| self.columns.joints[joint].input.as_ref();
-            let reason = match self.without_input.and_then(input) {
-                Some(input) => empty(input.name(), &self.request.name()),
+            let torque_on = self.columns.torque_on.clone();
+            let torque_on = torque_on.filter(|_| self.without_torque);
+            let input = self.without_input.and_then(input).map(|input| input.name());
+            let reason = match input.or(torque_on) {
+                Some(column) => empty(column, &self.request.name()),
                 None => LogReason::NoSample,
             };
             return Err(Error::refused(place, reason));

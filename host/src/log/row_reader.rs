@@ -153,7 +153,14 @@ impl<'a> RowReader<'a> {
         row.time_s = line.value(&self.time)?;
         row.segment = self.segment.as_ref().map(|cell| line.text(cell).into());
         row.supply_v = self.supply.as_ref().map(|q| line.gap_or(q)).transpose()?;
-        row.torque_on = line.flag(&self.torque_on)?;
+        // An empty one holds the value of the row before.
+        if !self
+            .torque_on
+            .as_ref()
+            .is_some_and(|cell| line.is_gap(cell))
+        {
+            row.torque_on = line.flag(&self.torque_on)?;
+        }
         row.payload_kg = line.maybe(&self.payload)?.unwrap_or(0.0);
         row.turned = line.flag(&self.turned)?.unwrap_or(false);
         row.position_rad.clear();
@@ -249,6 +256,11 @@ impl Cells<'_> {
         let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
         self.reader.first_ns.set(Some(first_ns));
         Ok(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
+    }
+
+    fn is_gap(&self, cell: &LogCell) -> bool {
+        let text = self.text(cell);
+        text.is_empty() || text.eq_ignore_ascii_case("nan")
     }
 
     fn flag(&self, cell: &Option<LogCell>) -> Result<Option<bool>> {

@@ -80,6 +80,25 @@ fn without_torque_a_goal_may_be_unknown() {
     assert!(refused(&late, &columns).2.contains("u1 and u2"));
 }
 
+/// As a recording has it where the report was lost in which torque came or went.
+#[test]
+fn an_open_torque_flag_holds_the_one_before() {
+    let mut columns = mirrored();
+    columns.torque_on = Some("on".into());
+    let text = twenty(|k| match k {
+        0..=1 | 8 | 15 => "0.5,-0.5,0.3,-0.3,".into(),
+        2..=7 => "0.5,-0.5,0.3,-0.3,0".into(),
+        _ => "0.5,-0.5,0.3,-0.3,1".into(),
+    });
+    let motion = &read_text(&text, &columns).unwrap()[0];
+    // What comes before the first one is left out.
+    assert_eq!((motion.len(), motion.time_s[0]), (18, 0.02));
+    let on: Vec<bool> = (2..20).map(|k| k > 8).collect();
+    assert_eq!(motion.torque_on.as_ref(), Some(&on));
+    let none = twenty(|_| "0.5,-0.5,0.3,-0.3,".into());
+    assert!(refused(&none, &columns).2.contains("on holds no value"));
+}
+
 #[test]
 fn a_supply_read_now_and_then_holds() {
     let mut columns = columns();
