@@ -259,3 +259,32 @@ fn torque_stops_coming_on_when_the_robot_is_stopped() {
         }
     }
 }
+
+/// A servo that gives up while torque comes on, balancing or not, with torque or not yet: the others
+/// are let down, and none gets torque any more.
+#[test]
+fn a_servo_that_gives_up_early_stops_the_others() {
+    for id in [1, 4, 12, 17] {
+        for ticks in 1..=6 {
+            let (mut cm5, token) = ready_elsewhere();
+            cm5.send(&arm_with(token));
+            say(&mut cm5, &UPRIGHT, 10 * ticks);
+            cm5.bus().servo(id).unwrap().overload();
+            say(&mut cm5, &UPRIGHT, 20);
+            let case = format!("servo {id} after {ticks} ticks");
+            let (mut before, _) = onset(&mut cm5);
+            for _ in 0..30 {
+                say(&mut cm5, &UPRIGHT, 10);
+                let (now, _) = onset(&mut cm5);
+                let is_fewer = now.iter().all(|place| before.contains(place));
+                assert!(is_fewer, "{case}: {before:?} {now:?}");
+                before = now;
+            }
+            let stopped = Condition::Fault(Cause::ServoError);
+            assert_eq!(cm5.app.condition(), stopped, "{case}");
+            assert!(before.is_empty(), "{case}: {before:?}");
+            let tripped = telemetry(&mut cm5).tripped.expect("a servo");
+            assert_eq!(tripped.id, id, "{case}");
+        }
+    }
+}
