@@ -198,6 +198,26 @@ mod tests {
         heavy.rows[0].k = [i16::MIN, i16::MAX, 1];
         assert_eq!(heavy.rows[0].peak(), Some((1 << 31) + (1 << 20)));
         assert!(!heavy.is_safe());
+        // As many gains as 32 bits hold, and one step more.
+        let row = |last| Row {
+            k: [i16::MIN, i16::MIN, i16::MIN, last],
+            bias: 0,
+            shift: 0,
+            low: 0,
+            high: 0,
+        };
+        assert_eq!(row(i16::MAX).peak(), Some(131_071 << 15));
+        assert_eq!(row(i16::MIN).peak(), None);
+        for (shift, limits, is_safe) in [
+            (30, [-5, -5], true),
+            (31, [-5, -5], false),
+            (30, [-4, -5], false),
+        ] {
+            let mut table = TABLE;
+            [table.rows[1].low, table.rows[1].high] = limits;
+            table.rows[1].shift = shift;
+            assert_eq!(table.is_safe(), is_safe, "{shift} {limits:?}");
+        }
         heavy.rows[0].k = [i16::MIN; 3];
         assert!(!heavy.is_safe());
     }

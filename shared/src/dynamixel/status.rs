@@ -78,6 +78,7 @@ impl<'a> Status<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{MAX_PACKET, status_length};
     use super::*;
 
     #[test]
@@ -91,7 +92,16 @@ mod tests {
             let mut out = [0; 8];
             let length = status.emit(&mut out).unwrap();
             assert_eq!(&out[..length], bytes);
+            assert_eq!(length, status_length(data.len() as u8));
         }
+        // As long as one byte of length can say.
+        let data = [0; 253];
+        let longest = Status {
+            id: 1,
+            error: ErrorBits(0),
+            data: &data,
+        };
+        assert_eq!(longest.emit(&mut [0; 300]), Some(MAX_PACKET));
     }
 
     #[test]

@@ -100,6 +100,19 @@ fn a_critical_message_without_its_own_check_is_refused() {
     }
 }
 
+/// A piece of a plan has a CRC-32 of its own, whichever way it goes.
+#[test]
+fn what_may_not_arrive_wrong_is_critical() {
+    let (offset, length, bytes) = (0, 1000, [7; PLAN_CHUNK]);
+    let told = Report::PlanChunk {
+        offset,
+        length,
+        bytes,
+    };
+    assert!(Command::PlanChunk { offset, bytes }.is_critical() && told.is_critical());
+    assert!(!Report::Statistics(Statistics::default()).is_critical());
+}
+
 #[test]
 fn hello_keeps_its_form_for_ever() {
     assert_eq!(

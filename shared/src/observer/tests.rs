@@ -54,6 +54,8 @@ fn it_starts_at_the_readings_and_remembers_what_was_given() {
     // Halves of the innovation are rounded down, for there is no bias.
     assert_eq!(memory.all()[..JOINTS], [43, 64, 83]);
     assert_eq!(memory.all()[ESTIMATED..STATE], [1, 2, 7, 9, 0, 0]);
+    // The innovation and what was applied stay as they were.
+    assert_eq!(memory.all()[STATE..], [-1, 1, -1, 0, 1, 2]);
     assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-71, -92]);
     memory.all[1] = 1000;
     assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-100, -92]);
@@ -116,4 +118,29 @@ fn it_survives_its_bytes() {
         let mut short = bytes[..length].iter().copied();
         assert_eq!(back.fill(&mut short), None);
     }
+}
+
+#[test]
+fn it_is_safe_if_all_its_tables_are() {
+    assert!(observer().is_safe());
+    let spoilt: [fn(&mut Observer); 3] = [
+        |observer| observer.predict.rows[3].shift = 31,
+        |observer| observer.feedback.rows[1].shift = 31,
+        |observer| observer.update.rows[10].shift = 31,
+    ];
+    for spoil in spoilt {
+        let mut observer = observer();
+        spoil(&mut observer);
+        assert!(!observer.is_safe());
+    }
+}
+
+#[test]
+fn inputs_are_kept_for_three_samples() {
+    let observer = observer();
+    let mut memory = Memory::ZERO;
+    for applied in [[1, 2], [3, 4], [5, 6], [7, 8]] {
+        observer.update(&mut memory, applied);
+    }
+    assert_eq!(memory.all()[ESTIMATED..STATE], [7, 8, 5, 6, 3, 4]);
 }
