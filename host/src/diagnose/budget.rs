@@ -32,6 +32,8 @@ pub(super) const START_ITERATIONS: usize = 30;
 pub(super) const EVALUATION_STEPS: usize = 2;
 /// The base model, likewise.
 pub(super) const BASE_STEPS: usize = 5;
+/// A candidate's glance and look.
+const FIRST_LOOK_STEPS: usize = 2;
 /// The finals of one size.
 const FINALS_STEPS: usize = SECOND_LOOKS + FINALISTS * (1 + EVALUATION_STEPS);
 /// The placebos and the residual structure.
@@ -40,7 +42,7 @@ pub(super) const STRUCTURE_STEPS: usize = 15;
 /// Steps until sets of `size` are done.
 pub(super) fn steps_up_to(size: usize, candidates: usize) -> usize {
     let larger = BEAM * PARTNERS + 2 * FINALS_STEPS;
-    BASE_STEPS + candidates + FINALS_STEPS + (size.max(1) - 1) * larger
+    BASE_STEPS + FIRST_LOOK_STEPS * candidates + FINALS_STEPS + (size.max(1) - 1) * larger
 }
 
 /// Steps of a diagnosis with so many candidates, when it does not end early.

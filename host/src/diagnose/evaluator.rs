@@ -144,10 +144,15 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Evaluates hypotheses fitted to the end on short windows, the best first; what is far behind
-    /// them, or behind a squared error that others left, gets a look. Calls `done` after each.
-    pub fn evaluate_all(&self, hypotheses: &mut [Hypothesis], least: f64, done: impl Fn() + Sync) {
+    /// them, or behind the least squared error of others, gets a look. Calls `done` after each.
+    pub fn evaluate_all(
+        &self,
+        hypotheses: &mut [Hypothesis],
+        least: Option<f64>,
+        done: impl Fn() + Sync,
+    ) {
         let best = hypotheses.iter().map(|h| h.search_mean);
-        let far = FAR_BEHIND * best.fold(least, f64::min);
+        let far = FAR_BEHIND * best.chain(least).fold(f64::INFINITY, f64::min);
         hypotheses.par_iter_mut().for_each(|hypothesis| {
             let options = match hypothesis.search_mean > far {
                 true => FitOptions::iterations(LOOK).rough(),
@@ -164,17 +169,21 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The squared error above which a hypothesis is hopeless beside the best of these, or beside
-    /// the squared error that others left; infinite where simulations are cheap.
-    pub fn limit<'h>(&self, hypotheses: impl Iterator<Item = &'h Hypothesis>, least: f64) -> f64 {
+    /// the least squared error of others; infinite where simulations are cheap.
+    pub fn limit<'h>(
+        &self,
+        hypotheses: impl Iterator<Item = &'h Hypothesis>,
+        least: Option<f64>,
+    ) -> f64 {
         let means = hypotheses.map(|hypothesis| hypothesis.search_mean);
         match self.small() {
             true => f64::INFINITY,
-            false => HOPELESS * means.fold(least, f64::min),
+            false => HOPELESS * means.chain(least).fold(f64::INFINITY, f64::min),
         }
     }
 
     /// How many of the hypotheses, sorted by their error, are not hopeless.
-    pub fn promising(&self, sorted: &[Hypothesis], least: f64) -> usize {
+    pub fn promising(&self, sorted: &[Hypothesis], least: Option<f64>) -> usize {
         let limit = self.limit(sorted.iter().take(1), least);
         let promising = sorted.iter().take_while(|h| h.search_mean <= limit);
         promising.count()

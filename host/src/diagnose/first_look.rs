@@ -78,7 +78,7 @@ impl Evaluator<'_> {
         };
         let best: Vec<f64> = glances.iter().filter_map(means).collect();
         let all = glances.iter().flatten().map(|(_, glance)| glance);
-        let hopeless = self.limit(all, f64::INFINITY);
+        let hopeless = self.limit(all, None);
         match self.small() {
             true => hopeless,
             false => best_third(best).min(hopeless),
@@ -99,6 +99,7 @@ impl Evaluator<'_> {
         }
         let first = glances.first().filter(|_| self.small());
         let restarts = first.map(|(guess, _)| self.random_starts(from, guess));
+        self.steps.step(1);
         let looks = glances.into_iter().map(|(_, hypothesis)| hypothesis);
         looks
             .chain(restarts.into_iter().flatten())

@@ -49,8 +49,8 @@ pub fn diagnose(
     evaluator.steps.begin(STRUCTURE, all);
     let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
     let tried = Tried {
-        values: evaluator.try_values(least),
-        values_refitted: evaluator.try_values_refitted(least),
+        values: evaluator.try_values(Some(least)),
+        values_refitted: evaluator.try_values_refitted(Some(least)),
         hypotheses,
         best,
     };
@@ -157,7 +157,7 @@ impl Evaluator<'_> {
         ];
         for (survivors, options) in rounds {
             hypotheses.sort_by(Hypothesis::by_error);
-            let survivors = survivors.min(self.promising(&hypotheses, f64::INFINITY));
+            let survivors = survivors.min(self.promising(&hypotheses, None));
             let best = hypotheses[..survivors].par_iter_mut();
             best.for_each(|hypothesis| {
                 hypothesis.resume(&self.search, options);
@@ -170,8 +170,8 @@ impl Evaluator<'_> {
 
     /// Evaluates the finalists.
     fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let count = self.promising(&hypotheses, f64::INFINITY).min(FINALISTS);
-        self.evaluate_all(&mut hypotheses[..count], f64::INFINITY, || {
+        let count = self.promising(&hypotheses, None).min(FINALISTS);
+        self.evaluate_all(&mut hypotheses[..count], None, || {
             self.steps.step(EVALUATION_STEPS)
         });
         hypotheses

@@ -12,13 +12,13 @@ use rayon::prelude::*;
 impl Evaluator<'_> {
     /// Every value of the given model fitted alone, free or not; the best are evaluated, unless
     /// `least`, the squared error that others leave, makes them hopeless.
-    pub fn try_values(&self, least: f64) -> Vec<Hypothesis> {
+    pub fn try_values(&self, least: Option<f64>) -> Vec<Hypothesis> {
         self.fit_values(&self.given, &self.open_values(), least)
     }
 
     /// Every value that is not free fitted along with those that are; the best are evaluated, with
     /// `least` as above.
-    pub fn try_values_refitted(&self, least: f64) -> Vec<Hypothesis> {
+    pub fn try_values_refitted(&self, least: Option<f64>) -> Vec<Hypothesis> {
         let free = &self.base.search.free;
         if free.is_empty() {
             return Vec::new();
@@ -39,7 +39,7 @@ impl Evaluator<'_> {
         &self,
         from: &Hypothesis,
         paths: &[ParameterPath],
-        least: f64,
+        least: Option<f64>,
     ) -> Vec<Hypothesis> {
         let glance = |&path: &ParameterPath| {
             let from = &from.search;
