@@ -159,6 +159,21 @@ mod tests {
         assert_eq!(Position::from_rad(100.0), Position::MAX);
     }
 
+    /// The e-manual's figures.
+    #[test]
+    fn codes_are_in_the_manual_s_units() {
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        // 114 revolutions per minute.
+        assert!(near(
+            MovingSpeed(1023).to_rad_s(),
+            113.553 * 2.0 * PI / 60.0
+        ));
+        assert_eq!(MovingSpeed::from_rad_s(5.0), MovingSpeed(430));
+        assert!(near(Supply(96).to_v(), 9.6));
+        assert_eq!(Temperature(43).to_celsius(), 43.0);
+        assert_eq!(ReturnDelay::FACTORY.to_us(), 500);
+    }
+
     #[test]
     fn every_signed_value_survives_its_code() {
         for value in -1023..=1023 {

@@ -120,6 +120,46 @@ fn a_plan_survives_its_bytes_and_others_are_refused() {
     assert_eq!(Plan::from_bytes(&bytes_of(&Plan::ZERO)), None);
 }
 
+/// A plan takes the place of any other, whichever law that has.
+#[test]
+fn a_plan_takes_the_place_of_any_other() {
+    for before in laws() {
+        for after in laws() {
+            let (mut plan, wanted) = (plan(before), plan(after));
+            assert!(plan.fill(&mut bytes_of(&wanted).into_iter()));
+            assert_eq!(plan, wanted);
+        }
+    }
+}
+
+#[test]
+fn a_law_that_is_not_safe_is_refused() {
+    let [Law::State { table, velocity }, Law::Observer(observer)] = laws() else {
+        panic!("one of each");
+    };
+    let state = |spoil: fn(&mut GainTable<2, 6>, &mut Velocity)| {
+        let (mut table, mut velocity) = (table, velocity);
+        spoil(&mut table, &mut velocity);
+        Law::State { table, velocity }
+    };
+    let mut unsafe_observer = observer;
+    unsafe_observer.update.rows[3].shift = 31;
+    for (law, is_sound) in [
+        (state(|_, velocity| velocity.fraction = 7), true),
+        (state(|_, velocity| velocity.fraction = 8), false),
+        (state(|_, velocity| velocity.share = 1), true),
+        (state(|_, velocity| velocity.share = 0), false),
+        (state(|_, velocity| velocity.share = 256), true),
+        (state(|_, velocity| velocity.share = 257), false),
+        (state(|table, _| table.rows[1].shift = 31), false),
+        (Law::Observer(unsafe_observer), false),
+    ] {
+        let plan = plan(law);
+        let read = Plan::from_bytes(&bytes_of(&plan));
+        assert_eq!(read, is_sound.then_some(plan));
+    }
+}
+
 #[test]
 fn commands_jump_over_the_dead_zone_and_stop_at_the_last_code() {
     assert_eq!(
