@@ -117,6 +117,37 @@ mod tests {
         assert_eq!(found, 1);
     }
 
+    const PING: [u8; 6] = [0xff, 0xff, 0x01, 0x02, 0x01, 0xfb];
+
+    /// How many PINGs are found in these bytes.
+    fn pings<const N: usize>(parser: &mut Parser<N>, bytes: &[u8]) -> usize {
+        let found = |byte: &&u8| parser.push(**byte).is_some_and(|p| p.bytes() == PING);
+        bytes.iter().filter(found).count()
+    }
+
+    #[test]
+    fn what_was_begun_is_forgotten() {
+        let begun = [0xff, 0xff, 0x01, 0x09, 0x02];
+        let mut parser = Parser::<32>::default();
+        assert_eq!(pings(&mut parser, &[&begun[..], &PING].concat()), 0);
+        let mut parser = Parser::<32>::default();
+        assert_eq!(pings(&mut parser, &begun), 0);
+        parser.reset();
+        assert_eq!(pings(&mut parser, &PING), 1);
+    }
+
+    /// A packet as long as the parser holds is found; a length that no packet has, or the parser
+    /// does not hold, hides nothing that follows.
+    #[test]
+    fn lengths_that_cannot_be_hide_nothing() {
+        assert_eq!(pings(&mut Parser::<6>::default(), &PING), 1);
+        assert_eq!(pings(&mut Parser::<5>::default(), &PING), 0);
+        for length in [0, 1, 13, 14, 255] {
+            let stream = [&[0xff, 0xff, 0x01, length][..], &PING].concat();
+            assert_eq!(pings(&mut Parser::<16>::default(), &stream), 1, "{length}");
+        }
+    }
+
     proptest! {
         #[test]
         fn packets_are_found_between_anything_else(

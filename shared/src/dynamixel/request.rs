@@ -249,6 +249,42 @@ mod tests {
     }
 
     #[test]
+    fn parameters_that_do_not_fit_are_no_request() {
+        let parsed = |code: u8, parameters: &[u8]| {
+            let mut packet = [0; 32];
+            let length = parameters.len() as u8 + 2;
+            packet[..5].copy_from_slice(&[0xff, 0xff, 1, length, code]);
+            let end = 5 + parameters.len();
+            packet[5..end].copy_from_slice(parameters);
+            let sum = packet[..end]
+                .iter()
+                .fold(0u8, |sum, b| sum.wrapping_add(*b));
+            packet[end] = check_byte(sum);
+            let packet = Packet::new(&packet[..=end]).unwrap();
+            Request::parse(packet).map(|request| request.instruction())
+        };
+        let wrong = Err(RequestError::Parameters);
+        assert_eq!(parsed(2, &[36, 1]), Ok(Instruction::Read));
+        for (code, parameters) in [
+            (1, &[0][..]),
+            (2, &[36]),
+            (2, &[36, 0]),
+            (3, &[36]),
+            (4, &[36]),
+            (5, &[0]),
+            (0x83, &[30]),
+            (0x83, &[30, 0]),
+            (0x83, &[30, 0, 1, 2]),
+            (0x83, &[30, 2, 1, 2]),
+            (0x83, &[30, 2, 1, 2, 3, 4]),
+        ] {
+            assert_eq!(parsed(code, parameters), wrong, "{code} {parameters:?}");
+        }
+        assert_eq!(parsed(0x83, &[30, 2, 1, 2, 3]), Ok(Instruction::SyncWrite));
+        assert_eq!(parsed(7, &[]), Err(RequestError::Instruction(7)));
+    }
+
+    #[test]
     fn what_does_not_fit_is_not_written() {
         assert_eq!(Request::Ping.emit(1, &mut [0; 5]), None);
         let long = [0; 255];

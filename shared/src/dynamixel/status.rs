@@ -108,6 +108,7 @@ mod tests {
     fn error_bits_have_the_manuals_names() {
         let error = ErrorBits::OVERLOAD.with(ErrorBits::VOLTAGE);
         assert!(error.names().eq(["voltage", "overload"]));
+        assert_eq!(error.with(ErrorBits::OVERLOAD), error);
         assert!(error.has(ErrorBits::OVERLOAD) && !error.has(ErrorBits::ANGLE));
     }
 }

@@ -30,3 +30,25 @@ pub fn byte_start_ns(ready_ns: u64, serial: u64) -> u64 {
         false => ready_ns,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Serial numbers 0 and 1 have phases of 0 and 0.368889 ms.
+    #[test]
+    fn a_byte_waits_for_the_end_of_the_motor_interrupt() {
+        for (serial, phase_ns) in [(0, 0), (1, 368_889)] {
+            for period_ns in [0, 7_000_000] {
+                let begins_ns = period_ns + phase_ns;
+                let ends_ns = begins_ns + 130_000;
+                for ready_ns in [begins_ns, begins_ns + 1, ends_ns - 1, ends_ns] {
+                    assert_eq!(byte_start_ns(ready_ns, serial), ends_ns);
+                }
+                for ready_ns in [ends_ns + 1, begins_ns + 999_999] {
+                    assert_eq!(byte_start_ns(ready_ns, serial), ready_ns);
+                }
+            }
+        }
+    }
+}
