@@ -239,4 +239,18 @@ fn a_joint_status_and_what_is_left_of_one_cut_short() {
     let mut out = [0; 64];
     let length = emit_fast_status(&mut out, 24, &parts).unwrap();
     assert_eq!(out[..length], whole[..]);
+    // It needs no more room than its own.
+    assert_eq!(
+        emit_fast_status(&mut out[..length], 24, &parts),
+        Some(length)
+    );
+    assert_eq!(emit_fast_status(&mut out[..length - 1], 24, &parts), None);
+    // Another header, id or instruction, its CRC being right, begins no joint status.
+    for at in [0, 4, 7] {
+        let mut other = bytes(FAST)[..16].to_vec();
+        other[at] ^= 1;
+        let crc = crc16(0, &other[..14]).to_le_bytes();
+        other[14..].copy_from_slice(&crc);
+        assert_eq!(found(&other), [], "byte {at}");
+    }
 }
