@@ -1,8 +1,11 @@
+extern crate std;
 use super::*;
 use crate::frame::{Decoder, wire_length};
 use crate::packed::{Positions, SERVOS, Speeds};
 use crate::raw::{MovingSpeed, TorqueLimit};
 use proptest::prelude::*;
+use std::vec;
+use std::vec::Vec;
 
 fn round_trip<M: Message + PartialEq + core::fmt::Debug>(sequence: u8, message: M) -> usize {
     let mut out = [0; MAX_FRAME];
@@ -138,10 +141,46 @@ fn the_slow_channels_go_around() {
     assert_eq!(report.position(17), Some(1023));
 }
 
+/// In a list of any length, around its end.
+#[test]
+fn housekeeping_is_that_of_two_neighbours() {
+    let of = |from, count| {
+        let report = StreamReport {
+            housekeeping_from: from,
+            ..stream_report()
+        };
+        let places = report.housekeeping(count).map(|(place, _)| place);
+        places.collect::<Vec<usize>>()
+    };
+    assert_eq!((of(0, 18), of(3, 18)), (vec![0, 1], vec![3, 4]));
+    assert_eq!((of(1, 4), of(3, 4)), (vec![1, 2], vec![3, 0]));
+    assert_eq!((of(0, 1), of(0, 2)), (vec![0], vec![0, 1]));
+}
+
+#[test]
+fn each_servo_has_a_bit_among_the_missing() {
+    for missing in 0..SERVOS {
+        let [m0, m1, m2, _] = (1u32 << missing).to_le_bytes();
+        let report = StreamReport {
+            missing: [m0, m1, m2],
+            ..stream_report()
+        };
+        for place in 0..SERVOS {
+            assert_eq!(report.is_present(place), place != missing, "{place}");
+            assert_eq!(report.position(place).is_some(), place != missing);
+        }
+    }
+}
+
 #[test]
 fn a_roster_with_an_id_twice_is_not_sound() {
     let mut list = ServoList::default();
     assert!(list.is_sound());
+    for (id, is_sound) in [(253, true), (254, false), (255, false)] {
+        list.ids[17] = id;
+        assert_eq!(list.is_sound(), is_sound, "{id}");
+    }
+    list = ServoList::default();
     list.ids[3] = list.ids[9];
     assert!(!list.is_sound());
     list.count = 5;

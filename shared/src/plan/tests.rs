@@ -174,6 +174,48 @@ fn commands_jump_over_the_dead_zone_and_stop_at_the_last_code() {
     let both: Vec<_> = JOINT.commands(-180).collect();
     assert_eq!(both, [(1, Signed::new(-180)), (2, Signed::new(180))]);
     assert_eq!(reversed.commands(5).count(), 1);
+    // 254 and 255 are no servos.
+    for (mirror, count) in [(253, 2), (254, 1), (255, 1)] {
+        assert_eq!(Joint { mirror, ..JOINT }.commands(5).count(), count);
+    }
+}
+
+/// Half of the least input is enough for all of it, a step less is owed.
+#[test]
+fn what_is_less_than_half_of_the_least_waits() {
+    let joint = Joint {
+        least: 250,
+        ..JOINT
+    };
+    for (raw_command, input) in [(124, 0), (-124, 0), (125, 250), (-125, -250), (251, 251)] {
+        let mut applied = AppliedInput::NOTHING;
+        assert_eq!(joint.apply(&mut applied, raw_command), input);
+    }
+}
+
+/// A servo says its last codes, or any, beyond its range: limits are within it, on either side.
+#[test]
+fn the_range_of_a_joint_is_one_that_its_servo_measures() {
+    for (reversed, centre, lowest, highest, is_sound) in [
+        (false, 300, -299, 722, true),
+        (false, 300, -300, 722, false),
+        (false, 300, -299, 723, false),
+        (true, 300, -722, 299, true),
+        (true, 300, -723, 299, false),
+        (true, 300, -722, 300, false),
+    ] {
+        let joint = Joint {
+            reversed,
+            centre,
+            lowest,
+            highest,
+            ..JOINT
+        };
+        assert_eq!(joint.is_sound(), is_sound, "{joint:?}");
+    }
+    for (id, is_sound) in [(253, true), (254, false)] {
+        assert_eq!(Joint { id, ..JOINT }.is_sound(), is_sound);
+    }
 }
 
 #[test]
