@@ -152,3 +152,27 @@ fn a_torn_entry_is_none() {
         assert_eq!(entry(&mut cm5, 0), lost, "torn at {torn:#x}");
     }
 }
+
+/// It is told at once, though a byte of it is written in each tick.
+#[test]
+fn a_fault_is_told_before_it_is_written() {
+    let mut cm5 = with_wheels();
+    balance(&mut cm5);
+    let fallen = Command::Attitude(Attitude {
+        angle: 20_000,
+        rate: 0,
+    });
+    say(&mut cm5, &fallen, 20);
+    assert_eq!(cm5.app.condition(), Condition::Fault(Cause::Fallen));
+    let told = entry(&mut cm5, 0).expect("a fault");
+    assert_eq!(told.cause, Cause::Fallen);
+    assert!(
+        cm5.board.eeprom[EEPROM]
+            .iter()
+            .filter(|byte| **byte != 0xff)
+            .count()
+            < 10
+    );
+    cm5.run_ms(300.0);
+    assert_eq!(entry(&mut cm5, 0), Some(told));
+}
