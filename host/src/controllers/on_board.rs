@@ -31,8 +31,8 @@ const OFFSET_WALK: f64 = 1.75e-5;
 
 /// Weights and noise where nothing measures the first link's angle. With those of `best` the joints
 /// swing by 90 deg from a lean of 1 deg, until the gyro has told enough; these, found by a random
-/// search over starts of 1 to 2 deg on the paper's robot, hold them back: more weight on the joints'
-/// angles, less on the shoulder's speed.
+/// search over starts of 1 to 2 deg on the paper's robot, hold them back: more weight on the
+/// joints' angles, less on the shoulder's speed.
 const BY_GYRO: Options = Options {
     weights: [&[0.01, 7.0, 7.0], &[0.2, 0.01, 25.0]],
     torque_noise_nm: 0.12,

@@ -210,16 +210,7 @@ impl Cells<'_> {
 
     /// The value, or not a number where there is none.
     fn gap_or(&self, quantity: &LogQuantity) -> Result<f64> {
-        let is_gap = match (&quantity.cell, &self.source) {
-            (LogCell::Field(index), RowSource::Numbers(columns, row)) => {
-                columns[*index][*row].is_nan()
-            }
-            (cell, _) => {
-                let text = self.text(cell);
-                text.is_empty() || text.eq_ignore_ascii_case("nan")
-            }
-        };
-        match is_gap {
+        match self.is_gap(&quantity.cell) {
             true => Ok(f64::NAN),
             false => self.value(quantity),
         }
@@ -259,8 +250,15 @@ impl Cells<'_> {
     }
 
     fn is_gap(&self, cell: &LogCell) -> bool {
-        let text = self.text(cell);
-        text.is_empty() || text.eq_ignore_ascii_case("nan")
+        match (cell, &self.source) {
+            (LogCell::Field(index), RowSource::Numbers(columns, row)) => {
+                columns[*index][*row].is_nan()
+            }
+            (cell, _) => {
+                let text = self.text(cell);
+                text.is_empty() || text.eq_ignore_ascii_case("nan")
+            }
+        }
     }
 
     fn flag(&self, cell: &Option<LogCell>) -> Result<Option<bool>> {

@@ -158,11 +158,7 @@ fn a_torn_entry_is_none() {
 fn a_fault_is_told_before_it_is_written() {
     let mut cm5 = with_wheels();
     balance(&mut cm5);
-    let fallen = Command::Attitude(Attitude {
-        angle: 20_000,
-        rate: 0,
-    });
-    say(&mut cm5, &fallen, 20);
+    say(&mut cm5, &FALLEN, 20);
     assert_eq!(cm5.app.condition(), Condition::Fault(Cause::Fallen));
     let told = entry(&mut cm5, 0).expect("a fault");
     assert_eq!(told.cause, Cause::Fallen);

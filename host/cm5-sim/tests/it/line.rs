@@ -1,6 +1,5 @@
 //! The line from the PC: frames and servo packets on it, and what becomes of broken ones.
 
-use super::reports::statistics;
 use super::rig::*;
 use handstand_cm5_sim::{Bus, HostBoard, SimulatedCm5, VirtualCm5};
 use handstand_firmware::board::Board as _;

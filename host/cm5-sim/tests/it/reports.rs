@@ -158,19 +158,6 @@ fn reports_say_who_is_missing() {
     }
 }
 
-/// What the CM-5 has counted.
-pub fn statistics(cm5: &mut VirtualCm5) -> Statistics {
-    cm5.clear();
-    cm5.send(&Command::Ask(Subject::Statistics));
-    cm5.run_ms(60.0);
-    let mut reports = cm5.reports().into_iter();
-    let told = reports.find_map(|(_, report)| match report {
-        Report::Statistics(statistics) => Some(statistics),
-        _ => None,
-    });
-    told.expect("statistics")
-}
-
 #[test]
 fn statistics_count_answers_and_what_is_missing() {
     let mut cm5 = VirtualCm5::new();
@@ -218,7 +205,7 @@ fn spoilt_answers_and_strangers_are_told_apart() {
     }
 }
 
-/// A mode says anew which servos turn without end.
+/// Entering a mode asks the servos once more which of them turn without end.
 #[test]
 fn modes_are_asked_again() {
     let mut cm5 = with_wheels();

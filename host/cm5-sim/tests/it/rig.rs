@@ -168,6 +168,12 @@ pub fn ready_to_balance(cm5: &mut VirtualCm5, plan: &Plan) -> u16 {
 /// The first link stands upright.
 pub const UPRIGHT: Command = Command::Attitude(Attitude { angle: 0, rate: 0 });
 
+/// The first link has fallen.
+pub const FALLEN: Command = Command::Attitude(Attitude {
+    angle: 20_000,
+    rate: 0,
+});
+
 /// Sends it while the attitude goes on being said, and gives what it is answered.
 pub fn ask_upright(cm5: &mut VirtualCm5, command: &Command) -> Option<Result<(), Refusal>> {
     say(cm5, &UPRIGHT, 10);
@@ -196,17 +202,30 @@ pub fn balance(cm5: &mut VirtualCm5) -> u16 {
     token
 }
 
-/// What the CM-5 says of itself.
-pub fn telemetry(cm5: &mut VirtualCm5) -> Telemetry {
+/// What the CM-5 says when it is asked about a subject.
+fn told<T>(cm5: &mut VirtualCm5, subject: Subject, of: fn(Report) -> Option<T>) -> T {
     cm5.clear();
-    cm5.send(&Command::Ask(Subject::Telemetry));
+    cm5.send(&Command::Ask(subject));
     cm5.run_ms(60.0);
     let mut reports = cm5.reports().into_iter();
-    let telemetry = reports.find_map(|(_, report)| match report {
+    let told = reports.find_map(|(_, report)| of(report));
+    told.unwrap_or_else(|| panic!("an answer about {subject:?}"))
+}
+
+/// What the CM-5 says of itself.
+pub fn telemetry(cm5: &mut VirtualCm5) -> Telemetry {
+    told(cm5, Subject::Telemetry, |report| match report {
         Report::Telemetry(telemetry) => Some(telemetry),
         _ => None,
-    });
-    telemetry.expect("telemetry")
+    })
+}
+
+/// What the CM-5 has counted.
+pub fn statistics(cm5: &mut VirtualCm5) -> Statistics {
+    told(cm5, Subject::Statistics, |report| match report {
+        Report::Statistics(statistics) => Some(statistics),
+        _ => None,
+    })
 }
 
 /// Runs until torque is off everywhere, `say`ing something every 10 ms; when the torque limit began

@@ -81,11 +81,6 @@ fn told_and_read(cm5: &VirtualCm5) -> Vec<(Option<bool>, bool)> {
         .collect()
 }
 
-const FALLEN: Command = Command::Attitude(Attitude {
-    angle: 20_000,
-    rate: 0,
-});
-
 /// Torque goes on and off at every time within a tick, in all the ways there are.
 #[test]
 fn each_tick_says_whether_torque_was_on_when_it_read_the_servos() {
@@ -260,8 +255,8 @@ fn torque_stops_coming_on_when_the_robot_is_stopped() {
     }
 }
 
-/// A servo that gives up while torque comes on, balancing or not, with torque or not yet: the others
-/// are let down, and none gets torque any more.
+/// A servo that gives up while torque comes on, balancing or not, with torque or not yet: the
+/// others are let down, and none gets torque any more.
 #[test]
 fn a_servo_that_gives_up_early_stops_the_others() {
     for id in [1, 4, 12, 17] {
