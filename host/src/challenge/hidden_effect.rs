@@ -44,7 +44,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-const EFFECTS: [(&str, Parameters); 30] = [
+const EFFECTS: [(&str, Parameters); 32] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -126,6 +126,21 @@ const EFFECTS: [(&str, Parameters); 30] = [
             ("stiffness_nm_rad", Within(0.3, 1.5)),
         ],
     ),
+    (
+        "gear_compliance",
+        &[
+            ("inertia_kg_m2", Within(1e-3, 3e-3)),
+            ("stiffness_nm_rad", Within(0.5, 2.0)),
+            ("damping_ratio", Within(0.05, 0.25)),
+        ],
+    ),
+    (
+        "gear_backlash",
+        &[
+            ("inertia_kg_m2", Within(1e-3, 3e-3)),
+            ("gap_rad", Within(0.03, 0.12)),
+        ],
+    ),
     ("torque_offset", &[("offset_nm", Signed(0.01, 0.04))]),
     (
         "position_friction",
@@ -138,7 +153,7 @@ const EFFECTS: [(&str, Parameters); 30] = [
 ];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.
-const ROBOT_EFFECTS: [(&str, Parameters); 10] = [
+const ROBOT_EFFECTS: [(&str, Parameters); 12] = [
     (
         "stribeck",
         &[
@@ -151,6 +166,21 @@ const ROBOT_EFFECTS: [(&str, Parameters); 10] = [
         &[("width", Within(0.02, 0.05)), ("punch", Fixed(0.0))],
     ),
     ("delay", &[("delay_s", Within(0.008, 0.03))]),
+    (
+        "gear_compliance",
+        &[
+            ("inertia_kg_m2", Within(1e-3, 3e-3)),
+            ("stiffness_nm_rad", Within(4.0, 12.0)),
+            ("damping_ratio", Within(0.05, 0.25)),
+        ],
+    ),
+    (
+        "gear_backlash",
+        &[
+            ("inertia_kg_m2", Within(1e-3, 3e-3)),
+            ("gap_rad", Within(0.02, 0.06)),
+        ],
+    ),
     ("supply_sag", &[("drop_share", Within(0.2, 0.5))]),
     ("torque_saturation", &[("limit_nm", Within(0.4, 0.8))]),
     ("mass", &[("added_kg", Signed(0.05, 0.15))]),
@@ -205,7 +235,9 @@ impl HiddenEffect {
                     "rest_angle_rad" | "periods_per_turn" | "phase_rad" | "speed_rad_s" | "after_s"
                     | "span_rad",
                 )
-                | ("pre_sliding", "stiffness_nm_rad")
+                | ("pre_sliding" | "gear_compliance", "stiffness_nm_rad")
+                | ("gear_compliance", "damping_ratio")
+                | ("gear_backlash", "gap_rad")
                 | ("thermal_drift", "time_constant_s") => value,
                 _ => 0.8 * value,
             };

@@ -13,6 +13,8 @@ pub struct History {
     overloaded_s: f64,
     /// How far the bristles of dry friction are bent, rad.
     bristle: f64,
+    /// By how much a motor behind a gear that gives is ahead of its joint, rad, and its speed, rad/s.
+    motor: [f64; 2],
 }
 
 impl History {
@@ -43,6 +45,37 @@ impl History {
         if physics.bristle_nm > 0.0 {
             let bent = self.bristle * physics.bristle_nm_rad / physics.bristle_nm;
             self.bristle += turned - turned.abs() * bent;
+        }
+    }
+
+    /// Carries a motor behind a gear that gives on by `h` s at the speeds that it and its joint have.
+    pub fn drift(&mut self, h: f64, joint_speed: f64) {
+        self.motor[0] += h * (self.motor[1] - joint_speed);
+    }
+
+    /// Torque that arrives at the joint, N m, of a motor that gives `drive` N m at a speed of its
+    /// shaft, rad/s; `speed` is the joint's.
+    pub fn passed_on(&self, physics: &Physics, drive: impl Fn(f64) -> f64, speed: f64) -> f64 {
+        if physics.motor_inertia == 0.0 {
+            return self.share(physics) * drive(speed);
+        }
+        let [ahead, own] = self.motor;
+        physics.through_gear(ahead, own - speed)
+    }
+
+    /// Speeds that motor up or down for `h` s; `drive` and `joint_speed` as in `passed_on`.
+    pub fn kick(
+        &mut self,
+        physics: &Physics,
+        drive: impl Fn(f64) -> f64,
+        joint_speed: f64,
+        h: f64,
+    ) {
+        if physics.motor_inertia > 0.0 {
+            let [ahead, own] = self.motor;
+            let left =
+                self.share(physics) * drive(own) - physics.through_gear(ahead, own - joint_speed);
+            self.motor[1] += h / physics.motor_inertia * left;
         }
     }
 

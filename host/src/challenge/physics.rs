@@ -6,6 +6,10 @@ pub const GRAVITY_M_S2: f64 = 9.81;
 /// Where a payload is bolted on, m from the joint.
 pub const PAYLOAD_AT_M: f64 = 0.15;
 
+/// How hard the flanks of a gear with play are: natural frequency of the motor against them, rad/s,
+/// and damping ratio. Knocks last some milliseconds, as those of steel on plastic do.
+const FLANKS: (f64, f64) = (800.0, 1.0);
+
 /// Everything that acts on the arm; [`Physics::ideal`] has no effect switched on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Physics {
@@ -70,6 +74,11 @@ pub struct Physics {
     pub bristle_nm: f64,
     /// See `bristle_nm`.
     pub bristle_nm_rad: f64,
+    /// Inertia of a motor behind a gear that gives, kg m^2; 0: the gear is rigid.
+    pub motor_inertia: f64,
+    gear_nm_rad: f64,
+    gear_damping: f64,
+    gear_gap: f64,
     constant_nm: f64,
     side_friction: [f64; 2],
     side_span: f64,
@@ -166,6 +175,17 @@ impl Physics {
             ("pre_sliding", &[friction, stiffness]) => {
                 (self.bristle_nm, self.bristle_nm_rad) = (friction, stiffness);
             }
+            ("gear_compliance", &[inertia, stiffness, damping]) => {
+                self.motor_inertia = inertia;
+                self.gear_nm_rad = stiffness;
+                self.gear_damping = 2.0 * damping * (stiffness * inertia).sqrt();
+            }
+            ("gear_backlash", &[inertia, gap]) => {
+                self.motor_inertia = inertia;
+                self.gear_nm_rad = inertia * FLANKS.0.powi(2);
+                self.gear_damping = 2.0 * FLANKS.1 * FLANKS.0 * inertia;
+                self.gear_gap = gap;
+            }
             ("torque_offset", &[torque]) => self.constant_nm = torque,
             ("position_friction", &[below, above, span]) => {
                 (self.side_friction, self.side_span) = ([below, above], span);
@@ -212,6 +232,23 @@ impl Physics {
         torque *= self.torque_factor;
         torque -= self.stall_nm * speed / self.no_load_speed;
         torque.clamp(-self.torque_limit, self.torque_limit)
+    }
+
+    /// Torque that a gear that gives passes on to the joint, N m, its motor being `ahead` rad of the
+    /// joint and drawing away by `away` rad/s.
+    pub fn through_gear(&self, ahead: f64, away: f64) -> f64 {
+        let play = 0.5 * self.gear_gap;
+        let bent = ahead - ahead.clamp(-play, play);
+        if bent == 0.0 && play > 0.0 {
+            return 0.0;
+        }
+        let torque = self.gear_nm_rad * bent + self.gear_damping * away;
+        // A flank pushes one way only.
+        if play > 0.0 && torque * bent < 0.0 {
+            0.0
+        } else {
+            torque
+        }
     }
 
     /// Torques on the joint that are neither motor, gravity nor dry friction, N m.

@@ -88,10 +88,18 @@ impl Laws {
         ChainForces { mass, needed }
     }
 
-    /// Torques of the drives, N m, at these speeds.
-    fn drives(&self, push: &[DriveCommand; LINKS], speed: &Joints) -> Joints {
+    /// Torques of the drives at the joints, N m, at these speeds.
+    fn drives(
+        &self,
+        push: &[DriveCommand; LINKS],
+        speed: &Joints,
+        histories: &[History; LINKS],
+    ) -> Joints {
         std::array::from_fn(|k| match self.joints[k].stall_nm > 0.0 {
-            true => self.joints[k].drive(push[k], speed[k]),
+            true => {
+                let drive = |speed| self.joints[k].drive(push[k], speed);
+                histories[k].passed_on(&self.joints[k], drive, speed[k])
+            }
             false => 0.0,
         })
     }
@@ -168,7 +176,16 @@ impl<'a> Robot<'a> {
         self.drift(0.5 * h);
         let (halfway, dry) = self.kicked(0.5 * h, push, &self.speed);
         self.dry = dry;
-        (self.speed, self.dry) = self.kicked(h, push, &halfway);
+        let (speed, dry) = self.kicked(h, push, &halfway);
+        for (k, history) in self.histories.iter_mut().enumerate() {
+            history.kick(
+                &joints[k],
+                |speed| joints[k].drive(push[k], speed),
+                halfway[k],
+                h,
+            );
+        }
+        (self.speed, self.dry) = (speed, dry);
         self.drift(0.5 * h);
         for (k, encoder) in self.encoders.iter_mut().enumerate() {
             let physics = &joints[k];
@@ -178,8 +195,10 @@ impl<'a> Robot<'a> {
     }
 
     fn drift(&mut self, h: f64) {
-        for (angle, speed) in self.angle.iter_mut().zip(&self.speed) {
+        let histories = self.histories.iter_mut();
+        for ((angle, speed), history) in self.angle.iter_mut().zip(&self.speed).zip(histories) {
             *angle += h * speed;
+            history.drift(h, *speed);
         }
     }
 
@@ -189,10 +208,7 @@ impl<'a> Robot<'a> {
         let joints = &self.laws.joints;
         let ChainForces { mass, needed } = self.laws.forces(&self.angle, at_speed);
         let histories = &self.histories;
-        let mut drive = self.laws.drives(push, at_speed);
-        for (k, drive) in drive.iter_mut().enumerate() {
-            *drive *= histories[k].share(&joints[k]);
-        }
+        let drive = self.laws.drives(push, at_speed, histories);
         let inverse = inverse(&mass);
         let pull: Joints = std::array::from_fn(|k| {
             let bristle = histories[k].bristle_nm(&joints[k]);

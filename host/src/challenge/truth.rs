@@ -65,14 +65,22 @@ impl<'a> Arm<'a> {
     /// `push` is that of the middle of the step.
     fn step(&mut self, h: f64, push: DriveCommand) {
         let (push, before) = (self.history.ramp(self.physics, push, h), self.angle);
-        self.angle += 0.5 * h * self.speed;
+        self.drift(0.5 * h);
         let halfway = self.kicked(0.5 * h, push, self.speed);
-        self.speed = self.kicked(h, push, halfway);
-        self.angle += 0.5 * h * self.speed;
-        self.history
-            .pass(self.physics, push, self.angle - before, h);
+        let after = self.kicked(h, push, halfway);
+        let physics = self.physics;
+        let drive = |speed| physics.drive(push, speed);
+        self.history.kick(physics, drive, halfway, h);
+        self.speed = after;
+        self.drift(0.5 * h);
+        self.history.pass(physics, push, self.angle - before, h);
         let encoded = self.physics.encoded(self.angle);
         self.encoder.follow(self.physics, encoded, h);
+    }
+
+    fn drift(&mut self, h: f64) {
+        self.angle += h * self.speed;
+        self.history.drift(h, self.speed);
     }
 
     /// Speed after all torques have acted for `h` seconds, as they are at this angle and
@@ -80,7 +88,7 @@ impl<'a> Arm<'a> {
     fn kicked(&self, h: f64, push: DriveCommand, at_speed: f64) -> f64 {
         let holding = self.physics.holding(self.mount, self.angle);
         let (physics, history) = (self.physics, &self.history);
-        let drive = history.share(physics) * physics.drive(push, at_speed);
+        let drive = history.passed_on(physics, |speed| physics.drive(push, speed), at_speed);
         let smooth = physics.smooth(self.angle, at_speed) + history.bristle_nm(physics);
         let pushed = self.speed + h / self.inertia * (drive + smooth - holding);
         let direction = if pushed < 0.0 { -1.0 } else { 1.0 };

@@ -25,6 +25,9 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is \
      slower than the model says",
     confused_with: &[
+        "gear_backlash: with a gap the motor's inertia comes and goes as the load turns",
+        "gear_compliance: a stiff gear is an inertia alone; only a spring rings and answers fast \
+         commands late",
         "mass: both make the arm sluggish; mass also adds gravity: hold still first",
         "encoder_scale: both change the acceleration that is read; a scale also changes the angle \
          between two stops",

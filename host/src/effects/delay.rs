@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the simulated motion runs ahead of the measured one by the same time at every \
      speed; input and residual correlate best at that lag",
     confused_with: &[
+        "gear_compliance: both answer late; only a spring rings",
         "slew_limit: both are late after a step; a delay is the same for small and large ones",
         "sensor_lag: both lag; a filter also flattens fast motion, and it lags a free swing too",
         "viscous: both trail the input; friction trails less as the motion slows",

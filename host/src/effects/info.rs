@@ -11,6 +11,8 @@ pub enum Site {
     Command,
     /// On the torque the drive makes.
     Drive,
+    /// Between the motor and the joint.
+    Gear,
     /// On the joint, as friction.
     Friction,
     /// On the joint, as any other torque.

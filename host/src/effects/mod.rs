@@ -21,6 +21,9 @@ mod encoder_scale;
 mod encoder_zero;
 pub mod expression;
 mod fold_back;
+mod gear;
+mod gear_backlash;
+mod gear_compliance;
 mod info;
 mod load_friction;
 mod mass;
@@ -47,6 +50,7 @@ pub mod signature;
 #[cfg(test)]
 mod tests;
 
+pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site};
 pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
@@ -67,6 +71,8 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &torque_saturation::TorqueSaturation,
     &thermal_drift::ThermalDrift,
     &fold_back::FoldBack,
+    &gear_compliance::GearCompliance,
+    &gear_backlash::GearBacklash,
     &coulomb::Coulomb,
     &stribeck::Stribeck,
     &load_friction::LoadFriction,
@@ -158,7 +164,7 @@ pub trait Effect: Sync + fmt::Debug {
     fn is_of_servo(&self) -> bool {
         matches!(
             self.info().site,
-            Site::Timing | Site::Command | Site::Drive | Site::Friction | Site::Sensor
+            Site::Timing | Site::Command | Site::Drive | Site::Gear | Site::Friction | Site::Sensor
         )
     }
 
@@ -179,6 +185,9 @@ pub trait Effect: Sync + fmt::Debug {
     fn drive(&self, _values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         torque_nm
     }
+
+    /// Gear: changes what lies between a motor and its joint.
+    fn gear(&self, _values: &[f64], _gear: &mut Gear) {}
 
     /// Joint: a torque on the joint, N m, smooth in angle and speed.
     fn torque(&self, _values: &[f64], _at: &JointState) -> f64 {

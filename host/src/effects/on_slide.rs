@@ -1,8 +1,8 @@
 //! Effects at joints that slide: the laws are those of hinges, in metres and newtons.
 
 use super::{
-    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, JointState, MemoryCell, Rig, Scope,
-    Slide, Slope, StepState,
+    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Gear, JointState, MemoryCell, Rig,
+    Scope, Slide, Slope, StepState,
 };
 use std::sync::LazyLock;
 
@@ -77,6 +77,10 @@ impl Effect for OnSlide {
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         self.effect.drive(values, torque_nm, at)
+    }
+
+    fn gear(&self, values: &[f64], gear: &mut Gear) {
+        self.effect.gear(values, gear);
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

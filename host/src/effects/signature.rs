@@ -4,7 +4,7 @@ mod remembered;
 #[cfg(test)]
 mod tests;
 
-use super::{DriveState, Effect, JointState, Needs, Parameter, Rig, Site, Slide};
+use super::{Coupling, DriveState, Effect, Gear, JointState, Needs, Parameter, Rig, Site, Slide};
 use crate::dynamics::{Chain, ChainLink};
 use std::ops::Range;
 
@@ -132,6 +132,7 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
     let by_angle: Height = |e, v, angle| friction(e, v, [angle, 1.0], [0.0, 0.0]);
     let at_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
     let at_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
+    let wound: Height = wound_nm;
     let command: Height = |e, v, duty| e.command(v, duty);
     let encode: Height = |e, v, angle_rad| e.encode(v, angle_rad);
     let varies = |y: Height, a: f64, b: f64| y(effect, values, a) != y(effect, values, b);
@@ -145,6 +146,7 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
             ("speed, rad/s", at_full, 0.0..4.0, over_speed)
         }
         (Site::Drive, _) => ("duty, 1", "torque at rest, N m", -1.0..1.0, over_duty),
+        (Site::Gear, _) => ("motor ahead of the joint, rad", joint, -0.15..0.15, wound),
         (Site::Friction, Needs::GearLoad) => (
             "torque through the gear, N m",
             "friction, N m",
@@ -192,6 +194,18 @@ fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64
         memory: [0.0; 2],
     };
     effect.drive(values, FULL_TORQUE_NM * duty, &at)
+}
+
+/// Torque of a gear that is wound up and at rest, N m, up to the motor's; of a rigid one as if it
+/// were very stiff.
+fn wound_nm(effect: &dyn Effect, values: &[f64], wound_rad: f64) -> f64 {
+    let mut gear = Gear::RIGID;
+    effect.gear(values, &mut gear);
+    let torque_nm = match Coupling::of(&gear) {
+        Some(coupling) => coupling.torque_nm(wound_rad, 0.0),
+        None => 1e6 * wound_rad,
+    };
+    torque_nm.clamp(-FULL_TORQUE_NM, FULL_TORQUE_NM)
 }
 
 /// The hook's answer with the sign of the speed, so that what resists forwards is drawn upward.

@@ -70,6 +70,7 @@ fn site(site: Site) -> &'static str {
         Site::Timing => "timing",
         Site::Command => "command",
         Site::Drive => "torque of the drive",
+        Site::Gear => "the gear",
         Site::Friction => "friction",
         Site::Joint => "torque on the joint",
         Site::Body => "masses and gravity",

@@ -2,6 +2,7 @@
 
 use super::drive::DriveInput;
 use super::memory::EffectMemory;
+use super::motors::Motors;
 use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
@@ -30,6 +31,8 @@ pub(super) struct Forces<R: Rows> {
     zeros: R::Of<f64>,
     /// What effects remember; it stays through a step.
     pub memory: EffectMemory,
+    /// Motors behind gears that give.
+    pub motors: Motors,
 }
 
 impl<R: Rows> Forces<R> {
@@ -47,6 +50,7 @@ impl<R: Rows> Forces<R> {
             bearing: zeros(),
             zeros: zeros(),
             memory: EffectMemory::default(),
+            motors: Motors::new(plant),
         }
     }
 
@@ -105,14 +109,24 @@ impl<R: Rows> Forces<R> {
             let plan = &plant.joints[joint];
             let speed = at.speed[joint];
             self.held[joint] = at.contact[joint] == Contact::Held;
-            let drive = match plan.drive {
+            let motor_speed = match plan.coupling {
+                Some(_) => self.motors.speed[joint],
+                None => speed,
+            };
+            let mut drive = match plan.drive {
                 _ if plan.follows_input => self.drive_torque[joint],
                 Drive::Position { .. } => {
                     let reading = plant.encoded_rad(joint, at.angle);
-                    plan.drive_torque_nm(input, reading, speed, &self.memory.0)
+                    plan.drive_torque_nm(input, reading, motor_speed, &self.memory.0)
                 }
-                _ => plan.drive_torque_nm(input, 0.0, speed, &self.memory.0),
+                _ => plan.drive_torque_nm(input, 0.0, motor_speed, &self.memory.0),
             };
+            if let Some(coupling) = plan.coupling {
+                let wound = self.motors.angle[joint] - at.angle[joint];
+                let passed_on = coupling.torque_nm(wound, motor_speed - speed);
+                self.motors.slope[joint] = (drive - passed_on) / coupling.inertia_kg_m2;
+                drive = passed_on;
+            }
             let mut state = JointState {
                 angle_rad: at.angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed,
@@ -186,6 +200,31 @@ impl<R: Rows> Forces<R> {
             self.held.as_ref(),
             out,
         );
+    }
+
+    /// Puts motors behind gears that give where they are remembered to be.
+    pub fn recall_motors(
+        &mut self,
+        plant: &Plant,
+        inputs: &[DriveInput],
+        (angle, speed): (&[f64], &[f64]),
+    ) {
+        let mut cells = plant.joints.iter().filter_map(|plan| plan.gear_cell);
+        if cells.any(|cell| self.memory.0[cell][0].is_nan()) {
+            let contact = &[];
+            let at = At {
+                angle,
+                speed,
+                contact,
+            };
+            self.find_gear_loads(plant, at);
+        }
+        let (loads, memory) = (&self.loads, &self.memory);
+        let holding_nm = |joint: usize| match inputs[joint].energised {
+            true => loads[joint],
+            false => 0.0,
+        };
+        (self.motors).recall(plant, memory, (angle, speed), holding_nm);
     }
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the

@@ -1,6 +1,6 @@
 //! What acts on one joint, sorted by where it acts.
 
-use crate::effects::{Effect, MemoryCell, Site};
+use crate::effects::{Coupling, Effect, Gear, MemoryCell, Site};
 use crate::model::Drive;
 
 /// Most values an effect has.
@@ -41,6 +41,11 @@ pub(super) struct JointPlan {
     pub torque: Vec<ActiveEffect>,
     pub friction: Vec<ActiveEffect>,
     pub output: Vec<ActiveEffect>,
+    pub gear: Gear,
+    /// The motor and its gear, where they turn apart from the joint.
+    pub coupling: Option<Coupling>,
+    /// Place of how far the gear is wound up, where there is a coupling.
+    pub gear_cell: Option<usize>,
     pub encode: Vec<ActiveEffect>,
     pub sense: Vec<ActiveEffect>,
 }
@@ -56,6 +61,9 @@ impl JointPlan {
             torque: Vec::new(),
             friction: Vec::new(),
             output: Vec::new(),
+            gear: Gear::RIGID,
+            coupling: None,
+            gear_cell: None,
             encode: Vec::new(),
             sense: Vec::new(),
         }
@@ -72,11 +80,21 @@ impl JointPlan {
         self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
     }
 
-    /// Gives each effect that remembers a cell from `next` on; the place behind the last.
+    fn add_gear(&mut self, effect: &dyn Effect, values: &[f64]) {
+        effect.gear(values, &mut self.gear);
+        self.coupling = Coupling::of(&self.gear);
+    }
+
+    /// Gives the gear and each effect that remembers a cell from `next` on; the place behind the
+    /// last.
     pub fn place_memory(&mut self, mut next: usize) -> usize {
         let lists = [&mut self.command, &mut self.output, &mut self.torque];
         for e in lists.into_iter().flatten().filter(|e| e.effect.remembers()) {
             e.cell = Some(next);
+            next += 1;
+        }
+        if self.coupling.is_some() {
+            self.gear_cell = Some(next);
             next += 1;
         }
         next
@@ -117,6 +135,7 @@ impl JointPlan {
             Site::Timing => self.delay_s += effect.delay_s(values),
             Site::Command => self.command.push(active),
             Site::Drive => self.output.push(active),
+            Site::Gear => self.add_gear(effect, values),
             Site::Friction => self.friction.push(active),
             Site::Joint => self.torque.push(active),
             Site::Body => {}

@@ -3,7 +3,9 @@
 
 use super::drive::DriveInput;
 use super::joint_plan::JointPlan;
+use super::motors::UNKNOWN;
 use super::plant::Plant;
+use super::run::Start;
 use super::sensor_state::SensorState;
 use crate::effects::{MemoryCell, StepState};
 
@@ -12,8 +14,9 @@ use crate::effects::{MemoryCell, StepState};
 pub struct Memory {
     pub(super) sensors: SensorState,
     pub(super) effects: EffectMemory,
-    /// Sample at which the stretch before ended.
-    pub(super) ended: Option<usize>,
+    /// Sample at which the stretch before ended, and in which state; none where nothing is
+    /// remembered.
+    pub(super) ended: Option<(usize, Start)>,
 }
 
 /// One cell per effect that remembers and joint at which it acts; its place is that of
@@ -32,6 +35,9 @@ impl EffectMemory {
             };
             for (e, cell) in plan.remembering() {
                 memory.0[cell] = e.effect.recall(e.values(), &at);
+            }
+            if let Some(cell) = plan.gear_cell {
+                memory.0[cell] = UNKNOWN;
             }
         }
         memory

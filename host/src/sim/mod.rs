@@ -12,6 +12,7 @@ mod input;
 mod joint_plan;
 mod live;
 mod memory;
+mod motors;
 mod plant;
 mod rows;
 mod run;

@@ -24,6 +24,8 @@ pub struct Plant {
     pub(super) senses: bool,
     /// How many cells its effects remember things in.
     pub(super) remembers: usize,
+    /// Longest step that follows motors which turn apart from their joints, s; infinite without.
+    pub(super) gear_step_s: f64,
     pub(super) step_s: f64,
     /// Whether every torque stays until an input changes or a joint stops or starts.
     pub(super) torques_stay: bool,
@@ -65,7 +67,7 @@ impl Plant {
             }
         }
         for joint in &mut joints {
-            joint.follows_input = joint.torque_is_held();
+            joint.follows_input = joint.coupling.is_none() && joint.torque_is_held();
         }
         let columns = model.log.joints.iter();
         let mut rates: Vec<bool> = columns
@@ -80,6 +82,7 @@ impl Plant {
             rates,
             senses,
             remembers,
+            gear_step_s: gear_step_s(&joints),
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),
@@ -99,6 +102,11 @@ impl Plant {
     /// Compiles `model` for a simulation without a log: no payload, not turned.
     pub fn without_log(model: &Model) -> Plant {
         Plant::new(model, &Motion::default())
+    }
+
+    /// Whether any motor turns apart from its joint.
+    pub(super) fn has_motors(&self) -> bool {
+        self.gear_step_s.is_finite()
     }
 
     /// Whether the log's angles are measured from the world.
@@ -188,6 +196,17 @@ impl Plant {
         }
         angles
     }
+}
+
+/// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
+/// integrates it well.
+const GEAR_STEP: f64 = 0.4;
+
+/// See [`Plant::gear_step_s`].
+fn gear_step_s(joints: &[JointPlan]) -> f64 {
+    let steps = joints.iter().filter_map(|joint| joint.coupling);
+    let steps = steps.map(|coupling| GEAR_STEP / coupling.natural_rad_s);
+    steps.fold(f64::INFINITY, f64::min)
 }
 
 /// Measured speeds of a motion, turned in time by a bit more than a third of it.

@@ -5,6 +5,7 @@ use super::input::held_mean;
 use super::memory::Memory;
 use super::plant::Plant;
 use super::rows::{Few, Many, Rows};
+use super::sensor_state::SensorState;
 use super::stepper::Stepper;
 use crate::log::Motion;
 use crate::model::Drive;
@@ -57,58 +58,118 @@ fn predicted<R: Rows>(
     memory: &mut Memory,
     readings: &mut [f64],
 ) -> Start {
-    let n = plant.len();
     let samples = stretch.len();
-    let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
-    let mut inputs = vec![DriveInput::ZERO; n];
-    let mut cursors = vec![0; n];
-    let is_before = |ended: &usize| plant.remembers > 0 && *ended <= stretch.start;
-    if let Some(ended) = memory.ended.filter(is_before) {
-        *stepper.memory() = std::mem::take(&mut memory.effects);
-        // No stretch holds the time from its last sample to the first of the next.
-        for k in ended..stretch.start {
-            let [from, to] = [motion.time_s[k], motion.time_s[k + 1]];
-            set_inputs(plant, motion, k, from..to, &mut cursors, &mut inputs);
-            let state = (start.angle_rad.as_slice(), start.speed_rad_s.as_slice());
-            stepper.memory().remember(plant, &inputs, state, to - from);
+    cross_gap::<R>(plant, motion, stretch.start, memory);
+    let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
+    (run.sensors).record(plant, run.stepper.speed.as_ref(), readings, 0, samples);
+    for k in stretch.start..stretch.end.saturating_sub(1) {
+        run.follow(k);
+        let at = k + 1 - stretch.start;
+        if run.has_diverged() {
+            for reading in readings.chunks_mut(samples) {
+                reading[at..].fill(f64::NAN);
+            }
+            return run.state();
+        }
+        let speed = run.stepper.speed.as_ref();
+        run.sensors.record(plant, speed, readings, at, samples);
+    }
+    let end = run.state();
+    *memory = run.ended(stretch.end.saturating_sub(1), end.clone());
+    end
+}
+
+/// No stretch holds the time from its last sample to the first of the next: what is remembered
+/// there follows the plant on from where that stretch ended.
+fn cross_gap<R: Rows>(plant: &Plant, motion: &Motion, until: usize, memory: &mut Memory) {
+    if plant.remembers == 0 && !plant.senses {
+        return;
+    }
+    let Some((sample, state)) = memory.ended.clone().filter(|(sample, _)| *sample <= until) else {
+        *memory = Memory::default();
+        return;
+    };
+    let mut run = Run::<R>::new(plant, motion, &state, std::mem::take(memory));
+    for k in sample..until {
+        run.follow(k);
+    }
+    if !run.has_diverged() {
+        let state = run.state();
+        *memory = run.ended(until, state);
+    }
+}
+
+/// A plant on its way along a motion.
+struct Run<'a, R: Rows> {
+    plant: &'a Plant,
+    motion: &'a Motion,
+    stepper: Stepper<R>,
+    sensors: SensorState,
+    inputs: Vec<DriveInput>,
+    cursors: Vec<usize>,
+}
+
+impl<'a, R: Rows> Run<'a, R> {
+    fn new(plant: &'a Plant, motion: &'a Motion, start: &Start, memory: Memory) -> Self {
+        let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
+        if memory.ended.is_some() {
+            *stepper.memory() = memory.effects;
+        }
+        let mut sensors = memory.sensors;
+        sensors.begin(plant, start);
+        sensors.step(plant, stepper.angle.as_ref(), 0.0);
+        Run {
+            plant,
+            motion,
+            stepper,
+            sensors,
+            inputs: vec![DriveInput::ZERO; plant.len()],
+            cursors: vec![0; plant.len()],
         }
     }
-    let sensors = &mut memory.sensors;
-    sensors.begin(plant, start);
-    sensors.step(plant, stepper.angle.as_ref(), 0.0);
-    sensors.record(plant, stepper.speed.as_ref(), readings, 0, samples);
-    for k in stretch.start..stretch.end.saturating_sub(1) {
+
+    /// From sample `k` to the next.
+    #[inline]
+    fn follow(&mut self, k: usize) {
+        let (plant, motion) = (self.plant, self.motion);
         let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
         let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
         let h = (to - from) / steps as f64;
         for step in 0..steps {
             let begin = from + step as f64 * h;
             let span = begin..begin + h;
-            set_inputs(plant, motion, k, span, &mut cursors, &mut inputs);
-            stepper.advance(plant, &inputs, h);
+            let cursors = &mut self.cursors;
+            set_inputs(plant, motion, k, span, cursors, &mut self.inputs);
+            self.stepper.advance(plant, &self.inputs, h);
             if plant.senses {
-                sensors.step(plant, stepper.angle.as_ref(), h);
+                self.sensors.step(plant, self.stepper.angle.as_ref(), h);
             }
         }
         if !plant.senses {
-            sensors.step(plant, stepper.angle.as_ref(), to - from);
+            self.sensors
+                .step(plant, self.stepper.angle.as_ref(), to - from);
         }
-        if !stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6) {
-            for joint in 0..n {
-                readings[joint * samples + k + 1 - stretch.start..(joint + 1) * samples]
-                    .fill(f64::NAN);
-            }
-            break;
-        }
-        let at = k + 1 - stretch.start;
-        sensors.record(plant, stepper.speed.as_ref(), readings, at, samples);
     }
-    memory.ended = Some(stretch.end.saturating_sub(1));
-    memory.effects = std::mem::take(stepper.memory());
-    Start {
-        angle_rad: stepper.angle.as_ref().to_vec(),
-        speed_rad_s: stepper.speed.as_ref().to_vec(),
-        reading_rad_s: None,
+
+    fn has_diverged(&self) -> bool {
+        !self.stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6)
+    }
+
+    fn state(&self) -> Start {
+        Start {
+            angle_rad: self.stepper.angle.as_ref().to_vec(),
+            speed_rad_s: self.stepper.speed.as_ref().to_vec(),
+            reading_rad_s: None,
+        }
+    }
+
+    /// What is remembered at sample `k`, where it ended in this state.
+    fn ended(mut self, k: usize, state: Start) -> Memory {
+        Memory {
+            effects: std::mem::take(self.stepper.memory()),
+            sensors: self.sensors,
+            ended: Some((k, state)),
+        }
     }
 }
 

@@ -49,6 +49,8 @@ pub(super) struct Stepper<R: Rows> {
     contact: R::Of<Contact>,
     forces: Forces<R>,
     runge_kutta: RungeKutta<R::Of<f64>>,
+    /// The same for joints and motors together.
+    with_motors: RungeKutta<Vec<f64>>,
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
@@ -70,6 +72,7 @@ impl<R: Rows> Stepper<R> {
             contact: R::filled(Contact::Free, n),
             forces: Forces::new(plant),
             runge_kutta: RungeKutta::new(zeros()),
+            with_motors: RungeKutta::new(vec![0.0; if plant.has_motors() { 2 * n } else { 0 }]),
             start_angle: zeros(),
             start_speed: zeros(),
             slope: zeros(),
@@ -115,10 +118,18 @@ impl<R: Rows> Stepper<R> {
         obeyed.clear();
         obeyed.extend_from_slice(inputs);
         self.forces.memory.obey(plant, &mut obeyed, step_s);
-        self.advance_bodies(plant, &obeyed, step_s);
+        let state = (self.angle.as_ref(), self.speed.as_ref());
+        self.forces.recall_motors(plant, &obeyed, state);
+        // Short enough for the motors, so that knocks are not stepped over.
+        let (steps, h) = steps(step_s, plant.gear_step_s);
+        for _ in 0..steps {
+            self.advance_bodies(plant, &obeyed, h);
+        }
         self.obeyed = obeyed;
         let state = (self.angle.as_ref(), self.speed.as_ref());
-        (self.forces.memory).remember(plant, inputs, state, step_s);
+        let Forces { motors, memory, .. } = &mut self.forces;
+        motors.remember(plant, memory);
+        memory.remember(plant, inputs, state, step_s);
     }
 
     /// Advances by `step_s` under inputs that the drives follow at once.
@@ -131,12 +142,16 @@ impl<R: Rows> Stepper<R> {
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
+            let motors = plant.has_motors().then(|| self.forces.motors.clone());
             self.step(plant, inputs, left);
             let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
+            if let Some(motors) = motors {
+                self.forces.motors = motors;
+            }
             self.step(plant, inputs, event.share * left);
             if event.contact == Contact::Held {
                 self.speed[event.joint] = 0.0;
@@ -188,11 +203,13 @@ impl<R: Rows> Stepper<R> {
             .min_by(|a, b| a.share.total_cmp(&b.share))
     }
 
-    /// The held joint that the motion of others first pushes beyond its breakaway torque.
+    /// The held joint that the motion of others, or its own gear that is wound up, first pushes
+    /// beyond its breakaway torque.
     fn first_release(&mut self, plant: &Plant, inputs: &[DriveInput]) -> Option<Event> {
         let is_held = |contact: &Contact| *contact == Contact::Held;
         let held = self.contact.as_ref().iter().filter(|c| is_held(c)).count();
-        if held == 0 || held == self.len() {
+        let moves = held < self.len() || plant.has_motors();
+        if held == 0 || !moves {
             return None;
         }
         let before = self.excess.clone();
@@ -252,6 +269,9 @@ impl<R: Rows> Stepper<R> {
     fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
         let state = (&mut self.angle, &mut self.speed);
+        if plant.has_motors() {
+            return self.step_with_motors(plant, inputs, h);
+        }
         if forces.step(plant, inputs, contact, state, h) {
             return;
         }
@@ -268,13 +288,48 @@ impl<R: Rows> Stepper<R> {
                     contact,
                 };
                 forces.accelerate(plant, inputs, at, slope.as_mut());
-                for (slope, contact) in slope.as_mut().iter_mut().zip(contact) {
-                    if *contact == Contact::Held {
-                        *slope = 0.0;
-                    }
-                }
+                hold(slope.as_mut(), contact);
             },
         );
+    }
+
+    /// The same for joints and motors together.
+    fn step_with_motors(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
+        let (forces, contact) = (&mut self.forces, self.contact.as_ref());
+        let joints = contact.len();
+        let mut angle = [self.angle.as_ref(), &forces.motors.angle].concat();
+        let mut speed = [self.speed.as_ref(), &forces.motors.speed].concat();
+        (self.with_motors).step(&mut angle, &mut speed, h, |angle, speed, slope| {
+            let (angle, motor_angle) = angle.split_at(joints);
+            let (speed, motor_speed) = speed.split_at(joints);
+            let (slope, motor_slope) = slope.split_at_mut(joints);
+            forces.motors.angle.copy_from_slice(motor_angle);
+            forces.motors.speed.copy_from_slice(motor_speed);
+            let at = At {
+                angle,
+                speed,
+                contact,
+            };
+            forces.accelerate(plant, inputs, at, slope);
+            hold(slope, contact);
+            motor_slope.copy_from_slice(&forces.motors.slope);
+        });
+        let (joint_angle, motor_angle) = angle.split_at(joints);
+        let (joint_speed, motor_speed) = speed.split_at(joints);
+        self.angle.as_mut().copy_from_slice(joint_angle);
+        self.speed.as_mut().copy_from_slice(joint_speed);
+        forces.motors.angle.copy_from_slice(motor_angle);
+        forces.motors.speed.copy_from_slice(motor_speed);
+    }
+}
+
+/// Joints that friction holds do not speed up.
+#[inline(always)]
+fn hold(slope: &mut [f64], contact: &[Contact]) {
+    for (slope, contact) in slope.iter_mut().zip(contact) {
+        if *contact == Contact::Held {
+            *slope = 0.0;
+        }
     }
 }
 

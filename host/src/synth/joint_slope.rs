@@ -115,7 +115,7 @@ impl<'a> JointAt<'a> {
     /// `slack_nm`.
     pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held, DesignError> {
         let (at, mut omitted) = (self.at_rest(), Vec::new());
-        for site in [Site::Command, Site::Friction, Site::Sensor] {
+        for site in [Site::Command, Site::Gear, Site::Friction, Site::Sensor] {
             self.slopes(site, at, &mut omitted);
         }
         let (own_nm, own) = self.torque(&mut omitted);

@@ -24,6 +24,8 @@ pub enum NonSmooth {
     DeadAtZero,
     /// The torque is at its limit.
     AtLimit,
+    /// The motor turns apart from the joint: a state of its own.
+    OwnState,
     /// The reading depends on the past.
     Memory,
     /// The effect states no derivative.
@@ -36,6 +38,7 @@ impl OmittedEffect {
             Site::Friction => NonSmooth::JumpsAtStandstill,
             Site::Command => NonSmooth::DeadAtZero,
             Site::Drive => NonSmooth::AtLimit,
+            Site::Gear => NonSmooth::OwnState,
             Site::Sensor => NonSmooth::Memory,
             Site::Timing | Site::Joint | Site::Body | Site::Encoder => NonSmooth::Unstated,
         };
@@ -49,6 +52,9 @@ impl fmt::Display for NonSmooth {
             NonSmooth::JumpsAtStandstill => "its torque jumps at standstill",
             NonSmooth::DeadAtZero => "it has no derivative at small commands",
             NonSmooth::AtLimit => "the pose takes all of the torque that it leaves",
+            NonSmooth::OwnState => {
+                "its motor turns apart from the joint; its inertia is in the design"
+            }
             NonSmooth::Memory => "its reading depends on the past",
             NonSmooth::Unstated => "it states no derivative",
         })

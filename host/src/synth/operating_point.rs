@@ -6,6 +6,7 @@ use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::check_size;
 use crate::dynamics::EquationsOfMotion;
+use crate::effects::Gear;
 use crate::model::Model;
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
@@ -60,9 +61,17 @@ impl OperatingPoint {
     }
 }
 
-/// The equations of motion of a model's chain, body effects included.
+/// The equations of motion of a model's chain, body effects included, motors
+/// behind gears that give as if these were rigid.
 pub(super) fn equations(model: &Model) -> EquationsOfMotion {
-    let rig = model.rig(false);
+    let mut rig = model.rig(false);
+    for (joint, link) in rig.chain.links.iter_mut().enumerate() {
+        let mut gear = Gear::RIGID;
+        for e in model.effects_at(joint) {
+            e.effect.gear(&e.values, &mut gear);
+        }
+        link.armature_kg_m2 += gear.inertia_kg_m2;
+    }
     EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
 }
 

@@ -81,3 +81,73 @@ fn stopping_and_letting_go_are_of_second_order_in_the_step() {
         assert!(off_rad < step_s * step_s, "{step_s} s: {off_rad}");
     }
 }
+
+/// An arm of 2e-3 kg m^2 without weight, turned by a torque.
+fn weightless(effects: &[(&str, &[f64])]) -> Plant {
+    let text = "[rig]\nname = \"arm\"\nangle_zero = \"hanging\"\ngravity_m_s2 = 0.0\n\n[[link]]\nlength_m = 0.1\n\
+        com_m = 0.1\nmass_kg = 0.1\ninertia_kg_m2 = 1e-3\n\n[[joint]]\ndrive = \"torque\"\n\n\
+        [log]\ntime = { column = \"t\", unit = \"s\" }\n\n[[log.joint]]\n\
+        position = { column = \"q\", unit = \"rad\" }\ninput = { column = \"u\", unit = \"N m\" }\n";
+    let mut model = Model::parse(text, Path::new("arm.toml")).unwrap();
+    let instance = |&(id, values): &(&str, &[f64])| EffectInstance {
+        effect: named(id).unwrap(),
+        joint: Some(0),
+        values: values.to_vec(),
+    };
+    model.effects = effects.iter().map(instance).collect();
+    Plant::without_log(&model)
+}
+
+/// Angle after `span_s` under a constant torque from rest.
+fn pulled_rad(plant: &Plant, torque_nm: f64, span_s: f64, step_s: f64) -> f64 {
+    let mut stepper = Stepper::<Few<1>>::new(plant, &[0.0], &[0.0]);
+    let pull = DriveInput {
+        input: torque_nm,
+        ..DriveInput::ZERO
+    };
+    for _ in 0..(span_s / step_s).round() as usize {
+        stepper.advance(plant, &[pull], step_s);
+    }
+    stepper.angle[0]
+}
+
+#[test]
+fn a_motor_behind_a_spring_swings_against_its_joint() {
+    let (motor, joint, stiffness, torque_nm) = (1e-3, 2e-3, 0.9, 0.05);
+    let plant = weightless(&[("gear_compliance", &[motor, stiffness, 0.0])]);
+    let swing_rad_s = f64::sqrt(stiffness * (1.0 / motor + 1.0 / joint));
+    for span_s in [0.02, 0.1, 0.5] {
+        let wound =
+            torque_nm / (motor * swing_rad_s.powi(2)) * (1.0 - (swing_rad_s * span_s).cos());
+        let of_both = 0.5 * torque_nm * span_s * span_s / (motor + joint);
+        let exact = of_both - motor / (motor + joint) * wound;
+        let off = (pulled_rad(&plant, torque_nm, span_s, 1e-3) - exact).abs();
+        assert!(off < 1e-7, "{span_s} s: {off}");
+    }
+}
+
+#[test]
+fn a_motor_that_winds_up_its_gear_breaks_its_joint_away() {
+    // The torque alone would not: the motor overshoots to nearly twice of it.
+    let friction: (&str, &[f64]) = ("coulomb", &[0.08]);
+    let held = weightless(&[friction]);
+    assert_eq!(pulled_rad(&held, 0.05, 0.3, 1e-3), 0.0);
+    let plant = weightless(&[friction, ("gear_compliance", &[1e-3, 0.4, 0.05])]);
+    let exact = pulled_rad(&plant, 0.05, 0.32, 1e-4);
+    assert!(exact > 5e-3, "{exact}");
+    for step_s in [8e-3, 4e-3, 2e-3] {
+        let off_rad = (pulled_rad(&plant, 0.05, 0.32, step_s) - exact).abs();
+        assert!(off_rad < step_s * step_s, "{step_s} s: {off_rad}");
+    }
+}
+
+#[test]
+fn a_motor_crosses_its_gap_before_its_joint_moves() {
+    let plant = weightless(&[("gear_backlash", &[1e-3, 0.1])]);
+    // Half the gap at 50 rad/s^2: 45 ms.
+    assert_eq!(pulled_rad(&plant, 0.05, 0.04, 1e-3), 0.0);
+    let late = pulled_rad(&plant, 0.05, 0.5, 1e-3);
+    // Then both on average, the motor half a gap ahead.
+    let of_both = 0.5 * 0.05 * 0.5 * 0.5 / 3e-3;
+    assert!((late - (of_both - 0.05 / 3.0)).abs() < 5e-3, "{late}");
+}

@@ -1,0 +1,144 @@
+//! What lies between a motor and its joint.
+
+/// A gear as the effects at a joint make it: the motor's own inertia turns at its far end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gear {
+    /// Inertia of the motor as seen at the joint, kg m^2; without any, the gear passes on what the
+    /// motor gives.
+    pub inertia_kg_m2: f64,
+    /// Torque per angle by which the gear is wound up, N m/rad; infinite where nothing says so.
+    pub stiffness_nm_rad: f64,
+    /// Damping of the wound gear as a share of what lets the motor settle without ringing.
+    pub damping_ratio: f64,
+    /// Free play, from flank to flank, rad.
+    pub gap_rad: f64,
+}
+
+/// Highest natural frequency of the motor against a standing joint, rad/s. Stiffer gears are
+/// simulated as this stiff: logs at 100 Hz hold nothing of a faster ringing, and it would cost
+/// steps.
+const HIGHEST_RAD_S: f64 = 400.0;
+
+impl Gear {
+    /// Rigid, and without inertia of the motor; flanks that meet hardly rebound.
+    pub const RIGID: Gear = Gear {
+        inertia_kg_m2: 0.0,
+        stiffness_nm_rad: f64::INFINITY,
+        damping_ratio: 0.7,
+        gap_rad: 0.0,
+    };
+}
+
+/// A motor with inertia, and the spring or the flanks through which it turns its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coupling {
+    /// Inertia of the motor as seen at the joint, kg m^2; above 0.
+    pub inertia_kg_m2: f64,
+    /// Natural frequency of the motor against a standing joint, rad/s.
+    pub natural_rad_s: f64,
+    stiffness_nm_rad: f64,
+    damping_nm_s_rad: f64,
+    half_gap_rad: f64,
+}
+
+impl Coupling {
+    /// None where the motor has no inertia: the joint then gets what the motor gives.
+    pub fn of(gear: &Gear) -> Option<Coupling> {
+        let inertia_kg_m2 = gear.inertia_kg_m2;
+        let natural_rad_s = (gear.stiffness_nm_rad / inertia_kg_m2).sqrt();
+        let natural_rad_s = natural_rad_s.min(HIGHEST_RAD_S);
+        (inertia_kg_m2 > 0.0).then_some(Coupling {
+            inertia_kg_m2,
+            natural_rad_s,
+            stiffness_nm_rad: inertia_kg_m2 * natural_rad_s.powi(2),
+            damping_nm_s_rad: 2.0 * gear.damping_ratio * inertia_kg_m2 * natural_rad_s,
+            half_gap_rad: 0.5 * gear.gap_rad,
+        })
+    }
+
+    /// Torque that the gear transmits to the joint, N m, where the motor is `wound_rad` ahead of it
+    /// and winds it up further by `winding_rad_s`. Flanks push and never pull.
+    pub fn torque_nm(&self, wound_rad: f64, winding_rad_s: f64) -> f64 {
+        let damping_nm = self.damping_nm_s_rad * winding_rad_s;
+        if self.half_gap_rad == 0.0 {
+            return self.stiffness_nm_rad * wound_rad + damping_nm;
+        }
+        let pressed_rad = wound_rad.abs() - self.half_gap_rad;
+        if pressed_rad <= 0.0 {
+            return 0.0;
+        }
+        let flank = wound_rad.signum();
+        flank * (self.stiffness_nm_rad * pressed_rad + flank * damping_nm).max(0.0)
+    }
+
+    /// By how much it is wound up while it transmits this torque at rest, rad; where that is less
+    /// than `light_nm`, hardly at a flank.
+    pub fn wound_rad(&self, torque_nm: f64, light_nm: f64) -> f64 {
+        let flank = torque_nm / (torque_nm.abs() + light_nm);
+        torque_nm / self.stiffness_nm_rad + self.half_gap_rad * flank
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Coupling, Gear};
+
+    const SPRING: Gear = Gear {
+        inertia_kg_m2: 2e-3,
+        stiffness_nm_rad: 0.8,
+        damping_ratio: 0.25,
+        ..Gear::RIGID
+    };
+
+    fn near(left: f64, right: f64) {
+        assert!((left - right).abs() < 1e-15, "{left} is not {right}");
+    }
+
+    #[test]
+    fn a_spring_with_a_damper_gives_torque_by_both() {
+        let spring = Coupling::of(&SPRING).unwrap();
+        near(spring.natural_rad_s, 20.0);
+        // 0.8 * 0.1 + 2 * 0.25 * 2e-3 * 20 * 3
+        near(spring.torque_nm(0.1, 3.0), 0.14);
+        near(spring.wound_rad(-0.08, 0.01), -0.1);
+    }
+
+    #[test]
+    fn flanks_push_beyond_the_gap_and_never_pull() {
+        let gear = Gear {
+            gap_rad: 0.1,
+            ..SPRING
+        };
+        let play = Coupling::of(&gear).unwrap();
+        assert_eq!(play.torque_nm(0.05, 9.0), 0.0);
+        near(play.torque_nm(0.15, 0.0), 0.08);
+        near(play.torque_nm(-0.15, 0.0), -0.08);
+        // Pressed together faster: more; drawn apart: less, and nothing before they would pull.
+        near(play.torque_nm(-0.15, -1.0), -0.1);
+        near(play.torque_nm(0.15, -1.0), 0.06);
+        assert_eq!(play.torque_nm(0.06, -9.0), 0.0);
+        for torque_nm in [-0.2, 0.2] {
+            let wound_rad = play.wound_rad(torque_nm, 0.0);
+            near(play.torque_nm(wound_rad, 0.0), torque_nm);
+        }
+        near(play.wound_rad(0.01, 0.01), 0.0125 + 0.025);
+        assert_eq!(play.wound_rad(0.0, 0.01), 0.0);
+    }
+
+    #[test]
+    fn what_is_too_stiff_rings_at_the_highest_frequency() {
+        let inertia_kg_m2 = 1e-3;
+        let stiff = Coupling::of(&Gear {
+            inertia_kg_m2,
+            ..Gear::RIGID
+        });
+        let stiff = stiff.unwrap();
+        near(stiff.natural_rad_s, 400.0);
+        near(stiff.torque_nm(0.01, 0.0), 1.6);
+    }
+
+    #[test]
+    fn a_motor_without_inertia_gives_what_it_gives() {
+        assert_eq!(Coupling::of(&Gear::RIGID), None);
+    }
+}

@@ -1,0 +1,96 @@
+//! Backlash of the gear: motor and joint, each with its inertia, meet at either flank of a gap.
+
+use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+
+/// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
+#[derive(Debug)]
+pub struct GearBacklash;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "gear_backlash",
+    title: "backlash of the gear",
+    site: Site::Gear,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "no torque while |q_m - q| < gap_rad / 2, else that of the flanks; inertia_kg_m2 * \
+     d(w_m)/dt = motor - torque",
+    parameters: &[
+        Parameter {
+            key: "inertia_kg_m2",
+            unit: "kg m^2",
+            meaning: "rotor inertia times the square of the gear ratio",
+            off: Some(0.0),
+            typical: (0.0005, 0.02),
+            bounds: (0.0, 1.0),
+            starts: &[0.002, 0.01],
+        },
+        Parameter {
+            key: "gap_rad",
+            unit: "rad",
+            meaning: "free play, from flank to flank",
+            off: None,
+            typical: (0.005, 0.1),
+            bounds: (0.0, 0.5),
+            starts: &[0.03, 0.1],
+        },
+    ],
+    looks_like: "whenever the torque turns, the arm is free for a moment and then knocked; it \
+     rattles about a point of no load",
+    confused_with: &[
+        "armature: without a gap the motor's inertia is always there; with one it comes and goes",
+        "gear_compliance: both let motor and joint part; backlash by the same angle under any \
+         load, a spring in proportion to it",
+        "backlash: the joint's own reading shows it only where the play lies before the encoder",
+        "dead_zone: both leave the arm alone about no command; a dead zone at rest, too, backlash \
+         only until the motor is across",
+    ],
+    experiment: "drive small steps about hanging, where the load turns, and about an angle where \
+     gravity holds the gear at one flank: the knocks must be gone there",
+    reference: "Nordin, Gutman, Automatica 38 (2002) 1633, section 2",
+};
+
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "no force while |q_m - q| < gap_m / 2, else that of the flanks; inertia_kg * d(w_m)/dt = \
+     motor - force",
+    parameters: &[
+        Parameter {
+            key: "inertia_kg",
+            unit: "kg",
+            meaning: "rotor inertia over the square of the displacement per turn in rad",
+            off: Some(0.0),
+            typical: (0.01, 1.0),
+            bounds: (0.0, 100.0),
+            starts: &[0.05, 0.3],
+        },
+        Parameter {
+            key: "gap_m",
+            unit: "m",
+            meaning: "free play, from flank to flank",
+            off: None,
+            typical: (0.0002, 0.005),
+            bounds: (0.0, 0.1),
+            starts: &[0.001, 0.003],
+        },
+    ],
+    ..INFO
+};
+
+impl Effect for GearBacklash {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
+    }
+
+    fn difference(&self) -> f64 {
+        5e-2
+    }
+
+    fn gear(&self, values: &[f64], gear: &mut Gear) {
+        gear.inertia_kg_m2 += values[0];
+        gear.gap_rad += values[1];
+    }
+}

@@ -1,0 +1,110 @@
+//! Gear compliance: the motor turns its joint through a spring.
+
+use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+
+/// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
+/// at the joint; c by the damping ratio c / (2 sqrt(k J)).
+#[derive(Debug)]
+pub struct GearCompliance;
+
+/// Damping of the spring, as a share of what lets the motor settle without ringing.
+const DAMPING: Parameter = Parameter {
+    key: "damping_ratio",
+    unit: "1",
+    meaning: "damping, as a share of what lets the motor settle without ringing",
+    off: None,
+    typical: (0.02, 0.3),
+    bounds: (0.0, 0.7),
+    starts: &[0.15],
+};
+
+static INFO: EffectInfo = EffectInfo {
+    id: "gear_compliance",
+    title: "compliance of the gear",
+    site: Site::Gear,
+    scope: Scope::DrivenJoint,
+    needs: Needs::Nothing,
+    law: "torque = stiffness_nm_rad * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
+     sqrt(stiffness_nm_rad * inertia_kg_m2); inertia_kg_m2 * d(w_m)/dt = motor - torque",
+    parameters: &[
+        Parameter {
+            key: "inertia_kg_m2",
+            unit: "kg m^2",
+            meaning: "rotor inertia times the square of the gear ratio",
+            off: Some(0.0),
+            typical: (0.0005, 0.02),
+            bounds: (0.0, 1.0),
+            starts: &[0.002, 0.01],
+        },
+        Parameter {
+            key: "stiffness_nm_rad",
+            unit: "N m/rad",
+            meaning: "torque per angle by which the motor is ahead of the joint",
+            off: None,
+            typical: (0.5, 50.0),
+            bounds: (0.05, 5000.0),
+            starts: &[1.0, 4.0],
+        },
+        DAMPING,
+    ],
+    looks_like: "after a step of the drive the arm rings at a frequency that gravity does not \
+     make, and it starts late; slow motions are right",
+    confused_with: &[
+        "armature: a stiff gear is an inertia alone; only a spring rings and answers fast \
+         commands late",
+        "gear_backlash: both let motor and joint part; a spring parts in proportion to the load, \
+         backlash by the same angle under any load",
+        "delay: both answer late; a delay does not ring",
+    ],
+    experiment: "drive a chirp through the resonance with two loads: its frequency must fall with \
+     the heavier one; then swing with torque off",
+    reference: "Spong, ASME J. Dyn. Syst. Meas. Control 109 (1987) 310",
+};
+
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "force = stiffness_n_m * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
+     sqrt(stiffness_n_m * inertia_kg); inertia_kg * d(w_m)/dt = motor - force",
+    parameters: &[
+        Parameter {
+            key: "inertia_kg",
+            unit: "kg",
+            meaning: "rotor inertia over the square of the displacement per turn in rad",
+            off: Some(0.0),
+            typical: (0.01, 1.0),
+            bounds: (0.0, 100.0),
+            starts: &[0.05, 0.3],
+        },
+        Parameter {
+            key: "stiffness_n_m",
+            unit: "N/m",
+            meaning: "force per displacement by which the motor is ahead of the joint",
+            off: None,
+            typical: (50.0, 50_000.0),
+            bounds: (1.0, 1e7),
+            starts: &[100.0, 1000.0],
+        },
+        DAMPING,
+    ],
+    ..INFO
+};
+
+impl Effect for GearCompliance {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
+    }
+
+    fn difference(&self) -> f64 {
+        2e-3
+    }
+
+    fn gear(&self, values: &[f64], gear: &mut Gear) {
+        gear.inertia_kg_m2 += values[0];
+        gear.stiffness_nm_rad = values[1];
+        gear.damping_ratio = values[2];
+    }
+}
