@@ -132,6 +132,21 @@ EFFECTS = {
             "stiffness_nm_rad": (within(0.3, 1.5), within(0.5, 2.0)),
         },
     ),
+    "gear_compliance": (
+        DRIVEN,
+        {
+            "inertia_kg_m2": (within(1e-3, 3e-3), within(1e-3, 3e-3)),
+            "stiffness_nm_rad": (within(0.5, 2.0), within(4.0, 12.0)),
+            "damping_ratio": (within(0.05, 0.25), within(0.05, 0.25)),
+        },
+    ),
+    "gear_backlash": (
+        DRIVEN,
+        {
+            "inertia_kg_m2": (within(1e-3, 3e-3), within(1e-3, 3e-3)),
+            "gap_rad": (within(0.03, 0.12), within(0.02, 0.06)),
+        },
+    ),
     "torque_offset": (ANY, {"offset_nm": (signed(0.01, 0.04), signed(0.02, 0.06))}),
     "position_friction": (
         ANY,
@@ -231,7 +246,7 @@ def weaker(effect):
             values[key] = round(round(0.8 * values[key] / 0.25e-3) * 0.25e-3, 6)
         elif key not in (
             "punch speed_rad_s rest_angle_rad periods_per_turn phase_rad at_rad width_rad from_rad"
-            " time_constant_s"
+            " time_constant_s damping_ratio"
         ).split() or effect["kind"] == "sensor_lag":
             values[key] = round(keys.get(key, 0.8) * values[key], 6)
     return {**effect, "parameters": values}

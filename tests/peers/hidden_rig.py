@@ -25,6 +25,8 @@ ENCODER_RAD = math.radians(300.0) / 1024
 PAYLOAD_AT_M = 0.15
 # Length of a hidden pendulum, m, and its damping, N m s/rad.
 PENDULUM = (0.05, 2e-5)
+# In what time the flanks of a gear with play bring motor and joint to one speed, s.
+FLANKS_S = 0.002
 # Effects that have a derivative at rest and act on the motion, not on what is read of it.
 LINEAR = (
     "viscous base_tilt com_angle mass armature cable_spring delay torque_scale speed_limit"
@@ -91,7 +93,7 @@ class Rig:
     def _xml(self, links):
         lean = -self.tilt if self.turned else self.tilt
         gravity = (GRAVITY_M_S2 * math.sin(lean), -GRAVITY_M_S2 * math.cos(lean))
-        head, tail, drives, y = [], [], [], 0.0
+        head, tail, drives, gears, y = [], [], [], [], 0.0
         for j, (length, com, mass, inertia) in enumerate(links):
             value = lambda kind, key, otherwise, j=j: self.value(j, kind, key, otherwise)
             share = 1.0 + value("mass", "added_kg", 0.0) / mass
@@ -129,7 +131,13 @@ class Rig:
                     + inertial((0.0, -PENDULUM[0]), swings, 1e-7)
                     + "</body>"
                 )
-            tail.append(end + "</body>")
+            motor = self._motor(j)
+            if motor is None:
+                tail.append(end + "</body>")
+            else:
+                # Beside its link, behind all links, whose places come first.
+                tail.append(f'{end}</body><body pos="0 {-y!r} 0">{motor[0]}</body>')
+                gears.append(motor[1])
             y = length
             if self.stall_nm[j] is not None:
                 drives.append(self._drive(j))
@@ -137,8 +145,33 @@ class Rig:
             f'<mujoco><compiler angle="degree"/><option gravity="{gravity[0]!r} {gravity[1]!r} 0"'
             f' timestep="{STEP_S!r}" integrator="RK4" tolerance="1e-12">'
             f'<flag contact="disable"/></option><worldbody>{"".join(head)}{"".join(tail[::-1])}'
-            f'</worldbody><actuator>{"".join(drives)}</actuator></mujoco>'
+            f'</worldbody><tendon>{"".join(gears)}</tendon>'
+            f'<actuator>{"".join(drives)}</actuator></mujoco>'
         )
+
+    def _motor(self, j):
+        """A motor that turns apart from its joint, and the gear between them; or None.
+
+        Both are MuJoCo's own: the gear is a tendon over both joints that is a spring with a damper,
+        or stiff beyond its limits.
+        """
+        for kind, values in self.by_joint[j]:
+            if kind == "gear_compliance":
+                k, rotor = values["stiffness_nm_rad"], values["inertia_kg_m2"]
+                c = 2.0 * values["damping_ratio"] * math.sqrt(k * rotor)
+                gear = f'stiffness="{k!r}" damping="{c!r}" springlength="0"'
+            elif kind == "gear_backlash":
+                rotor, half = values["inertia_kg_m2"], 0.5 * values["gap_rad"]
+                gear = (
+                    f'limited="true" range="{-half!r} {half!r}" solreflimit="{FLANKS_S!r} 1"'
+                    ' solimplimit="0.999 0.999 0.001 0.5 2"'
+                )
+            else:
+                continue
+            joint = f'<joint name="m{j}" axis="0 0 1" armature="{rotor!r}"/>'
+            ends = f'<joint joint="m{j}" coef="1"/><joint joint="j{j}" coef="-1"/>'
+            return joint + inertial((0.0, 0.0), 1e-9, 1e-9), f"<fixed {gear}>{ends}</fixed>"
+        return None
 
     def _drive(self, j):
         stall = self.stall_nm[j]
@@ -147,7 +180,7 @@ class Rig:
         limit = self.value(j, "torque_saturation", "limit_nm", math.inf)
         clipped = f' forcelimited="true" forcerange="{-limit!r} {limit!r}"'
         return (
-            f'<general joint="j{j}" gaintype="fixed" gainprm="{gain!r}" biastype="affine"'
+            f'<general joint="{"j" if self._motor(j) is None else "m"}{j}" gaintype="fixed" gainprm="{gain!r}" biastype="affine"'
             f' biasprm="0 0 {-stall / no_load!r}"{clipped if limit < math.inf else ""}/>'
         )
 
@@ -218,6 +251,11 @@ class Rig:
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[: self.n] = angles
         self.data.qvel[: self.n] = 0.0 if speeds is None else speeds
+        for j in self.driven:
+            if self._motor(j) is not None:
+                at, of = self.model.joint(f"m{j}"), self.model.joint(f"j{j}")
+                self.data.qpos[at.qposadr] = self.data.qpos[of.qposadr]
+                self.data.qvel[at.dofadr] = self.data.qvel[of.dofadr]
         self.sent = []
         for part in (*self.encoders, *self.drivers, *self.bristles):
             part.start()
