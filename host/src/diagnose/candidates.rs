@@ -1,6 +1,6 @@
 //! Which effects could be missing, and where.
 
-use crate::effects::{EFFECTS, Effect, Needs, Parameter, Scope, Site};
+use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 use crate::fitting::Candidate;
 use crate::log::Motion;
 use crate::model::{Drive, MeasuredSignal, Model, effect_on};
@@ -60,7 +60,7 @@ fn turns(model: &Model, joint: usize) -> bool {
 }
 
 /// Whether an encoder or sensor that this effect changes is read at a joint: by the log, or by the
-/// regulator of its drive. A rate shows what scales the reading.
+/// regulator of its drive. A rate shows what scales the reading, or lets it trail.
 fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
     let info = effect.info();
     let regulated = matches!(model.joints[joint].drive, Drive::Position { .. });
@@ -70,15 +70,25 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
         Site::Encoder => match signal {
             MeasuredSignal::Angle | MeasuredSignal::Displacement => true,
             MeasuredSignal::Rate => {
-                let start = |parameter: &Parameter| parameter.starts.first().copied();
-                let values: Vec<f64> = info.parameters.iter().filter_map(start).collect();
+                let values = first_values(info);
                 effect.encode(&values, 1.0) - effect.encode(&values, 0.0) != 1.0
             }
             MeasuredSignal::Nothing => false,
         },
-        Site::Sensor => matches!(signal, MeasuredSignal::Angle | MeasuredSignal::Displacement),
+        Site::Sensor => match signal {
+            MeasuredSignal::Angle | MeasuredSignal::Displacement => true,
+            MeasuredSignal::Rate => effect.trail_rad(&first_values(info), 1.0).is_some(),
+            MeasuredSignal::Nothing => false,
+        },
+        Site::Rate => signal == MeasuredSignal::Rate,
         _ => true,
     }
+}
+
+/// The values from which a fit of an effect starts first.
+fn first_values(info: &EffectInfo) -> Vec<f64> {
+    let start = |parameter: &Parameter| parameter.starts.first().copied();
+    info.parameters.iter().filter_map(start).collect()
 }
 
 /// All driven joints, if there are several and all of one servo type: of drives alike but for the

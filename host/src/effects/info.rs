@@ -23,6 +23,8 @@ pub enum Site {
     Encoder,
     /// On what is read, with memory.
     Sensor,
+    /// On a rate that is read.
+    Rate,
 }
 
 /// How a joint moves.

@@ -32,6 +32,7 @@ mod placebo;
 mod position_friction;
 mod pre_sliding;
 mod probe;
+mod rate_bias;
 mod sensor_lag;
 mod slew_limit;
 mod speed_limit;
@@ -94,6 +95,7 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &encoder_zero::EncoderZero,
     &backlash::Backlash,
     &sensor_lag::SensorLag,
+    &rate_bias::RateBias,
 ];
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
@@ -229,6 +231,11 @@ pub trait Effect: Sync + fmt::Debug {
     /// Sensor, static: what the encoder reads at this joint angle, rad.
     fn encode(&self, _values: &[f64], angle_rad: f64) -> f64 {
         angle_rad
+    }
+
+    /// Rate: what a sensor of rates reads at rest, rad/s.
+    fn rate_bias_rad_s(&self, _values: &[f64]) -> f64 {
+        0.0
     }
 
     /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long

@@ -79,6 +79,10 @@ impl Effect for OnSlide {
         self.effect.drive(values, torque_nm, at)
     }
 
+    fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {
+        self.effect.rate_bias_rad_s(values)
+    }
+
     fn gear(&self, values: &[f64], gear: &mut Gear) {
         self.effect.gear(values, gear);
     }

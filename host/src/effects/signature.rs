@@ -179,6 +179,12 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
             -1.6..1.6,
             gravity_nm,
         ),
+        (Site::Rate, _) => (
+            "rate, rad/s",
+            "rate that is read, rad/s",
+            -0.2..0.2,
+            |e, v, rate| rate + e.rate_bias_rad_s(v),
+        ),
         (Site::Encoder | Site::Sensor, _) => {
             ("angle, to and fro, rad", "reading, rad", -0.2..0.2, encode)
         }

@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the same error of torque everywhere: the joint rests beside where it should, and \
      goes one way more easily than the other",
     confused_with: &[
+        "rate_bias: both show to one side; a bias of the sensor does not move the point of rest",
         "direction_asymmetry: while the joint moves they are one law; at rest friction pulls \
          nowhere",
         "com_angle: near hanging both pull one way; turn the arm by 90 degrees",

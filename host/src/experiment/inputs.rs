@@ -98,7 +98,7 @@ pub(super) fn at_rest(plant: &Plant, reading_rad: &[f64]) -> Start {
     Start {
         angle_rad: plant.decode_rad(reading_rad),
         speed_rad_s: vec![0.0; reading_rad.len()],
-        reading_rad_s: None,
+        reading_slope: None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! States of joints whose angle no column holds, guessed so that a fit can begin near them.
 //!
-//! A rate is integrated from the angle at which the model explains the log best; a joint of which
+//! A rate is integrated from the angle, and less the bias, at which the model explains the log
+//! best; a joint of which
 //! nothing is measured moves as the model does that begins hanging at rest. Each window's start
 //! state is then fitted within wide limits around the guess.
 
@@ -16,6 +17,11 @@ use std::f64::consts::TAU;
 const TRIED: usize = 16;
 /// Windows in which they are tried, s: short enough that a wrong one does not run away.
 const WINDOW_S: f64 = 0.4;
+/// Largest drift that is sought first, rad/s, in how many rounds, each of half the reach, and by
+/// which share it must lower the squared error to be believed.
+const DRIFT_RAD_S: f64 = 0.1;
+const DRIFT_ROUNDS: usize = 5;
+const DRIFT_CLEAR: f64 = 0.9;
 /// Standard deviation of a guessed angle, rad, and of a guessed speed, rad/s.
 const ANGLE_DEVIATION_RAD: f64 = 0.3;
 const SPEED_DEVIATION_RAD_S: f64 = 2.0;
@@ -68,8 +74,56 @@ pub(super) fn assumed(
             (cost(model, signals, sigma, motion, &moved), turn)
         };
         let best = (0..TRIED).map(cost).min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, turn)) = best {
+        if let Some((least, turn)) = best {
             states = turned(&states, joint, turn as f64 / TRIED as f64 * TAU);
+            states = without_drift(model, signals, sigma, motion, (states, least), joint);
+        }
+    }
+    states
+}
+
+/// The states with one joint's drift taken out, if the model then explains the log clearly better:
+/// that of the angle that a rate with a bias was integrated to.
+fn without_drift(
+    model: &Model,
+    signals: &[MeasuredSignal],
+    sigma: &[f64],
+    motion: &Motion,
+    (states, least): (AssumedStates, f64),
+    joint: usize,
+) -> AssumedStates {
+    let cost = |states: &AssumedStates| cost(model, signals, sigma, motion, states);
+    let (mut best, mut best_cost) = (states.clone(), least);
+    let mut reach_rad_s = DRIFT_RAD_S;
+    for _ in 0..DRIFT_ROUNDS {
+        let from = best.clone();
+        for step in [-1.0, -0.5, 0.5, 1.0] {
+            let straightened = straightened(&from, motion, joint, step * reach_rad_s);
+            let own = cost(&straightened);
+            if own < best_cost {
+                (best, best_cost) = (straightened, own);
+            }
+        }
+        reach_rad_s *= 0.5;
+    }
+    match best_cost < DRIFT_CLEAR * least {
+        true => best,
+        false => states,
+    }
+}
+
+/// The states with one joint's angle turned on evenly, by nothing in the middle of the motion.
+fn straightened(
+    states: &AssumedStates,
+    motion: &Motion,
+    joint: usize,
+    by_rad_s: f64,
+) -> AssumedStates {
+    let mut states = states.clone();
+    let middle_s = motion.time_s[0] + 0.5 * motion.duration_s();
+    if let Some(own) = &mut states[joint] {
+        for (angle, time_s) in own.angle_rad.iter_mut().zip(&motion.time_s) {
+            *angle += by_rad_s * (time_s - middle_s);
         }
     }
     states

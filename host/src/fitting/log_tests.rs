@@ -2,8 +2,9 @@
 //! sampling, filtered readings. Each time values are found that are hidden in the motion.
 
 use super::*;
+use crate::effects::named;
 use crate::log::{Motion, Split};
-use crate::model::{MeasuredSignal, Model, ParameterPath};
+use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
 use crate::sim::{Memory, Plant, Start, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -230,5 +231,36 @@ fn what_acts_on_a_joint_without_any_column_shows_in_the_other() {
             "{first}: {value:?}"
         );
         assert!(refitted.unobserved[0].contains("Joint 1"));
+    }
+}
+
+/// A gyro that reads 0.05 rad/s at rest, and one that is filtered by 40 ms.
+#[test]
+fn a_rate_alone_tells_its_sensor_s_bias_and_lag() {
+    for (id, key, hidden) in [
+        ("rate_bias", "bias_rad_s", 0.05),
+        ("sensor_lag", "time_constant_s", 0.04),
+    ] {
+        let with = |value: f64| {
+            let mut model = pendulum(RATE, 0.006);
+            model.effects.push(EffectInstance {
+                effect: named(id).unwrap(),
+                joint: Some(0),
+                values: vec![value],
+            });
+            model
+        };
+        for begin in [1.0, -0.4] {
+            let split = Split {
+                training: vec![swing(&with(hidden), &[begin], even(1500, 100.0))],
+                held_out: Vec::new(),
+            };
+            let path: ParameterPath = format!("{id}@1.{key}").parse().unwrap();
+            let refitted = refit(&with(0.1 * hidden), &[path], &split, None).unwrap();
+            let value = &refitted.values[0];
+            assert!((value.value / hidden - 1.0).abs() < 0.03, "{value:?}");
+            let error = &refitted.error;
+            assert!(error.after_rad < 1.3 * error.floor_rad, "{id}: {error:?}");
+        }
     }
 }

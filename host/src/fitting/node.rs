@@ -126,8 +126,8 @@ impl Node {
         let (speed, acceleration) = rates.split_at(joints);
         Start {
             angle_rad: plant.decode_rad(&plant.ahead_rad(reading, speed)),
-            speed_rad_s: plant.decode_rad_s(&plant.ahead_rad(speed, acceleration)),
-            reading_rad_s: Some(speed.to_vec()),
+            speed_rad_s: plant.decode_rad_s(&plant.ahead_rad_s(speed, acceleration)),
+            reading_slope: Some(plant.reading_slopes(speed, acceleration)),
         }
     }
 }

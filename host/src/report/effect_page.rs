@@ -75,6 +75,7 @@ fn site(site: Site) -> &'static str {
         Site::Joint => "torque on the joint",
         Site::Body => "masses and gravity",
         Site::Encoder | Site::Sensor => "reading",
+        Site::Rate => "the rate that is read",
     }
 }
 

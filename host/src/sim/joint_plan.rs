@@ -48,6 +48,8 @@ pub(super) struct JointPlan {
     pub gear_cell: Option<usize>,
     pub encode: Vec<ActiveEffect>,
     pub sense: Vec<ActiveEffect>,
+    /// What a sensor of rates reads at rest, rad/s.
+    pub rate_bias_rad_s: f64,
 }
 
 impl JointPlan {
@@ -66,6 +68,7 @@ impl JointPlan {
             gear_cell: None,
             encode: Vec::new(),
             sense: Vec::new(),
+            rate_bias_rad_s: 0.0,
         }
     }
 
@@ -109,6 +112,12 @@ impl JointPlan {
             .filter_map(|e| Some((e, e.cell?)))
     }
 
+    /// Leaves those sensors that a rate is read through.
+    pub fn keep_rate_sensors(&mut self) {
+        self.sense
+            .retain(|e| e.effect.trail_rad(e.values(), 1.0).is_some());
+    }
+
     /// Change of the encoder's reading per change of the joint's angle.
     pub fn reading_slope(&self) -> f64 {
         if self.encode.is_empty() {
@@ -141,6 +150,7 @@ impl JointPlan {
             Site::Body => {}
             Site::Encoder => self.encode.push(active),
             Site::Sensor => self.sense.push(active),
+            Site::Rate => self.rate_bias_rad_s += effect.rate_bias_rad_s(values),
         }
     }
 }

@@ -64,7 +64,7 @@ impl Live {
             ..Start::default()
         };
         sensors.begin(&plant, &at_rest);
-        sensors.step(&plant, &angles, 0.0);
+        sensors.step(&plant, (&angles, &at_rest.speed_rad_s), 0.0);
         Ok(Live {
             sensors,
             stepper: Stepper::new(&plant, &angles, &vec![0.0; angles.len()]),
@@ -96,8 +96,7 @@ impl Live {
         for _ in 0..steps {
             self.stepper.advance(&self.plant, &self.inputs, h);
             if self.plant.senses {
-                self.sensors
-                    .step(&self.plant, self.stepper.angle.as_ref(), h);
+                self.sensors.step(&self.plant, self.stepper.state(), h);
             }
         }
     }
@@ -126,7 +125,7 @@ impl Live {
     /// lag.
     pub fn reading_rad(&self, joint: usize) -> f64 {
         match self.plant.senses {
-            true => self.sensors.reading_rad[joint],
+            true => self.sensors.reading[joint],
             false => self.angle_rad(joint),
         }
     }

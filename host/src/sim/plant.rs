@@ -38,6 +38,16 @@ pub struct Plant {
 impl Plant {
     /// Compiles `model` for the conditions of `motion` (payload, attitude).
     pub fn new(model: &Model, motion: &Motion) -> Plant {
+        let columns = model.log.joints.iter();
+        let mut rates: Vec<bool> = columns
+            .map(|columns| columns.signal() == MeasuredSignal::Rate)
+            .collect();
+        rates.resize(model.link_count(), false);
+        Plant::read_by(model, motion, rates)
+    }
+
+    /// The same where `rates` says of which joints the rate is read, not the angle.
+    fn read_by(model: &Model, motion: &Motion, rates: Vec<bool>) -> Plant {
         let mut joints: Vec<JointPlan> = model
             .joints
             .iter()
@@ -69,11 +79,8 @@ impl Plant {
         for joint in &mut joints {
             joint.follows_input = joint.coupling.is_none() && joint.torque_is_held();
         }
-        let columns = model.log.joints.iter();
-        let mut rates: Vec<bool> = columns
-            .map(|columns| columns.signal() == MeasuredSignal::Rate)
-            .collect();
-        rates.resize(joints.len(), false);
+        let of_rates = joints.iter_mut().zip(&rates).filter(|(_, rate)| **rate);
+        of_rates.for_each(|(joint, _)| joint.keep_rate_sensors());
         let remembers = joints
             .iter_mut()
             .fold(0, |next, joint| joint.place_memory(next));
@@ -101,7 +108,8 @@ impl Plant {
 
     /// Compiles `model` for a simulation without a log: no payload, not turned.
     pub fn without_log(model: &Model) -> Plant {
-        Plant::new(model, &Motion::default())
+        let angles = vec![false; model.link_count()];
+        Plant::read_by(model, &Motion::default(), angles)
     }
 
     /// Whether any motor turns apart from its joint.
@@ -145,31 +153,74 @@ impl Plant {
         (angle_rad, self.encoded_rad_s(joint, &state.speed_rad_s))
     }
 
-    /// How fast those readings change, rad/s, at these relative speeds.
+    /// How fast those readings change, rad/s, at these relative speeds; of a joint whose rate alone
+    /// is logged, what its sensor reads.
     pub(super) fn encoded_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
         let true_speed = match self.absolute {
             true => speed_rad_s[..=joint].iter().sum::<f64>(),
             false => speed_rad_s[joint],
         };
-        self.joints[joint].reading_slope() * true_speed
+        self.joints[joint].reading_slope() * true_speed + self.rate_bias_rad_s(joint)
+    }
+
+    /// What is read at rest as the rate of a joint whose rate alone is logged, rad/s.
+    fn rate_bias_rad_s(&self, joint: usize) -> f64 {
+        match self.rates[joint] {
+            true => self.joints[joint].rate_bias_rad_s,
+            false => 0.0,
+        }
     }
 
     /// What the encoders would read without the sensors that trail, where these read `reading_rad`
     /// and the readings change by `speed_rad_s`.
     pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
-        let joints = self.joints.iter().zip(reading_rad).zip(speed_rad_s);
-        joints
-            .map(|((joint, reading), speed)| {
-                let trail = |e: &ActiveEffect| e.effect.trail_rad(e.values(), *speed);
-                reading + joint.sense.iter().filter_map(trail).sum::<f64>()
-            })
-            .collect()
+        let ahead = |joint: usize| match self.rates[joint] {
+            true => reading_rad[joint],
+            false => reading_rad[joint] + self.trail(joint, speed_rad_s[joint]),
+        };
+        (0..self.len()).map(ahead).collect()
+    }
+
+    /// How fast they would change, rad/s, where they change by `speed_rad_s` and that by
+    /// `acceleration_rad_s2`.
+    pub fn ahead_rad_s(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
+        let rates = speed_rad_s.iter().zip(acceleration_rad_s2).enumerate();
+        let ahead =
+            |(joint, (speed, change)): (usize, (&f64, &f64))| speed + self.trail(joint, *change);
+        rates.map(ahead).collect()
+    }
+
+    /// By how much a joint's sensors trail behind what has long changed by `slope` a second.
+    fn trail(&self, joint: usize, slope: f64) -> f64 {
+        let trail = |e: &ActiveEffect| e.effect.trail_rad(e.values(), slope);
+        self.joints[joint].sense.iter().filter_map(trail).sum()
+    }
+
+    /// How fast what the log holds of each joint changes, from how fast its readings change and how
+    /// fast that does.
+    pub fn reading_slopes(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
+        let slope = |joint: usize| match self.rates[joint] {
+            true => acceleration_rad_s2[joint],
+            false => speed_rad_s[joint],
+        };
+        (0..self.len()).map(slope).collect()
+    }
+
+    /// What the log holds of a joint at a state, before any effect with memory: rad, or rad/s where
+    /// it holds the rate alone.
+    pub(super) fn encoded(&self, joint: usize, angle_rad: &[f64], speed_rad_s: &[f64]) -> f64 {
+        match self.rates[joint] {
+            true => self.encoded_rad_s(joint, speed_rad_s),
+            false => self.encoded_rad(joint, angle_rad),
+        }
     }
 
     /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
     pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
-        let joints = self.joints.iter().zip(rate_rad_s);
-        let speed = |(joint, rate): (&JointPlan, &f64)| rate / joint.reading_slope();
+        let joints = self.joints.iter().enumerate().zip(rate_rad_s);
+        let speed = |((joint, plan), rate): ((usize, &JointPlan), &f64)| {
+            (rate - self.rate_bias_rad_s(joint)) / plan.reading_slope()
+        };
         let mut speeds: Vec<f64> = joints.map(speed).collect();
         if self.absolute {
             for joint in (1..speeds.len()).rev() {

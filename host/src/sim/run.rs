@@ -19,9 +19,9 @@ pub struct Start {
     pub angle_rad: Vec<f64>,
     /// Per joint, rad/s.
     pub speed_rad_s: Vec<f64>,
-    /// How fast the readings change, rad/s in the log's convention, where sensors trail; as fast as
-    /// the joints without.
-    pub reading_rad_s: Option<Vec<f64>>,
+    /// How fast what is read changes, rad/s in the log's convention, rad/s^2 of a rate, where
+    /// sensors trail; as the joints do without.
+    pub reading_slope: Option<Vec<f64>>,
 }
 
 /// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out
@@ -61,7 +61,7 @@ fn predicted<R: Rows>(
     let samples = stretch.len();
     cross_gap::<R>(plant, motion, stretch.start, memory);
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
-    (run.sensors).record(plant, run.stepper.speed.as_ref(), readings, 0, samples);
+    run.sensors.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         run.follow(k);
         let at = k + 1 - stretch.start;
@@ -71,8 +71,7 @@ fn predicted<R: Rows>(
             }
             return run.state();
         }
-        let speed = run.stepper.speed.as_ref();
-        run.sensors.record(plant, speed, readings, at, samples);
+        run.sensors.record(readings, at, samples);
     }
     let end = run.state();
     *memory = run.ended(stretch.end.saturating_sub(1), end.clone());
@@ -117,7 +116,7 @@ impl<'a, R: Rows> Run<'a, R> {
         }
         let mut sensors = memory.sensors;
         sensors.begin(plant, start);
-        sensors.step(plant, stepper.angle.as_ref(), 0.0);
+        sensors.step(plant, stepper.state(), 0.0);
         Run {
             plant,
             motion,
@@ -142,12 +141,11 @@ impl<'a, R: Rows> Run<'a, R> {
             set_inputs(plant, motion, k, span, cursors, &mut self.inputs);
             self.stepper.advance(plant, &self.inputs, h);
             if plant.senses {
-                self.sensors.step(plant, self.stepper.angle.as_ref(), h);
+                self.sensors.step(plant, self.stepper.state(), h);
             }
         }
         if !plant.senses {
-            self.sensors
-                .step(plant, self.stepper.angle.as_ref(), to - from);
+            self.sensors.step(plant, self.stepper.state(), to - from);
         }
     }
 
@@ -159,7 +157,7 @@ impl<'a, R: Rows> Run<'a, R> {
         Start {
             angle_rad: self.stepper.angle.as_ref().to_vec(),
             speed_rad_s: self.stepper.speed.as_ref().to_vec(),
-            reading_rad_s: None,
+            reading_slope: None,
         }
     }
 

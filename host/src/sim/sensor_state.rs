@@ -1,15 +1,15 @@
-//! Encoders with memory (backlash, lag): what they read as the joints move.
+//! Sensors with memory (backlash, lag): what they read as the joints move.
 
 use super::plant::Plant;
 use super::run::Start;
 
-/// Readings of all encoders, and what sensor effects remember from one step to the next.
+/// Readings of all sensors, and what sensor effects remember from one step to the next.
 #[derive(Debug, Clone, Default)]
 pub struct SensorState {
-    /// Per sensor effect, its [encoded angle, reading] of the step before, rad.
+    /// Per sensor effect, its [encoded value, reading] of the step before.
     cells: Vec<Option<[f64; 2]>>,
-    /// Per joint, rad in the log's convention.
-    pub(super) reading_rad: Vec<f64>,
+    /// Per joint, rad in the log's convention; rad/s where the rate is read.
+    pub(super) reading: Vec<f64>,
 }
 
 impl SensorState {
@@ -20,16 +20,17 @@ impl SensorState {
         if self.cells.len() != cells {
             self.cells = vec![None; cells];
         }
-        self.reading_rad.resize(plant.len(), 0.0);
+        self.reading.resize(plant.len(), 0.0);
         let mut cells = self.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded_rad(joint, &start.angle_rad);
-            let speed = match &start.reading_rad_s {
-                Some(speed) => speed[joint],
+            let mut reading = plant.encoded(joint, &start.angle_rad, &start.speed_rad_s);
+            let slope = match &start.reading_slope {
+                Some(slope) => slope[joint],
+                None if plant.rates[joint] => 0.0,
                 None => plant.encoded_rad_s(joint, &start.speed_rad_s),
             };
             for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                if let Some(trail) = active.effect.trail_rad(active.values(), speed) {
+                if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
                     *cell = Some([reading, reading - trail]);
                     reading -= trail;
                 }
@@ -37,34 +38,29 @@ impl SensorState {
         }
     }
 
-    /// Follows the joints to these relative angles, rad, reached `step_s` after the ones before.
+    /// Follows the joints to these relative angles, rad, and speeds, rad/s, reached `step_s` after
+    /// the ones before.
     #[inline]
-    pub(super) fn step(&mut self, plant: &Plant, angle_rad: &[f64], step_s: f64) {
+    pub(super) fn step(
+        &mut self,
+        plant: &Plant,
+        (angle_rad, speed_rad_s): (&[f64], &[f64]),
+        step_s: f64,
+    ) {
         let mut cells = self.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded_rad(joint, angle_rad);
+            let mut reading = plant.encoded(joint, angle_rad, speed_rad_s);
             for (active, cell) in plan.sense.iter().zip(&mut cells) {
                 reading = active.effect.sense(active.values(), cell, reading, step_s);
             }
-            self.reading_rad[joint] = reading;
+            self.reading[joint] = reading;
         }
     }
 
-    /// Writes what the log holds as sample `k` of `samples`, joint by joint: the reading, or the
-    /// rate of a joint whose rate alone is logged.
-    pub(super) fn record(
-        &self,
-        plant: &Plant,
-        speed_rad_s: &[f64],
-        readings: &mut [f64],
-        k: usize,
-        samples: usize,
-    ) {
-        for (joint, reading) in self.reading_rad.iter().enumerate() {
-            readings[joint * samples + k] = match plant.rates[joint] {
-                true => plant.encoded_rad_s(joint, speed_rad_s),
-                false => *reading,
-            };
+    /// Writes what the log holds as sample `k` of `samples`, joint by joint.
+    pub(super) fn record(&self, readings: &mut [f64], k: usize, samples: usize) {
+        for (joint, reading) in self.reading.iter().enumerate() {
+            readings[joint * samples + k] = *reading;
         }
     }
 }

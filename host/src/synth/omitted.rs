@@ -40,7 +40,9 @@ impl OmittedEffect {
             Site::Drive => NonSmooth::AtLimit,
             Site::Gear => NonSmooth::OwnState,
             Site::Sensor => NonSmooth::Memory,
-            Site::Timing | Site::Joint | Site::Body | Site::Encoder => NonSmooth::Unstated,
+            Site::Timing | Site::Joint | Site::Body | Site::Encoder | Site::Rate => {
+                NonSmooth::Unstated
+            }
         };
         OmittedEffect { effect, joint, why }
     }

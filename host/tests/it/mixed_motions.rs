@@ -77,7 +77,7 @@ fn hanging(bench: &Bench, seed: f64, seconds: f64) -> String {
     let start = Start {
         angle_rad: vec![0.5 + 0.1 * seed, 0.0, 0.0],
         speed_rad_s: vec![0.0; 3],
-        reading_rad_s: None,
+        reading_slope: None,
     };
     let (mut readings, mut sensors) = (vec![0.0; 3 * samples], Memory::default());
     predict(

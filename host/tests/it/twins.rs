@@ -80,7 +80,7 @@ fn log(truth: &Model, seed: f64) -> String {
     let start = Start {
         angle_rad: vec![0.2 * seed, -0.1],
         speed_rad_s: vec![0.0; 2],
-        reading_rad_s: None,
+        reading_slope: None,
     };
     let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], Memory::default());
     predict(

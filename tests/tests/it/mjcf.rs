@@ -48,7 +48,7 @@ fn start(model: &Model) -> Start {
     Start {
         angle_rad: (0..joints).map(|joint| 0.6 - 0.3 * joint as f64).collect(),
         speed_rad_s: vec![0.0; joints],
-        reading_rad_s: None,
+        reading_slope: None,
     }
 }
 

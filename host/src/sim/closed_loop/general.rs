@@ -39,7 +39,7 @@ impl GeneralState<Many> {
         let start = Start {
             angle_rad: angle,
             speed_rad_s: speed,
-            reading_rad_s: None,
+            reading_slope: None,
         };
         match plant.len() {
             1 => Box::new(GeneralState::<Few<1>>::new(plant, &start)),
@@ -55,7 +55,7 @@ impl<R: Rows> GeneralState<R> {
     fn new(plant: &Plant, start: &Start) -> Self {
         let mut sensors = SensorState::default();
         sensors.begin(plant, start);
-        sensors.step(plant, &start.angle_rad, 0.0);
+        sensors.step(plant, (&start.angle_rad, &start.speed_rad_s), 0.0);
         GeneralState {
             stepper: Stepper::new(plant, &start.angle_rad, &start.speed_rad_s),
             sensors,
@@ -68,8 +68,7 @@ impl<R: Rows + fmt::Debug> General for GeneralState<R> {
         for _ in 0..steps {
             self.stepper.advance(plant, inputs, step_s);
             if plant.senses {
-                let angle = self.stepper.angle.as_ref();
-                self.sensors.step(plant, angle, step_s);
+                self.sensors.step(plant, self.stepper.state(), step_s);
             }
         }
     }
@@ -83,7 +82,7 @@ impl<R: Rows + fmt::Debug> General for GeneralState<R> {
     }
 
     fn reading_rad(&self) -> &[f64] {
-        &self.sensors.reading_rad
+        &self.sensors.reading
     }
 
     fn memory(&self) -> &[MemoryCell] {

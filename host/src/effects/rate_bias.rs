@@ -1,0 +1,62 @@
+//! Rate bias: a gyro reads a rate at rest.
+
+use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+
+/// w + b.
+#[derive(Debug)]
+pub struct RateBias;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "rate_bias",
+    title: "bias of the rate sensor",
+    site: Site::Rate,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "reading = d(q)/dt + bias_rad_s",
+    parameters: &[Parameter {
+        key: "bias_rad_s",
+        unit: "rad/s",
+        meaning: "reading at rest",
+        off: Some(0.0),
+        typical: (-0.05, 0.05),
+        bounds: (-5.0, 5.0),
+        starts: &[0.02, -0.02],
+    }],
+    looks_like: "a constant error of the rate, at rest, too; the angle that is integrated from it \
+     drifts away",
+    confused_with: &[
+        "torque_offset: both show to one side; an offset of torque moves the point of rest, where \
+         the rate is zero",
+    ],
+    experiment: "read the rate for a minute at rest, cold and warm",
+    reference: "IEEE Std 952-1997, section 5.3",
+};
+
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "reading = d(q)/dt + bias_m_s",
+    parameters: &[Parameter {
+        key: "bias_m_s",
+        unit: "m/s",
+        meaning: "reading at rest",
+        off: Some(0.0),
+        typical: (-0.02, 0.02),
+        bounds: (-5.0, 5.0),
+        starts: &[0.01, -0.01],
+    }],
+    ..INFO
+};
+
+impl Effect for RateBias {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
+    }
+
+    fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {
+        values[0]
+    }
+}
