@@ -9,6 +9,7 @@ use super::hypothesis::Hypothesis;
 use super::values::{compared, contradicted};
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
+use crate::model::MeasuredSignal;
 use crate::output::number::{percent, short};
 
 /// Correlation from which two values are hardly told apart.
@@ -56,6 +57,7 @@ fn error(evidence: &VerdictEvidence) -> ErrorReduction {
     let (given, chosen) = (&evidence.evaluator.given, evidence.chosen());
     let blocks = given.deciding().zip(chosen.deciding());
     ErrorReduction {
+        quantity: MeasuredSignal::pooled(&evidence.evaluator.training.signals),
         before_rad: given.deciding_rms_rad(),
         refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),

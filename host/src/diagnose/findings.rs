@@ -3,6 +3,7 @@
 use crate::effects;
 use crate::fitting::{Candidate, ErrorReduction, FittedValue, MotionWindow};
 use crate::log::{LogFinding, Severity};
+use crate::model::MeasuredSignal;
 use crate::model::{Model, ParameterPath, effect_on};
 use serde::Serialize;
 
@@ -243,6 +244,7 @@ impl Diagnosis {
             effects: Vec::new(),
             wrong_values: Vec::new(),
             error: ErrorReduction {
+                quantity: MeasuredSignal::Angle,
                 before_rad: f64::NAN,
                 refitted_rad: None,
                 after_rad: f64::NAN,

@@ -160,9 +160,10 @@ fn error_line(diagnosis: &Diagnosis) -> String {
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =
         [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(1e3 * rad));
+    let unit = error.quantity.milli();
     if diagnosis.effects.is_empty() && diagnosis.wrong_values.is_empty() {
         return format!(
-            "The error on {motions} motions is {before} mrad; the floor is {floor} mrad."
+            "The error on {motions} motions is {before} {unit}; the floor is {floor} {unit}."
         );
     }
     let with = match diagnosis.verdict {
@@ -170,7 +171,8 @@ fn error_line(diagnosis: &Diagnosis) -> String {
         _ => "The",
     };
     format!(
-        "{with} error on {motions} motions falls from {before} to {after} mrad; the floor is {floor} mrad."
+        "{with} error on {motions} motions falls from {before} to {after} {unit}; the floor is {floor} \
+         {unit}."
     )
 }
 

@@ -1,19 +1,24 @@
-//! Position errors, rad: before a change of the model, after it, and of a perfect model.
+//! Errors of a model: before a change of the model, after it, and of a perfect model.
 
-use serde::Serialize;
+use crate::model::MeasuredSignal;
+use serde::{Serialize, Serializer};
 
 /// How far a change of the model reduces its error: root-mean-square, all joints and motions
 /// together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ErrorReduction {
-    /// Error before, rad: of the model as it was given.
+    /// What the errors are of: the unit that all of them are in, with those of motions, parts and
+    /// candidates.
+    #[serde(rename = "error_unit", serialize_with = "as_unit")]
+    pub quantity: MeasuredSignal,
+    /// Error before, in that unit, rad where angles are measured: of the model as it was given.
     pub before_rad: f64,
-    /// Error of the same model with its free values refitted, rad; absent where that was not asked.
+    /// Error of the same model with its free values refitted; absent where that was not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refitted_rad: Option<f64>,
-    /// Error after, rad.
+    /// Error after.
     pub after_rad: f64,
-    /// What noise and resolution of the measurement alone leave, rad.
+    /// What noise and resolution of the measurement alone leave.
     pub floor_rad: f64,
     /// Whether the figures are of motions that took no part in the fit.
     pub held_out: bool,
@@ -21,4 +26,8 @@ pub struct ErrorReduction {
     /// where it was not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduction: Option<[f64; 2]>,
+}
+
+fn as_unit<S: Serializer>(quantity: &MeasuredSignal, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(quantity.unit())
 }

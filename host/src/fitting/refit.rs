@@ -189,6 +189,7 @@ fn finish(
     Ok(Refitted {
         values,
         error: ErrorReduction {
+            quantity: MeasuredSignal::pooled(&judged.signals),
             before_rad: rms_rad(before),
             refitted_rad: None,
             after_rad: rms_rad(&found.model),

@@ -1,10 +1,11 @@
 //! The explanations that were tried, with the evidence for and against each.
 
 use super::page::{Section, table};
-use super::words::{in_mrad, set_name, sorted, with_interval};
+use super::words::{in_columns, in_milli, set_name, sorted, with_interval};
 use super::{AFTER, BEFORE, Report};
 use crate::diagnose::words::{SHOWN, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
+use crate::model::MeasuredSignal;
 use crate::output::number::{NONE, mrad, short};
 use crate::output::plot::{Bar, largest};
 use maud::{Markup, html};
@@ -15,7 +16,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         return None;
     }
     let body = html! {
-        @if !diagnosis.alternatives.is_empty() { (alternatives(&diagnosis.alternatives)) }
+        @if !diagnosis.alternatives.is_empty() { (alternatives(&diagnosis.alternatives, diagnosis.error.quantity)) }
         @if !diagnosis.ruled_out.is_empty() { (tried(diagnosis)) }
     };
     Some(Section {
@@ -29,12 +30,12 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     })
 }
 
-fn alternatives(alternatives: &[Alternative]) -> Markup {
+fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Markup {
     html! {
         h3 { "These do as well: the data do not rule them out" }
         ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
-                b { (explained_by(&alternative.effects, &alternative.wrong_values)) } ": error " (in_mrad(alternative.error_rad))
+                b { (explained_by(&alternative.effects, &alternative.wrong_values)) } ": error " (in_milli(alternative.error_rad, quantity))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }
@@ -52,8 +53,9 @@ fn tried(diagnosis: &Diagnosis) -> Markup {
     let tried = sorted(&diagnosis.ruled_out);
     let chosen = diagnosis.error.after_rad;
     let full = largest(tried.iter().map(|tried| error(tried)).chain([chosen]));
+    let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
     let headings = html! {
-        th { "Added to the model" } th.number { "Fitted, mrad" } th.number { "Held out, mrad" }
+        th { "Added to the model" } th.number { (fitted) } th.number { (held_out) }
         th.wide {} th.number { "BIC change" } th { "Why not" }
     };
     let rows = html! {

@@ -1,11 +1,12 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{in_mrad, measured_on, reduction, sentences, verdict_word};
+use super::words::{in_milli, measured_on, reduction, sentences, verdict_word};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
 use crate::fitting::in_windows;
+use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, short};
 use crate::output::plot::Tone;
 use maud::{Markup, html};
@@ -48,9 +49,9 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
     }
     shown.push(("floor", FLOOR, error.floor_rad));
     html! {
-        (figures(&shown))
+        (figures(&shown, error.quantity))
         p.note {
-            "Typical (RMS) angle error in milliradians, " (in_windows(&diagnosis.windows))
+            "Typical (RMS) error in " (error.quantity.milli()) ", " (in_windows(&diagnosis.windows))
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor is what sensor resolution and noise alone leave; no model can do better."
@@ -64,6 +65,7 @@ fn compared(report: &Report) -> Markup {
     let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
         return html! { h1 { "Nothing was compared." } };
     };
+    let quantity = before.quantity();
     let floor = ("floor", FLOOR, pooled(before, |signal| signal.floor));
     let first = (before.model.as_str(), BEFORE, error(before));
     match report.after() {
@@ -72,28 +74,30 @@ fn compared(report: &Report) -> Markup {
             html! {
                 h1 {
                     "From " (before.model) " to " (after.model) " the typical error goes from "
-                    (in_mrad(first.2)) " to " (in_mrad(last.2)) "."
+                    (in_milli(first.2, quantity)) " to " (in_milli(last.2, quantity)) "."
                 }
-                (figures(&[first, last, floor]))
+                (figures(&[first, last, floor], quantity))
             }
         }
         None => html! {
-            h1 { (before.model) " misses the measurement by typically " (in_mrad(first.2)) "." }
-            (figures(&[first, floor]))
+            h1 { (before.model) " misses the measurement by typically " (in_milli(first.2, quantity)) "." }
+            (figures(&[first, floor], quantity))
         },
     }
 }
 
 /// Figures in a row with arrows between.
-fn figures(figures: &[(&str, Tone, f64)]) -> Markup {
+fn figures(figures: &[(&str, Tone, f64)], quantity: MeasuredSignal) -> Markup {
     html! {
         div.figures {
-            @for (index, (name, tone, error_rad)) in figures.iter().enumerate() {
+            @for (index, (name, tone, error)) in figures.iter().enumerate() {
                 @if index > 0 { span.arrow aria-hidden="true" { "→" } }
                 div class={ "figure " (tone.class()) } {
                     span.name { (name) }
-                    span.value { (mrad(*error_rad)) span.unit { " mrad" } }
-                    span.aside { (short(error_rad.to_degrees())) "°" }
+                    span.value { (mrad(*error)) span.unit { " " (quantity.milli()) } }
+                    @if quantity == MeasuredSignal::Angle {
+                        span.aside { (short(error.to_degrees())) "°" }
+                    }
                 }
             }
         }

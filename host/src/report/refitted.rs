@@ -20,6 +20,7 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
     ];
     let table = within_width(table_of(&refitted.values, columns), 100);
     let error = &refitted.error;
+    let unit = error.quantity.milli();
     let motions = if error.held_out { "held out" } else { "fitted" };
     let [old, new, floor] =
         [error.before_rad, error.after_rad, error.floor_rad].map(|rad| exact(1e3 * rad));
@@ -27,8 +28,8 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
         table.to_string(),
         String::new(),
         format!(
-            "Error on the motions {motions}: {old} mrad {before} -> {new} mrad for the new one; \
-             noise alone leaves {floor} mrad."
+            "Error on the motions {motions}: {old} {unit} {before} -> {new} {unit} for the new one; \
+             noise alone leaves {floor} {unit}."
         ),
     ];
     lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));

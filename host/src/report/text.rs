@@ -1,12 +1,14 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_mrad, measured_on, reduction, sentences, sorted, verdict_word, with_ends, with_interval,
+    in_columns, in_milli, measured_on, reduction, sentences, sorted, verdict_word, with_ends,
+    with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
 use crate::effects;
 use crate::fitting::{FittedValue, in_windows};
+use crate::model::MeasuredSignal;
 use crate::output::number::unit;
 use crate::output::number::{NONE, interval, mrad, percent, short};
 use crate::output::table::{TableColumn, plain_table, table_of};
@@ -24,8 +26,8 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
         effects(&diagnosis.effects),
         wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
-        budget(&diagnosis.budget),
-        alternatives(&diagnosis.alternatives),
+        budget(&diagnosis.budget, diagnosis.error.quantity),
+        alternatives(&diagnosis.alternatives, diagnosis.error.quantity),
         ruled_out(diagnosis),
         residual_structure(diagnosis),
         list("Next", &diagnosis.next),
@@ -80,20 +82,21 @@ fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
+    let unit = error.quantity.milli();
     let (before, after) = (mrad(error.before_rad), mrad(error.after_rad));
     let added = !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty();
     let refitted = error
         .refitted_rad
-        .map(|rad| format!(", {} mrad refitted", mrad(rad)));
+        .map(|rad| format!(", {} {unit} refitted", mrad(rad)));
     let refitted = refitted.unwrap_or_default();
     let change = if added {
-        format!(" as given{refitted} -> {after} mrad;")
+        format!(" as given{refitted} -> {after} {unit};")
     } else {
         format!(" as given{refitted};")
     };
     let mut lines = vec![
         format!(
-            "Error: {before} mrad{change} floor {} mrad.",
+            "Error: {before} {unit}{change} floor {} {unit}.",
             mrad(error.floor_rad)
         ),
         format!(
@@ -107,28 +110,27 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
             .filter(|_| added)
             .map(|reduction| format!("So {reduction}.")),
     );
-    lines.extend(folds(&diagnosis.folds));
+    lines.extend(folds(&diagnosis.folds, unit));
     error.before_rad.is_finite().then(|| lines.join("\n"))
 }
 
 /// "With other motions held out: 41.0 -> 6.2, 39.5 -> 6.4 mrad."
-fn folds(folds: &[Fold]) -> Option<String> {
+fn folds(folds: &[Fold], unit: &str) -> Option<String> {
     let each = folds.iter();
     let each = each.map(|fold| format!("{} -> {}", mrad(fold.before_rad), mrad(fold.after_rad)));
     let each: Vec<String> = each.collect();
-    (!each.is_empty()).then(|| format!("With other motions held out: {} mrad.", each.join(", ")))
+    (!each.is_empty()).then(|| format!("With other motions held out: {} {unit}.", each.join(", ")))
 }
 
 /// What each part of an explanation of several removes.
-fn budget(parts: &[BudgetedPart]) -> Option<String> {
+fn budget(parts: &[BudgetedPart], quantity: MeasuredSignal) -> Option<String> {
+    let [leaves, without] = in_columns(["leaves", "without it"], quantity);
     let columns: &[TableColumn<&BudgetedPart>] = &[
         ("Error budget", &|part| part.part.clone()),
         ("Alone", &|part| with_ends(&part.alone)),
-        ("leaves, mrad", &|part| mrad(part.alone.error_rad)),
+        (&leaves, &|part| mrad(part.alone.error_rad)),
         ("Beyond the others", &|part| with_ends(&part.beyond_others)),
-        ("without it, mrad", &|part| {
-            mrad(part.beyond_others.error_rad)
-        }),
+        (&without, &|part| mrad(part.beyond_others.error_rad)),
     ];
     if parts.len() < 2 {
         return None;
@@ -142,7 +144,7 @@ fn budget(parts: &[BudgetedPart]) -> Option<String> {
     ))
 }
 
-fn alternatives(alternatives: &[Alternative]) -> Option<String> {
+fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Option<String> {
     let line = |alternative: &Alternative| {
         let values = alternative
             .effects
@@ -152,7 +154,7 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
         let values = values.chain(wrong);
         let values = values.map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)));
         let effects = explained_by(&alternative.effects, &alternative.wrong_values);
-        let error = in_mrad(alternative.error_rad);
+        let error = in_milli(alternative.error_rad, quantity);
         format!(
             "{effects}: {error}; {}",
             values.collect::<Vec<_>>().join(", ")
@@ -164,7 +166,8 @@ fn alternatives(alternatives: &[Alternative]) -> Option<String> {
 }
 
 fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
-    let mut table = plain_table(["Ruled out", "Fitted, mrad", "Held out, mrad", "BIC", "Why"]);
+    let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
+    let mut table = plain_table(["Ruled out", &fitted, &held_out, "BIC", "Why"]);
     for tried in sorted(&diagnosis.ruled_out).into_iter().take(SHOWN) {
         table.add_row([
             tried.set.join(" + "),

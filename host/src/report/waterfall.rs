@@ -1,10 +1,11 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
 use super::page::{Section, table};
-use super::words::{in_mrad, set_name, with_ends};
+use super::words::{in_columns, in_milli, set_name, with_ends};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::{BudgetedPart, MotionError};
+use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, percent};
 use crate::output::plot::{Bar, largest};
 use maud::{Markup, html};
@@ -15,15 +16,17 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         .iter()
         .filter(|comparison| !comparison.signals.is_empty())
         .collect();
-    let motions = report.diagnosis.as_ref().map_or(&[][..], |d| &d.motions);
-    let budget = report.diagnosis.as_ref().map_or(&[][..], |d| &d.budget);
-    if chain.is_empty() && motions.is_empty() {
+    let diagnosis = report.diagnosis.as_ref();
+    if chain.is_empty() && diagnosis.is_none_or(|d| d.motions.is_empty()) {
         return None;
     }
     let body = html! {
         @if !chain.is_empty() { (steps(&chain)) }
-        @if !budget.is_empty() { (by_part(budget)) }
-        @if !motions.is_empty() { (by_motion(motions)) }
+        @if let Some(diagnosis) = diagnosis {
+            @let quantity = diagnosis.error.quantity;
+            @if !diagnosis.budget.is_empty() { (by_part(&diagnosis.budget, quantity)) }
+            @if !diagnosis.motions.is_empty() { (by_motion(&diagnosis.motions, quantity)) }
+        }
     };
     Some(Section {
         id: "fall",
@@ -36,6 +39,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn steps(chain: &[&Comparison]) -> Markup {
+    let quantity = chain[0].quantity();
     let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
     let floor = pooled(chain[0], |signal| signal.floor);
@@ -52,7 +56,7 @@ fn steps(chain: &[&Comparison]) -> Markup {
                 span { (comparison.model) }
                 (bar(index).draw())
                 span.number {
-                    (in_mrad(errors[index]))
+                    (in_milli(errors[index], quantity))
                     @if let Some(previous) = previous(index) {
                         span.aside { " (" (change(previous, errors[index])) ")" }
                     }
@@ -60,7 +64,7 @@ fn steps(chain: &[&Comparison]) -> Markup {
             }
             span { "floor" }
             (Bar::new(floor, full, FLOOR).draw())
-            span.number { (in_mrad(floor)) }
+            span.number { (in_milli(floor, quantity)) }
         }
     }
 }
@@ -73,10 +77,11 @@ fn change(from: f64, to: f64) -> String {
 }
 
 /// The error budget: shares that need not add up.
-fn by_part(budget: &[BudgetedPart]) -> Markup {
+fn by_part(budget: &[BudgetedPart], quantity: MeasuredSignal) -> Markup {
+    let [leaves, without] = in_columns(["Leaves", "Without it"], quantity);
     let headings = html! {
-        th { "Part" } th.number { "Alone" } th.number { "Leaves, mrad" }
-        th.number { "Beyond the others" } th.number { "Without it, mrad" }
+        th { "Part" } th.number { "Alone" } th.number { (leaves) }
+        th.number { "Beyond the others" } th.number { (without) }
     };
     let rows = html! {
         @for part in budget {
@@ -97,7 +102,8 @@ fn by_part(budget: &[BudgetedPart]) -> Markup {
     }
 }
 
-fn by_motion(motions: &[MotionError]) -> Markup {
+fn by_motion(motions: &[MotionError], quantity: MeasuredSignal) -> Markup {
+    let [before, after_change] = in_columns(["Before", "After"], quantity);
     let errors = motions
         .iter()
         .flat_map(|motion| [motion.before_rad, motion.after_rad]);
@@ -107,7 +113,7 @@ fn by_motion(motions: &[MotionError]) -> Markup {
         ..Bar::new(motion.after_rad, full, AFTER)
     };
     let headings = html! {
-        th { "Motion" } th { "Role" } th.number { "Before, mrad" } th.number { "After, mrad" }
+        th { "Motion" } th { "Role" } th.number { (before) } th.number { (after_change) }
         th.wide {}
     };
     let rows = html! {

@@ -5,6 +5,7 @@ use crate::diagnose::words::headline;
 use crate::diagnose::{BudgetShare, Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::{ErrorReduction, FittedValue};
+use crate::model::MeasuredSignal;
 use crate::output::number::{measured, mrad, percent};
 
 /// One word for a verdict, as in JSON.
@@ -78,9 +79,17 @@ pub(super) fn reduction(error: &ErrorReduction) -> Option<String> {
         .then(|| format!("the error {verb} by {size}{range}"))
 }
 
-/// "41.2 mrad".
-pub(super) fn in_mrad(value_rad: f64) -> String {
-    format!("{} mrad", mrad(value_rad))
+/// "Before, mrad", or in thousandths of what else the quantity is measured in.
+pub(super) fn in_columns<const N: usize>(
+    headings: [&str; N],
+    quantity: MeasuredSignal,
+) -> [String; N] {
+    headings.map(|heading| format!("{heading}, {}", quantity.milli()))
+}
+
+/// "41.2 mrad", or in thousandths of what else the quantity is measured in.
+pub(super) fn in_milli(value: f64, quantity: MeasuredSignal) -> String {
+    format!("{} {}", mrad(value), quantity.milli())
 }
 
 /// "0.0821 N m (0.0794 to 0.0851)".

@@ -1,6 +1,7 @@
 use super::*;
 use crate::diagnose::Alternative;
 use crate::fitting::{ErrorReduction, FittedValue};
+use crate::model::MeasuredSignal;
 
 fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
     FittedValue {
@@ -34,6 +35,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
         effects,
         wrong_values: Vec::new(),
         error: ErrorReduction {
+            quantity: MeasuredSignal::Angle,
             before_rad: 40e-3,
             refitted_rad: Some(35e-3),
             after_rad: 2e-3,

@@ -205,6 +205,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
             fitted: fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]),
         }],
         error: ErrorReduction {
+            quantity: MeasuredSignal::Angle,
             before_rad: 41.2e-3,
             refitted_rad: Some(30.7e-3),
             after_rad: 6.31e-3,
