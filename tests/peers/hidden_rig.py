@@ -179,8 +179,9 @@ class Rig:
         no_load = self.value(j, "speed_limit", "no_load_speed_rad_s", math.inf)
         limit = self.value(j, "torque_saturation", "limit_nm", math.inf)
         clipped = f' forcelimited="true" forcerange="{-limit!r} {limit!r}"'
+        joint = f"j{j}" if self._motor(j) is None else f"m{j}"
         return (
-            f'<general joint="{"j" if self._motor(j) is None else "m"}{j}" gaintype="fixed" gainprm="{gain!r}" biastype="affine"'
+            f'<general joint="{joint}" gaintype="fixed" gainprm="{gain!r}" biastype="affine"'
             f' biasprm="0 0 {-stall / no_load!r}"{clipped if limit < math.inf else ""}/>'
         )
 

@@ -13,7 +13,8 @@ pub struct History {
     overloaded_s: f64,
     /// How far the bristles of dry friction are bent, rad.
     bristle: f64,
-    /// By how much a motor behind a gear that gives is ahead of its joint, rad, and its speed, rad/s.
+    /// By how much a motor behind a gear that gives is ahead of its joint, rad, and its speed,
+    /// rad/s.
     motor: [f64; 2],
 }
 
@@ -48,7 +49,8 @@ impl History {
         }
     }
 
-    /// Carries a motor behind a gear that gives on by `h` s at the speeds that it and its joint have.
+    /// Carries a motor behind a gear that gives on by `h` s at the speeds that it and its joint
+    /// have.
     pub fn drift(&mut self, h: f64, joint_speed: f64) {
         self.motor[0] += h * (self.motor[1] - joint_speed);
     }

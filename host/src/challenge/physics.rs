@@ -234,8 +234,8 @@ impl Physics {
         torque.clamp(-self.torque_limit, self.torque_limit)
     }
 
-    /// Torque that a gear that gives passes on to the joint, N m, its motor being `ahead` rad of the
-    /// joint and drawing away by `away` rad/s.
+    /// Torque that a gear that gives passes on to the joint, N m, its motor being `ahead` rad of
+    /// the joint and drawing away by `away` rad/s.
     pub fn through_gear(&self, ahead: f64, away: f64) -> f64 {
         let play = 0.5 * self.gear_gap;
         let bent = ahead - ahead.clamp(-play, play);

@@ -171,8 +171,8 @@ fn error_line(diagnosis: &Diagnosis) -> String {
         _ => "The",
     };
     format!(
-        "{with} error on {motions} motions falls from {before} to {after} {unit}; the floor is {floor} \
-         {unit}."
+        "{with} error on {motions} motions falls from {before} to {after} {unit}; the floor is \
+         {floor} {unit}."
     )
 }
 

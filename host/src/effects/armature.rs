@@ -6,6 +6,28 @@ use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
 #[derive(Debug)]
 pub struct Armature;
 
+/// Inertia of the rotor as seen at the joint.
+pub(super) const ROTOR: Parameter = Parameter {
+    key: "inertia_kg_m2",
+    unit: "kg m^2",
+    meaning: "rotor inertia times the square of the gear ratio",
+    off: Some(0.0),
+    typical: (0.0005, 0.02),
+    bounds: (0.0, 1.0),
+    starts: &[0.002, 0.01],
+};
+
+/// The same at a joint that slides.
+pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter {
+    key: "inertia_kg",
+    unit: "kg",
+    meaning: "rotor inertia over the square of the displacement per turn in rad",
+    off: Some(0.0),
+    typical: (0.01, 1.0),
+    bounds: (0.0, 100.0),
+    starts: &[0.05, 0.3],
+};
+
 static INFO: EffectInfo = EffectInfo {
     id: "armature",
     title: "armature inertia",
@@ -13,15 +35,7 @@ static INFO: EffectInfo = EffectInfo {
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
     law: "inertia at the joint + inertia_kg_m2, without weight",
-    parameters: &[Parameter {
-        key: "inertia_kg_m2",
-        unit: "kg m^2",
-        meaning: "rotor inertia times the square of the gear ratio",
-        off: Some(0.0),
-        typical: (0.0005, 0.02),
-        bounds: (0.0, 1.0),
-        starts: &[0.002, 0.01],
-    }],
+    parameters: &[ROTOR],
     looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is \
      slower than the model says",
     confused_with: &[
@@ -41,15 +55,7 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "mass along the slide + inertia_kg, without weight",
-    parameters: &[Parameter {
-        key: "inertia_kg",
-        unit: "kg",
-        meaning: "rotor inertia over the square of the displacement per turn in rad",
-        off: Some(0.0),
-        typical: (0.01, 1.0),
-        bounds: (0.0, 100.0),
-        starts: &[0.05, 0.3],
-    }],
+    parameters: &[ROTOR_ON_SLIDE],
     ..INFO
 };
 

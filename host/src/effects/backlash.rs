@@ -26,8 +26,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "after each reversal the reading stands still over a fixed angle, whatever the \
      amplitude, the load or the speed",
     confused_with: &[
-        "gear_backlash: play of the gear behind the encoder shows in how the arm moves, not in what \
-         is read",
+        "gear_backlash: play of the gear behind the encoder shows in how the arm moves, not in \
+         what is read",
         "dead_zone: both leave a plateau; a dead zone has a fixed width in command and lets the \
          arm drift in angle",
         "stribeck: both halt the reading at reversal; stiction lasts until a fixed torque, not \

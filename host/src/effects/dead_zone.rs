@@ -37,8 +37,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it \
      hunts in a limit cycle; with the torque off nothing remains of it",
     confused_with: &[
-        "gear_backlash: both leave the arm alone about no command; backlash only until the motor is \
-         across",
+        "gear_backlash: both leave the arm alone about no command; backlash only until the motor \
+         is across",
         "coulomb: both swallow small commands; with the torque off only friction remains",
         "backlash: both leave a plateau; backlash has a fixed width in angle after each reversal, \
          a dead zone a fixed width in command",

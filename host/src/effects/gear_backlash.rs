@@ -1,5 +1,6 @@
 //! Backlash of the gear: motor and joint, each with its inertia, meet at either flank of a gap.
 
+use super::armature::{ROTOR, ROTOR_ON_SLIDE};
 use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
 
 /// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
@@ -15,15 +16,7 @@ static INFO: EffectInfo = EffectInfo {
     law: "no torque while |q_m - q| < gap_rad / 2, else that of the flanks; inertia_kg_m2 * \
      d(w_m)/dt = motor - torque",
     parameters: &[
-        Parameter {
-            key: "inertia_kg_m2",
-            unit: "kg m^2",
-            meaning: "rotor inertia times the square of the gear ratio",
-            off: Some(0.0),
-            typical: (0.0005, 0.02),
-            bounds: (0.0, 1.0),
-            starts: &[0.002, 0.01],
-        },
+        ROTOR,
         Parameter {
             key: "gap_rad",
             unit: "rad",
@@ -54,15 +47,7 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     law: "no force while |q_m - q| < gap_m / 2, else that of the flanks; inertia_kg * d(w_m)/dt = \
      motor - force",
     parameters: &[
-        Parameter {
-            key: "inertia_kg",
-            unit: "kg",
-            meaning: "rotor inertia over the square of the displacement per turn in rad",
-            off: Some(0.0),
-            typical: (0.01, 1.0),
-            bounds: (0.0, 100.0),
-            starts: &[0.05, 0.3],
-        },
+        ROTOR_ON_SLIDE,
         Parameter {
             key: "gap_m",
             unit: "m",

@@ -1,5 +1,6 @@
 //! Gear compliance: the motor turns its joint through a spring.
 
+use super::armature::{ROTOR, ROTOR_ON_SLIDE};
 use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
 
 /// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
@@ -27,15 +28,7 @@ static INFO: EffectInfo = EffectInfo {
     law: "torque = stiffness_nm_rad * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
      sqrt(stiffness_nm_rad * inertia_kg_m2); inertia_kg_m2 * d(w_m)/dt = motor - torque",
     parameters: &[
-        Parameter {
-            key: "inertia_kg_m2",
-            unit: "kg m^2",
-            meaning: "rotor inertia times the square of the gear ratio",
-            off: Some(0.0),
-            typical: (0.0005, 0.02),
-            bounds: (0.0, 1.0),
-            starts: &[0.002, 0.01],
-        },
+        ROTOR,
         Parameter {
             key: "stiffness_nm_rad",
             unit: "N m/rad",
@@ -66,15 +59,7 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = stiffness_n_m * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
      sqrt(stiffness_n_m * inertia_kg); inertia_kg * d(w_m)/dt = motor - force",
     parameters: &[
-        Parameter {
-            key: "inertia_kg",
-            unit: "kg",
-            meaning: "rotor inertia over the square of the displacement per turn in rad",
-            off: Some(0.0),
-            typical: (0.01, 1.0),
-            bounds: (0.0, 100.0),
-            starts: &[0.05, 0.3],
-        },
+        ROTOR_ON_SLIDE,
         Parameter {
             key: "stiffness_n_m",
             unit: "N/m",

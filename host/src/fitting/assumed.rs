@@ -17,10 +17,10 @@ use std::f64::consts::TAU;
 const TRIED: usize = 16;
 /// Windows in which they are tried, s: short enough that a wrong one does not run away.
 const WINDOW_S: f64 = 0.4;
-/// Largest drift that is sought first, rad/s, in how many rounds, each of half the reach, and by
-/// which share it must lower the squared error to be believed.
-const DRIFT_RAD_S: f64 = 0.1;
-const DRIFT_ROUNDS: usize = 5;
+/// Drifts of an integrated rate that are tried, rad/s, in how many rounds the best is refined, and
+/// by which share it must lower the squared error to be believed.
+const DRIFTS_RAD_S: [f64; 4] = [0.05, -0.05, 0.1, -0.1];
+const DRIFT_ROUNDS: usize = 8;
 const DRIFT_CLEAR: f64 = 0.9;
 /// Standard deviation of a guessed angle, rad, and of a guessed speed, rad/s.
 const ANGLE_DEVIATION_RAD: f64 = 0.3;
@@ -69,57 +69,59 @@ pub(super) fn assumed(
         run_free(model, sigma, motion, &whole, &mut states);
     }
     for joint in (0..signals.len()).filter(|j| signals[*j] == MeasuredSignal::Rate) {
-        let cost = |turn: usize| {
-            let moved = turned(&states, joint, turn as f64 / TRIED as f64 * TAU);
-            (cost(model, signals, sigma, motion, &moved), turn)
-        };
-        let best = (0..TRIED).map(cost).min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((least, turn)) = best {
-            states = turned(&states, joint, turn as f64 / TRIED as f64 * TAU);
-            states = without_drift(model, signals, sigma, motion, (states, least), joint);
-        }
+        let cost = |states: &AssumedStates| cost(model, signals, sigma, motion, states);
+        states = anchored(&states, motion, joint, &cost);
     }
     states
 }
 
-/// The states with one joint's drift taken out, if the model then explains the log clearly better:
-/// that of the angle that a rate with a bias was integrated to.
-fn without_drift(
-    model: &Model,
-    signals: &[MeasuredSignal],
-    sigma: &[f64],
+/// The states with one joint's angle begun where the model explains the log best, and freed of the
+/// drift that a rate with a bias is integrated to, where the model then explains it clearly better.
+fn anchored(
+    states: &AssumedStates,
     motion: &Motion,
-    (states, least): (AssumedStates, f64),
     joint: usize,
+    cost: &dyn Fn(&AssumedStates) -> f64,
 ) -> AssumedStates {
-    let cost = |states: &AssumedStates| cost(model, signals, sigma, motion, states);
-    let (mut best, mut best_cost) = (states.clone(), least);
-    let mut reach_rad_s = DRIFT_RAD_S;
+    let moved = |[begin_rad, drift_rad_s]: [f64; 2]| {
+        let turned = turned(states, joint, begin_rad);
+        straightened(turned, motion, joint, drift_rad_s)
+    };
+    let best = |tried: &mut dyn Iterator<Item = [f64; 2]>| {
+        let judged = tried.map(|at| (cost(&moved(at)), at));
+        judged.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let turns = |drift_rad_s: f64| {
+        (0..TRIED).map(move |turn| [turn as f64 / TRIED as f64 * TAU, drift_rad_s])
+    };
+    let Some((plain_cost, plain)) = best(&mut turns(0.0)) else {
+        return states.clone();
+    };
+    let Some((mut least, mut at)) = best(&mut DRIFTS_RAD_S.into_iter().flat_map(turns)) else {
+        return moved(plain);
+    };
+    let mut reach = [TAU / TRIED as f64, DRIFTS_RAD_S[0]];
     for _ in 0..DRIFT_ROUNDS {
-        let from = best.clone();
-        for step in [-1.0, -0.5, 0.5, 1.0] {
-            let straightened = straightened(&from, motion, joint, step * reach_rad_s);
-            let own = cost(&straightened);
-            if own < best_cost {
-                (best, best_cost) = (straightened, own);
-            }
+        reach = reach.map(|reach| 0.5 * reach);
+        let around = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        let near = around.map(|to| [at[0] + to[0] * reach[0], at[1] + to[1] * reach[1]]);
+        if let Some((own, to)) = best(&mut near.into_iter()).filter(|(own, _)| *own < least) {
+            (least, at) = (own, to);
         }
-        reach_rad_s *= 0.5;
     }
-    match best_cost < DRIFT_CLEAR * least {
-        true => best,
-        false => states,
+    match least < DRIFT_CLEAR * plain_cost {
+        true => moved(at),
+        false => moved(plain),
     }
 }
 
 /// The states with one joint's angle turned on evenly, by nothing in the middle of the motion.
 fn straightened(
-    states: &AssumedStates,
+    mut states: AssumedStates,
     motion: &Motion,
     joint: usize,
     by_rad_s: f64,
 ) -> AssumedStates {
-    let mut states = states.clone();
     let middle_s = motion.time_s[0] + 0.5 * motion.duration_s();
     if let Some(own) = &mut states[joint] {
         for (angle, time_s) in own.angle_rad.iter_mut().zip(&motion.time_s) {

@@ -234,11 +234,11 @@ fn what_acts_on_a_joint_without_any_column_shows_in_the_other() {
     }
 }
 
-/// A gyro that reads 0.05 rad/s at rest, and one that is filtered by 40 ms.
+/// A gyro that reads 0.1 rad/s at rest, by which the integrated angle drifts by 4 rad, and one that is filtered by 40 ms.
 #[test]
 fn a_rate_alone_tells_its_sensor_s_bias_and_lag() {
     for (id, key, hidden) in [
-        ("rate_bias", "bias_rad_s", 0.05),
+        ("rate_bias", "bias_rad_s", 0.1),
         ("sensor_lag", "time_constant_s", 0.04),
     ] {
         let with = |value: f64| {
@@ -252,7 +252,7 @@ fn a_rate_alone_tells_its_sensor_s_bias_and_lag() {
         };
         for begin in [1.0, -0.4] {
             let split = Split {
-                training: vec![swing(&with(hidden), &[begin], even(1500, 100.0))],
+                training: vec![swing(&with(hidden), &[begin], even(4000, 100.0))],
                 held_out: Vec::new(),
             };
             let path: ParameterPath = format!("{id}@1.{key}").parse().unwrap();

@@ -16,7 +16,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         return None;
     }
     let body = html! {
-        @if !diagnosis.alternatives.is_empty() { (alternatives(&diagnosis.alternatives, diagnosis.error.quantity)) }
+        @if !diagnosis.alternatives.is_empty() {
+            (alternatives(&diagnosis.alternatives, diagnosis.error.quantity))
+        }
         @if !diagnosis.ruled_out.is_empty() { (tried(diagnosis)) }
     };
     Some(Section {
@@ -35,7 +37,8 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Marku
         h3 { "These do as well: the data do not rule them out" }
         ul { @for alternative in alternatives.iter().take(SHOWN) {
             li {
-                b { (explained_by(&alternative.effects, &alternative.wrong_values)) } ": error " (in_milli(alternative.error_rad, quantity))
+                b { (explained_by(&alternative.effects, &alternative.wrong_values)) }
+                ": error " (in_milli(alternative.error_rad, quantity))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
                     span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
                 }

@@ -80,7 +80,10 @@ fn compared(report: &Report) -> Markup {
             }
         }
         None => html! {
-            h1 { (before.model) " misses the measurement by typically " (in_milli(first.2, quantity)) "." }
+            h1 {
+                (before.model) " misses the measurement by typically "
+                (in_milli(first.2, quantity)) "."
+            }
             (figures(&[first, floor], quantity))
         },
     }

@@ -28,8 +28,8 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
         table.to_string(),
         String::new(),
         format!(
-            "Error on the motions {motions}: {old} {unit} {before} -> {new} {unit} for the new one; \
-             noise alone leaves {floor} {unit}."
+            "Error on the motions {motions}: {old} {unit} {before} -> {new} {unit} for the new \
+             one; noise alone leaves {floor} {unit}."
         ),
     ];
     lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));

@@ -84,10 +84,24 @@ fn stopping_and_letting_go_are_of_second_order_in_the_step() {
 
 /// An arm of 2e-3 kg m^2 without weight, turned by a torque.
 fn weightless(effects: &[(&str, &[f64])]) -> Plant {
-    let text = "[rig]\nname = \"arm\"\nangle_zero = \"hanging\"\ngravity_m_s2 = 0.0\n\n[[link]]\nlength_m = 0.1\n\
-        com_m = 0.1\nmass_kg = 0.1\ninertia_kg_m2 = 1e-3\n\n[[joint]]\ndrive = \"torque\"\n\n\
-        [log]\ntime = { column = \"t\", unit = \"s\" }\n\n[[log.joint]]\n\
-        position = { column = \"q\", unit = \"rad\" }\ninput = { column = \"u\", unit = \"N m\" }\n";
+    let text = "
+        [rig]
+        name = 'arm'
+        angle_zero = 'hanging'
+        gravity_m_s2 = 0.0
+        [[link]]
+        length_m = 0.1
+        com_m = 0.1
+        mass_kg = 0.1
+        inertia_kg_m2 = 1e-3
+        [[joint]]
+        drive = 'torque'
+        [log]
+        time = { column = 't', unit = 's' }
+        [[log.joint]]
+        position = { column = 'q', unit = 'rad' }
+        input = { column = 'u', unit = 'N m' }
+        ";
     let mut model = Model::parse(text, Path::new("arm.toml")).unwrap();
     let instance = |&(id, values): &(&str, &[f64])| EffectInstance {
         effect: named(id).unwrap(),
