@@ -70,7 +70,7 @@ fn predictions(c: &mut Criterion) {
     let start = Start {
         angle_rad: vec![0.0],
         speed_rad_s: vec![0.0],
-        reading_rad_s: None,
+        reading_slope: None,
     };
     for (name, effect) in [("air_drag", BUILT_IN), ("expression", EXPRESSION)] {
         let text = format!("{ARM}{effect}");
