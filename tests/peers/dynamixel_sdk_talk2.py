@@ -55,7 +55,12 @@ def signed(value, bits):
 
 
 models = [good("ping", id) for id in IDS]
-_, silent, _ = packets.ping(port, 9)
+for _ in range(5):
+    # On a busy machine what was asked before may be answered only now.
+    port.clearPort()
+    _, silent, _ = packets.ping(port, 9)
+    if silent == COMM_RX_TIMEOUT:
+        break
 for _ in range(5):
     found, comm = packets.broadcastPing(port)
     if len(found) == 3:
