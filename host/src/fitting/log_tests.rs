@@ -234,7 +234,8 @@ fn what_acts_on_a_joint_without_any_column_shows_in_the_other() {
     }
 }
 
-/// A gyro that reads 0.1 rad/s at rest, by which the integrated angle drifts by 4 rad, and one that is filtered by 40 ms.
+/// A gyro that reads 0.1 rad/s at rest, by which the integrated angle drifts by 4 rad, and one that
+/// is filtered by 40 ms.
 #[test]
 fn a_rate_alone_tells_its_sensor_s_bias_and_lag() {
     for (id, key, hidden) in [

@@ -135,6 +135,19 @@ impl EffectInstance {
         }
     }
 
+    /// What is left of a gear that gives once it is rigid: the inertia of its motor. None of other
+    /// effects.
+    pub fn rigid(&self) -> Option<EffectInstance> {
+        let mut gear = effects::Gear::RIGID;
+        self.effect.gear(&self.values, &mut gear);
+        let effect = effects::on_axis(effects::named("armature")?, self.effect.axis())?;
+        (gear != effects::Gear::RIGID).then_some(EffectInstance {
+            effect,
+            joint: self.joint,
+            values: vec![gear.inertia_kg_m2],
+        })
+    }
+
     /// Whether it and the effect of this id there would act on one place.
     fn meets(&self, id: &str, joint: Option<usize>, joints: &[Joint]) -> bool {
         let meet = match (self.joint, joint) {

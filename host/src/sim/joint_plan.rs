@@ -118,6 +118,12 @@ impl JointPlan {
             .retain(|e| e.effect.trail_rad(e.values(), 1.0).is_some());
     }
 
+    /// Speed of the motor, rad/s, where the joint has this one.
+    pub fn motor_speed_rad_s(&self, cells: &[MemoryCell], joint_rad_s: f64) -> f64 {
+        let own = self.gear_cell.map_or(f64::NAN, |cell| cells[cell][1]);
+        if own.is_nan() { joint_rad_s } else { own }
+    }
+
     /// Change of the encoder's reading per change of the joint's angle.
     pub fn reading_slope(&self) -> f64 {
         if self.encode.is_empty() {

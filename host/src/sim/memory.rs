@@ -3,7 +3,6 @@
 
 use super::drive::DriveInput;
 use super::joint_plan::JointPlan;
-use super::motors::UNKNOWN;
 use super::plant::Plant;
 use super::run::Start;
 use super::sensor_state::SensorState;
@@ -75,8 +74,9 @@ impl EffectMemory {
             let reading = plant.encoded_rad(joint, angle);
             let at = StepState {
                 input: inputs[joint].input,
-                duty: plan.duty(input, reading, speed[joint]),
+                duty: plan.duty(input, reading, motor_speed),
                 energised: input.energised,
+            let motor_speed = plan.motor_speed_rad_s(&self.0, speed[joint]);
                 angle_rad: angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed[joint],
             };

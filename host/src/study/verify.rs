@@ -145,14 +145,17 @@ struct Tested<'a> {
 }
 
 impl Tested<'_> {
-    /// The loop of the model without these effects.
+    /// The loop of the model without these effects; gears among them are rigid, not gone, as the
+    /// design has them.
     fn closed_loop(&self, without: &[UndesignedEffect]) -> Result<ClosedLoop> {
         let mut model = self.model.clone();
         let is = |e: &EffectInstance, one: &UndesignedEffect| {
             one.effect == e.effect && one.joint == e.joint
         };
         let stays = |e: &EffectInstance| !without.iter().any(|one| is(e, one));
-        model.effects.retain(stays);
+        let (kept, gone): (Vec<_>, Vec<_>) = model.effects.into_iter().partition(stays);
+        model.effects = kept;
+        model.effects.extend(gone.iter().filter_map(|e| e.rigid()));
         closed_loop(model, self.design, self.request)
     }
 

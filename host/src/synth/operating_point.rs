@@ -6,7 +6,6 @@ use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::check_size;
 use crate::dynamics::EquationsOfMotion;
-use crate::effects::Gear;
 use crate::model::Model;
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
@@ -61,17 +60,13 @@ impl OperatingPoint {
     }
 }
 
-/// The equations of motion of a model's chain, body effects included, motors
-/// behind gears that give as if these were rigid.
+/// The equations of motion of a model's chain, body effects included, gears that give as if they
+/// were rigid.
 pub(super) fn equations(model: &Model) -> EquationsOfMotion {
-    let mut rig = model.rig(false);
-    for (joint, link) in rig.chain.links.iter_mut().enumerate() {
-        let mut gear = Gear::RIGID;
-        for e in model.effects_at(joint) {
-            e.effect.gear(&e.values, &mut gear);
-        }
-        link.armature_kg_m2 += gear.inertia_kg_m2;
-    }
+    let mut model = model.clone();
+    let rigid: Vec<_> = model.effects.iter().filter_map(|e| e.rigid()).collect();
+    model.effects.extend(rigid);
+    let rig = model.rig(false);
     EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
 }
 

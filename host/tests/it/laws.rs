@@ -19,7 +19,7 @@ fn horizon(kind: &str) -> Horizon {
 }
 
 /// Worst error of the true model over an arm's motions, in shares of the readings' noise.
-fn error_over_floor(kind: &'static str, seed: u64) -> f64 {
+fn error_over_floor(kind: &'static str, seed: u64, horizon: Horizon) -> f64 {
     let files = Bench::new();
     let bench = bench(Motions::Arm, seed, &[kind]).unwrap();
     files.put("true.toml", &bench.true_model_toml);
@@ -27,7 +27,7 @@ fn error_over_floor(kind: &'static str, seed: u64) -> f64 {
     let error = |log: &handstand::challenge::BenchLog| {
         files.put(&log.name, &log.csv);
         let motions = read(&[LogRequest::whole(files.path(&log.name))], &model.log).unwrap();
-        let compared = compare(&model, "true.toml", &motions, Some(horizon(kind)));
+        let compared = compare(&model, "true.toml", &motions, Some(horizon));
         let of_floor = compared
             .signals
             .iter()
@@ -41,8 +41,20 @@ fn error_over_floor(kind: &'static str, seed: u64) -> f64 {
 fn the_true_model_predicts_the_truth_of_every_kind() {
     let off: Vec<(&str, f64)> = KINDS
         .par_iter()
-        .map(|kind| (*kind, error_over_floor(kind, 2)))
+        .map(|kind| (*kind, error_over_floor(kind, 2, horizon(kind))))
         .filter(|(_, error)| *error > 1.3)
         .collect();
+    assert!(off.is_empty(), "{off:?}");
+}
+
+/// What is remembered must follow the motion from the last sample of a window to the first of the
+/// next: a motor that stands still for that sample is degrees off.
+#[test]
+fn windows_begin_with_what_was_remembered() {
+    let kinds = ["slew_limit", "gear_compliance"];
+    let over_floor = kinds
+        .par_iter()
+        .map(|kind| (*kind, error_over_floor(kind, 2, Horizon::Seconds(0.5))));
+    let off: Vec<(&str, f64)> = over_floor.filter(|(_, error)| *error > 1.2).collect();
     assert!(off.is_empty(), "{off:?}");
 }

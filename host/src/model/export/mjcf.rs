@@ -195,7 +195,7 @@ fn actuators(text: &mut String, model: &Model) {
 }
 
 fn left_out(model: &Model) -> Vec<NotCarried> {
-    let mut missing = not_carried(model, &HELD, "MuJoCo has no such effect");
+    let mut missing = not_carried(model, &HELD, "no element of MJCF is written for it");
     for (joint, drive) in model.joints.iter().map(|joint| &joint.drive).enumerate() {
         if matches!(drive, Drive::Position { .. } | Drive::Speed { .. }) {
             missing.push(NotCarried {

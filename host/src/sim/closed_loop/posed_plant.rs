@@ -180,7 +180,9 @@ impl PosedPlant {
             None => plan.drive_torque_nm(input, 0.0, 0.0, &[]),
             Some(general) => {
                 let reading = self.plant.encoded_rad(joint, general.angle_rad());
-                plan.drive_torque_nm(input, reading, body.speed_rad_s[joint], general.memory())
+                let cells = general.memory();
+                let motor_speed = plan.motor_speed_rad_s(cells, body.speed_rad_s[joint]);
+                plan.drive_torque_nm(input, reading, motor_speed, cells)
             }
         };
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::effects::named;
-use crate::model::{EffectInstance, Model};
+use crate::model::{Drive, EffectInstance, Model};
 use crate::sim::rows::{Few, Many};
 use std::path::Path;
 
@@ -84,25 +84,12 @@ fn stopping_and_letting_go_are_of_second_order_in_the_step() {
 
 /// An arm of 2e-3 kg m^2 without weight, turned by a torque.
 fn weightless(effects: &[(&str, &[f64])]) -> Plant {
-    let text = "
-        [rig]
-        name = 'arm'
-        angle_zero = 'hanging'
-        gravity_m_s2 = 0.0
-        [[link]]
-        length_m = 0.1
-        com_m = 0.1
-        mass_kg = 0.1
-        inertia_kg_m2 = 1e-3
-        [[joint]]
-        drive = 'torque'
-        [log]
-        time = { column = 't', unit = 's' }
-        [[log.joint]]
-        position = { column = 'q', unit = 'rad' }
-        input = { column = 'u', unit = 'N m' }
-        ";
-    let mut model = Model::parse(text, Path::new("arm.toml")).unwrap();
+    let text = include_str!("../../../models/bench_arm.toml");
+    let mut model = Model::parse(text, Path::new("bench_arm.toml")).unwrap();
+    model.gravity_m_s2 = 0.0;
+    model.joints[0].drive = Drive::Torque;
+    let link = &mut model.links[0];
+    (link.com_m, link.mass_kg, link.inertia_kg_m2) = (0.1, 0.1, 1e-3);
     let instance = |&(id, values): &(&str, &[f64])| EffectInstance {
         effect: named(id).unwrap(),
         joint: Some(0),

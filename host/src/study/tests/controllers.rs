@@ -3,7 +3,9 @@
 use super::super::*;
 use crate::Model;
 use crate::controllers::{DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design};
-use crate::synth::{dlqr, upright, zoh};
+use crate::effects::named;
+use crate::model::EffectInstance;
+use crate::synth::{Design, Format, Request, Time, Weight, dlqr, upright, zoh};
 use nalgebra::DMatrix;
 use std::path::Path;
 
@@ -200,22 +202,16 @@ fn controllers_take_the_robot_behind_its_servos() {
     );
 }
 
-/// Two joints of different servos, in one loop.
-#[test]
-fn what_limits_a_design_is_named() {
-    use crate::effects::named;
-    use crate::model::EffectInstance;
-    use crate::synth::{Design, Format, Request, Time, Weight};
+/// The paper's loop of a model that has these effects at these joints, from 0.
+fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
     let mut model = model();
-    let mut add = |id: &str, joint: usize, values: &[f64]| {
-        model.effects.push(EffectInstance {
+    model
+        .effects
+        .extend(effects.iter().map(|&(id, joint, values)| EffectInstance {
             effect: named(id).unwrap(),
             joint: Some(joint),
             values: values.to_vec(),
-        });
-    };
-    add("coulomb", 0, &[1e-4]);
-    add("dead_zone", 1, &[0.2, 0.0]);
+        }));
     let request = Request {
         pose_rad: upright(&model),
         q: Weight::Scalar(100.0),
@@ -231,8 +227,14 @@ fn what_limits_a_design_is_named() {
     };
     let made = Design::of(&model, &request).unwrap();
     let left_out = left_out(&model, &model, &made);
-    assert_eq!(left_out.len(), 2);
-    let verified = verify(&model, &made, &request, &left_out, &|| ()).unwrap();
+    assert_eq!(left_out.len(), effects.len());
+    verify(&model, &made, &request, &left_out, &|| ()).unwrap()
+}
+
+/// Two joints of different servos, in one loop.
+#[test]
+fn what_limits_a_design_is_named() {
+    let verified = verified(&[("coulomb", 0, &[1e-4]), ("dead_zone", 1, &[0.2, 0.0])]);
     let limiting = verified.limiting().unwrap();
     assert_eq!(
         (limiting.effect, limiting.joint),
@@ -244,4 +246,14 @@ fn what_limits_a_design_is_named() {
         "{verified:?}"
     );
     assert!(!verified.stabilised && verified.without.len() == 2);
+}
+
+/// A design has the motor's inertia: without the gear the loop is the one designed, not one of a
+/// motor less.
+#[test]
+fn a_gear_that_gives_limits_a_design_that_holds_with_a_rigid_one() {
+    let soft: &[f64] = &[2e-3, 20.0, 0.2];
+    let verified = verified(&[("gear_compliance", 1, soft), ("gear_compliance", 2, soft)]);
+    assert!(!verified.stabilised, "{verified:?}");
+    assert!(verified.region_as_designed_rad > 0.02, "{verified:?}");
 }

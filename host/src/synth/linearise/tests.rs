@@ -202,6 +202,24 @@ fn what_has_no_derivative_is_left_out_and_listed() {
     );
 }
 
+#[test]
+fn a_gear_that_gives_is_designed_with_as_if_it_were_rigid() {
+    let mut rigid = model("relative");
+    let mut geared = rigid.clone();
+    put(&mut rigid, "armature", 1, &[2e-3]);
+    put(&mut rigid, "armature", 2, &[1e-3]);
+    put(&mut geared, "gear_compliance", 1, &[2e-3, 5.0, 0.1]);
+    put(&mut geared, "gear_backlash", 2, &[1e-3, 0.03]);
+    let pose = balanced(&rigid, &[0.0; 3]).unwrap();
+    let (rigid, found) = (linearise(&rigid, &pose), linearise(&geared, &pose));
+    let (rigid, found) = (rigid.unwrap(), found.unwrap());
+    assert_eq!(found.plant, rigid.plant);
+    let listed = found.omitted.iter();
+    let listed: Vec<_> = listed.map(|o| (o.effect.info().id, o.why)).collect();
+    let why = NonSmooth::OwnState;
+    assert_eq!(listed, [("gear_compliance", why), ("gear_backlash", why)]);
+}
+
 /// A limit at the very torque that the pose takes is left out; below that nothing holds the
 /// pose.
 #[test]
