@@ -210,7 +210,8 @@ def upright(rig):
         pose[0] = lean
         rig.start(pose)
         mujoco.mj_forward(rig.model, rig.data)
-        return rig.data.qfrc_bias - rig.data.qfrc_passive
+        joints = rig.joints()
+        return rig.data.qfrc_bias[joints] - rig.data.qfrc_passive[joints]
 
     lean = math.pi
     for _ in range(50):

@@ -156,6 +156,15 @@ EFFECTS = {
             "span_rad": (within(0.4, 1.0), within(0.4, 1.0)),
         },
     ),
+    "base_compliance": (
+        WHOLE,
+        {
+            "stiffness_n_m": (within(60.0, 200.0), within(500.0, 2000.0)),
+            "mass_kg": (within(0.2, 0.6), within(0.5, 2.0)),
+            "damping_ratio": (within(0.05, 0.25), within(0.05, 0.25)),
+        },
+    ),
+    "grip_slip": (ANY, {"acceleration_rad_s2": (within(15.0, 40.0), within(15.0, 40.0))}),
 }
 
 OUTSIDE = {
@@ -238,7 +247,9 @@ def parsed(text, robot, seed):
 def weaker(effect):
     """The same effect at four fifths of its strength, or nearer to what the rig bears."""
     values = dict(effect["parameters"])
-    keys = {"limit_nm": 1.25, "no_load_speed_rad_s": 1.25}
+    keys = {"limit_nm": 1.25, "no_load_speed_rad_s": 1.25, "acceleration_rad_s2": 1.25}
+    if effect["kind"] == "base_compliance":
+        keys |= {"stiffness_n_m": 1.25, "mass_kg": 1.0}
     for key in values:
         if key in ("factor",):
             values[key] = round(1.0 + 0.8 * (values[key] - 1.0), 6)

@@ -49,10 +49,16 @@ class Rig:
         self.payload_kg, self.turned = mount
         self.by_joint = [[] for _ in links]
         self.tilt = 0.0
+        self.base = None
+        self.first = 0
         for effect in effects:
             values = effect["parameters"]
             if effect["kind"] == "base_tilt":
                 self.tilt += values["angle_rad"]
+            elif effect["kind"] == "base_compliance":
+                self.base = values
+                # Its two slides come before the joints in MuJoCo's arrays.
+                self.first = 2
             else:
                 self.by_joint[effect["joint"] - 1].append((effect["kind"], values))
         self.friction = friction
@@ -141,13 +147,30 @@ class Rig:
             y = length
             if self.stall_nm[j] is not None:
                 drives.append(self._drive(j))
+        base = self._base()
         return (
             f'<mujoco><compiler angle="degree"/><option gravity="{gravity[0]!r} {gravity[1]!r} 0"'
             f' timestep="{STEP_S!r}" integrator="RK4" tolerance="1e-12">'
-            f'<flag contact="disable"/></option><worldbody>{"".join(head)}{"".join(tail[::-1])}'
-            f'</worldbody><tendon>{"".join(gears)}</tendon>'
+            f'<flag contact="disable"/></option><worldbody>{base[0]}{"".join(head)}'
+            f'{"".join(tail[::-1])}{base[1]}</worldbody><tendon>{"".join(gears)}</tendon>'
             f'<actuator>{"".join(drives)}</actuator></mujoco>'
         )
+
+    def _base(self):
+        """What the chain hangs on, opened and closed: the world, or a body on springs.
+
+        The springs are at rest under the base's own weight, which counts from there.
+        """
+        if self.base is None:
+            return "", ""
+        k, mass = self.base["stiffness_n_m"], self.base["mass_kg"]
+        c = 2.0 * self.base["damping_ratio"] * math.sqrt(k * mass)
+        slides = "".join(
+            f'<joint name="base_{axis}" type="slide" axis="{place}" stiffness="{k!r}"'
+            f' damping="{c!r}"/>'
+            for axis, place in (("x", "1 0 0"), ("y", "0 1 0"))
+        )
+        return f'<body gravcomp="1">{slides}{inertial((0.0, 0.0), mass, mass)}', "</body>"
 
     def _motor(self, j):
         """A motor that turns apart from its joint, and the gear between them; or None.
@@ -202,14 +225,15 @@ class Rig:
 
             def pull():
                 # Spring and damper in series: what is stretched is forgotten.
-                speed = self.data.qvel[j]
+                speed = self.data.qvel[self.first + j]
                 stretch[0] = kept * stretch[0] + (1.0 - kept) * forgets * speed
-                self.data.qfrc_applied[j] = -stiffness * stretch[0]
+                self.data.qfrc_applied[self.first + j] = -stiffness * stretch[0]
 
             yield pull
 
     def _set_loss(self, j, base):
-        speed, angle = abs(self.data.qvel[j]), self.data.qpos[j]
+        at = self.first + j
+        speed, angle = abs(self.data.qvel[at]), self.data.qpos[at]
         loss = base
         for kind, values in self.by_joint[j]:
             if kind == "stribeck":
@@ -221,7 +245,7 @@ class Rig:
                 loss += values["torque_nm"]
             elif kind == "warm_up":
                 loss += values["torque_nm"] * math.exp(-self.data.time / values["time_constant_s"])
-        self.model.dof_frictionloss[j] = max(loss, 1e-12)
+        self.model.dof_frictionloss[at] = max(loss, 1e-12)
 
     def _torques(self, j):
         """Torques on the joint that MuJoCo has no element for, as functions of the angle."""
@@ -245,13 +269,19 @@ class Rig:
 
     def _passive(self, _model, data):
         for j, torque in self.torques:
-            data.qfrc_passive[j] += torque(data.qpos[j])
+            at = self.first + j
+            data.qfrc_passive[at] += torque(data.qpos[at])
 
     def start(self, angles, speeds=None):
         """Puts the rig at these joint angles, its encoders in the middle of their play."""
         mujoco.mj_resetData(self.model, self.data)
-        self.data.qpos[: self.n] = angles
-        self.data.qvel[: self.n] = 0.0 if speeds is None else speeds
+        joints = self.joints()
+        self.data.qpos[joints] = angles
+        self.data.qvel[joints] = 0.0 if speeds is None else speeds
+        if self.base is not None:
+            # Sagged under the weight of all but itself.
+            weight = (self.model.body_mass.sum() - self.base["mass_kg"]) * self.model.opt.gravity
+            self.data.qpos[:2] = weight[:2] / self.base["stiffness_n_m"]
         for j in self.driven:
             if self._motor(j) is not None:
                 at, of = self.model.joint(f"m{j}"), self.model.joint(f"j{j}")
@@ -299,11 +329,15 @@ class Rig:
         share = 1.0 + sensitivity * (supply_v / self.nominal_supply_v - 1.0)
         return duty * share * (1.0 - sag * abs(duty))
 
+    def joints(self):
+        """Where the joints' values are in MuJoCo's arrays."""
+        return slice(self.first, self.first + self.n)
+
     def angles(self):
-        return self.data.qpos[: self.n].copy()
+        return self.data.qpos[self.joints()].copy()
 
     def speeds(self):
-        return self.data.qvel[: self.n].copy()
+        return self.data.qvel[self.joints()].copy()
 
     def sensed(self):
         """What the encoders would read without steps."""
@@ -368,13 +402,14 @@ class Bristles:
         self.bent_nm = 0.0
 
     def step(self):
-        way = STEP_S * self.rig.data.qvel[self.joint]
+        at = self.rig.first + self.joint
+        way = STEP_S * self.rig.data.qvel[at]
         self.bent_nm += self.stiffness * (way - abs(way) * self.bent_nm / self.torque_nm)
-        self.rig.data.qfrc_applied[self.joint] = -self.bent_nm
+        self.rig.data.qfrc_applied[at] = -self.bent_nm
 
 
 class Encoder:
-    """Scale, zero, play and lag of one joint's encoder."""
+    """Grip, scale, zero, play and lag of one joint's encoder."""
 
     def __init__(self, rig, joint):
         self.rig, self.joint = rig, joint
@@ -382,17 +417,30 @@ class Encoder:
         self.offset = rig.value(joint, "encoder_zero", "offset_rad", 0.0)
         self.half = 0.5 * rig.value(joint, "backlash", "gap_rad", 0.0)
         self.lag_s = rig.value(joint, "sensor_lag", "time_constant_s", 0.0)
-        self.remembers = self.half > 0.0 or self.lag_s > 0.0
+        self.grip = rig.value(joint, "grip_slip", "acceleration_rad_s2", math.inf)
+        self.remembers = self.half > 0.0 or self.lag_s > 0.0 or self.grip < math.inf
         self.start()
 
     def encoded(self):
-        return self.factor * self.rig.data.qpos[self.joint] + self.offset
+        return self.factor * self.rig.data.qpos[self.rig.first + self.joint] + self.offset
 
     def start(self):
-        self.follower = self.lagged = self.encoded()
+        self.follower = self.lagged = self.turned = self.shaft = self.encoded()
+        self.shaft_speed = 0.0
+
+    def gripped(self, encoded):
+        """Angle of the shaft, which friction speeds up by no more than a limit."""
+        speed = (encoded - self.turned) / STEP_S
+        reach = self.grip * STEP_S
+        slips = abs(speed - self.shaft_speed) > reach
+        if slips:
+            speed = self.shaft_speed + math.copysign(reach, speed - self.shaft_speed)
+        self.shaft += speed * STEP_S if slips else encoded - self.turned
+        self.turned, self.shaft_speed = encoded, speed
+        return self.shaft
 
     def follow(self):
-        before, now = self.follower, self.encoded()
+        before, now = self.follower, self.gripped(self.encoded())
         self.follower = min(max(before, now - self.half), now + self.half)
         if self.lag_s > 0.0:
             middle = 0.5 * (before + self.follower)

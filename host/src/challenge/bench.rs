@@ -1,6 +1,6 @@
 //! Rigs for measuring how good a diagnosis is: an arm or the robot, with any set of hidden effects.
 
-use super::hidden_effect::HiddenEffect;
+use super::hidden_effect::{HiddenEffect, of_whole_rig};
 use super::physics::Physics;
 use super::robot::{LINKS, Laws};
 use super::robot_motion::{SUPPLY_V, balance, hang};
@@ -82,7 +82,7 @@ fn arm(seed: u64, kinds: &[&'static str]) -> Bench {
             .into_iter()
             .map(|secret| BenchEffect {
                 kind: secret.kind,
-                joint: (secret.kind != "base_tilt").then_some(1),
+                joint: (!of_whole_rig(secret.kind)).then_some(1),
                 parameters: secret.parameters,
             })
             .collect(),
@@ -102,7 +102,7 @@ const FRICTION: [(&str, f64, f64); 2] = [("viscous", 0.01, 0.03), ("coulomb", 0.
 /// First of the streams from which the robot's hidden effects are drawn.
 const SECRETS: u64 = 200;
 /// Kinds that only driven joints have.
-const OF_DRIVES: [&str; 14] = [
+const OF_DRIVES: [&str; 16] = [
     "load_friction",
     "drive_asymmetry",
     "direction_asymmetry",
@@ -117,6 +117,8 @@ const OF_DRIVES: [&str; 14] = [
     "slew_limit",
     "thermal_drift",
     "fold_back",
+    "gear_compliance",
+    "gear_backlash",
 ];
 /// Kinds that a regulator may know: they have a derivative and act on the motion, not on what is
 /// read of it.
@@ -150,7 +152,7 @@ fn robot(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<Bench> {
                     .into_iter()
                     .map(|(effect, joint)| BenchEffect {
                         kind: effect.kind,
-                        joint: (effect.kind != "base_tilt").then_some(joint + 1),
+                        joint: (!of_whole_rig(effect.kind)).then_some(joint + 1),
                         parameters: effect.parameters,
                     })
                     .collect(),
@@ -168,7 +170,7 @@ fn placed(seed: u64, kind: &'static str) -> Placed {
     let place = super::KINDS.iter().position(|known| *known == kind);
     let mut rng = stream(seed, SECRETS + place.unwrap_or(0) as u64);
     let joint = match kind {
-        "base_tilt" => 0,
+        kind if of_whole_rig(kind) => 0,
         kind if OF_DRIVES.contains(&kind) => rng.random_range(1..LINKS),
         _ => rng.random_range(0..LINKS),
     };

@@ -44,7 +44,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-const EFFECTS: [(&str, Parameters); 32] = [
+const EFFECTS: [(&str, Parameters); 34] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -150,10 +150,19 @@ const EFFECTS: [(&str, Parameters); 32] = [
             ("span_rad", Within(0.4, 1.0)),
         ],
     ),
+    (
+        "base_compliance",
+        &[
+            ("stiffness_n_m", Within(60.0, 200.0)),
+            ("mass_kg", Within(0.2, 0.6)),
+            ("damping_ratio", Within(0.05, 0.25)),
+        ],
+    ),
+    ("grip_slip", &[("acceleration_rad_s2", Within(15.0, 40.0))]),
 ];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.
-const ROBOT_EFFECTS: [(&str, Parameters); 12] = [
+const ROBOT_EFFECTS: [(&str, Parameters); 14] = [
     (
         "stribeck",
         &[
@@ -204,6 +213,15 @@ const ROBOT_EFFECTS: [(&str, Parameters); 12] = [
             ("phase_rad", Within(-PI, PI)),
         ],
     ),
+    (
+        "base_compliance",
+        &[
+            ("stiffness_n_m", Within(500.0, 2000.0)),
+            ("mass_kg", Within(0.5, 2.0)),
+            ("damping_ratio", Within(0.05, 0.25)),
+        ],
+    ),
+    ("grip_slip", &[("acceleration_rad_s2", Within(15.0, 40.0))]),
 ];
 
 /// Ids of the effects that can be hidden.
@@ -217,6 +235,11 @@ pub const KINDS: [&str; EFFECTS.len()] = {
     kinds
 };
 
+/// Whether an effect is of the rig, not of one of its joints.
+pub fn of_whole_rig(kind: &str) -> bool {
+    matches!(kind, "base_tilt" | "base_compliance")
+}
+
 /// The effect of this name, if it can be hidden.
 pub fn kind_named(name: &str) -> Option<&'static str> {
     KINDS.into_iter().find(|kind| *kind == name)
@@ -227,7 +250,15 @@ impl HiddenEffect {
     pub fn weaker(&self) -> HiddenEffect {
         let parameters = self.parameters.iter().map(|&(key, value)| {
             let value = match (self.kind, key) {
-                (_, "limit_nm" | "no_load_speed_rad_s" | "rate_per_s" | "level") => 1.25 * value,
+                (
+                    _,
+                    "limit_nm"
+                    | "no_load_speed_rad_s"
+                    | "rate_per_s"
+                    | "level"
+                    | "acceleration_rad_s2",
+                )
+                | ("base_compliance", "stiffness_n_m") => 1.25 * value,
                 (_, "remaining_share") => 1.0 - 0.8 * (1.0 - value),
                 (_, "factor") if self.kind != "load_friction" => 1.0 + 0.8 * (value - 1.0),
                 (
@@ -236,7 +267,8 @@ impl HiddenEffect {
                     | "span_rad",
                 )
                 | ("pre_sliding" | "gear_compliance", "stiffness_nm_rad")
-                | ("gear_compliance", "damping_ratio")
+                | ("gear_compliance" | "base_compliance", "damping_ratio")
+                | ("base_compliance", "mass_kg")
                 | ("gear_backlash", "gap_rad")
                 | ("thermal_drift", "time_constant_s") => value,
                 _ => 0.8 * value,

@@ -10,6 +10,7 @@ mod error;
 mod hidden_effect;
 mod history;
 mod motion;
+mod moving_base;
 mod physics;
 mod played;
 mod reference;

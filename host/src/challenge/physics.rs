@@ -1,6 +1,8 @@
 //! The laws of the bench arm, written down a second time on purpose: the truth owes nothing to the
 //! code that is to find it out.
 
+use super::moving_base::{Base, BaseState, LinksOnBase};
+
 /// Gravity, m/s^2.
 pub const GRAVITY_M_S2: f64 = 9.81;
 /// Where a payload is bolted on, m from the joint.
@@ -79,6 +81,10 @@ pub struct Physics {
     gear_nm_rad: f64,
     gear_damping: f64,
     gear_gap: f64,
+    /// What the rig stands on, where it gives way.
+    pub base: Option<Base>,
+    /// Largest acceleration that the encoder's shaft follows, rad/s^2.
+    pub grip_rad_s2: f64,
     constant_nm: f64,
     side_friction: [f64; 2],
     side_span: f64,
@@ -126,6 +132,7 @@ impl Physics {
             ripple_periods: 1.0,
             encoder_factor: 1.0,
             duty_per_s: f64::INFINITY,
+            grip_rad_s2: f64::INFINITY,
             fold_share: 1.0,
             side_span: 1.0,
             ..Physics::default()
@@ -186,6 +193,15 @@ impl Physics {
                 self.gear_damping = 2.0 * FLANKS.1 * FLANKS.0 * inertia;
                 self.gear_gap = gap;
             }
+            ("base_compliance", &[spring, mass, damping]) => {
+                let damper = 2.0 * damping * (spring * mass).sqrt();
+                self.base = Some(Base {
+                    spring,
+                    mass,
+                    damper,
+                });
+            }
+            ("grip_slip", &[acceleration]) => self.grip_rad_s2 = acceleration,
             ("torque_offset", &[torque]) => self.constant_nm = torque,
             ("position_friction", &[below, above, span]) => {
                 (self.side_friction, self.side_span) = ([below, above], span);
@@ -205,10 +221,32 @@ impl Physics {
 
     /// Torque that holds the arm against gravity at `angle`, N m.
     pub fn holding(&self, mount: Mount, angle: f64) -> f64 {
-        let from_down = angle - if mount.turned { -self.tilt } else { self.tilt };
+        let from_down = angle - self.gravity_turn(mount);
         let link = self.mass_kg * self.com_m * (from_down + self.com_angle).sin();
         let payload = mount.payload_kg * PAYLOAD_AT_M * from_down.sin();
         GRAVITY_M_S2 * (link + payload)
+    }
+
+    /// What arm and payload ask of a base, the arm at `angle` and turning by `speed`.
+    pub fn on_base(&self, mount: Mount, angle: f64, speed: f64) -> LinksOnBase<1> {
+        let mut links = LinksOnBase::of_mass(self.mass_kg + mount.payload_kg);
+        links.add(0, [self.mass_kg, self.com_m, angle + self.com_angle, speed]);
+        links.add(0, [mount.payload_kg, PAYLOAD_AT_M, angle, speed]);
+        links
+    }
+
+    /// The base under arm and payload at rest.
+    pub fn sagged(&self, mount: Mount) -> BaseState {
+        BaseState::sagged(
+            self.base,
+            self.mass_kg + mount.payload_kg,
+            self.gravity_turn(mount),
+        )
+    }
+
+    /// Angle by which gravity is turned, rad.
+    pub fn gravity_turn(&self, mount: Mount) -> f64 {
+        if mount.turned { -self.tilt } else { self.tilt }
     }
 
     /// Duty that the dead zone lets through.

@@ -7,6 +7,7 @@
 
 use super::encoder::Encoder;
 use super::history::History;
+use super::moving_base::{Base, BaseState, LinksOnBase};
 use super::physics::{DriveCommand, GRAVITY_M_S2, Physics};
 
 /// Links of the robot.
@@ -33,6 +34,8 @@ pub struct Laws {
 /// Forces on the chain at one state.
 struct ChainForces {
     mass: [Joints; LINKS],
+    /// What the links ask of the base.
+    on_base: LinksOnBase<LINKS>,
     /// Torques that gravity and velocities ask of the joints at rest of acceleration, N m.
     needed: Joints,
 }
@@ -44,12 +47,24 @@ impl Laws {
         if self.turned { -tilt } else { tilt }
     }
 
+    /// What the rig stands on, where it gives way.
+    fn base(&self) -> Option<Base> {
+        self.joints.iter().find_map(|joint| joint.base)
+    }
+
+    /// The base under the robot at rest.
+    fn sagged(&self) -> BaseState {
+        let mass = self.joints.iter().map(|link| link.mass_kg).sum();
+        BaseState::sagged(self.base(), mass, self.tilt())
+    }
+
     /// Mass matrix, kg m^2, and needed torques in relative angles.
     fn forces(&self, angle: &Joints, speed: &Joints) -> ChainForces {
         let (theta, omega) = (summed(angle), summed(speed));
         let tilt = self.tilt();
         let mut mass = [[0.0; LINKS]; LINKS];
         let mut needed = [0.0; LINKS];
+        let mut on_base = LinksOnBase::of_mass(self.joints.iter().map(|link| link.mass_kg).sum());
         for (i, link) in self.joints.iter().enumerate() {
             // The way from the bar to this link's centre of mass: its parts' lengths and angles.
             let part = |k: usize| match k == i {
@@ -60,6 +75,7 @@ impl Laws {
                 let (long_k, at_k) = part(k);
                 let weight = link.mass_kg * GRAVITY_M_S2;
                 needed[k] += weight * long_k * (at_k - tilt).sin();
+                on_base.add(k, [link.mass_kg, long_k, at_k, omega[k]]);
                 for l in 0..=i {
                     let (long_l, at_l) = part(l);
                     let share = link.mass_kg * long_k * long_l;
@@ -76,6 +92,10 @@ impl Laws {
             for (sum, part) in mass[k].iter_mut().zip(outer) {
                 *sum += part;
             }
+            let outer = on_base.moment[k + 1];
+            for (sum, part) in on_base.moment[k].iter_mut().zip(outer) {
+                *sum += part;
+            }
         }
         for row in &mut mass {
             for l in (0..LINKS - 1).rev() {
@@ -85,7 +105,11 @@ impl Laws {
         for (k, joint) in self.joints.iter().enumerate() {
             mass[k][k] += joint.armature;
         }
-        ChainForces { mass, needed }
+        ChainForces {
+            mass,
+            on_base,
+            needed,
+        }
     }
 
     /// Torques of the drives at the joints, N m, at these speeds.
@@ -143,6 +167,7 @@ pub struct Robot<'a> {
     histories: [History; LINKS],
     /// Torques of dry friction in the last kick, N m: where the next one begins to settle.
     dry: Joints,
+    base: BaseState,
 }
 
 impl<'a> Robot<'a> {
@@ -156,6 +181,7 @@ impl<'a> Robot<'a> {
             encoders: std::array::from_fn(encoder),
             histories: Default::default(),
             dry: [0.0; LINKS],
+            base: laws.sagged(),
         }
     }
 
@@ -174,9 +200,9 @@ impl<'a> Robot<'a> {
         let push: &[DriveCommand; LINKS] =
             &std::array::from_fn(|k| self.histories[k].ramp(&joints[k], push[k], h));
         self.drift(0.5 * h);
-        let (halfway, dry) = self.kicked(0.5 * h, push, &self.speed);
+        let (halfway, dry, base) = self.kicked(0.5 * h, push, (&self.speed, self.base));
         self.dry = dry;
-        let (speed, dry) = self.kicked(h, push, &halfway);
+        let (speed, dry, base) = self.kicked(h, push, (&halfway, base));
         for (k, history) in self.histories.iter_mut().enumerate() {
             history.kick(
                 &joints[k],
@@ -185,7 +211,7 @@ impl<'a> Robot<'a> {
                 h,
             );
         }
-        (self.speed, self.dry) = (speed, dry);
+        (self.speed, self.dry, self.base) = (speed, dry, base);
         self.drift(0.5 * h);
         for (k, encoder) in self.encoders.iter_mut().enumerate() {
             let physics = &joints[k];
@@ -195,6 +221,7 @@ impl<'a> Robot<'a> {
     }
 
     fn drift(&mut self, h: f64) {
+        self.base.drift(h);
         let histories = self.histories.iter_mut();
         for ((angle, speed), history) in self.angle.iter_mut().zip(&self.speed).zip(histories) {
             *angle += h * speed;
@@ -202,17 +229,38 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Speeds after all torques have acted for `h` seconds, as they are at this pose and
-    /// `at_speed`, and the torques of dry friction, N m.
-    fn kicked(&self, h: f64, push: &[DriveCommand; LINKS], at_speed: &Joints) -> (Joints, Joints) {
+    /// Speeds after all torques have acted for `h` seconds, as they are at this pose and these
+    /// speeds of joints and base, the torques of dry friction, N m, and the base.
+    fn kicked(
+        &self,
+        h: f64,
+        push: &[DriveCommand; LINKS],
+        (at_speed, at_base): (&Joints, BaseState),
+    ) -> (Joints, Joints, BaseState) {
         let joints = &self.laws.joints;
-        let ChainForces { mass, needed } = self.laws.forces(&self.angle, at_speed);
+        let ChainForces {
+            mut mass,
+            on_base,
+            needed,
+        } = self.laws.forces(&self.angle, at_speed);
+        let mut pulled = [0.0; LINKS];
+        let moving = self.laws.base().map(|base| {
+            let force = at_base.force(base, &on_base, self.laws.tilt());
+            for k in 0..LINKS {
+                pulled[k] = base.pulls(&on_base, k, force);
+                for (l, mass) in mass[k].iter_mut().enumerate() {
+                    *mass -= base.yields(&on_base, k, l);
+                }
+            }
+            (base, force)
+        });
         let histories = &self.histories;
         let drive = self.laws.drives(push, at_speed, histories);
         let inverse = inverse(&mass);
         let pull: Joints = std::array::from_fn(|k| {
             let bristle = histories[k].bristle_nm(&joints[k]);
-            drive[k] - needed[k] + joints[k].smooth(self.angle[k], at_speed[k]) + bristle
+            let smooth = joints[k].smooth(self.angle[k], at_speed[k]);
+            drive[k] - needed[k] + smooth + bristle - pulled[k]
         });
         let mut speed: Joints = std::array::from_fn(|k| {
             let gained: f64 = (0..LINKS).map(|l| inverse[k][l] * pull[l]).sum();
@@ -249,7 +297,11 @@ impl<'a> Robot<'a> {
                 break;
             }
         }
-        (speed, impulse.map(|impulse| impulse / h))
+        let base = moving.map_or(self.base, |(base, force)| {
+            let gained = std::array::from_fn(|k| speed[k] - self.speed[k]);
+            self.base.kicked(base, &on_base, (force, h), &gained)
+        });
+        (speed, impulse.map(|impulse| impulse / h), base)
     }
 
     /// The encoders' values before noise and rounding, rad.

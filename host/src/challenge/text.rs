@@ -1,7 +1,7 @@
 //! The files of a challenge that are written in words.
 
 use super::bench_arm::{BenchArm, Friction, NOMINAL_SUPPLY_V, STALL_NM};
-use super::hidden_effect::HiddenEffect;
+use super::hidden_effect::{HiddenEffect, of_whole_rig};
 use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
 use handstand_shared::raw::Position;
 use std::fmt::Write;
@@ -141,8 +141,7 @@ fn effect(text: &mut String, kind: &str, parameters: &[(&'static str, f64)]) {
 fn effect_at(text: &mut String, effect: &EffectLine) {
     let kind = effect.kind;
     let _ = write!(text, "\n[[effect]]\nkind = \"{kind}\"\n");
-    // A tilt is of the whole rig.
-    if kind != "base_tilt" {
+    if !of_whole_rig(kind) {
         let _ = writeln!(text, "joint = {}", effect.joint);
     }
     for (key, value) in effect.parameters {

@@ -7,6 +7,7 @@
 
 use super::encoder::Encoder;
 use super::history::History;
+use super::moving_base::BaseState;
 use super::physics::{DriveCommand, Mount, Physics};
 
 /// Longest integration step, s.
@@ -24,6 +25,7 @@ pub struct Arm<'a> {
     pub speed: f64,
     encoder: Encoder,
     history: History,
+    base: BaseState,
 }
 
 impl<'a> Arm<'a> {
@@ -37,6 +39,7 @@ impl<'a> Arm<'a> {
             speed: 0.0,
             encoder: Encoder::at_rest(physics.encoded(angle)),
             history: History::default(),
+            base: physics.sagged(mount),
         }
     }
 
@@ -66,12 +69,12 @@ impl<'a> Arm<'a> {
     fn step(&mut self, h: f64, push: DriveCommand) {
         let (push, before) = (self.history.ramp(self.physics, push, h), self.angle);
         self.drift(0.5 * h);
-        let halfway = self.kicked(0.5 * h, push, self.speed);
-        let after = self.kicked(h, push, halfway);
+        let (halfway, base) = self.kicked(0.5 * h, push, (self.speed, self.base));
+        let (after, base) = self.kicked(h, push, (halfway, base));
         let physics = self.physics;
         let drive = |speed| physics.drive(push, speed);
         self.history.kick(physics, drive, halfway, h);
-        self.speed = after;
+        (self.speed, self.base) = (after, base);
         self.drift(0.5 * h);
         self.history.pass(physics, push, self.angle - before, h);
         let encoded = self.physics.encoded(self.angle);
@@ -81,19 +84,38 @@ impl<'a> Arm<'a> {
     fn drift(&mut self, h: f64) {
         self.angle += h * self.speed;
         self.history.drift(h, self.speed);
+        self.base.drift(h);
     }
 
-    /// Speed after all torques have acted for `h` seconds, as they are at this angle and
-    /// `at_speed`.
-    fn kicked(&self, h: f64, push: DriveCommand, at_speed: f64) -> f64 {
+    /// Speeds of arm and base after all torques have acted for `h` seconds, as they are at this
+    /// angle and `at` those speeds.
+    fn kicked(
+        &self,
+        h: f64,
+        push: DriveCommand,
+        (at_speed, at_base): (f64, BaseState),
+    ) -> (f64, BaseState) {
         let holding = self.physics.holding(self.mount, self.angle);
         let (physics, history) = (self.physics, &self.history);
         let drive = history.passed_on(physics, |speed| physics.drive(push, speed), at_speed);
         let smooth = physics.smooth(self.angle, at_speed) + history.bristle_nm(physics);
-        let pushed = self.speed + h / self.inertia * (drive + smooth - holding);
+        let (mut inertia, mut torque) = (self.inertia, drive + smooth - holding);
+        let moving = physics.base.map(|base| {
+            let links = physics.on_base(self.mount, self.angle, at_speed);
+            let force = at_base.force(base, &links, physics.gravity_turn(self.mount));
+            inertia -= base.yields(&links, 0, 0);
+            torque -= base.pulls(&links, 0, force);
+            (base, links, force)
+        });
+        let pushed = self.speed + h / inertia * torque;
         let direction = if pushed < 0.0 { -1.0 } else { 1.0 };
         let friction = physics.friction([self.angle, at_speed], direction, drive, holding);
-        direction * (pushed.abs() - h / self.inertia * friction).max(0.0)
+        let speed = direction * (pushed.abs() - h / inertia * friction).max(0.0);
+        let base = moving.map_or(self.base, |(base, links, force)| {
+            let gained = [speed - self.speed];
+            self.base.kicked(base, &links, (force, h), &gained)
+        });
+        (speed, base)
     }
 
     /// The encoder's value before noise and rounding, rad.

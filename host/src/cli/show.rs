@@ -43,8 +43,11 @@ pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
     let omitted = linearise(&model, &upright(&model))?.omitted;
     if !omitted.is_empty() {
         let each = omitted.iter().map(|omitted| {
-            let joint = omitted.joint + 1;
-            format!("{} at joint {joint}", omitted.effect.info().title)
+            let title = omitted.effect.info().title;
+            match omitted.joint {
+                Some(joint) => format!("{title} at joint {}", joint + 1),
+                None => title.to_string(),
+            }
         });
         talk.say(&format!(
             "the designs leave out {}; the simulation has them",

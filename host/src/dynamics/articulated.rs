@@ -9,6 +9,8 @@ use super::chain::{Chain, ChainLink};
 use super::lanes::Lane;
 use super::link_motion::LinkMotion;
 
+pub use free_base::FreeBase;
+
 /// Scratch memory of [`Chain::forward`], reused from call to call.
 #[derive(Debug, Clone)]
 pub struct Workspace {
@@ -83,7 +85,12 @@ impl Chain {
 
         self.find_motions(scratch, angle_rad, speed_rad_s);
         self.gather(scratch, torque_nm, held);
+        self.spread(scratch, base_m_s2, held, out);
+    }
 
+    /// From the base outwards: the accelerations, the base having this one.
+    #[inline(always)]
+    fn spread(&self, scratch: &[Scratch], base_m_s2: [f64; 2], held: &[bool], out: &mut [f64]) {
         let mut linear = base_m_s2;
         let mut angular = 0.0;
         for (i, (s, link)) in scratch.iter().zip(&self.links).enumerate() {
@@ -126,9 +133,10 @@ impl Chain {
         }
     }
 
-    /// From the tip inwards: what every subtree asks of its joint.
+    /// From the tip inwards: what every subtree asks of its joint. Returns what the chain asks of
+    /// its base.
     #[inline(always)]
-    fn gather(&self, scratch: &mut [Scratch], torque_nm: &[f64], held: &[bool]) {
+    fn gather(&self, scratch: &mut [Scratch], torque_nm: &[f64], held: &[bool]) -> Subtree {
         let mut tree = Subtree::default();
         for (i, (s, link)) in scratch.iter_mut().zip(&self.links).enumerate().rev() {
             tree.shift(s.motion.lever, s.motion.centripetal);
@@ -151,6 +159,7 @@ impl Chain {
                 tree.yield_to(inverse, s.carried, torque);
             }
         }
+        tree
     }
 }
 
@@ -246,5 +255,6 @@ impl Subtree {
     }
 }
 
+mod free_base;
 #[cfg(test)]
 mod tests;

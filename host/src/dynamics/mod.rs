@@ -13,7 +13,7 @@ mod runge_kutta;
 mod sin_cos;
 mod slide_axis;
 
-pub use articulated::Workspace;
+pub use articulated::{FreeBase, Workspace};
 pub use chain::{Chain, ChainLink};
 pub use dense::Dense;
 pub use equations::EquationsOfMotion;

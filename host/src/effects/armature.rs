@@ -42,6 +42,8 @@ static INFO: EffectInfo = EffectInfo {
         "gear_backlash: with a gap the motor's inertia comes and goes as the load turns",
         "gear_compliance: a stiff gear is an inertia alone; only a spring rings and answers fast \
          commands late",
+        "base_compliance: both change how fast the arm swings, not how it hangs; a base that gives \
+         swings on by itself, in all joints at once",
         "mass: both make the arm sluggish; mass also adds gravity: hold still first",
         "encoder_scale: both change the acceleration that is read; a scale also changes the angle \
          between two stops",

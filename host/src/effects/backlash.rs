@@ -1,6 +1,6 @@
 //! Backlash: play between joint and encoder.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
 /// 2 behind.
@@ -26,6 +26,7 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "after each reversal the reading stands still over a fixed angle, whatever the \
      amplitude, the load or the speed",
     confused_with: &[
+        "grip_slip: both lose the way; backlash comes back to the same reading, a slip does not",
         "gear_backlash: play of the gear behind the encoder shows in how the arm moves, not in \
          what is read",
         "dead_zone: both leave a plateau; a dead zone has a fixed width in command and lets the \
@@ -64,15 +65,20 @@ impl Effect for Backlash {
         Some(&ON_SLIDE)
     }
 
+    fn slipped(&self, [encoded_rad, reading_rad, ..]: SenseMemory) -> [f64; 2] {
+        [encoded_rad - reading_rad, 0.0]
+    }
+
     fn sense(
         &self,
         values: &[f64],
-        memory: &mut Option<[f64; 2]>,
-        angle_rad: f64,
+        memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
         _step_s: f64,
     ) -> f64 {
+        let angle_rad = encoded.angle_rad;
         let half_rad = values[0] / 2.0;
-        let before_rad = memory.map_or(angle_rad, |[_, reading_rad]| reading_rad);
+        let before_rad = memory.map_or(angle_rad, |[_, reading_rad, ..]| reading_rad);
         // Not by `clamp`, which panics where a simulation has diverged to no number.
         let reading_rad = match (angle_rad - half_rad, angle_rad + half_rad) {
             _ if angle_rad.is_nan() => angle_rad,
@@ -80,7 +86,7 @@ impl Effect for Backlash {
             (_, high_rad) if before_rad > high_rad => high_rad,
             _ => before_rad,
         };
-        *memory = Some([angle_rad, reading_rad]);
+        *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
         reading_rad
     }
 }

@@ -24,6 +24,7 @@ static INFO: EffectInfo = EffectInfo {
     }],
     looks_like: "a constant error of the angle; the torque of gravity peaks at the wrong reading",
     confused_with: &[
+        "grip_slip: a zero that is off is off from the beginning and stays so",
         "torque_offset: near hanging both move the point of rest; far from it gravity tells",
         "com_angle: both shift the angle at which gravity vanishes; in a chain an encoder offset \
          turns the outer links too",

@@ -17,7 +17,7 @@ pub struct Gear {
 /// Highest natural frequency of the motor against a standing joint, rad/s. Stiffer gears are
 /// simulated as this stiff: logs at 100 Hz hold nothing of a faster ringing, and it would cost
 /// steps.
-const HIGHEST_RAD_S: f64 = 400.0;
+pub(super) const HIGHEST_RAD_S: f64 = 400.0;
 
 impl Gear {
     /// Rigid, and without inertia of the motor; flanks that meet hardly rebound.

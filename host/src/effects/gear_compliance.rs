@@ -48,6 +48,8 @@ static INFO: EffectInfo = EffectInfo {
         "gear_backlash: both let motor and joint part; a spring parts in proportion to the load, \
          backlash by the same angle under any load",
         "delay: both answer late; a delay does not ring",
+        "base_compliance: both ring; a gear rings at its own joint, a base at all of them, with \
+         torque off as well",
     ],
     experiment: "drive a chirp through the resonance with two loads: its frequency must fall with \
      the heavier one; then swing with torque off",

@@ -7,6 +7,7 @@
 mod air_drag;
 mod armature;
 mod backlash;
+mod base_compliance;
 mod base_tilt;
 mod bearing_friction;
 mod cable_spring;
@@ -24,6 +25,7 @@ mod fold_back;
 mod gear;
 mod gear_backlash;
 mod gear_compliance;
+mod grip_slip;
 mod info;
 mod load_friction;
 mod mass;
@@ -51,12 +53,15 @@ pub mod signature;
 #[cfg(test)]
 mod tests;
 
+pub use base_compliance::BaseSpring;
 pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site};
 pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
-pub use state::{AtRest, DriveState, JointState, MemoryCell, Rig, Slide, Slope, StepState};
+pub use state::{
+    AtRest, DriveState, Encoded, JointState, MemoryCell, Rig, SenseMemory, Slide, Slope, StepState,
+};
 
 use std::fmt;
 
@@ -91,8 +96,10 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &mass::Mass,
     &armature::Armature,
     &base_tilt::BaseTilt,
+    &base_compliance::BaseCompliance,
     &encoder_scale::EncoderScale,
     &encoder_zero::EncoderZero,
+    &grip_slip::GripSlip,
     &backlash::Backlash,
     &sensor_lag::SensorLag,
     &rate_bias::RateBias,
@@ -250,17 +257,23 @@ pub trait Effect: Sync + fmt::Debug {
         None
     }
 
-    /// Sensor, with memory: the reading after `step_s` during which the encoded angle went to
-    /// `angle_rad`. `memory` is the effect's own, [encoded angle, reading] of the call before;
-    /// `None` before the first call of a motion, which reads the angle itself.
+    /// Sensor, with memory: the reading after `step_s` at whose end the shaft is `encoded`.
+    /// `memory` is the effect's own, of the call before; `None` before the first call of a motion,
+    /// which reads the angle itself.
     fn sense(
         &self,
         _values: &[f64],
-        _memory: &mut Option<[f64; 2]>,
-        angle_rad: f64,
+        _memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
         _step_s: f64,
     ) -> f64 {
-        angle_rad
+        encoded.angle_rad
+    }
+
+    /// Sensor, with memory: by how much the encoded angle has come to be ahead of the reading by
+    /// what was before, rad, and how fast it draws away, rad/s.
+    fn slipped(&self, _memory: SenseMemory) -> [f64; 2] {
+        [0.0; 2]
     }
 }
 

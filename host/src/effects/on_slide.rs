@@ -1,8 +1,8 @@
 //! Effects at joints that slide: the laws are those of hinges, in metres and newtons.
 
 use super::{
-    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Gear, JointState, MemoryCell, Rig,
-    Scope, Slide, Slope, StepState,
+    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Encoded, Gear, JointState, MemoryCell,
+    Rig, Scope, SenseMemory, Slide, Slope, StepState,
 };
 use std::sync::LazyLock;
 
@@ -130,11 +130,15 @@ impl Effect for OnSlide {
     fn sense(
         &self,
         values: &[f64],
-        memory: &mut Option<[f64; 2]>,
-        angle_rad: f64,
+        memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
         step_s: f64,
     ) -> f64 {
-        self.effect.sense(values, memory, angle_rad, step_s)
+        self.effect.sense(values, memory, encoded, step_s)
+    }
+
+    fn slipped(&self, memory: SenseMemory) -> [f64; 2] {
+        self.effect.slipped(memory)
     }
 }
 

@@ -3,7 +3,10 @@
 //! What a sum of them gains on held-out motions is what a right term, still unknown, could gain:
 //! the measure of how much is left to explain.
 
-use super::{DriveState, Effect, EffectInfo, JointState, Needs, Parameter, Rig, Scope, Site};
+use super::{
+    DriveState, Effect, EffectInfo, Encoded, JointState, Needs, Parameter, Rig, Scope, SenseMemory,
+    Site,
+};
 
 /// Which variable a probe bumps on; stored as its index in a probe's second value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -221,12 +224,13 @@ impl Effect for Probe {
     fn sense(
         &self,
         values: &[f64],
-        memory: &mut Option<[f64; 2]>,
-        angle_rad: f64,
+        memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
         step_s: f64,
     ) -> f64 {
+        let angle_rad = encoded.angle_rad;
         let before = memory.map_or(angle_rad, |m| m[0]);
-        *memory = Some([angle_rad, 0.0]);
+        *memory = Some([angle_rad, 0.0, 0.0, 0.0]);
         let moved = angle_rad - before;
         if moved == 0.0 || step_s == 0.0 {
             return angle_rad;

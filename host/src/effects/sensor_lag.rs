@@ -1,6 +1,6 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step.
@@ -30,6 +30,7 @@ static INFO: EffectInfo = EffectInfo {
         "viscous: both make the reading trail; friction takes energy from a free swing, a lag \
          does not",
         "backlash: both trail the motion; backlash trails by the same angle at every speed",
+        "grip_slip: both trail where the motion is fast; a lag is back once the arm rests",
     ],
     experiment: "drive a chirp: the reading of a filter shrinks and trails by at most a quarter of \
      a period; then watch a free swing, which it trails too",
@@ -52,17 +53,18 @@ impl Effect for SensorLag {
     fn sense(
         &self,
         values: &[f64],
-        memory: &mut Option<[f64; 2]>,
-        angle_rad: f64,
+        memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
         step_s: f64,
     ) -> f64 {
+        let angle_rad = encoded.angle_rad;
         let reading_rad = match *memory {
-            Some([from_rad, reading_rad]) if values[0] > 0.0 => {
+            Some([from_rad, reading_rad, ..]) if values[0] > 0.0 => {
                 follow(reading_rad, from_rad, angle_rad, step_s, values[0])
             }
             _ => angle_rad,
         };
-        *memory = Some([angle_rad, reading_rad]);
+        *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
         reading_rad
     }
 }

@@ -1,11 +1,12 @@
 //! The curve an effect leaves, computed from its own law: what a student should look for in a plot.
 
+mod bodies;
 mod remembered;
 #[cfg(test)]
 mod tests;
 
-use super::{Coupling, DriveState, Effect, Gear, JointState, Needs, Parameter, Rig, Site, Slide};
-use crate::dynamics::{Chain, ChainLink};
+use super::{DriveState, Effect, Encoded, JointState, Needs, Parameter, Site, Slide};
+use bodies::{arm, gives_way_m, gravity_nm, inertia_nm, wound_nm};
 use std::ops::Range;
 
 /// Points of a curve: x and y in the units of the labels.
@@ -167,6 +168,12 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
             ("angle, rad", joint, -1.6..1.6, at_angle)
         }
         (Site::Joint, _) => ("speed, rad/s", joint, -6.0..6.0, at_speed),
+        (Site::Body, _) if arm(effect, values).base_spring.is_some() => (
+            "force on the base, N",
+            "its displacement, m",
+            -20.0..20.0,
+            gives_way_m,
+        ),
         (Site::Body, _) if weightless => (
             "acceleration, rad/s^2",
             "torque it takes, N m",
@@ -202,18 +209,6 @@ fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64
     effect.drive(values, FULL_TORQUE_NM * duty, &at)
 }
 
-/// Torque of a gear that is wound up and at rest, N m, up to the motor's; of a rigid one as if it
-/// were very stiff.
-fn wound_nm(effect: &dyn Effect, values: &[f64], wound_rad: f64) -> f64 {
-    let mut gear = Gear::RIGID;
-    effect.gear(values, &mut gear);
-    let torque_nm = match Coupling::of(&gear) {
-        Some(coupling) => coupling.torque_nm(wound_rad, 0.0),
-        None => 1e6 * wound_rad,
-    };
-    torque_nm.clamp(-FULL_TORQUE_NM, FULL_TORQUE_NM)
-}
-
 /// The hook's answer with the sign of the speed, so that what resists forwards is drawn upward.
 fn friction(
     effect: &dyn Effect,
@@ -234,43 +229,6 @@ fn friction(
     direction * effect.friction(values, &slide)
 }
 
-/// A bench arm, 0.3 kg at 0.12 m, as the effect changes it.
-fn arm(effect: &dyn Effect, values: &[f64]) -> Rig {
-    let link = ChainLink {
-        length_m: 0.15,
-        com_m: 0.12,
-        com_angle_rad: 0.0,
-        mass_kg: 0.3,
-        inertia_kg_m2: 8e-4,
-        armature_kg_m2: 2e-3,
-        slide: None,
-    };
-    let chain = Chain {
-        links: vec![link],
-        gravity_m_s2: 9.81,
-    };
-    let mut rig = Rig {
-        chain,
-        gravity_turn_rad: 0.0,
-        turned: false,
-    };
-    effect.body(values, 0, &mut rig);
-    rig
-}
-
-fn gravity_nm(effect: &dyn Effect, values: &[f64], angle_rad: f64) -> f64 {
-    let rig = arm(effect, values);
-    let link = &rig.chain.links[0];
-    let peak_nm = link.mass_kg * rig.chain.gravity_m_s2 * link.com_m;
-    -peak_nm * (angle_rad + link.com_angle_rad - rig.gravity_turn_rad).sin()
-}
-
-fn inertia_nm(effect: &dyn Effect, values: &[f64], acceleration_rad_s2: f64) -> f64 {
-    let link = &arm(effect, values).chain.links[0];
-    let about_joint = link.mass_kg * link.com_m.powi(2) + link.inertia_kg_m2 + link.armature_kg_m2;
-    about_joint * acceleration_rad_s2
-}
-
 /// Angle of a triangle of 0.2 rad at a point of a curve; a period is a curve.
 fn triangle(index: usize) -> f64 {
     let phase = (index as f64 / (POINTS - 1) as f64).rem_euclid(1.0);
@@ -281,12 +239,15 @@ fn triangle(index: usize) -> f64 {
 fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
     let step_s = 2.0 / (POINTS - 1) as f64;
     let mut memory = None;
-    let angles = (0..2 * POINTS - 1).map(triangle);
-    let read = angles.map(|angle_rad| {
-        let encoded_rad = effect.encode(values, angle_rad);
+    let read = (0..2 * POINTS - 1).map(|index| {
+        let (angle_rad, before_rad) = (triangle(index), triangle(index.saturating_sub(1)));
+        let encoded = Encoded {
+            angle_rad: effect.encode(values, angle_rad),
+            speed_rad_s: (angle_rad - before_rad) / step_s,
+        };
         (
             angle_rad,
-            effect.sense(values, &mut memory, encoded_rad, step_s),
+            effect.sense(values, &mut memory, encoded, step_s),
         )
     });
     read.skip(POINTS - 1).collect()

@@ -1,5 +1,6 @@
 //! What an effect sees, and what it may change.
 
+use super::BaseSpring;
 use crate::dynamics::Chain;
 
 /// A joint at rest, about which an effect's law is linearised.
@@ -48,6 +49,8 @@ pub struct Rig {
     pub gravity_turn_rad: f64,
     /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
     pub turned: bool,
+    /// What the base stands on, where it gives way.
+    pub base_spring: Option<BaseSpring>,
 }
 
 /// The motor at an instant.
@@ -96,6 +99,29 @@ impl JointState {
 /// What an effect carries from one step of a simulation to the next; each says what its two numbers
 /// are.
 pub type MemoryCell = [f64; 2];
+
+/// The shaft of an encoder at an instant, zero and scale of the encoder included.
+#[derive(Debug, Clone, Copy)]
+pub struct Encoded {
+    /// rad.
+    pub angle_rad: f64,
+    /// rad/s.
+    pub speed_rad_s: f64,
+}
+
+impl Encoded {
+    /// A shaft that stands still.
+    pub fn still(angle_rad: f64) -> Self {
+        Encoded {
+            angle_rad,
+            speed_rad_s: 0.0,
+        }
+    }
+}
+
+/// What a sensor carries from one reading to the next: the encoded angle and the reading, rad, and
+/// two numbers of its own.
+pub type SenseMemory = [f64; 4];
 
 /// A joint and its drive at the end of a step, for an effect to remember.
 #[derive(Debug, Clone, Copy)]

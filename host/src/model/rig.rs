@@ -29,6 +29,7 @@ impl Model {
             chain: self.chain(),
             gravity_turn_rad: 0.0,
             turned,
+            base_spring: None,
         };
         for instance in &self.effects {
             if instance.effect.info().site == Site::Body {

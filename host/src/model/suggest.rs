@@ -35,6 +35,7 @@ const SUFFIXES: &[(&str, &str)] = &[
     ("_s_per_rad", "s/rad"),
     ("_per_rad", "1/rad"),
     ("_kg_m2", "kg m^2"),
+    ("_rad_s2", "rad/s^2"),
     ("_m_s2", "m/s^2"),
     ("_m_s", "m/s"),
     ("_rad_s", "rad/s"),

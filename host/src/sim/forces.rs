@@ -1,13 +1,13 @@
 //! Accelerations of a plant at a state: drives, joint torques and friction on the chain.
 
+use super::auxiliary::Auxiliary;
 use super::drive::DriveInput;
 use super::memory::EffectMemory;
-use super::motors::Motors;
 use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
-use crate::dynamics::Workspace;
-use crate::effects::{JointState, Slide};
+use crate::dynamics::{FreeBase, Workspace};
+use crate::effects::{BaseSpring, JointState, Slide};
 use crate::model::Drive;
 
 /// A state: relative angles, rad, and speeds, rad/s, and how friction acts on each joint.
@@ -31,8 +31,8 @@ pub(super) struct Forces<R: Rows> {
     zeros: R::Of<f64>,
     /// What effects remember; it stays through a step.
     pub memory: EffectMemory,
-    /// Motors behind gears that give.
-    pub motors: Motors,
+    /// Motors behind gears that give, and a base that gives way.
+    pub auxiliary: Auxiliary,
 }
 
 impl<R: Rows> Forces<R> {
@@ -50,7 +50,7 @@ impl<R: Rows> Forces<R> {
             bearing: zeros(),
             zeros: zeros(),
             memory: EffectMemory::default(),
-            motors: Motors::new(plant),
+            auxiliary: Auxiliary::new(plant),
         }
     }
 
@@ -110,7 +110,7 @@ impl<R: Rows> Forces<R> {
             let speed = at.speed[joint];
             self.held[joint] = at.contact[joint] == Contact::Held;
             let motor_speed = match plan.coupling {
-                Some(_) => self.motors.speed[joint],
+                Some(_) => self.auxiliary.speed[joint],
                 None => speed,
             };
             let mut drive = match plan.drive {
@@ -122,9 +122,9 @@ impl<R: Rows> Forces<R> {
                 _ => plan.drive_torque_nm(input, 0.0, motor_speed, &self.memory.0),
             };
             if let Some(coupling) = plan.coupling {
-                let wound = self.motors.angle[joint] - at.angle[joint];
+                let wound = self.auxiliary.place[joint] - at.angle[joint];
                 let passed_on = coupling.torque_nm(wound, motor_speed - speed);
-                self.motors.slope[joint] = (drive - passed_on) / coupling.inertia_kg_m2;
+                self.auxiliary.slope[joint] = (drive - passed_on) / coupling.inertia_kg_m2;
                 drive = passed_on;
             }
             let mut state = JointState {
@@ -187,6 +187,9 @@ impl<R: Rows> Forces<R> {
     #[inline]
     fn solve(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
         let (angle, speed) = (at.angle, at.speed);
+        if let Some((base, _)) = plant.base {
+            return self.solve_on(base, plant, at, out);
+        }
         if let Some(found) = R::forward(&self.closed, angle, speed, &self.torque, &self.held) {
             out.copy_from_slice(found.as_ref());
             return;
@@ -202,8 +205,29 @@ impl<R: Rows> Forces<R> {
         );
     }
 
-    /// Puts motors behind gears that give where they are remembered to be.
-    pub fn recall_motors(
+    /// The same where the base gives way; says how it does.
+    fn solve_on(&mut self, base: BaseSpring, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+        let [place, speed] = self.auxiliary.base();
+        let free = FreeBase {
+            mass_kg: base.mass_kg,
+            force_n: [0, 1].map(|k| base.force_n(place[k], speed[k])),
+        };
+        let acceleration_m_s2 = plant.rig.chain.forward_on(
+            free,
+            &mut self.work,
+            plant.base_m_s2,
+            at.angle,
+            at.speed,
+            self.torque.as_ref(),
+            self.held.as_ref(),
+            out,
+        );
+        self.auxiliary.speed_up_base(acceleration_m_s2);
+    }
+
+    /// Puts motors behind gears that give, and a base that gives way, where they are remembered to
+    /// be.
+    pub fn recall_auxiliary(
         &mut self,
         plant: &Plant,
         inputs: &[DriveInput],
@@ -224,7 +248,7 @@ impl<R: Rows> Forces<R> {
             true => loads[joint],
             false => 0.0,
         };
-        (self.motors).recall(plant, memory, (angle, speed), holding_nm);
+        (self.auxiliary).recall(plant, memory, (angle, speed), holding_nm);
     }
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the

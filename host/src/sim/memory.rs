@@ -1,6 +1,7 @@
 //! What carries over from one step to the next, and from one stretch of a motion to the stretch
 //! after it: readings of encoders with memory, and what drives and joints remember.
 
+use super::auxiliary::UNKNOWN;
 use super::drive::DriveInput;
 use super::joint_plan::JointPlan;
 use super::plant::Plant;
@@ -39,6 +40,9 @@ impl EffectMemory {
                 memory.0[cell] = UNKNOWN;
             }
         }
+        if let Some((_, cell)) = plant.base {
+            memory.0[cell..cell + 2].fill(UNKNOWN);
+        }
         memory
     }
 
@@ -72,11 +76,11 @@ impl EffectMemory {
             }
             let input = self.obeyed(plan, inputs[joint], step_s);
             let reading = plant.encoded_rad(joint, angle);
+            let motor_speed = plan.motor_speed_rad_s(&self.0, speed[joint]);
             let at = StepState {
                 input: inputs[joint].input,
                 duty: plan.duty(input, reading, motor_speed),
                 energised: input.energised,
-            let motor_speed = plan.motor_speed_rad_s(&self.0, speed[joint]);
                 angle_rad: angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed[joint],
             };

@@ -5,6 +5,7 @@
 //! -> `stepper` (one step, friction that sticks) -> `run` (along a
 //! log), `live` (step by step), [`closed_loop`] (held by a controller).
 
+mod auxiliary;
 pub mod closed_loop;
 mod drive;
 mod forces;
@@ -12,7 +13,6 @@ mod input;
 mod joint_plan;
 mod live;
 mod memory;
-mod motors;
 mod plant;
 mod rows;
 mod run;

@@ -2,7 +2,7 @@
 
 use super::joint_plan::{ActiveEffect, JointPlan};
 use super::run::Start;
-use crate::effects::{CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
+use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
 use crate::log::Motion;
 use crate::model::{Angles, MeasuredSignal, Model};
 
@@ -24,8 +24,11 @@ pub struct Plant {
     pub(super) senses: bool,
     /// How many cells its effects remember things in.
     pub(super) remembers: usize,
-    /// Longest step that follows motors which turn apart from their joints, s; infinite without.
-    pub(super) gear_step_s: f64,
+    /// A base that gives way, and the place of the first of its two cells.
+    pub(super) base: Option<(BaseSpring, usize)>,
+    /// Longest step that follows motors which turn apart from their joints, and a base that gives
+    /// way, s; infinite without.
+    pub(super) auxiliary_step_s: f64,
     pub(super) step_s: f64,
     /// Whether every torque stays until an input changes or a joint stops or starts.
     pub(super) torques_stay: bool,
@@ -81,15 +84,17 @@ impl Plant {
         }
         let of_rates = joints.iter_mut().zip(&rates).filter(|(_, rate)| **rate);
         of_rates.for_each(|(joint, _)| joint.keep_rate_sensors());
-        let remembers = joints
+        let of_joints = joints
             .iter_mut()
             .fold(0, |next, joint| joint.place_memory(next));
+        let base = rig.base_spring.map(|spring| (spring, of_joints));
         let senses = joints.iter().any(|j| !j.sense.is_empty());
         Plant {
             rates,
             senses,
-            remembers,
-            gear_step_s: gear_step_s(&joints),
+            remembers: of_joints + if base.is_some() { 2 } else { 0 },
+            auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
+            base,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),
@@ -112,9 +117,19 @@ impl Plant {
         Plant::read_by(model, &Motion::default(), angles)
     }
 
-    /// Whether any motor turns apart from its joint.
-    pub(super) fn has_motors(&self) -> bool {
-        self.gear_step_s.is_finite()
+    /// Whether any motor turns apart from its joint, or the base gives way.
+    pub(super) fn has_auxiliary(&self) -> bool {
+        self.auxiliary_step_s.is_finite()
+    }
+
+    /// How many bodies move beside the links: a motor a joint, and the base in two directions; none
+    /// where all are rigid.
+    pub(super) fn auxiliary_bodies(&self) -> usize {
+        if self.has_auxiliary() {
+            self.len() + 2
+        } else {
+            0
+        }
     }
 
     /// Whether the log's angles are measured from the world.
@@ -217,17 +232,21 @@ impl Plant {
 
     /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
     pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
-        let joints = self.joints.iter().enumerate().zip(rate_rad_s);
-        let speed = |((joint, plan), rate): ((usize, &JointPlan), &f64)| {
-            (rate - self.rate_bias_rad_s(joint)) / plan.reading_slope()
-        };
-        let mut speeds: Vec<f64> = joints.map(speed).collect();
+        let rates = rate_rad_s.iter().enumerate();
+        let unbiased = rates.map(|(joint, rate)| rate - self.rate_bias_rad_s(joint));
+        self.turned_rad(&unbiased.collect::<Vec<_>>())
+    }
+
+    /// By how much the joints turn, rad, where the encoders' readings change by `read_rad`.
+    pub(super) fn turned_rad(&self, read_rad: &[f64]) -> Vec<f64> {
+        let joints = self.joints.iter().zip(read_rad);
+        let mut turned: Vec<f64> = joints.map(|(plan, d)| d / plan.reading_slope()).collect();
         if self.absolute {
-            for joint in (1..speeds.len()).rev() {
-                speeds[joint] -= speeds[joint - 1];
+            for joint in (1..turned.len()).rev() {
+                turned[joint] -= turned[joint - 1];
             }
         }
-        speeds
+        turned
     }
 
     /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes
@@ -250,13 +269,15 @@ impl Plant {
 }
 
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
-/// integrates it well.
-const GEAR_STEP: f64 = 0.4;
+/// integrates it well; so for a base.
+const AUXILIARY_STEP: f64 = 0.4;
 
-/// See [`Plant::gear_step_s`].
-fn gear_step_s(joints: &[JointPlan]) -> f64 {
-    let steps = joints.iter().filter_map(|joint| joint.coupling);
-    let steps = steps.map(|coupling| GEAR_STEP / coupling.natural_rad_s);
+/// See [`Plant::auxiliary_step_s`].
+fn auxiliary_step_s(joints: &[JointPlan], base: Option<BaseSpring>) -> f64 {
+    let motors = joints.iter().filter_map(|joint| joint.coupling);
+    let frequencies = motors.map(|coupling| coupling.natural_rad_s);
+    let frequencies = frequencies.chain(base.map(|base| base.natural_rad_s()));
+    let steps = frequencies.map(|natural_rad_s| AUXILIARY_STEP / natural_rad_s);
     steps.fold(f64::INFINITY, f64::min)
 }
 

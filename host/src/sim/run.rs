@@ -60,6 +60,7 @@ fn predicted<R: Rows>(
 ) -> Start {
     let samples = stretch.len();
     cross_gap::<R>(plant, motion, stretch.start, memory);
+    let start = &memory.sensors.beside_slips(plant, start);
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
     run.sensors.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {

@@ -1,13 +1,15 @@
 //! Sensors with memory (backlash, lag): what they read as the joints move.
 
+use super::joint_plan::JointPlan;
 use super::plant::Plant;
 use super::run::Start;
+use crate::effects::{Encoded, SenseMemory};
 
 /// Readings of all sensors, and what sensor effects remember from one step to the next.
 #[derive(Debug, Clone, Default)]
 pub struct SensorState {
-    /// Per sensor effect, its [encoded value, reading] of the step before.
-    cells: Vec<Option<[f64; 2]>>,
+    /// Per sensor effect, what it remembers of the step before.
+    cells: Vec<Option<SenseMemory>>,
     /// Per joint, rad in the log's convention; rad/s where the rate is read.
     pub(super) reading: Vec<f64>,
 }
@@ -31,11 +33,32 @@ impl SensorState {
             };
             for (active, cell) in plan.sense.iter().zip(&mut cells) {
                 if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
-                    *cell = Some([reading, reading - trail]);
+                    *cell = Some([reading, reading - trail, 0.0, 0.0]);
                     reading -= trail;
                 }
             }
         }
+    }
+
+    /// A start state that was taken from readings, with what has slipped until then.
+    pub(super) fn beside_slips(&self, plant: &Plant, start: &Start) -> Start {
+        let mut start = start.clone();
+        let mut cells = self.cells.iter();
+        let slipped = |plan: &JointPlan| {
+            let own = plan.sense.iter().zip(&mut cells);
+            let own = own.filter_map(|(e, cell)| Some(e.effect.slipped((*cell)?)));
+            own.fold((0.0, 0.0), |sum, [rad, rad_s]| (sum.0 + rad, sum.1 + rad_s))
+        };
+        let (rad, rad_s): (Vec<f64>, Vec<f64>) = plant.joints.iter().map(slipped).unzip();
+        for (of, slipped) in [(&mut start.angle_rad, rad), (&mut start.speed_rad_s, rad_s)] {
+            if slipped.iter().any(|slipped| *slipped != 0.0) {
+                let turned = plant.turned_rad(&slipped);
+                of.iter_mut()
+                    .zip(turned)
+                    .for_each(|(of, turned)| *of += turned);
+            }
+        }
+        start
     }
 
     /// Follows the joints to these relative angles, rad, and speeds, rad/s, reached `step_s` after
@@ -49,11 +72,14 @@ impl SensorState {
     ) {
         let mut cells = self.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded(joint, angle_rad, speed_rad_s);
-            for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                reading = active.effect.sense(active.values(), cell, reading, step_s);
+            let mut encoded = Encoded::still(plant.encoded(joint, angle_rad, speed_rad_s));
+            if !plan.sense.is_empty() {
+                encoded.speed_rad_s = plant.encoded_rad_s(joint, speed_rad_s);
             }
-            self.reading[joint] = reading;
+            for (active, cell) in plan.sense.iter().zip(&mut cells) {
+                encoded.angle_rad = active.effect.sense(active.values(), cell, encoded, step_s);
+            }
+            self.reading[joint] = encoded.angle_rad;
         }
     }
 

@@ -49,8 +49,8 @@ pub(super) struct Stepper<R: Rows> {
     contact: R::Of<Contact>,
     forces: Forces<R>,
     runge_kutta: RungeKutta<R::Of<f64>>,
-    /// The same for joints and motors together.
-    with_motors: RungeKutta<Vec<f64>>,
+    /// The same for joints and the bodies beside the links together.
+    with_auxiliary: RungeKutta<Vec<f64>>,
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
@@ -72,7 +72,7 @@ impl<R: Rows> Stepper<R> {
             contact: R::filled(Contact::Free, n),
             forces: Forces::new(plant),
             runge_kutta: RungeKutta::new(zeros()),
-            with_motors: RungeKutta::new(vec![0.0; if plant.has_motors() { 2 * n } else { 0 }]),
+            with_auxiliary: RungeKutta::new(vec![0.0; n + plant.auxiliary_bodies()]),
             start_angle: zeros(),
             start_speed: zeros(),
             slope: zeros(),
@@ -125,16 +125,18 @@ impl<R: Rows> Stepper<R> {
         obeyed.extend_from_slice(inputs);
         self.forces.memory.obey(plant, &mut obeyed, step_s);
         let state = (self.angle.as_ref(), self.speed.as_ref());
-        self.forces.recall_motors(plant, &obeyed, state);
-        // Short enough for the motors, so that knocks are not stepped over.
-        let (steps, h) = steps(step_s, plant.gear_step_s);
+        self.forces.recall_auxiliary(plant, &obeyed, state);
+        // Short enough for motors and base, so that knocks are not stepped over.
+        let (steps, h) = steps(step_s, plant.auxiliary_step_s);
         for _ in 0..steps {
             self.advance_bodies(plant, &obeyed, h);
         }
         self.obeyed = obeyed;
         let state = (self.angle.as_ref(), self.speed.as_ref());
-        let Forces { motors, memory, .. } = &mut self.forces;
-        motors.remember(plant, memory);
+        let Forces {
+            auxiliary, memory, ..
+        } = &mut self.forces;
+        auxiliary.remember(plant, memory);
         memory.remember(plant, inputs, state, step_s);
     }
 
@@ -148,15 +150,15 @@ impl<R: Rows> Stepper<R> {
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
-            let motors = plant.has_motors().then(|| self.forces.motors.clone());
+            let auxiliary = (plant.has_auxiliary()).then(|| self.forces.auxiliary.clone());
             self.step(plant, inputs, left);
             let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
-            if let Some(motors) = motors {
-                self.forces.motors = motors;
+            if let Some(auxiliary) = auxiliary {
+                self.forces.auxiliary = auxiliary;
             }
             self.step(plant, inputs, event.share * left);
             if event.contact == Contact::Held {
@@ -209,12 +211,12 @@ impl<R: Rows> Stepper<R> {
             .min_by(|a, b| a.share.total_cmp(&b.share))
     }
 
-    /// The held joint that the motion of others, or its own gear that is wound up, first pushes
-    /// beyond its breakaway torque.
+    /// The held joint that the motion of others, its own gear that is wound up, or the base first
+    /// pushes beyond its breakaway torque.
     fn first_release(&mut self, plant: &Plant, inputs: &[DriveInput]) -> Option<Event> {
         let is_held = |contact: &Contact| *contact == Contact::Held;
         let held = self.contact.as_ref().iter().filter(|c| is_held(c)).count();
-        let moves = held < self.len() || plant.has_motors();
+        let moves = held < self.len() || plant.has_auxiliary();
         if held == 0 || !moves {
             return None;
         }

@@ -70,7 +70,8 @@ pub struct UndesignedEffect {
 pub fn left_out(model: &Model, designed_for: &Model, design: &Design) -> Vec<UndesignedEffect> {
     let omitted = |e: &EffectInstance| {
         let is = |o: &crate::synth::OmittedEffect| {
-            o.effect == e.effect && e.acts_on(o.joint, &model.joints[o.joint])
+            let acts_on = |joint: usize| e.acts_on(joint, &model.joints[joint]);
+            o.effect == e.effect && o.joint.map_or(e.joint.is_none(), acts_on)
         };
         design.omitted.iter().any(is)
     };

@@ -81,7 +81,7 @@ impl<'a> JointAt<'a> {
         for e in self.effects.iter().filter(|e| e.effect.info().site == site) {
             match e.effect.slope(&e.values, &at) {
                 Some(slope) => slopes.push((e.effect, e.values.as_slice(), slope)),
-                None => omitted.push(OmittedEffect::new(e.effect, self.joint)),
+                None => omitted.push(OmittedEffect::new(e.effect, Some(self.joint))),
             }
         }
         slopes
@@ -202,7 +202,7 @@ impl<'a> JointAt<'a> {
         let at_drive = |e: &&&EffectInstance| e.effect.info().site == Site::Drive;
         for e in self.effects.iter().filter(at_drive) {
             let slope = e.effect.slope(&e.values, &at).unwrap_or_else(|| {
-                omitted.push(OmittedEffect::new(e.effect, self.joint));
+                omitted.push(OmittedEffect::new(e.effect, Some(self.joint)));
                 Slope::NONE
             });
             at.torque_nm = e.effect.drive(&e.values, at.torque_nm, &state);

@@ -9,8 +9,8 @@ use std::fmt;
 pub struct OmittedEffect {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Its joint, counted from 0.
-    pub joint: usize,
+    /// Its joint, counted from 0; none for the whole rig.
+    pub joint: Option<usize>,
     /// What keeps it from having a derivative.
     pub why: NonSmooth,
 }
@@ -26,6 +26,8 @@ pub enum NonSmooth {
     AtLimit,
     /// The motor turns apart from the joint: a state of its own.
     OwnState,
+    /// The base moves: a state of its own.
+    BaseMoves,
     /// The reading depends on the past.
     Memory,
     /// The effect states no derivative.
@@ -33,16 +35,15 @@ pub enum NonSmooth {
 }
 
 impl OmittedEffect {
-    pub(super) fn new(effect: &'static dyn Effect, joint: usize) -> OmittedEffect {
+    pub(super) fn new(effect: &'static dyn Effect, joint: Option<usize>) -> OmittedEffect {
         let why = match effect.info().site {
             Site::Friction => NonSmooth::JumpsAtStandstill,
             Site::Command => NonSmooth::DeadAtZero,
             Site::Drive => NonSmooth::AtLimit,
             Site::Gear => NonSmooth::OwnState,
             Site::Sensor => NonSmooth::Memory,
-            Site::Timing | Site::Joint | Site::Body | Site::Encoder | Site::Rate => {
-                NonSmooth::Unstated
-            }
+            Site::Body => NonSmooth::BaseMoves,
+            Site::Timing | Site::Joint | Site::Encoder | Site::Rate => NonSmooth::Unstated,
         };
         OmittedEffect { effect, joint, why }
     }
@@ -57,6 +58,7 @@ impl fmt::Display for NonSmooth {
             NonSmooth::OwnState => {
                 "its motor turns apart from the joint; its inertia is in the design"
             }
+            NonSmooth::BaseMoves => "the design stands on a base that does not move",
             NonSmooth::Memory => "its reading depends on the past",
             NonSmooth::Unstated => "it states no derivative",
         })

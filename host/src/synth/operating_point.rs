@@ -6,7 +6,8 @@ use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
 use super::pose::check_size;
 use crate::dynamics::EquationsOfMotion;
-use crate::model::Model;
+use crate::effects::{Scope, Site};
+use crate::model::{EffectInstance, Model};
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
 const SLACK: f64 = 1e-6;
@@ -47,7 +48,7 @@ impl OperatingPoint {
             relative_rad,
             equations,
             joints: Vec::new(),
-            omitted: Vec::new(),
+            omitted: of_base(model).collect(),
         };
         for (joint, &gravity_nm) in gravity_nm.iter().enumerate() {
             let at = JointAt::new(model, joint, &point.relative_rad, pose_rad);
@@ -68,6 +69,21 @@ pub(super) fn equations(model: &Model) -> EquationsOfMotion {
     model.effects.extend(rigid);
     let rig = model.rig(false);
     EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
+}
+
+/// Effects by which the base gives way: states that the equations do not have.
+fn of_base(model: &Model) -> impl Iterator<Item = OmittedEffect> {
+    let gives_way = |e: &&EffectInstance| {
+        let mut rig = model.rig(false);
+        rig.base_spring = None;
+        let info = e.effect.info();
+        if (info.site, info.scope) == (Site::Body, Scope::WholeRig) {
+            e.effect.body(&e.values, 0, &mut rig);
+        }
+        rig.base_spring.is_some()
+    };
+    let instances = model.effects.iter().filter(gives_way);
+    instances.map(|e| OmittedEffect::new(e.effect, None))
 }
 
 /// The delay of the drives, s: the same for all of them.

@@ -96,3 +96,59 @@ fn energy_is_kept_without_friction() {
     }
     assert!((total(&q, &w) - before).abs() < 1e-6);
 }
+
+/// A base that is pushed by what the chain asks of it stays where it is; one that is free moves so
+/// that the momentum of base and chain stays.
+#[test]
+fn a_free_base_takes_what_the_chain_asks_of_it() {
+    let chain = chain(3);
+    let (q, w, torque) = ([0.4, -0.7, 1.1], [2.0, -1.0, 3.0], [0.3, -0.2, 0.1]);
+    let mut work = Workspace::new(3);
+    let held = [false; 3];
+    let gravity = chain.base_m_s2(0.3);
+    let mut fixed = [0.0; 3];
+    chain.forward(&mut work, gravity, &q, &w, &torque, &held, &mut fixed);
+    let mut asked = [0.0; 2];
+    chain.newton_euler(0.3, [&q, &w, &fixed], |i, _, force| {
+        if i == 0 {
+            asked = force;
+        }
+    });
+    let mut on = |base: FreeBase| {
+        let mut out = [0.0; 3];
+        let own = chain.forward_on(base, &mut work, gravity, &q, &w, &torque, &held, &mut out);
+        (own, out)
+    };
+    let (own, out) = on(FreeBase {
+        mass_kg: 2.0,
+        force_n: asked,
+    });
+    assert!(own.iter().all(|a| a.abs() < 1e-9), "{own:?}");
+    assert!(out.iter().zip(fixed).all(|(a, b)| (a - b).abs() < 1e-9));
+
+    let free = FreeBase {
+        mass_kg: 2.0,
+        force_n: [0.0; 2],
+    };
+    let (own, out) = on(free);
+    // What turns gravity into an acceleration of the base turns this one into gravity.
+    let felt = [gravity[0] + own[0], gravity[1] + own[1]];
+    let mut accelerated = [0.0; 3];
+    chain.forward(&mut work, felt, &q, &w, &torque, &held, &mut accelerated);
+    assert!(
+        out.iter()
+            .zip(accelerated)
+            .all(|(a, b)| (a - b).abs() < 1e-9)
+    );
+    let mut turned = chain.clone();
+    turned.gravity_m_s2 = felt[0].hypot(felt[1]);
+    let turn = (-felt[0]).atan2(felt[1]);
+    turned.newton_euler(turn, [&q, &w, &out], |i, _, force| {
+        if i == 0 {
+            asked = force;
+        }
+    });
+    for k in 0..2 {
+        assert!((2.0 * own[k] + asked[k]).abs() < 1e-9, "{own:?} {asked:?}");
+    }
+}

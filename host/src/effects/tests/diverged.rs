@@ -26,7 +26,7 @@ fn no_effect_panics_and_what_is_no_number_is_read_as_none() {
             let mut memory = None;
             for angle in [0.1, lost, 0.2] {
                 let encoded = effect.encode(&values, angle);
-                let reading = effect.sense(&values, &mut memory, encoded, 0.01);
+                let reading = effect.sense(&values, &mut memory, Encoded::still(encoded), 0.01);
                 if encoded.is_nan() {
                     assert!(reading.is_nan(), "{}: {reading}", effect.info().id);
                 }

@@ -90,6 +90,14 @@ fn bodies_change_as_their_laws_say() {
     near(heavier.inertia_kg_m2, 1.2e-3);
     assert!(changed("mass", -1.0).chain.links[0].mass_kg > 0.0);
     near(changed("base_tilt", 0.1).gravity_turn_rad, 0.1);
+    let mut yielding = rig();
+    effect("base_compliance").body(&[800.0, 2.0, 0.1], 0, &mut yielding);
+    let base = yielding.base_spring.unwrap();
+    near(base.natural_rad_s(), 20.0);
+    // 800 * 0.01 + 2 * 0.1 * 2 * 20 * 0.5
+    near(base.force_n(0.01, 0.5), -12.0);
+    let stiff = BaseSpring::new(2.0, 1e7, 0.1).unwrap();
+    near(stiff.natural_rad_s(), 400.0);
     let mut turned = Rig {
         turned: true,
         ..rig()

@@ -21,6 +21,8 @@ const SUFFIXES: &[(&str, &str)] = &[
     ("kg m^2", "_kg_m2"),
     ("rad", "_rad"),
     ("rad/s", "_rad_s"),
+    ("rad/s^2", "_rad_s2"),
+    ("N/m", "_n_m"),
     ("N m", "_nm"),
     ("N m/rad", "_nm_rad"),
     ("N m s/rad", "_nm_s_rad"),
@@ -77,5 +79,6 @@ fn rig() -> Rig {
         chain,
         gravity_turn_rad: 0.0,
         turned: false,
+        base_spring: None,
     }
 }

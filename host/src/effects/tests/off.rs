@@ -45,7 +45,7 @@ fn off_reads_the_angle_itself() {
         for angle_rad in [0.3, 0.31, -1.0, -1.0, 2.0] {
             assert_eq!(effect.encode(&off, angle_rad), angle_rad, "{id}");
             assert_eq!(
-                effect.sense(&off, &mut memory, angle_rad, 0.01),
+                effect.sense(&off, &mut memory, Encoded::still(angle_rad), 0.01),
                 angle_rad,
                 "{id}"
             );
@@ -80,7 +80,7 @@ fn the_first_reading_is_the_angle() {
             .map(|p| p.typical.1)
             .collect();
         assert_eq!(
-            effect.sense(&values, &mut None, 0.4, 0.01),
+            effect.sense(&values, &mut None, Encoded::still(0.4), 0.01),
             0.4,
             "{}",
             effect.info().id

@@ -11,7 +11,10 @@ fn encoders_read_scale_times_angle_plus_zero() {
 #[test]
 fn play_trails_by_half_the_gap_after_each_reversal() {
     let mut memory = None;
-    let mut read = |angle_rad| effect("backlash").sense(&[0.1], &mut memory, angle_rad, 0.01);
+    let mut read = |angle_rad| {
+        let encoded = Encoded::still(angle_rad);
+        effect("backlash").sense(&[0.1], &mut memory, encoded, 0.01)
+    };
     near(read(0.0), 0.0);
     near(read(0.04), 0.0);
     near(read(0.5), 0.45);
@@ -19,6 +22,37 @@ fn play_trails_by_half_the_gap_after_each_reversal() {
     near(read(-0.5), -0.45);
     near(read(-0.42), -0.45);
     near(read(0.5), 0.45);
+}
+
+/// A hand that speeds up at 100 rad/s^2 for 0.1 s and turns on at 10 rad/s; its grip passes on
+/// 40 rad/s^2, so that the shaft has caught up after 0.25 s, 0.75 rad behind.
+#[test]
+fn a_grip_that_slips_loses_the_way_it_slips_and_no_more() {
+    let step_s = 0.02;
+    let hand = |time_s: f64| {
+        let speeding_s = time_s.min(0.1);
+        Encoded {
+            angle_rad: 50.0 * speeding_s * speeding_s + 10.0 * (time_s - speeding_s),
+            speed_rad_s: 100.0 * speeding_s,
+        }
+    };
+    let slipped_at = |values: &[f64], end_s: f64| {
+        let mut memory = Some([0.0; 4]);
+        let mut read_rad = 0.0;
+        for step in 1..=(end_s / step_s).round() as usize {
+            let encoded = hand(step as f64 * step_s);
+            read_rad = effect("grip_slip").sense(values, &mut memory, encoded, step_s);
+        }
+        let [slipped_rad, _] = effect("grip_slip").slipped(memory.unwrap());
+        near(slipped_rad, hand(end_s).angle_rad - read_rad);
+        slipped_rad
+    };
+    // Halfway: 0.5 * (100 - 40) * 0.1^2.
+    near(slipped_at(&[40.0], 0.1), 0.3);
+    for end_s in [0.3, 0.6] {
+        near(slipped_at(&[40.0], end_s), 0.75);
+    }
+    near(slipped_at(&[101.0], 0.6), 0.0);
 }
 
 /// Readings of a lag of `constant_s` over a motion sampled `rate_hz` times a second.
@@ -30,7 +64,7 @@ fn lagged(constant_s: f64, rate_hz: usize, end_s: f64, angle: impl Fn(f64) -> f6
         effect("sensor_lag").sense(
             &[constant_s],
             &mut memory,
-            angle(step as f64 * step_s),
+            Encoded::still(angle(step as f64 * step_s)),
             step_s,
         )
     };

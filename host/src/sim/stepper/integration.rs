@@ -11,8 +11,8 @@ impl<R: Rows> Stepper<R> {
     pub(super) fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
         let state = (&mut self.angle, &mut self.speed);
-        if plant.has_motors() {
-            return self.step_with_motors(plant, inputs, h);
+        if plant.has_auxiliary() {
+            return self.step_with_auxiliary(plant, inputs, h);
         }
         if forces.step(plant, inputs, contact, state, h) {
             return;
@@ -35,18 +35,18 @@ impl<R: Rows> Stepper<R> {
         );
     }
 
-    /// The same for joints and motors together.
-    fn step_with_motors(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
+    /// The same for joints and the bodies beside the links together.
+    fn step_with_auxiliary(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
         let joints = contact.len();
-        let mut angle = [self.angle.as_ref(), &forces.motors.angle].concat();
-        let mut speed = [self.speed.as_ref(), &forces.motors.speed].concat();
-        (self.with_motors).step(&mut angle, &mut speed, h, |angle, speed, slope| {
-            let (angle, motor_angle) = angle.split_at(joints);
-            let (speed, motor_speed) = speed.split_at(joints);
-            let (slope, motor_slope) = slope.split_at_mut(joints);
-            forces.motors.angle.copy_from_slice(motor_angle);
-            forces.motors.speed.copy_from_slice(motor_speed);
+        let mut place = [self.angle.as_ref(), &forces.auxiliary.place].concat();
+        let mut speed = [self.speed.as_ref(), &forces.auxiliary.speed].concat();
+        (self.with_auxiliary).step(&mut place, &mut speed, h, |place, speed, slope| {
+            let (angle, own_place) = place.split_at(joints);
+            let (speed, own_speed) = speed.split_at(joints);
+            let (slope, own_slope) = slope.split_at_mut(joints);
+            forces.auxiliary.place.copy_from_slice(own_place);
+            forces.auxiliary.speed.copy_from_slice(own_speed);
             let at = At {
                 angle,
                 speed,
@@ -54,14 +54,14 @@ impl<R: Rows> Stepper<R> {
             };
             forces.accelerate(plant, inputs, at, slope);
             hold(slope, contact);
-            motor_slope.copy_from_slice(&forces.motors.slope);
+            own_slope.copy_from_slice(&forces.auxiliary.slope);
         });
-        let (joint_angle, motor_angle) = angle.split_at(joints);
-        let (joint_speed, motor_speed) = speed.split_at(joints);
-        self.angle.as_mut().copy_from_slice(joint_angle);
+        let (angle, own_place) = place.split_at(joints);
+        let (joint_speed, own_speed) = speed.split_at(joints);
+        self.angle.as_mut().copy_from_slice(angle);
         self.speed.as_mut().copy_from_slice(joint_speed);
-        forces.motors.angle.copy_from_slice(motor_angle);
-        forces.motors.speed.copy_from_slice(motor_speed);
+        forces.auxiliary.place.copy_from_slice(own_place);
+        forces.auxiliary.speed.copy_from_slice(own_speed);
     }
 }
 

@@ -112,6 +112,35 @@ fn pulled_rad(plant: &Plant, torque_nm: f64, span_s: f64, step_s: f64) -> f64 {
     stepper.angle[0]
 }
 
+/// Three links on a base that gives way, of which the first was let go at this angle; the largest
+/// angle of the last one after it, rad.
+fn swung_on_base_rad(let_go_rad: f64, stiffness_n_m: f64) -> f64 {
+    let text = include_str!("../../../models/handstand.toml");
+    let mut model = Model::parse(text, Path::new("handstand.toml")).unwrap();
+    model.effects = vec![EffectInstance {
+        effect: named("base_compliance").unwrap(),
+        joint: None,
+        values: vec![stiffness_n_m, 1.0, 0.1],
+    }];
+    let plant = Plant::without_log(&model);
+    let mut stepper = Stepper::<Few<3>>::new(&plant, &[let_go_rad, 0.0, 0.0], &[0.0; 3]);
+    let mut most_rad = 0.0_f64;
+    for _ in 0..500 {
+        stepper.advance(&plant, &[DriveInput::ZERO; 3], 2e-3);
+        most_rad = most_rad.max(stepper.angle[2].abs());
+    }
+    most_rad
+}
+
+#[test]
+fn a_base_begins_sagged_and_gives_way_only_to_motion() {
+    assert!(swung_on_base_rad(0.0, 500.0) < 1e-12);
+    let rigid_rad = swung_on_base_rad(0.5, f64::INFINITY);
+    let off = |stiffness_n_m| (swung_on_base_rad(0.5, stiffness_n_m) - rigid_rad).abs();
+    assert!(off(500.0) > 0.01, "{}", off(500.0));
+    assert!(off(1.6e5) < 1e-3, "{}", off(1.6e5));
+}
+
 #[test]
 fn a_motor_behind_a_spring_swings_against_its_joint() {
     let (motor, joint, stiffness, torque_nm) = (1e-3, 2e-3, 0.9, 0.05);

@@ -180,7 +180,7 @@ fn controllers_take_the_robot_behind_its_servos() {
     let omitted: Vec<_> = nominal
         .omitted
         .iter()
-        .map(|o| (o.effect.info().id, o.joint))
+        .map(|o| (o.effect.info().id, o.joint.unwrap()))
         .collect();
     assert_eq!(omitted, [("coulomb", 1), ("coulomb", 2)]);
     assert_eq!(nominal.limit_nm, 2.0);

@@ -55,7 +55,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
 fn omitted(omitted: &OmittedEffect) -> Value {
     json!({
         "effect": omitted.effect.info().id,
-        "joint": omitted.joint + 1,
+        "joint": omitted.joint.map(|joint| joint + 1),
         "why": omitted.why.to_string(),
     })
 }

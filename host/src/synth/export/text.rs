@@ -70,14 +70,15 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
         if omitted[..at].iter().any(|o| same(&o)) {
             continue;
         }
-        let joints = omitted.iter().filter(same).map(|o| o.joint + 1);
-        let joints: Vec<String> = joints.map(|joint| joint.to_string()).collect();
-        lines.push(format!(
-            "The design leaves out {} at joint{} {}: {why}",
-            effect.info().title,
-            if joints.len() > 1 { "s" } else { "" },
-            joints.join(", ")
-        ));
+        let joints = omitted.iter().filter(same).filter_map(|o| o.joint);
+        let joints: Vec<String> = joints.map(|joint| (joint + 1).to_string()).collect();
+        let at = match joints.len() {
+            0 => String::new(),
+            1 => format!(" at joint {}", joints[0]),
+            _ => format!(" at joints {}", joints.join(", ")),
+        };
+        let title = effect.info().title;
+        lines.push(format!("The design leaves out {title}{at}: {why}"));
     }
     lines
 }

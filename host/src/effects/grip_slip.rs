@@ -1,0 +1,142 @@
+//! Grip slip: the bar, or the shaft of an encoder, slips in what turns it.
+
+use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+
+/// Coulomb friction carries the sensor's shaft along, which it can speed up by no more than a; else
+/// it slips until both turn alike again. a is the friction's torque over the shaft's inertia: the
+/// joint feels nothing of so light a shaft.
+#[derive(Debug)]
+pub struct GripSlip;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "grip_slip",
+    title: "slip of the grip or of the encoder's shaft",
+    site: Site::Sensor,
+    scope: Scope::AnyJoint,
+    needs: Needs::Nothing,
+    law: "d(w_s)/dt = acceleration_rad_s2 * sgn(w - w_s) while the shaft slips, else w_s = w; \
+     d(reading)/dt = w_s",
+    parameters: &[Parameter {
+        key: "acceleration_rad_s2",
+        unit: "rad/s^2",
+        meaning: "largest acceleration that the grip passes on: its torque over the shaft's inertia",
+        off: Some(f64::INFINITY),
+        typical: (8.0, 200.0),
+        bounds: (1.0, 1e5),
+        starts: &[30.0, 80.0],
+    }],
+    looks_like: "the zero of the reading jumps wherever the motion is hard, and stays where it \
+     jumped to; gentle motion is read rightly",
+    confused_with: &[
+        "backlash: both lose the way; backlash comes back to the same reading, a slip does not",
+        "encoder_zero: a zero that is off is off from the beginning and stays so",
+        "sensor_lag: both trail where the motion is fast; a lag is back once the arm rests",
+    ],
+    experiment: "mark the bar and the hand, swing hard between two stops, and read both at rest: \
+     the mark and the reading move together",
+    reference: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+};
+
+/// At a joint that slides.
+static ON_SLIDE: EffectInfo = EffectInfo {
+    law: "d(w_s)/dt = acceleration_m_s2 * sgn(w - w_s) while the tape slips, else w_s = w; \
+     d(reading)/dt = w_s",
+    parameters: &[Parameter {
+        key: "acceleration_m_s2",
+        unit: "m/s^2",
+        meaning: "largest acceleration that the grip passes on: its force over the tape's mass",
+        off: Some(f64::INFINITY),
+        typical: (0.5, 20.0),
+        bounds: (0.02, 1e4),
+        starts: &[1.0, 4.0],
+    }],
+    ..INFO
+};
+
+impl Effect for GripSlip {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        Some(&ON_SLIDE)
+    }
+
+    fn difference(&self) -> f64 {
+        5e-3
+    }
+
+    fn slipped(&self, [encoded_rad, reading_rad, _, slip_rad_s]: SenseMemory) -> [f64; 2] {
+        [encoded_rad - reading_rad, slip_rad_s]
+    }
+
+    fn sense(
+        &self,
+        values: &[f64],
+        memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
+        step_s: f64,
+    ) -> f64 {
+        let Encoded {
+            angle_rad,
+            speed_rad_s,
+        } = encoded;
+        let unslipped = [angle_rad, angle_rad, f64::NAN, 0.0];
+        let [before_rad, reading_rad, shaft_rad_s, slip_rad_s] = memory.unwrap_or(unslipped);
+        let mut slip = Slip {
+            ahead_rad: before_rad - reading_rad,
+            speed_rad_s: slip_rad_s,
+        };
+        // Between two stretches of a motion no time passes, and the shaft slips on as it did.
+        if step_s > 0.0 {
+            let mean_rad_s = (angle_rad - before_rad) / step_s;
+            let began_rad_s = 2.0 * mean_rad_s - speed_rad_s;
+            if shaft_rad_s.is_finite() {
+                slip.speed_rad_s = began_rad_s - shaft_rad_s;
+            }
+            let gained_rad_s2 = (speed_rad_s - began_rad_s) / step_s;
+            slip.go_on(gained_rad_s2, values[0], step_s);
+        }
+        let reading_rad = angle_rad - slip.ahead_rad;
+        let shaft_rad_s = speed_rad_s - slip.speed_rad_s;
+        *memory = Some([angle_rad, reading_rad, shaft_rad_s, slip.speed_rad_s]);
+        reading_rad
+    }
+}
+
+/// How far the joint is ahead of the shaft, rad, and how fast it draws away, rad/s.
+struct Slip {
+    ahead_rad: f64,
+    speed_rad_s: f64,
+}
+
+impl Slip {
+    /// Goes on for `span_s` in which the joint speeds up by `joint_rad_s2` and the shaft by no more
+    /// than `grip_rad_s2`.
+    fn go_on(&mut self, joint_rad_s2: f64, grip_rad_s2: f64, span_s: f64) {
+        let mut left_s = span_s;
+        // Once until it holds, once from there on if it lets go again.
+        for _ in 0..2 {
+            let holds = self.speed_rad_s == 0.0 && joint_rad_s2.abs() <= grip_rad_s2;
+            if holds || grip_rad_s2 == f64::INFINITY {
+                self.speed_rad_s = 0.0;
+                return;
+            }
+            let direction = match self.speed_rad_s == 0.0 {
+                true => joint_rad_s2.signum(),
+                false => self.speed_rad_s.signum(),
+            };
+            let change_rad_s2 = joint_rad_s2 - direction * grip_rad_s2;
+            let until_s = -self.speed_rad_s / change_rad_s2;
+            let ends = self.speed_rad_s != 0.0 && until_s > 0.0 && until_s < left_s;
+            let way_s = if ends { until_s } else { left_s };
+            self.ahead_rad += way_s * (self.speed_rad_s + 0.5 * way_s * change_rad_s2);
+            self.speed_rad_s += way_s * change_rad_s2;
+            if !ends {
+                return;
+            }
+            self.speed_rad_s = 0.0;
+            left_s -= way_s;
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Bodies beside the links: motors behind gears that give, and a base that gives way.
+//!
+//! They are integrated along with the joints, and remembered from step to step.
+
+use super::memory::EffectMemory;
+use super::plant::Plant;
+use crate::effects::MemoryCell;
+
+/// A body of which nothing earlier is known.
+pub(super) const UNKNOWN: MemoryCell = [f64::NAN; 2];
+
+/// Share of a motor's torque below which friction may leave it anywhere between the flanks.
+const LIGHT_SHARE: f64 = 0.01;
+
+/// State of the motors, one a joint, and of the base, sideways and upward; idle where they are
+/// rigid, empty where all are.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Auxiliary {
+    /// Angles of motors as seen at their joints, rad; displacement of the base, m.
+    pub place: Vec<f64>,
+    /// Its change, rad/s and m/s.
+    pub speed: Vec<f64>,
+    /// The change of that, found with the accelerations of the joints.
+    pub slope: Vec<f64>,
+}
+
+impl Auxiliary {
+    /// Idle ones for `plant`.
+    pub fn new(plant: &Plant) -> Auxiliary {
+        let bodies = plant.auxiliary_bodies();
+        Auxiliary {
+            place: vec![0.0; bodies],
+            speed: vec![0.0; bodies],
+            slope: vec![0.0; bodies],
+        }
+    }
+
+    /// Where the base is and how fast it moves, m and m/s.
+    pub fn base(&self) -> [[f64; 2]; 2] {
+        let motors = self.place.len() - 2;
+        [&self.place, &self.speed].map(|of| [of[motors], of[motors + 1]])
+    }
+
+    /// Says how the base speeds up, m/s^2.
+    pub fn speed_up_base(&mut self, by_m_s2: [f64; 2]) {
+        let motors = self.slope.len() - 2;
+        self.slope[motors..].copy_from_slice(&by_m_s2);
+    }
+
+    /// Puts them where they are remembered to be, the joints being at these angles and speeds. A
+    /// motor of which nothing is remembered turns as its joint does, its gear carrying what holds
+    /// the joint, N m; such a base carries the chain's weight at rest.
+    pub fn recall(
+        &mut self,
+        plant: &Plant,
+        memory: &EffectMemory,
+        (angle, speed): (&[f64], &[f64]),
+        holding_nm: impl Fn(usize) -> f64,
+    ) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) else {
+                continue;
+            };
+            let [own_angle, own_speed] = memory.0[cell];
+            if own_angle.is_nan() {
+                let light_nm = LIGHT_SHARE * plan.full_torque_nm;
+                let wound = coupling.wound_rad(holding_nm(joint), light_nm);
+                (self.place[joint], self.speed[joint]) = (angle[joint] + wound, speed[joint]);
+            } else {
+                (self.place[joint], self.speed[joint]) = (own_angle, own_speed);
+            }
+        }
+        if let Some((base, cell)) = plant.base {
+            let weight_kg = plant.rig.chain.links.iter().map(|l| l.mass_kg).sum::<f64>();
+            for k in 0..2 {
+                let rests_m = -weight_kg * plant.base_m_s2[k] / base.stiffness_n_m;
+                let at = match memory.0[cell + k] {
+                    [place, _] if place.is_nan() => [rests_m, 0.0],
+                    remembered => remembered,
+                };
+                let body = plant.len() + k;
+                [self.place[body], self.speed[body]] = at;
+            }
+        }
+    }
+
+    /// Remembers where they are.
+    pub fn remember(&self, plant: &Plant, memory: &mut EffectMemory) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            if let Some(cell) = plan.gear_cell {
+                memory.0[cell] = [self.place[joint], self.speed[joint]];
+            }
+        }
+        if let Some((_, cell)) = plant.base {
+            for k in 0..2 {
+                let body = plant.len() + k;
+                memory.0[cell + k] = [self.place[body], self.speed[body]];
+            }
+        }
+    }
+}
