@@ -1,9 +1,11 @@
 //! What a bench arm hides: a random effect, or a given one, at random values.
 
+mod draws;
+
 use super::rounding::rounded;
+use draws::{Draw, EFFECTS, Parameters, ROBOT_EFFECTS};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use std::f64::consts::PI;
 
 /// What a challenge hides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,205 +26,6 @@ pub struct HiddenEffect {
     /// Keys and values of the effect's parameters.
     pub parameters: Vec<(&'static str, f64)>,
 }
-
-/// How a value is drawn.
-enum Draw {
-    /// Always this.
-    Fixed(f64),
-    /// From a range.
-    Within(f64, f64),
-    /// From a range, with a random sign that all values of the effect share.
-    Signed(f64, f64),
-    /// 1 plus such a value.
-    Factor(f64, f64),
-    /// A whole number from a range.
-    Whole(f64, f64),
-}
-use Draw::{Factor, Fixed, Signed, Whole, Within};
-
-/// Keys of an effect's values, and how each is drawn.
-type Parameters = &'static [(&'static str, Draw)];
-
-/// Every effect that can be hidden.
-const EFFECTS: [(&str, Parameters); 34] = [
-    ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
-    ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
-    (
-        "stribeck",
-        &[
-            ("excess_nm", Within(0.02, 0.06)),
-            ("speed_rad_s", Within(0.1, 0.5)),
-        ],
-    ),
-    ("load_friction", &[("factor", Within(0.06, 0.25))]),
-    (
-        "direction_asymmetry",
-        &[("half_difference_nm", Signed(0.008, 0.02))],
-    ),
-    (
-        "dead_zone",
-        &[("width", Within(0.03, 0.08)), ("punch", Fixed(0.0))],
-    ),
-    ("backlash", &[("gap_rad", Within(0.03, 0.1))]),
-    ("delay", &[("delay_s", Within(0.02, 0.08))]),
-    ("supply_sensitivity", &[("sensitivity", Within(0.6, 1.2))]),
-    ("supply_sag", &[("drop_share", Within(0.15, 0.4))]),
-    ("torque_saturation", &[("limit_nm", Within(0.2, 0.4))]),
-    ("speed_limit", &[("no_load_speed_rad_s", Within(6.0, 15.0))]),
-    ("com_angle", &[("angle_rad", Signed(0.05, 0.15))]),
-    ("mass", &[("added_kg", Signed(0.03, 0.08))]),
-    ("armature", &[("inertia_kg_m2", Within(5e-4, 2e-3))]),
-    (
-        "cable_spring",
-        &[
-            ("stiffness_nm_rad", Within(0.03, 0.15)),
-            ("rest_angle_rad", Within(-0.5, 0.5)),
-        ],
-    ),
-    ("base_tilt", &[("angle_rad", Signed(0.05, 0.15))]),
-    (
-        "air_drag",
-        &[("coefficient_nm_s2_rad2", Within(0.001, 0.004))],
-    ),
-    ("encoder_zero", &[("offset_rad", Signed(0.03, 0.1))]),
-    ("encoder_scale", &[("factor", Factor(0.02, 0.06))]),
-    ("sensor_lag", &[("time_constant_s", Within(0.02, 0.06))]),
-    (
-        "cogging",
-        &[
-            ("amplitude_nm", Within(0.01, 0.03)),
-            ("periods_per_turn", Whole(6.0, 25.0)),
-            ("phase_rad", Within(-PI, PI)),
-        ],
-    ),
-    ("torque_scale", &[("factor", Factor(0.08, 0.25))]),
-    (
-        "drive_asymmetry",
-        &[
-            ("motor_factor", Within(0.1, 0.25)),
-            ("outside_factor", Within(0.0, 0.05)),
-        ],
-    ),
-    ("slew_limit", &[("rate_per_s", Within(0.6, 2.0))]),
-    (
-        "thermal_drift",
-        &[
-            ("rise", Within(10.0, 30.0)),
-            ("time_constant_s", Within(4.0, 12.0)),
-        ],
-    ),
-    (
-        "fold_back",
-        &[
-            ("remaining_share", Within(0.3, 0.7)),
-            ("level", Within(0.06, 0.12)),
-            ("after_s", Within(0.15, 0.4)),
-        ],
-    ),
-    (
-        "pre_sliding",
-        &[
-            ("torque_nm", Within(0.02, 0.06)),
-            ("stiffness_nm_rad", Within(0.3, 1.5)),
-        ],
-    ),
-    (
-        "gear_compliance",
-        &[
-            ("inertia_kg_m2", Within(1e-3, 3e-3)),
-            ("stiffness_nm_rad", Within(0.5, 2.0)),
-            ("damping_ratio", Within(0.05, 0.25)),
-        ],
-    ),
-    (
-        "gear_backlash",
-        &[
-            ("inertia_kg_m2", Within(1e-3, 3e-3)),
-            ("gap_rad", Within(0.03, 0.12)),
-        ],
-    ),
-    ("torque_offset", &[("offset_nm", Signed(0.01, 0.04))]),
-    (
-        "position_friction",
-        &[
-            ("below_nm", Within(0.02, 0.06)),
-            ("above_nm", Within(0.0, 0.02)),
-            ("span_rad", Within(0.4, 1.0)),
-        ],
-    ),
-    (
-        "base_compliance",
-        &[
-            ("stiffness_n_m", Within(60.0, 200.0)),
-            ("mass_kg", Within(0.2, 0.6)),
-            ("damping_ratio", Within(0.05, 0.25)),
-        ],
-    ),
-    ("grip_slip", &[("acceleration_rad_s2", Within(15.0, 40.0))]),
-];
-
-/// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.
-const ROBOT_EFFECTS: [(&str, Parameters); 14] = [
-    (
-        "stribeck",
-        &[
-            ("excess_nm", Within(0.03, 0.08)),
-            ("speed_rad_s", Within(0.1, 0.5)),
-        ],
-    ),
-    (
-        "dead_zone",
-        &[("width", Within(0.02, 0.05)), ("punch", Fixed(0.0))],
-    ),
-    ("delay", &[("delay_s", Within(0.008, 0.03))]),
-    (
-        "gear_compliance",
-        &[
-            ("inertia_kg_m2", Within(1e-3, 3e-3)),
-            ("stiffness_nm_rad", Within(4.0, 12.0)),
-            ("damping_ratio", Within(0.05, 0.25)),
-        ],
-    ),
-    (
-        "gear_backlash",
-        &[
-            ("inertia_kg_m2", Within(1e-3, 3e-3)),
-            ("gap_rad", Within(0.02, 0.06)),
-        ],
-    ),
-    ("supply_sag", &[("drop_share", Within(0.2, 0.5))]),
-    ("torque_saturation", &[("limit_nm", Within(0.4, 0.8))]),
-    ("mass", &[("added_kg", Signed(0.05, 0.15))]),
-    ("armature", &[("inertia_kg_m2", Within(1e-3, 4e-3))]),
-    (
-        "cable_spring",
-        &[
-            ("stiffness_nm_rad", Within(0.1, 0.4)),
-            ("rest_angle_rad", Within(-0.5, 0.5)),
-        ],
-    ),
-    (
-        "air_drag",
-        &[("coefficient_nm_s2_rad2", Within(0.002, 0.008))],
-    ),
-    (
-        "cogging",
-        &[
-            ("amplitude_nm", Within(0.03, 0.08)),
-            ("periods_per_turn", Whole(6.0, 25.0)),
-            ("phase_rad", Within(-PI, PI)),
-        ],
-    ),
-    (
-        "base_compliance",
-        &[
-            ("stiffness_n_m", Within(500.0, 2000.0)),
-            ("mass_kg", Within(0.5, 2.0)),
-            ("damping_ratio", Within(0.05, 0.25)),
-        ],
-    ),
-    ("grip_slip", &[("acceleration_rad_s2", Within(15.0, 40.0))]),
-];
 
 /// Ids of the effects that can be hidden.
 pub const KINDS: [&str; EFFECTS.len()] = {
@@ -317,11 +120,11 @@ impl HiddenEffect {
         let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let mut within = |low: f64, high: f64| rounded(rng.random_range(low..high), 6);
         let mut draw = |draw: &Draw| match *draw {
-            Fixed(value) => value,
-            Within(low, high) => within(low, high),
-            Signed(low, high) => sign * within(low, high),
-            Factor(low, high) => rounded(1.0 + sign * within(low, high), 6),
-            Whole(low, high) => within(low, high).floor(),
+            Draw::Fixed(value) => value,
+            Draw::Within(low, high) => within(low, high),
+            Draw::Signed(low, high) => sign * within(low, high),
+            Draw::Factor(low, high) => rounded(1.0 + sign * within(low, high), 6),
+            Draw::Whole(low, high) => within(low, high).floor(),
         };
         let parameters = known.map_or(&[][..], |(_, parameters)| parameters);
         HiddenEffect {

@@ -5,10 +5,15 @@
 //! joints but never reverse them. Forces are those of absolute angles, where the equations are
 //! shortest; state, drives and friction are the joints'.
 
+mod laws;
+
 use super::encoder::Encoder;
 use super::history::History;
-use super::moving_base::{Base, BaseState, LinksOnBase};
-use super::physics::{DriveCommand, GRAVITY_M_S2, Physics};
+use super::moving_base::BaseState;
+use super::physics::DriveCommand;
+use laws::ChainForces;
+
+pub use laws::Laws;
 
 /// Links of the robot.
 pub const LINKS: usize = 3;
@@ -19,130 +24,6 @@ const STEP_S: f64 = 1.0 / 20_000.0;
 /// Rounds in which the joints' dry friction settles, and the change of speed, rad/s, that ends
 /// them.
 const ROUNDS: (usize, f64) = (60, 1e-13);
-
-/// The robot's laws: what each joint and its link is, how far the next joint is, and how it hangs.
-#[derive(Debug, Clone)]
-pub struct Laws {
-    /// Joint and link, from the bar outwards; a passive joint has a stall torque of 0.
-    pub joints: [Physics; LINKS],
-    /// Joint to next joint, m.
-    pub length_m: Joints,
-    /// Whether the rig is turned by 180 degrees about the vertical.
-    pub turned: bool,
-}
-
-/// Forces on the chain at one state.
-struct ChainForces {
-    mass: [Joints; LINKS],
-    /// What the links ask of the base.
-    on_base: LinksOnBase<LINKS>,
-    /// Torques that gravity and velocities ask of the joints at rest of acceleration, N m.
-    needed: Joints,
-}
-
-impl Laws {
-    /// Angle from the vertical by which gravity is turned, rad.
-    fn tilt(&self) -> f64 {
-        let tilt: f64 = self.joints.iter().map(|joint| joint.tilt).sum();
-        if self.turned { -tilt } else { tilt }
-    }
-
-    /// What the rig stands on, where it gives way.
-    fn base(&self) -> Option<Base> {
-        self.joints.iter().find_map(|joint| joint.base)
-    }
-
-    /// The base under the robot at rest.
-    fn sagged(&self) -> BaseState {
-        let mass = self.joints.iter().map(|link| link.mass_kg).sum();
-        BaseState::sagged(self.base(), mass, self.tilt())
-    }
-
-    /// Mass matrix, kg m^2, and needed torques in relative angles.
-    fn forces(&self, angle: &Joints, speed: &Joints) -> ChainForces {
-        let (theta, omega) = (summed(angle), summed(speed));
-        let tilt = self.tilt();
-        let mut mass = [[0.0; LINKS]; LINKS];
-        let mut needed = [0.0; LINKS];
-        let mut on_base = LinksOnBase::of_mass(self.joints.iter().map(|link| link.mass_kg).sum());
-        for (i, link) in self.joints.iter().enumerate() {
-            // The way from the bar to this link's centre of mass: its parts' lengths and angles.
-            let part = |k: usize| match k == i {
-                true => (link.com_m, theta[i] + link.com_angle),
-                false => (self.length_m[k], theta[k]),
-            };
-            for k in 0..=i {
-                let (long_k, at_k) = part(k);
-                let weight = link.mass_kg * GRAVITY_M_S2;
-                needed[k] += weight * long_k * (at_k - tilt).sin();
-                on_base.add(k, [link.mass_kg, long_k, at_k, omega[k]]);
-                for l in 0..=i {
-                    let (long_l, at_l) = part(l);
-                    let share = link.mass_kg * long_k * long_l;
-                    mass[k][l] += share * (at_k - at_l).cos();
-                    needed[k] += share * (at_k - at_l).sin() * omega[l] * omega[l];
-                }
-            }
-            mass[i][i] += link.inertia_kg_m2;
-        }
-        // A joint turns all links from its own on: torques and inertias add up from the end.
-        for k in (0..LINKS - 1).rev() {
-            needed[k] += needed[k + 1];
-            let outer = mass[k + 1];
-            for (sum, part) in mass[k].iter_mut().zip(outer) {
-                *sum += part;
-            }
-            let outer = on_base.moment[k + 1];
-            for (sum, part) in on_base.moment[k].iter_mut().zip(outer) {
-                *sum += part;
-            }
-        }
-        for row in &mut mass {
-            for l in (0..LINKS - 1).rev() {
-                row[l] += row[l + 1];
-            }
-        }
-        for (k, joint) in self.joints.iter().enumerate() {
-            mass[k][k] += joint.armature;
-        }
-        ChainForces {
-            mass,
-            on_base,
-            needed,
-        }
-    }
-
-    /// Torques of the drives at the joints, N m, at these speeds.
-    fn drives(
-        &self,
-        push: &[DriveCommand; LINKS],
-        speed: &Joints,
-        histories: &[History; LINKS],
-    ) -> Joints {
-        std::array::from_fn(|k| match self.joints[k].stall_nm > 0.0 {
-            true => {
-                let drive = |speed| self.joints[k].drive(push[k], speed);
-                histories[k].passed_on(&self.joints[k], drive, speed[k])
-            }
-            false => 0.0,
-        })
-    }
-
-    /// Torques that hold the robot still at a pose by the joints' springs and gravity, N m.
-    pub fn holding(&self, angle: &Joints) -> Joints {
-        let needed = self.forces(angle, &[0.0; LINKS]).needed;
-        std::array::from_fn(|k| needed[k] - self.joints[k].smooth(angle[k], 0.0))
-    }
-}
-
-/// Running sums: absolute from relative angles.
-fn summed(relative: &Joints) -> Joints {
-    let mut sum = 0.0;
-    relative.map(|angle| {
-        sum += angle;
-        sum
-    })
-}
 
 /// The inverse of a symmetric positive matrix of three rows, by its adjugate.
 fn inverse(m: &[Joints; LINKS]) -> [Joints; LINKS] {
@@ -317,12 +198,12 @@ impl<'a> Robot<'a> {
             .flat_map(|k| (0..LINKS).map(move |l| (k, l)))
             .map(|(k, l)| 0.5 * mass[k][l] * self.speed[k] * self.speed[l])
             .sum();
-        let theta = summed(&self.angle);
+        let theta = laws::summed(&self.angle);
         let mut joint_height = 0.0;
         let mut potential = 0.0;
         for (k, link) in self.laws.joints.iter().enumerate() {
             let height = joint_height - link.com_m * (theta[k] + link.com_angle).cos();
-            potential += link.mass_kg * GRAVITY_M_S2 * height;
+            potential += link.mass_kg * super::physics::GRAVITY_M_S2 * height;
             joint_height -= self.laws.length_m[k] * theta[k].cos();
         }
         kinetic + potential

@@ -1,7 +1,8 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
-use super::joint_plan::{ActiveEffect, JointPlan};
-use super::run::Start;
+mod readings;
+
+use super::joint_plan::JointPlan;
 use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
 use crate::log::Motion;
 use crate::model::{Angles, MeasuredSignal, Model};
@@ -145,126 +146,6 @@ impl Plant {
     /// Whether there is no joint.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
-    }
-
-    /// What the encoders read at these relative angles (joint 1 from hanging), rad in the log's
-    /// convention, before any effect with memory.
-    pub(super) fn encoded_rad(&self, joint: usize, angle_rad: &[f64]) -> f64 {
-        let true_angle = if self.absolute {
-            angle_rad[..=joint].iter().sum::<f64>() - self.zero_rad
-        } else {
-            angle_rad[joint] - self.zeros_rad[joint]
-        };
-        self.joints[joint]
-            .encode
-            .iter()
-            .fold(true_angle, |angle, e| e.effect.encode(e.values(), angle))
-    }
-
-    /// What a joint's encoder reads at a state and how fast that changes, rad and rad/s, before any
-    /// effect with memory.
-    pub fn reading(&self, joint: usize, state: &Start) -> (f64, f64) {
-        let angle_rad = self.encoded_rad(joint, &state.angle_rad);
-        (angle_rad, self.encoded_rad_s(joint, &state.speed_rad_s))
-    }
-
-    /// How fast those readings change, rad/s, at these relative speeds; of a joint whose rate alone
-    /// is logged, what its sensor reads.
-    pub(super) fn encoded_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
-        let true_speed = match self.absolute {
-            true => speed_rad_s[..=joint].iter().sum::<f64>(),
-            false => speed_rad_s[joint],
-        };
-        self.joints[joint].reading_slope() * true_speed + self.rate_bias_rad_s(joint)
-    }
-
-    /// What is read at rest as the rate of a joint whose rate alone is logged, rad/s.
-    fn rate_bias_rad_s(&self, joint: usize) -> f64 {
-        match self.rates[joint] {
-            true => self.joints[joint].rate_bias_rad_s,
-            false => 0.0,
-        }
-    }
-
-    /// What the encoders would read without the sensors that trail, where these read `reading_rad`
-    /// and the readings change by `speed_rad_s`.
-    pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
-        let ahead = |joint: usize| match self.rates[joint] {
-            true => reading_rad[joint],
-            false => reading_rad[joint] + self.trail(joint, speed_rad_s[joint]),
-        };
-        (0..self.len()).map(ahead).collect()
-    }
-
-    /// How fast they would change, rad/s, where they change by `speed_rad_s` and that by
-    /// `acceleration_rad_s2`.
-    pub fn ahead_rad_s(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
-        let rates = speed_rad_s.iter().zip(acceleration_rad_s2).enumerate();
-        let ahead =
-            |(joint, (speed, change)): (usize, (&f64, &f64))| speed + self.trail(joint, *change);
-        rates.map(ahead).collect()
-    }
-
-    /// By how much a joint's sensors trail behind what has long changed by `slope` a second.
-    fn trail(&self, joint: usize, slope: f64) -> f64 {
-        let trail = |e: &ActiveEffect| e.effect.trail_rad(e.values(), slope);
-        self.joints[joint].sense.iter().filter_map(trail).sum()
-    }
-
-    /// How fast what the log holds of each joint changes, from how fast its readings change and how
-    /// fast that does.
-    pub fn reading_slopes(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
-        let slope = |joint: usize| match self.rates[joint] {
-            true => acceleration_rad_s2[joint],
-            false => speed_rad_s[joint],
-        };
-        (0..self.len()).map(slope).collect()
-    }
-
-    /// What the log holds of a joint at a state, before any effect with memory: rad, or rad/s where
-    /// it holds the rate alone.
-    pub(super) fn encoded(&self, joint: usize, angle_rad: &[f64], speed_rad_s: &[f64]) -> f64 {
-        match self.rates[joint] {
-            true => self.encoded_rad_s(joint, speed_rad_s),
-            false => self.encoded_rad(joint, angle_rad),
-        }
-    }
-
-    /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
-    pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
-        let rates = rate_rad_s.iter().enumerate();
-        let unbiased = rates.map(|(joint, rate)| rate - self.rate_bias_rad_s(joint));
-        self.turned_rad(&unbiased.collect::<Vec<_>>())
-    }
-
-    /// By how much the joints turn, rad, where the encoders' readings change by `read_rad`.
-    pub(super) fn turned_rad(&self, read_rad: &[f64]) -> Vec<f64> {
-        let joints = self.joints.iter().zip(read_rad);
-        let mut turned: Vec<f64> = joints.map(|(plan, d)| d / plan.reading_slope()).collect();
-        if self.absolute {
-            for joint in (1..turned.len()).rev() {
-                turned[joint] -= turned[joint - 1];
-            }
-        }
-        turned
-    }
-
-    /// Relative angles (joint 1 from hanging) that make the encoders read `reading_rad`; undoes
-    /// `encoded_rad`.
-    pub fn decode_rad(&self, reading_rad: &[f64]) -> Vec<f64> {
-        let mut angles = Vec::with_capacity(reading_rad.len());
-        let mut before = self.zero_rad;
-        for (joint, &reading) in self.joints.iter().zip(reading_rad) {
-            let (at_zero, at_one) = (joint.line(0.0), joint.line(1.0));
-            let angle = (reading - at_zero) / (at_one - at_zero);
-            if self.absolute {
-                angles.push(angle + self.zero_rad - if angles.is_empty() { 0.0 } else { before });
-                before = angle + self.zero_rad;
-            } else {
-                angles.push(angle + self.zeros_rad[angles.len()]);
-            }
-        }
-        angles
     }
 }
 
