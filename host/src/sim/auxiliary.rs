@@ -61,14 +61,15 @@ impl Auxiliary {
             let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) else {
                 continue;
             };
-            let [own_angle, own_speed] = memory.0[cell];
-            if own_angle.is_nan() {
-                let light_nm = LIGHT_SHARE * plan.full_torque_nm;
-                let wound = coupling.wound_rad(holding_nm(joint), light_nm);
-                (self.place[joint], self.speed[joint]) = (angle[joint] + wound, speed[joint]);
-            } else {
-                (self.place[joint], self.speed[joint]) = (own_angle, own_speed);
-            }
+            let [wound, winding] = match memory.0[cell] {
+                [wound, _] if wound.is_nan() => {
+                    let light_nm = LIGHT_SHARE * plan.full_torque_nm;
+                    [coupling.wound_rad(holding_nm(joint), light_nm), 0.0]
+                }
+                remembered => remembered,
+            };
+            self.place[joint] = angle[joint] + wound;
+            self.speed[joint] = speed[joint] + winding;
         }
         if let Some((base, cell)) = plant.base {
             let weight_kg = plant.rig.chain.links.iter().map(|l| l.mass_kg).sum::<f64>();
@@ -84,11 +85,18 @@ impl Auxiliary {
         }
     }
 
-    /// Remembers where they are.
-    pub fn remember(&self, plant: &Plant, memory: &mut EffectMemory) {
+    /// Remembers where they are, motors by how far they are ahead of their joints: a joint that is
+    /// put elsewhere, as where a window begins, takes its motor along.
+    pub fn remember(
+        &self,
+        plant: &Plant,
+        memory: &mut EffectMemory,
+        (angle, speed): (&[f64], &[f64]),
+    ) {
         for (joint, plan) in plant.joints.iter().enumerate() {
             if let Some(cell) = plan.gear_cell {
-                memory.0[cell] = [self.place[joint], self.speed[joint]];
+                let wound = self.place[joint] - angle[joint];
+                memory.0[cell] = [wound, self.speed[joint] - speed[joint]];
             }
         }
         if let Some((_, cell)) = plant.base {

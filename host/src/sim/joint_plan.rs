@@ -120,8 +120,9 @@ impl JointPlan {
 
     /// Speed of the motor, rad/s, where the joint has this one.
     pub fn motor_speed_rad_s(&self, cells: &[MemoryCell], joint_rad_s: f64) -> f64 {
-        let own = self.gear_cell.map_or(f64::NAN, |cell| cells[cell][1]);
-        if own.is_nan() { joint_rad_s } else { own }
+        let winding_rad_s = self.gear_cell.map_or(0.0, |cell| cells[cell][1]);
+        let is_known = !winding_rad_s.is_nan();
+        joint_rad_s + if is_known { winding_rad_s } else { 0.0 }
     }
 
     /// Change of the encoder's reading per change of the joint's angle.

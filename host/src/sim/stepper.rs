@@ -136,7 +136,7 @@ impl<R: Rows> Stepper<R> {
         let Forces {
             auxiliary, memory, ..
         } = &mut self.forces;
-        auxiliary.remember(plant, memory);
+        auxiliary.remember(plant, memory, state);
         memory.remember(plant, inputs, state, step_s);
     }
 
