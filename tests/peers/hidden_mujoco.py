@@ -164,7 +164,7 @@ EFFECTS = {
             "damping_ratio": (within(0.05, 0.25), within(0.05, 0.25)),
         },
     ),
-    "grip_slip": (ANY, {"acceleration_rad_s2": (within(15.0, 40.0), within(15.0, 40.0))}),
+    "grip_slip": (ANY, {"acceleration_rad_s2": (within(40.0, 100.0), within(40.0, 100.0))}),
 }
 
 OUTSIDE = {

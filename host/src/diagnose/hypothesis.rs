@@ -129,6 +129,14 @@ impl Hypothesis {
         self.search_mean = self.search.residuals.mean_square();
     }
 
+    /// Takes the best of these fits of its set in its place, if one is better.
+    pub fn improve(&mut self, others: Vec<Hypothesis>) {
+        let best = others.into_iter().min_by(Hypothesis::by_error);
+        if let Some(best) = best.filter(|best| best.search_mean < self.search_mean) {
+            *self = best;
+        }
+    }
+
     /// This hypothesis less one of its effects, refitted from the values it has.
     pub fn without(
         &self,

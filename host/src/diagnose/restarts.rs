@@ -6,7 +6,8 @@ use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
 use super::multistart::{Valleys, scattered};
-use crate::fitting::{Candidate, FitOptions, fit};
+use crate::fitting::{Candidate, FitOptions, fit, fit_staged};
+use crate::model::Model;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -46,18 +47,36 @@ impl Evaluator<'_> {
         jumping.into_par_iter().for_each(|hypothesis| {
             let candidate = hypothesis.set[0];
             let found = candidate.starts().into_par_iter().map(|start| {
-                let mut model = self.start.clone();
-                model.effects.push(candidate.instance(&start));
+                let model = self.given_with(candidate, &start);
                 let (free, options) = (&hypothesis.search.free, FitOptions::iterations(FINISH));
                 let found = fit(&model, free, &self.search, None, options);
                 Hypothesis::new(vec![candidate], found)
             });
-            let found = found.collect::<Vec<_>>().into_iter();
-            if let Some(best) = found.min_by(Hypothesis::by_error)
-                && best.search_mean < hypothesis.search_mean
-            {
-                *hypothesis = best;
-            }
+            hypothesis.improve(found.collect());
         });
+    }
+
+    /// The same for the one that leads, from shorter windows to longer ones: where even the windows
+    /// of the search have false valleys.
+    pub fn restage_leader(&self, hypotheses: &mut [Hypothesis]) {
+        let leader = hypotheses.first_mut();
+        let Some(leader) = leader.filter(|h| h.set.len() == 1 && h.set[0].jumps()) else {
+            return;
+        };
+        let candidate = leader.set[0];
+        let found = candidate.starts().into_par_iter().map(|start| {
+            let model = self.given_with(candidate, &start);
+            let found = fit_staged(&model, &leader.search.free, &self.search);
+            Hypothesis::new(vec![candidate], found)
+        });
+        let found = found.collect();
+        leader.improve(found);
+    }
+
+    /// The model as it came, with an effect at these values.
+    fn given_with(&self, candidate: Candidate, values: &[f64]) -> Model {
+        let mut model = self.start.clone();
+        model.effects.push(candidate.instance(values));
+        model
     }
 }

@@ -137,6 +137,7 @@ impl Evaluator<'_> {
         if !hypotheses.iter().any(Hypothesis::follows_windows) {
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
+            self.restage_leader(&mut hypotheses);
         }
         self.choose_horizon(&hypotheses);
         self.evaluated(hypotheses)

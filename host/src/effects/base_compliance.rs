@@ -96,10 +96,6 @@ impl Effect for BaseCompliance {
         &INFO
     }
 
-    fn difference(&self) -> f64 {
-        2e-3
-    }
-
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.base_spring = BaseSpring::new(values[1], values[0], values[2]);
     }
