@@ -104,7 +104,7 @@ impl Evaluator<'_> {
     fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
         self.steps.begin(ALONE, BASE_STEPS);
         let mut sizes = vec![self.singles()];
-        let mut best = self.accepted(&self.base, &sizes[0]).cloned();
+        let mut best = self.smallest_that_pays(&sizes);
         for size in 2..=self.most_effects {
             // Where nothing but noise is left, there is nothing for more effects to explain.
             if self.at_noise_floor(best.as_ref().unwrap_or(&self.base)) {
@@ -116,18 +116,57 @@ impl Evaluator<'_> {
             if larger.is_empty() {
                 break;
             }
-            let reference = best.as_ref().unwrap_or(&self.base);
-            let better = self.accepted(reference, &larger).cloned();
             sizes.push(larger);
-            match better {
-                Some(better) => best = Some(better),
-                // Nothing gained by one more: two more may still, but only from a start without
-                // any.
-                None if best.is_some() || size > 2 => break,
-                None => {}
+            let before = best.as_ref().map(|best| best.set.len());
+            best = self.smallest_that_pays(&sizes);
+            let now = best.as_ref().map(|best| best.set.len());
+            // Nothing gained by one more: two more may still, but only from a start without any.
+            if now == before && (before.is_some() || size > 2) {
+                break;
             }
         }
+        best = self.pruned(best, &mut sizes);
         (best, sizes.into_iter().flatten().collect())
+    }
+
+    /// The smallest set that pays: one more effect must bring something over the best of fewer.
+    fn smallest_that_pays(&self, sizes: &[Vec<Hypothesis>]) -> Option<Hypothesis> {
+        let mut best: Option<&Hypothesis> = None;
+        for of_size in sizes {
+            let reference = best.unwrap_or(&self.base);
+            best = self.accepted(reference, of_size).or(best);
+        }
+        best.cloned()
+    }
+
+    /// The set that pays once each of its effects was taken out of it and the others refitted from
+    /// where they are: one that helped another out of a false valley is not missing itself.
+    fn pruned(
+        &self,
+        mut best: Option<Hypothesis>,
+        sizes: &mut [Vec<Hypothesis>],
+    ) -> Option<Hypothesis> {
+        while let Some(chosen) = best.as_ref().filter(|best| best.set.len() > 1) {
+            let count = chosen.set.len();
+            let rests = (0..count).into_par_iter().map(|leaving| {
+                let mut rest = chosen.without(leaving, &self.base, &self.search, FINISH);
+                self.evaluate(&mut rest);
+                rest
+            });
+            let fewer = &mut sizes[count - 2];
+            for rest in rests.collect::<Vec<_>>() {
+                match fewer.iter_mut().find(|known| known.adds(&rest.set)) {
+                    Some(known) if known.deciding_mean() <= rest.deciding_mean() => {}
+                    Some(known) => *known = rest,
+                    None => fewer.push(rest),
+                }
+            }
+            best = self.smallest_that_pays(sizes);
+            if best.as_ref().is_some_and(|best| best.set.len() >= count) {
+                break;
+            }
+        }
+        best
     }
 
     fn singles(&mut self) -> Vec<Hypothesis> {
@@ -243,3 +282,6 @@ impl Evaluator<'_> {
         self.evaluated(self.successive_halving(hypotheses))
     }
 }
+
+#[cfg(test)]
+mod tests;

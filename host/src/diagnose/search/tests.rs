@@ -1,0 +1,42 @@
+use super::*;
+use crate::challenge::{Motions, bench};
+use crate::log::{LogRequest, read};
+use std::path::Path;
+
+/// An arm that lacks viscous friction, and a pair that was found without ever trying it alone.
+#[test]
+fn an_effect_that_is_not_needed_leaves_the_set() {
+    let bench = bench(Motions::Arm, 1, &["viscous"]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let model = Model::parse(&bench.model_toml, Path::new("nominal.toml")).unwrap();
+    let (mut training, mut held_out) = (Vec::new(), Vec::new());
+    for log in &bench.logs {
+        let file = folder.path().join(&log.name);
+        std::fs::write(&file, &log.csv).unwrap();
+        let motions = read(&[LogRequest::whole(file)], &model.log).unwrap();
+        let of = if log.held_out {
+            &mut held_out
+        } else {
+            &mut training
+        };
+        of.extend(motions);
+    }
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let candidate = |id: &str| {
+        let mut known = evaluator.candidates.iter();
+        *known.find(|c| c.effect.info().id == id).unwrap()
+    };
+    let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
+    let needed = (evaluator.base).with(candidate("viscous"), &[0.02], search, finish);
+    let idle = candidate("cogging");
+    let mut pair = needed.with(idle, &[0.001, 10.0, 0.0], search, finish);
+    evaluator.evaluate(&mut pair);
+
+    assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
+    let mut sizes = [Vec::new(), vec![pair.clone()]];
+    let left = evaluator.pruned(Some(pair), &mut sizes).unwrap();
+    assert_eq!(left.names(), ["viscous@1"]);
+    let alone: Vec<_> = sizes[0].iter().map(Hypothesis::names).collect();
+    assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
+}
