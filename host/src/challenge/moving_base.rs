@@ -34,8 +34,8 @@ impl<const N: usize> LinksOnBase<N> {
         }
     }
 
-    /// Adds a mass `long` m from joint `k`, in the direction `at` rad from hanging, that turns about
-    /// it by `turning` rad/s.
+    /// Adds a mass `long` m from joint `k`, in the direction `at` rad from hanging, that turns
+    /// about it by `turning` rad/s.
     pub fn add(&mut self, k: usize, [mass, long, at, turning]: [f64; 4]) {
         let (sin, cos) = at.sin_cos();
         self.moment[k][0] += mass * long * cos;

@@ -19,7 +19,8 @@ static INFO: EffectInfo = EffectInfo {
     parameters: &[Parameter {
         key: "acceleration_rad_s2",
         unit: "rad/s^2",
-        meaning: "largest acceleration that the grip passes on: its torque over the shaft's inertia",
+        meaning: "largest acceleration that the grip passes on: its torque over the shaft's \
+         inertia",
         off: Some(f64::INFINITY),
         typical: (8.0, 200.0),
         bounds: (1.0, 1e5),

@@ -282,8 +282,8 @@ fn compare(cm5: &mut VirtualCm5, plan: &Plan, random: &mut ChaCha8Rng) -> usize 
     none
 }
 
-/// Both laws, by the host's attitude and by the gyro, straight and crooked; each begins at rest when
-/// it is armed again.
+/// Both laws, by the host's attitude and by the gyro, straight and crooked; each begins at rest
+/// when it is armed again.
 #[test]
 fn the_commands_are_those_of_the_law() {
     for law in [state_plan(), observer_plan()] {
