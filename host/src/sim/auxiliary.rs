@@ -72,9 +72,9 @@ impl Auxiliary {
             self.speed[joint] = speed[joint] + winding;
         }
         if let Some((base, cell)) = plant.base {
-            let weight_kg = plant.rig.chain.links.iter().map(|l| l.mass_kg).sum::<f64>();
+            let mass_kg = plant.rig.chain.links.iter().map(|l| l.mass_kg).sum::<f64>();
             for k in 0..2 {
-                let rests_m = -weight_kg * plant.base_m_s2[k] / base.stiffness_n_m;
+                let rests_m = -mass_kg * plant.base_m_s2[k] / base.stiffness_n_m;
                 let at = match memory.0[cell + k] {
                     [place, _] if place.is_nan() => [rests_m, 0.0],
                     remembered => remembered,
