@@ -12,8 +12,8 @@ pub(super) const UNKNOWN: MemoryCell = [f64::NAN; 2];
 /// Share of a motor's torque below which friction may leave it anywhere between the flanks.
 const LIGHT_SHARE: f64 = 0.01;
 
-/// State of the motors, one a joint, and of the base, sideways and upward; idle where they are
-/// rigid, empty where all are.
+/// State of the motors, one a joint, idle where it is rigid, and of a base that gives way, sideways
+/// and upward; empty where all are rigid.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Auxiliary {
     /// Angles of motors as seen at their joints, rad; displacement of the base, m.
@@ -33,6 +33,12 @@ impl Auxiliary {
             speed: vec![0.0; bodies],
             slope: vec![0.0; bodies],
         }
+    }
+
+    /// Takes over where those are and how fast they move.
+    pub fn copy_motion(&mut self, from: &Auxiliary) {
+        self.place.copy_from_slice(&from.place);
+        self.speed.copy_from_slice(&from.speed);
     }
 
     /// Where the base is and how fast it moves, m and m/s.

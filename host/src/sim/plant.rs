@@ -123,13 +123,13 @@ impl Plant {
         self.auxiliary_step_s.is_finite()
     }
 
-    /// How many bodies move beside the links: a motor a joint, and the base in two directions; none
-    /// where all are rigid.
+    /// How many bodies move beside the links: a motor a joint, and a base that gives way in two
+    /// directions; none where all are rigid.
     pub(super) fn auxiliary_bodies(&self) -> usize {
-        if self.has_auxiliary() {
-            self.len() + 2
-        } else {
-            0
+        match (self.has_auxiliary(), &self.base) {
+            (false, _) => 0,
+            (true, None) => self.len(),
+            (true, Some(_)) => self.len() + 2,
         }
     }
 

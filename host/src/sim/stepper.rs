@@ -5,6 +5,7 @@
 //! speed crosses zero ends the step there, and so does a held joint where the torque that holds it
 //! exceeds the breakaway torque; it then slides.
 
+use super::auxiliary::Auxiliary;
 use super::drive::DriveInput;
 use super::forces::{At, Forces};
 use super::memory::EffectMemory;
@@ -49,10 +50,12 @@ pub(super) struct Stepper<R: Rows> {
     contact: R::Of<Contact>,
     forces: Forces<R>,
     runge_kutta: RungeKutta<R::Of<f64>>,
-    /// The same for joints and the bodies beside the links together.
+    /// The same for joints and the bodies beside the links together, and their places and speeds.
     with_auxiliary: RungeKutta<Vec<f64>>,
+    together: [Vec<f64>; 2],
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
+    start_auxiliary: Auxiliary,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
     /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
@@ -66,15 +69,18 @@ impl<R: Rows> Stepper<R> {
     pub fn new(plant: &Plant, angle: &[f64], speed: &[f64]) -> Self {
         let n = plant.len();
         let zeros = || R::filled(0.0, n);
+        let together = vec![0.0; n + plant.auxiliary_bodies()];
         let mut stepper: Self = Stepper {
             angle: zeros(),
             speed: zeros(),
             contact: R::filled(Contact::Free, n),
             forces: Forces::new(plant),
             runge_kutta: RungeKutta::new(zeros()),
-            with_auxiliary: RungeKutta::new(vec![0.0; n + plant.auxiliary_bodies()]),
+            with_auxiliary: RungeKutta::new(together.clone()),
+            together: [together.clone(), together],
             start_angle: zeros(),
             start_speed: zeros(),
+            start_auxiliary: Auxiliary::new(plant),
             slope: zeros(),
             excess: zeros(),
             obeyed: Vec::new(),
@@ -150,16 +156,14 @@ impl<R: Rows> Stepper<R> {
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
-            let auxiliary = (plant.has_auxiliary()).then(|| self.forces.auxiliary.clone());
+            self.start_auxiliary.copy_motion(&self.forces.auxiliary);
             self.step(plant, inputs, left);
             let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
-            if let Some(auxiliary) = auxiliary {
-                self.forces.auxiliary = auxiliary;
-            }
+            self.forces.auxiliary.copy_motion(&self.start_auxiliary);
             self.step(plant, inputs, event.share * left);
             if event.contact == Contact::Held {
                 self.speed[event.joint] = 0.0;

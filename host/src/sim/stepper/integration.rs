@@ -39,9 +39,12 @@ impl<R: Rows> Stepper<R> {
     fn step_with_auxiliary(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
         let joints = contact.len();
-        let mut place = [self.angle.as_ref(), &forces.auxiliary.place].concat();
-        let mut speed = [self.speed.as_ref(), &forces.auxiliary.speed].concat();
-        (self.with_auxiliary).step(&mut place, &mut speed, h, |place, speed, slope| {
+        let [place, speed] = &mut self.together;
+        place[..joints].copy_from_slice(self.angle.as_ref());
+        place[joints..].copy_from_slice(&forces.auxiliary.place);
+        speed[..joints].copy_from_slice(self.speed.as_ref());
+        speed[joints..].copy_from_slice(&forces.auxiliary.speed);
+        (self.with_auxiliary).step(place, speed, h, |place, speed, slope| {
             let (angle, own_place) = place.split_at(joints);
             let (speed, own_speed) = speed.split_at(joints);
             let (slope, own_slope) = slope.split_at_mut(joints);
@@ -56,12 +59,10 @@ impl<R: Rows> Stepper<R> {
             hold(slope, contact);
             own_slope.copy_from_slice(&forces.auxiliary.slope);
         });
-        let (angle, own_place) = place.split_at(joints);
-        let (joint_speed, own_speed) = speed.split_at(joints);
-        self.angle.as_mut().copy_from_slice(angle);
-        self.speed.as_mut().copy_from_slice(joint_speed);
-        forces.auxiliary.place.copy_from_slice(own_place);
-        forces.auxiliary.speed.copy_from_slice(own_speed);
+        self.angle.as_mut().copy_from_slice(&place[..joints]);
+        self.speed.as_mut().copy_from_slice(&speed[..joints]);
+        forces.auxiliary.place.copy_from_slice(&place[joints..]);
+        forces.auxiliary.speed.copy_from_slice(&speed[joints..]);
     }
 }
 
