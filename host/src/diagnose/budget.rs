@@ -27,6 +27,9 @@ pub(super) const STARTS: usize = 100;
 /// Samples times random starts of one candidate, at most.
 pub(super) const START_SAMPLES: usize = 20_000;
 pub(super) const START_ITERATIONS: usize = 30;
+/// Iterations that a fit from each start value gets where a law jumps, and how many go on.
+pub(super) const RESTART_LOOK: usize = 8;
+pub(super) const RESTARTS: usize = 2;
 
 /// Steps of progress are short fits. To evaluate a hypothesis takes as long as so many:
 pub(super) const EVALUATION_STEPS: usize = 2;

@@ -1,13 +1,13 @@
 //! Fits of candidates from other starts, where false valleys are many: few samples, or a law that
 //! jumps.
 
-use super::budget::{FINISH, START_ITERATIONS};
+use super::budget::{FINISH, RESTART_LOOK, RESTARTS, START_ITERATIONS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
 use super::multistart::{Valleys, scattered};
-use crate::fitting::{Candidate, FitOptions, fit, fit_staged};
-use crate::model::Model;
+use crate::fitting::{Candidate, Fit, FitOptions, fit, fit_through_stages};
+use crate::model::{Model, ParameterPath};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -42,41 +42,51 @@ impl Evaluator<'_> {
     /// effect's start values: what is missing has bent the base values, and a fit that starts from
     /// them may end in a false valley.
     pub fn restart_jumping(&self, hypotheses: &mut [Hypothesis]) {
-        let alone = |h: &&mut Hypothesis| h.set.len() == 1 && h.set[0].jumps();
-        let jumping: Vec<&mut Hypothesis> = hypotheses.iter_mut().filter(alone).collect();
+        let jumping: Vec<&mut Hypothesis> =
+            hypotheses.iter_mut().filter(|h| jumps_alone(h)).collect();
         jumping.into_par_iter().for_each(|hypothesis| {
-            let candidate = hypothesis.set[0];
-            let found = candidate.starts().into_par_iter().map(|start| {
-                let model = self.given_with(candidate, &start);
-                let (free, options) = (&hypothesis.search.free, FitOptions::iterations(FINISH));
-                let found = fit(&model, free, &self.search, None, options);
-                Hypothesis::new(vec![candidate], found)
+            self.restart(hypothesis, |model, free, options| {
+                fit(model, free, &self.search, None, options)
             });
-            hypothesis.improve(found.collect());
         });
     }
 
     /// The same for the one that leads, from shorter windows to longer ones: where even the windows
     /// of the search have false valleys.
-    pub fn restage_leader(&self, hypotheses: &mut [Hypothesis]) {
-        let leader = hypotheses.first_mut();
-        let Some(leader) = leader.filter(|h| h.set.len() == 1 && h.set[0].jumps()) else {
-            return;
-        };
-        let candidate = leader.set[0];
-        let found = candidate.starts().into_par_iter().map(|start| {
-            let model = self.given_with(candidate, &start);
-            let found = fit_staged(&model, &leader.search.free, &self.search);
-            Hypothesis::new(vec![candidate], found)
-        });
-        let found = found.collect();
-        leader.improve(found);
+    pub fn restage_leader(&self, sorted: &mut [Hypothesis]) {
+        if let Some(leader) = sorted.first_mut().filter(|h| jumps_alone(h)) {
+            self.restart(leader, |model, free, options| {
+                fit_through_stages(model, free, &self.search, options)
+            });
+        }
     }
 
-    /// The model as it came, with an effect at these values.
-    fn given_with(&self, candidate: Candidate, values: &[f64]) -> Model {
-        let mut model = self.start.clone();
-        model.effects.push(candidate.instance(values));
-        model
+    /// A fit of the candidate from each of its start values gets a look; the best go on to the end,
+    /// and take its place if one is better.
+    fn restart(
+        &self,
+        hypothesis: &mut Hypothesis,
+        fitted: impl Fn(&Model, &[ParameterPath], FitOptions) -> Fit + Sync,
+    ) {
+        let candidate = hypothesis.set[0];
+        let starts = candidate.starts().into_par_iter();
+        let looks = starts.map(|start| {
+            let mut model = self.start.clone();
+            model.effects.push(candidate.instance(&start));
+            let options = FitOptions::iterations(RESTART_LOOK).rough();
+            let found = fitted(&model, &hypothesis.search.free, options);
+            Hypothesis::new(vec![candidate], found)
+        });
+        let mut looks: Vec<Hypothesis> = looks.collect();
+        looks.sort_by(Hypothesis::by_error);
+        looks.truncate(RESTARTS);
+        let finish = FitOptions::iterations(FINISH - RESTART_LOOK);
+        (looks.par_iter_mut()).for_each(|look| look.resume(&self.search, finish));
+        hypothesis.improve(looks);
     }
+}
+
+/// Whether this is one effect alone, whose law jumps.
+fn jumps_alone(hypothesis: &Hypothesis) -> bool {
+    hypothesis.set.len() == 1 && hypothesis.set[0].jumps()
 }

@@ -56,6 +56,6 @@ pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};
 pub use residual::{Residuals, predicted, residuals};
 pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};
-pub use staged::fit_staged;
+pub use staged::{fit_staged, fit_through_stages};
 pub(crate) use student::quantile_975;
 pub use windows::{MotionWindow, in_windows};

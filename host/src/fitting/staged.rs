@@ -81,10 +81,8 @@ pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit 
     if mean.sqrt() < AT_FLOOR {
         return plain;
     }
-    let near = stages(model, free, data);
-    let nodes = Some(&near.nodes[..]);
-    let mut staged = fit(&near.model, free, data, nodes, FitOptions::default());
-    staged.simulations += near.simulations + plain.simulations;
+    let mut staged = fit_through_stages(model, free, data, FitOptions::default());
+    staged.simulations += plain.simulations;
     if staged.residuals.cost() < plain.residuals.cost() {
         staged
     } else {
@@ -93,6 +91,19 @@ pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit 
             ..plain
         }
     }
+}
+
+/// Fits from where the stages of short windows end.
+pub fn fit_through_stages(
+    model: &Model,
+    free: &[ParameterPath],
+    data: &FitData,
+    options: FitOptions,
+) -> Fit {
+    let near = stages(model, free, data);
+    let mut found = fit(&near.model, free, data, Some(&near.nodes), options);
+    found.simulations += near.simulations;
+    found
 }
 
 #[cfg(test)]
