@@ -104,6 +104,7 @@ impl Evaluator<'_> {
     fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
         self.steps.begin(ALONE, BASE_STEPS);
         let mut sizes = vec![self.singles()];
+        let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
         for size in 2..=self.most_effects {
             // Where nothing but noise is left, there is nothing for more effects to explain.
@@ -118,14 +119,13 @@ impl Evaluator<'_> {
             }
             sizes.push(larger);
             let before = best.as_ref().map(|best| best.set.len());
-            best = self.smallest_that_pays(&sizes);
+            best = self.pruned(&mut sizes, &mut taken_apart);
             let now = best.as_ref().map(|best| best.set.len());
             // Nothing gained by one more: two more may still, but only from a start without any.
             if now == before && (before.is_some() || size > 2) {
                 break;
             }
         }
-        best = self.pruned(best, &mut sizes);
         (best, sizes.into_iter().flatten().collect())
     }
 
@@ -139,34 +139,43 @@ impl Evaluator<'_> {
         best.cloned()
     }
 
-    /// The set that pays once each of its effects was taken out of it and the others refitted from
-    /// where they are: one that helped another out of a false valley is not missing itself.
+    /// The smallest set that pays once each effect was taken out of that set, and out of the best of
+    /// every size that leaves less than all smaller ones: what helped another out of a false valley
+    /// is not missing itself.
     fn pruned(
         &self,
-        mut best: Option<Hypothesis>,
         sizes: &mut [Vec<Hypothesis>],
+        taken_apart: &mut Vec<Vec<Candidate>>,
     ) -> Option<Hypothesis> {
-        while let Some(chosen) = best.as_ref().filter(|best| best.set.len() > 1) {
-            let count = chosen.set.len();
-            let rests = (0..count).into_par_iter().map(|leaving| {
-                let mut rest = chosen.without(leaving, &self.base, &self.search, FINISH);
-                self.evaluate(&mut rest);
-                rest
+        loop {
+            let best = self.smallest_that_pays(sizes);
+            let whole = best.iter().chain(leaders(sizes)).find(|whole| {
+                let known = taken_apart.iter().any(|known| whole.adds(known));
+                whole.set.len() > 1 && !known
             });
-            let fewer = &mut sizes[count - 2];
-            for rest in rests.collect::<Vec<_>>() {
-                match fewer.iter_mut().find(|known| known.adds(&rest.set)) {
-                    Some(known) if known.deciding_mean() <= rest.deciding_mean() => {}
-                    Some(known) => *known = rest,
-                    None => fewer.push(rest),
-                }
-            }
-            best = self.smallest_that_pays(sizes);
-            if best.as_ref().is_some_and(|best| best.set.len() >= count) {
-                break;
+            let Some(whole) = whole.cloned() else {
+                return best;
+            };
+            self.take_apart(&whole, &mut sizes[whole.set.len() - 2]);
+            taken_apart.push(whole.set);
+        }
+    }
+
+    /// Refits the set less each of its effects from the values it has, and puts what that improves
+    /// on, or adds, among the sets of that size.
+    fn take_apart(&self, whole: &Hypothesis, fewer: &mut Vec<Hypothesis>) {
+        let rests = (0..whole.set.len()).into_par_iter().map(|leaving| {
+            let mut rest = whole.without(leaving, &self.base, &self.search, FINISH);
+            self.evaluate(&mut rest);
+            rest
+        });
+        for rest in rests.collect::<Vec<_>>() {
+            match fewer.iter_mut().find(|known| known.adds(&rest.set)) {
+                Some(known) if known.deciding_mean() <= rest.deciding_mean() => {}
+                Some(known) => *known = rest,
+                None => fewer.push(rest),
             }
         }
-        best
     }
 
     fn singles(&mut self) -> Vec<Hypothesis> {
@@ -281,6 +290,20 @@ impl Evaluator<'_> {
         }
         self.evaluated(self.successive_halving(hypotheses))
     }
+}
+
+/// The best of every size, the largest first, that leaves less than all of fewer effects do.
+fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
+    let mut least = f64::INFINITY;
+    let leaders = sizes.iter().filter_map(move |of_size| {
+        let by_error =
+            |a: &&Hypothesis, b: &&Hypothesis| a.deciding_mean().total_cmp(&b.deciding_mean());
+        let leader = of_size.iter().min_by(by_error)?;
+        let leads = leader.deciding_mean() < least;
+        least = least.min(leader.deciding_mean());
+        leads.then_some(leader)
+    });
+    leaders.collect::<Vec<_>>().into_iter().rev()
 }
 
 #[cfg(test)]

@@ -34,8 +34,8 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
     evaluator.evaluate(&mut pair);
 
     assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
-    let mut sizes = [Vec::new(), vec![pair.clone()]];
-    let left = evaluator.pruned(Some(pair), &mut sizes).unwrap();
+    let mut sizes = [Vec::new(), vec![pair]];
+    let left = evaluator.pruned(&mut sizes, &mut Vec::new()).unwrap();
     assert_eq!(left.names(), ["viscous@1"]);
     let alone: Vec<_> = sizes[0].iter().map(Hypothesis::names).collect();
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
