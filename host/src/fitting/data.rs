@@ -1,8 +1,9 @@
 //! Motions cut into windows, with the weight of each joint's residual.
 
 use super::assumed::{AssumedStates, assumed};
+use super::cut::cut;
 use super::growth::stable_horizon;
-use super::horizon::{Horizon, Window, cut};
+use super::horizon::{Horizon, Window};
 use super::node::{Node, StartGuess};
 use super::noise::noise;
 use super::windows::MotionWindow;
@@ -78,7 +79,7 @@ impl FitData {
         });
         let (stable, assumed): (Vec<Horizon>, Vec<AssumedStates>) = prepared.unzip();
         FitData {
-            windows: cut(&motions, &stable, horizon),
+            windows: cut(&motions, &stable, &sigma, horizon),
             motions,
             signals,
             sigma,
@@ -99,7 +100,7 @@ impl FitData {
     /// The same motions and weights cut at another horizon.
     pub fn recut(&self, horizon: Horizon) -> FitData {
         FitData {
-            windows: cut(&self.motions, &self.stable, horizon),
+            windows: cut(&self.motions, &self.stable, &self.sigma, horizon),
             ..self.clone()
         }
     }

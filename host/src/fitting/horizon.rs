@@ -1,6 +1,5 @@
 //! For how long a model runs uncorrected, and the windows that follow from it.
 
-use crate::log::Motion;
 use std::ops::Range;
 
 /// How long the model runs at most before it starts again from a state fitted to the measurement.
@@ -41,24 +40,4 @@ pub struct Window {
     pub motion: usize,
     /// Its samples.
     pub samples: Range<usize>,
-}
-
-/// Windows as long as the horizon and the motion's own, in which its errors stay small, allow.
-pub(super) fn cut(motions: &[Motion], stable: &[Horizon], horizon: Horizon) -> Vec<Window> {
-    let mut windows = Vec::new();
-    for (motion, (log, stable)) in motions.iter().zip(stable).enumerate() {
-        let pieces = match stable.shorter(horizon) {
-            Horizon::Whole => 1,
-            Horizon::Seconds(seconds) => {
-                let most = (log.len() / 5).max(1);
-                ((log.duration_s() / seconds).round() as usize).clamp(1, most)
-            }
-        };
-        let edge = |piece: usize| piece * log.len() / pieces;
-        windows.extend((0..pieces).map(|piece| Window {
-            motion,
-            samples: edge(piece)..edge(piece + 1),
-        }));
-    }
-    windows
 }

@@ -12,6 +12,7 @@ mod broyden;
 mod candidate;
 mod cluster;
 mod covariance;
+mod cut;
 mod data;
 mod drift;
 mod error_reduction;

@@ -31,7 +31,7 @@ const REACH_DEVIATIONS: f64 = 6.0;
 /// smooth the log: smoothing and rounding leave slow errors that neighbouring samples share.
 const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// Half the span of the samples that determine a window's start.
-const REACH_S: f64 = 0.06;
+pub(super) const REACH_S: f64 = 0.06;
 /// Standard deviation of a speed of which nothing is known, rad/s.
 const SPEED_UNKNOWN_RAD_S: f64 = 2.0;
 
@@ -58,8 +58,7 @@ impl StartGuess {
                 }
                 continue;
             }
-            let [wide, near] = [REACH_S, REACH_S / 2.0]
-                .map(|reach| LocalParabola::around(time, position, first, reach));
+            let [wide, near] = LocalParabola::wide_and_near(time, position, first);
             for (order, least) in LEAST_DEVIATIONS.into_iter().enumerate() {
                 let at = order * joints + joint;
                 unknowns[at] = wide.derivatives[order];
@@ -132,6 +131,38 @@ impl Node {
     }
 }
 
+/// What the samples around one say of a window that begins there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StartDoubt {
+    /// How much farther than noise alone they lie from a parabola, in standard deviations of what
+    /// noise does; of the joint of which they lie farthest. Joints whose angle is not measured say
+    /// nothing.
+    pub doubt: f64,
+    /// How many joints they show at rest, which may be the reading's alone: one that hangs within
+    /// its play tells nothing of the joint.
+    pub at_rest: usize,
+}
+
+impl StartDoubt {
+    pub fn at(motion: &Motion, sigma: &[f64], at: usize) -> StartDoubt {
+        let mut found = StartDoubt {
+            doubt: 0.0,
+            at_rest: 0,
+        };
+        for (position, sigma) in motion.position_rad.iter().zip(sigma) {
+            let parabola = LocalParabola::around(&motion.time_s, position, at, REACH_S);
+            let usual = parabola.spare as f64;
+            if usual > 0.0 {
+                let left = parabola.left / sigma.powi(2);
+                found.doubt = found.doubt.max((left - usual) / (2.0 * usual).sqrt());
+                let deviation = sigma * parabola.gains[1];
+                found.at_rest += usize::from(parabola.derivatives[1].abs() < 3.0 * deviation);
+            }
+        }
+        found
+    }
+}
+
 /// Angle, speed and acceleration of a joint whose angle is not measured, each with its standard
 /// deviation; `rate` is the noise of its rate, and the rate if that is measured.
 fn assumed_start(
@@ -150,8 +181,7 @@ fn assumed_start(
             (0.0, acceleration),
         ];
     };
-    let [wide, near] =
-        [REACH_S, REACH_S / 2.0].map(|reach| LocalParabola::around(time_s, rate, first, reach));
+    let [wide, near] = LocalParabola::wide_and_near(time_s, rate, first);
     let of = |order: usize| {
         let deviation = LEAST_DEVIATIONS[order + 1]
             + sigma * wide.gains[order]
@@ -166,9 +196,17 @@ fn assumed_start(
 struct LocalParabola {
     derivatives: [f64; 3],
     gains: [f64; 3],
+    /// Sum of the squares that it leaves, and how many samples there are beyond three.
+    left: f64,
+    spare: usize,
 }
 
 impl LocalParabola {
+    /// Around sample `at`, and around it through half as many samples.
+    fn wide_and_near(time_s: &[f64], values: &[f64], at: usize) -> [Self; 2] {
+        [REACH_S, REACH_S / 2.0].map(|reach| LocalParabola::around(time_s, values, at, reach))
+    }
+
     /// Fitted around sample `at` to its neighbours within `reach` seconds: at least 5 samples that
     /// were measured, where there are as many.
     fn around(time_s: &[f64], values: &[f64], at: usize, reach: f64) -> Self {
@@ -192,16 +230,21 @@ impl LocalParabola {
         }
         let mut normal = Matrix3::<f64>::identity() * 1e-9;
         let mut right = Vector3::<f64>::zeros();
-        for k in (first..=last).filter(|&k| values[k].is_finite()) {
+        let measured = || (first..=last).filter(|&k| values[k].is_finite());
+        let row = |k: usize| {
             let x = (time_s[k] - time_s[at]) / reach;
-            let row = Vector3::new(1.0, x, x * x);
-            normal += row * row.transpose();
-            right += row * values[k];
+            Vector3::new(1.0, x, x * x)
+        };
+        for k in measured() {
+            normal += row(k) * row(k).transpose();
+            right += row(k) * values[k];
         }
         let Some(inverse) = normal.try_inverse() else {
             return LocalParabola {
                 derivatives: [values[at], 0.0, 0.0],
                 gains: [1.0, 1.0 / reach, 1.0 / reach.powi(2)],
+                left: 0.0,
+                spare: 0,
             };
         };
         let c = inverse * right;
@@ -213,6 +256,10 @@ impl LocalParabola {
                 deviation(1) / reach,
                 2.0 * deviation(2) / reach.powi(2),
             ],
+            left: measured()
+                .map(|k| (values[k] - c.dot(&row(k))).powi(2))
+                .sum(),
+            spare: measured().count().saturating_sub(3),
         }
     }
 }
