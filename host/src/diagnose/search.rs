@@ -139,9 +139,9 @@ impl Evaluator<'_> {
         best.cloned()
     }
 
-    /// The smallest set that pays once each effect was taken out of that set, and out of the best of
-    /// every size that leaves less than all smaller ones: what helped another out of a false valley
-    /// is not missing itself.
+    /// The smallest set that pays once each effect was taken out of that set, and out of the best
+    /// of every size that leaves less than all smaller ones: what helped another out of a false
+    /// valley is not missing itself.
     fn pruned(
         &self,
         sizes: &mut [Vec<Hypothesis>],
