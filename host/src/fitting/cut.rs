@@ -16,14 +16,8 @@ const LOOKED_AT: usize = 41;
 /// By how much, at most, in parts of a window.
 const MOVED: f64 = 0.3;
 
-/// Windows as long as the horizon and the motion's own, in which its errors stay small, allow;
-/// `sigma` is each joint's noise.
-pub(super) fn cut(
-    motions: &[Motion],
-    stable: &[Horizon],
-    sigma: &[f64],
-    horizon: Horizon,
-) -> Vec<Window> {
+/// Windows as long as the horizon and the motion's own, in which its errors stay small, allow.
+pub(super) fn cut_evenly(motions: &[Motion], stable: &[Horizon], horizon: Horizon) -> Vec<Window> {
     let mut windows = Vec::new();
     for (motion, (log, stable)) in motions.iter().zip(stable).enumerate() {
         let pieces = match stable.shorter(horizon) {
@@ -33,20 +27,38 @@ pub(super) fn cut(
                 ((log.duration_s() / seconds).round() as usize).clamp(1, most)
             }
         };
-        let most = (MOVED * log.len() as f64 / pieces as f64) as usize;
+        let edge = |piece: usize| piece * log.len() / pieces;
+        windows.extend((0..pieces).map(|piece| Window {
+            motion,
+            samples: edge(piece)..edge(piece + 1),
+        }));
+    }
+    windows
+}
+
+/// The same, begun where the samples tell the start; `sigma` is each joint's noise.
+pub(super) fn cut(
+    motions: &[Motion],
+    stable: &[Horizon],
+    sigma: &[f64],
+    horizon: Horizon,
+) -> Vec<Window> {
+    let mut windows = cut_evenly(motions, stable, horizon);
+    for of_motion in windows.chunk_by_mut(|a, b| a.motion == b.motion) {
+        let log = &motions[of_motion[0].motion];
+        let pieces = of_motion.len() as f64;
+        let most = (MOVED * log.len() as f64 / pieces) as usize;
         // Less far than a knock is seen, no place is better; nor where the noise is so low that
         // every swing is more than a parabola.
-        let far = MOVED * log.duration_s() / (pieces as f64) >= REACH_S;
-        let moves = pieces > 1 && far && usual_doubt(log, sigma) <= DOUBTFUL;
-        let edge = |piece: usize| match piece * log.len() / pieces {
-            even if moves && 0 < piece && piece < pieces => certain_start(log, sigma, even, most),
-            even => even,
-        };
-        let edges: Vec<usize> = (0..=pieces).map(edge).collect();
-        windows.extend(edges.windows(2).map(|edges| Window {
-            motion,
-            samples: edges[0]..edges[1],
-        }));
+        let far = MOVED * log.duration_s() / pieces >= REACH_S;
+        if !far || of_motion.len() == 1 || usual_doubt(log, sigma) > DOUBTFUL {
+            continue;
+        }
+        for next in 1..of_motion.len() {
+            let start = certain_start(log, sigma, of_motion[next].samples.start, most);
+            of_motion[next - 1].samples.end = start;
+            of_motion[next].samples.start = start;
+        }
     }
     windows
 }

@@ -1,7 +1,7 @@
 //! Motions cut into windows, with the weight of each joint's residual.
 
 use super::assumed::{AssumedStates, assumed};
-use super::cut::cut;
+use super::cut::{cut, cut_evenly};
 use super::growth::stable_horizon;
 use super::horizon::{Horizon, Window};
 use super::node::{Node, StartGuess};
@@ -101,6 +101,15 @@ impl FitData {
     pub fn recut(&self, horizon: Horizon) -> FitData {
         FitData {
             windows: cut(&self.motions, &self.stable, &self.sigma, horizon),
+            ..self.clone()
+        }
+    }
+
+    /// The same cut at even places, whatever the samples there tell of a start: where windows are
+    /// counted, each is to weigh alike.
+    pub fn cut_evenly(&self, horizon: Horizon) -> FitData {
+        FitData {
+            windows: cut_evenly(&self.motions, &self.stable, horizon),
             ..self.clone()
         }
     }

@@ -38,16 +38,18 @@ impl ModelReading {
     /// The same of motions in which start errors grow as in another reading's, one by one.
     pub fn growing_like(&self, model: Model, motions: Vec<Motion>) -> ModelReading {
         let horizon = Horizon::Seconds(longest_s(&motions));
+        let data = FitData::growing_like(&model, motions, horizon, &self.data);
         ModelReading {
-            data: FitData::growing_like(&model, motions, horizon, &self.data),
+            data: data.cut_evenly(horizon),
             model,
         }
     }
 
-    /// Cut into windows of so many seconds, or shorter where start errors grow fast.
+    /// Cut evenly into windows of so many seconds, or shorter where start errors grow fast.
     pub fn cut(model: Model, motions: Vec<Motion>, horizon_s: f64) -> ModelReading {
+        let horizon = Horizon::Seconds(horizon_s);
         ModelReading {
-            data: FitData::new(&model, motions, Horizon::Seconds(horizon_s)),
+            data: FitData::new(&model, motions, horizon).cut_evenly(horizon),
             model,
         }
     }
