@@ -4,6 +4,7 @@ use super::{Args, Row};
 use handstand_tests::firmware::Built;
 #[cfg(simavr)]
 use rayon::prelude::*;
+#[cfg(simavr)]
 use serde_json::json;
 
 /// In ten different tenths of the servos' motor interrupts.

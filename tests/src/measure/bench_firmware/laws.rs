@@ -2,6 +2,7 @@
 
 use super::{Args, Row};
 use handstand_tests::firmware::Built;
+#[cfg(simavr)]
 use serde_json::json;
 
 #[cfg(simavr)]
