@@ -17,7 +17,7 @@ const WORTH: f64 = 0.05;
 type Glance = (InitialGuess, Hypothesis);
 
 /// The squared error up to which a candidate belongs to the best third, or to the best few.
-fn best_third(mut of_candidates: Vec<f64>) -> f64 {
+pub(super) fn best_third(mut of_candidates: Vec<f64>) -> f64 {
     of_candidates.sort_by(f64::total_cmp);
     let looks = SECOND_LOOKS.max(of_candidates.len() / 3);
     of_candidates

@@ -4,6 +4,7 @@
 use super::budget::{FINALISTS, FINISH, LOOK};
 use super::evaluator::Evaluator;
 use super::findings::WrongValue;
+use super::first_look::best_third;
 use super::hypothesis::Hypothesis;
 use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit, intervals};
 use crate::model::{JointField, LinkField, Model, ParameterPath};
@@ -51,15 +52,18 @@ impl Evaluator<'_> {
             }
         };
         let mut values: Vec<Hypothesis> = paths.par_iter().map(glance).collect();
-        let go_on = |values: &mut [Hypothesis], options: FitOptions| {
-            let limit = self.limit(values.iter(), least);
+        let go_on = |values: &mut [Hypothesis], limit: f64, options: FitOptions| {
             let promising = values.par_iter_mut().filter(|v| v.search_mean <= limit);
             promising.for_each(|value| value.resume(&self.search, options));
             values.sort_by(Hypothesis::by_error);
         };
-        go_on(&mut values, FitOptions::iterations(LOOK).rough());
+        // Short fits bring a value that is far off half of the way: what others leave that are
+        // fitted to the end is no measure for it before it is, too.
+        let looked_at = best_third(values.iter().map(|v| v.search_mean).collect());
+        go_on(&mut values, looked_at, FitOptions::iterations(LOOK).rough());
         values.truncate(FINALISTS);
-        go_on(&mut values, FitOptions::iterations(FINISH));
+        let limit = self.limit(values.iter(), None);
+        go_on(&mut values, limit, FitOptions::iterations(FINISH));
         let promising = self.promising(&values, least);
         self.evaluate_all(&mut values[..promising], least, || {});
         values

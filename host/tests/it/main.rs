@@ -36,3 +36,4 @@ mod servos;
 mod study;
 mod sysid;
 mod twins;
+mod wrong_values;
