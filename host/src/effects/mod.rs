@@ -62,6 +62,7 @@ pub use probe::{Probe, ProbeVariable};
 pub use state::{
     AtRest, DriveState, Encoded, JointState, MemoryCell, Rig, SenseMemory, Slide, Slope, StepState,
 };
+pub use torque_scale::TorqueScale;
 
 use std::fmt;
 

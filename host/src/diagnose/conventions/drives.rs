@@ -3,6 +3,7 @@
 use super::remedy::{LogColumn, Remedy};
 use super::reread::written;
 use super::trial::{Effort, RemedyTrial, Trial};
+use crate::log::init::name_guess;
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
 use rayon::prelude::*;
 
@@ -22,7 +23,17 @@ pub(super) fn drives(bench: &RemedyTrial) -> Vec<Remedy> {
     // Of a slide, torques that hold the chain level say nothing.
     let joints = joints.filter(|joint| bench.model.joints[*joint].slide.is_none());
     let joints = joints.filter(|joint| bench.varies(LogColumn::Input(*joint)));
+    let joints = joints.filter(|joint| !names_its_unit(&bench.model, *joint));
     joints.flat_map(|joint| of_joint(bench, joint)).collect()
+}
+
+/// Whether the name of a joint's input says the unit that the file declares.
+fn names_its_unit(model: &Model, joint: usize) -> bool {
+    let column = LogColumn::Input(joint).column(model);
+    column.is_some_and(|column| {
+        let named = name_guess(&column.name).unit;
+        named.is_some_and(|(unit, _)| unit == column.unit.name)
+    })
 }
 
 fn of_joint(bench: &RemedyTrial, joint: usize) -> Vec<Remedy> {

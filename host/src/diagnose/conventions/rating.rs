@@ -16,6 +16,8 @@ const WINDOW_S: f64 = 1.0;
 const WINDOW_SAMPLES: f64 = 12.0;
 /// Iterations of a fit; it is compared, not used.
 const ITERATIONS: usize = 8;
+/// Those of one that decides whether something else explains as much.
+const TO_THE_END: usize = 25;
 /// An error counts as at most this many times the plain prediction's.
 const MOST: f64 = 2.0;
 /// A joint whose movement beyond the plain prediction is less than this many times its noise says
@@ -92,15 +94,17 @@ impl ModelReading {
 
     /// Rated with what the effort fits.
     pub fn rated(&self, effort: Effort) -> Rating {
-        let free = match effort {
+        let free = || free_parameters(&self.model, &[]).unwrap_or_default();
+        let rough = FitOptions::iterations(ITERATIONS).rough();
+        let (free, options) = match effort {
             Effort::Guess => {
                 let nodes = guessed_nodes(&self.data);
                 return Rating::of(&self.model, &self.data, &nodes);
             }
-            Effort::Starts => Vec::new(),
-            Effort::Values => free_parameters(&self.model, &[]).unwrap_or_default(),
+            Effort::Starts => (Vec::new(), rough),
+            Effort::Values => (free(), rough),
+            Effort::ValuesToTheEnd => (free(), FitOptions::iterations(TO_THE_END)),
         };
-        let options = FitOptions::iterations(ITERATIONS).rough();
         let fitted = fit(&self.model, &free, &self.data, None, options);
         Rating::of(&fitted.model, &self.data, &fitted.nodes)
     }

@@ -106,9 +106,24 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
             return None;
         }
         let given = bench.tried(trial.remedy, Effort::Starts)?;
-        (given.ratio() < 1.0).then_some(refitted)
+        (given.ratio() < 1.0 && beats_a_wrong_value(bench, &refitted)).then_some(refitted)
     });
     judged.collect()
+}
+
+/// Whether a remedy that only changes how strong an input is leaves no more than one wrong value of
+/// the file does: a mass, a stall torque, a gear, which diagnosis finds.
+fn beats_a_wrong_value(bench: &RemedyTrial, trial: &Trial) -> bool {
+    let joint = match &trial.remedy {
+        Remedy::Drive(joint, ..) => *joint,
+        Remedy::Unit(columns) => match columns.as_slice() {
+            [(LogColumn::Input(joint), _)] => *joint,
+            _ => return true,
+        },
+        _ => return true,
+    };
+    let off = bench.with_one_value_off(joint);
+    off.is_none_or(|ratio| trial.ratio() < AS_GOOD * ratio)
 }
 
 /// What a remedy must do to be believed.
@@ -117,9 +132,17 @@ struct Least {
     better: f64,
 }
 
+/// Share that a remedy may leave where it raises the error in rad.
+const MOST_WHERE_LARGER: f64 = 0.15;
+
 impl Least {
     fn allows(&self, trial: &Trial) -> bool {
-        trial.ratio() < self.ratio && trial.better >= self.better && trial.after < 1.0
+        // In another unit every error in rad may be larger, but then little of the motion is left.
+        let most = match trial.after_rad > trial.before_rad {
+            true => MOST_WHERE_LARGER,
+            false => 1.0,
+        };
+        trial.ratio() < self.ratio && trial.better >= self.better && trial.after < most
     }
 }
 

@@ -7,7 +7,11 @@ use std::path::{Path, PathBuf};
 
 /// A virtual arm whose model lacks nothing but an effect, with the first of its logs.
 fn arm(kind: &'static str) -> (tempfile::TempDir, PathBuf, PathBuf) {
-    let bench = bench(Motions::Arm, 5, &[kind]).unwrap();
+    arm_of(kind, 5)
+}
+
+fn arm_of(kind: &'static str, seed: u64) -> (tempfile::TempDir, PathBuf, PathBuf) {
+    let bench = bench(Motions::Arm, seed, &[kind]).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (model, log) = (folder.path().join("arm.toml"), folder.path().join("a.csv"));
     std::fs::write(&model, &bench.model_toml).unwrap();
@@ -51,6 +55,34 @@ fn a_reversed_position_is_refused_with_the_line_that_mends_it() {
     assert!(!best.contains("reversed = true"), "{best}");
     let proof = first.proof.unwrap();
     assert!(proof.after_share < 0.5 * proof.before_share, "{proof:?}");
+}
+
+#[test]
+fn a_wrong_mass_is_not_taken_for_another_drive() {
+    // Read as torque, this arm's duty is weaker, which a heavier arm looks like.
+    let (_folder, model, log) = arm_of("mass", 1);
+    assert_eq!(found(&model, &log, |_| ()), []);
+}
+
+#[test]
+fn a_torque_that_is_declared_as_duty_is_found() {
+    let (_folder, model, log) = arm_of("coulomb", 1);
+    let model_text = std::fs::read_to_string(&model).unwrap();
+    let right = Model::parse(&model_text, &model).unwrap();
+    let stall_nm = right.joints[0].drive.motor().unwrap().stall_torque_nm;
+    let text = std::fs::read_to_string(&log).unwrap();
+    let header = text.lines().find(|line| line.contains("duty,")).unwrap();
+    let duty = header.split(',').position(|name| name == "duty").unwrap();
+    let torques = text.lines().map(|line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_string).collect();
+        if let Some(Ok(share)) = cells.get(duty).map(|cell| cell.parse::<f64>()) {
+            cells[duty] = format!("{}", stall_nm * share);
+        }
+        cells.join(",") + "\n"
+    });
+    std::fs::write(&log, torques.collect::<String>()).unwrap();
+    let findings = found(&model, &log, |_| ());
+    assert_eq!(findings[0].kind, "drive", "{findings:#?}");
 }
 
 #[test]

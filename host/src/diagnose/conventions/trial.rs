@@ -2,8 +2,12 @@
 
 use super::rating::{ModelReading, Rating};
 use super::remedy::{LogColumn, Remedy};
+use crate::diagnose::values::values_of;
+use crate::effects::TorqueScale;
+use crate::fitting::Candidate;
 use crate::log::Motion;
 use crate::model::Model;
+use rayon::prelude::*;
 
 /// A remedy with its proof: the errors before and after it, on the same windows.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,6 +63,8 @@ pub(super) enum Effort {
     Starts,
     /// Start states and the model's free values.
     Values,
+    /// The same until nothing more is gained.
+    ValuesToTheEnd,
 }
 
 /// Tries remedies on a model and its motions.
@@ -111,6 +117,27 @@ impl RemedyTrial {
         Trial::new(remedy, &rated(before), &rated(&after))
     }
 
+    /// Error with one value of the file, or the torques of a joint, off by what explains the motions
+    /// best, over the error without; none where no joint says anything, or times are in doubt.
+    pub fn with_one_value_off(&self, joint: usize) -> Option<f64> {
+        let reading = self.reading.as_ref()?;
+        let share = |model: Model| {
+            let freed = reading.read_as(&model, self.motions.clone());
+            freed.rated(Effort::ValuesToTheEnd).share()
+        };
+        let mut freed = vec![with_free_scale(&self.model, joint)];
+        freed.extend(values_of(&self.model).into_iter().map(|path| {
+            let mut model = self.model.clone();
+            model
+                .free
+                .extend((!model.free.contains(&path)).then_some(path));
+            model
+        }));
+        let least = freed.into_par_iter().filter_map(share);
+        let least = least.min_by(f64::total_cmp)?;
+        Some(least / share(self.model.clone())?.max(1e-12))
+    }
+
     /// The motions without the ends that others lack.
     fn shortened_as(&self, reading: &ModelReading, others: &[Motion]) -> ModelReading {
         let motions = self.motions.iter().zip(others);
@@ -135,4 +162,20 @@ impl RemedyTrial {
         let varies = |values: Vec<f64>| values.windows(2).any(|pair| pair[0] != pair[1]);
         self.motions.iter().filter_map(values).any(varies)
     }
+}
+
+/// The model with a free scale of the torques of a joint.
+fn with_free_scale(model: &Model, joint: usize) -> Model {
+    let mut scaled = model.clone();
+    let scale = Candidate {
+        effect: &TorqueScale,
+        joint: Some(joint),
+    };
+    if !scale.in_model(model) {
+        scaled.effects.push(scale.instance(&[1.0]));
+    }
+    scaled
+        .free
+        .extend(scale.paths().filter(|path| !model.free.contains(path)));
+    scaled
 }

@@ -12,6 +12,7 @@ mod words;
 mod write;
 
 pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
+pub(crate) use name::name_guess;
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
