@@ -7,6 +7,7 @@ use super::findings::ResidualStructure;
 use super::horizon::search_horizon;
 use super::hypothesis::{Evaluation, Hypothesis};
 use super::initial_guess::{PredictionChange, changes};
+use super::measured_value::is_ruled_out;
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
@@ -59,7 +60,8 @@ impl<'a> Evaluator<'a> {
         progress: &'a (dyn Fn(Progress) + Sync),
     ) -> Evaluator<'a> {
         let all = [training.as_slice(), held_out.as_slice()].concat();
-        let candidates = candidates(model, &all, &options.without);
+        let mut candidates = candidates(model, &all, &options.without);
+        candidates.retain(|candidate| !is_ruled_out(candidate, &options.known, model));
         // Without motions to judge by, two effects together can't be told from luck.
         let most_effects = match held_out.is_empty() {
             true => 1,

@@ -19,6 +19,7 @@ mod initial_guess;
 mod inseparable;
 mod log_outcome;
 mod logs;
+mod measured_value;
 mod multistart;
 pub(crate) mod names;
 mod options;
@@ -44,6 +45,7 @@ pub use findings::{
 pub use inseparable::how_to_measure;
 pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};
 pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
+pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
 pub use progress::Progress;
 pub use search::diagnose;

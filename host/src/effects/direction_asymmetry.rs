@@ -25,7 +25,8 @@ static INFO: EffectInfo = EffectInfo {
     looks_like: "the residual torque has one constant sign while the joint moves, whichever way it \
      goes, and none while it rests",
     confused_with: &[
-        "torque_offset: while the joint moves they are one law; at rest friction pulls nowhere",
+        "torque_offset: they are one law as long as friction is larger than the offset; take the \
+         friction away, and only an offset moves the joint from rest",
         "encoder_zero: gravity at a shifted angle is a near constant torque too, but it is there \
          at rest and changes with the angle",
         "com_angle: a shifted centre of mass pulls one way too, also at rest; turn the arm to \

@@ -26,8 +26,8 @@ static INFO: EffectInfo = EffectInfo {
      goes one way more easily than the other",
     confused_with: &[
         "rate_bias: both show to one side; a bias of the sensor does not move the point of rest",
-        "direction_asymmetry: while the joint moves they are one law; at rest friction pulls \
-         nowhere",
+        "direction_asymmetry: they are one law as long as friction is larger than the offset; take \
+         the friction away, and only an offset moves the joint from rest",
         "com_angle: near hanging both pull one way; turn the arm by 90 degrees",
         "cable_spring: over a short range a spring far from its rest angle pulls alike; go further",
         "encoder_zero: near hanging both move the point of rest; far from it gravity tells",

@@ -83,6 +83,9 @@ pub struct ExperimentProposal {
     pub experiment: Option<ProposedExperiment>,
     /// What it parts.
     pub separations: Vec<Separation>,
+    /// Pairs, counted from 0, that no simulated experiment would part by one standard error: they
+    /// are one law within the limits.
+    pub alike: Vec<(usize, usize)>,
     /// What it tightens.
     pub values: Vec<TightenedValue>,
     /// Values to be measured by themselves, where no motion parts explanations.
@@ -118,6 +121,12 @@ impl ExperimentProposal {
             let (a, b) = pair.rivals;
             (self.rivals[a].name.as_str(), self.rivals[b].name.as_str())
         })
+    }
+
+    /// Whether every explanation is one law with every other.
+    pub fn all_alike(&self) -> bool {
+        let rivals = self.rivals.len();
+        rivals > 1 && self.alike.len() == rivals * (rivals - 1) / 2
     }
 
     /// Whether it says what to do.

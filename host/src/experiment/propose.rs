@@ -22,6 +22,8 @@ use rayon::prelude::*;
 const PARTED: f64 = 8.0;
 /// Standard errors from which more is not worth more effort.
 const AMPLE: f64 = 3.0 * PARTED;
+/// Standard errors below which two explanations are one law: a diagnosis sees nothing of it.
+const ALIKE: f64 = 1.0;
 /// Experiments whose separation is confirmed by fits.
 const CONFIRMED: usize = 4;
 
@@ -106,6 +108,7 @@ pub(super) fn nothing(rivals: &[Rival]) -> ExperimentProposal {
         rivals: rivals.iter().map(|rival| rival.name.clone()).collect(),
         experiment: None,
         separations: Vec::new(),
+        alike: Vec::new(),
         values: Vec::new(),
         measure: Vec::new(),
         simulated: 0,
@@ -138,13 +141,18 @@ pub(super) fn parted(
         within_limits: judged.len(),
         ..nothing(rivals)
     };
-    let possible: Vec<bool> = (0..pairs(rivals.len()).len())
-        .map(|pair| {
-            judged
-                .iter()
-                .any(|(_, apart)| apart.of_pairs[pair] >= PARTED)
-        })
-        .collect();
+    let farthest = |pair: usize| {
+        let apart = judged.iter().map(|(_, apart)| apart.of_pairs[pair]);
+        apart.fold(0.0, f64::max)
+    };
+    let all_pairs = pairs(rivals.len());
+    let farthest: Vec<f64> = (0..all_pairs.len()).map(farthest).collect();
+    let possible: Vec<bool> = farthest.iter().map(|apart| *apart >= PARTED).collect();
+    if !judged.is_empty() {
+        let pairs = all_pairs.into_iter().zip(&farthest);
+        let alike = pairs.filter(|(_, apart)| **apart < ALIKE);
+        proposal.alike = alike.map(|(pair, _)| pair).collect();
+    }
     let mut leaders = ranked(judged, &possible);
     leaders.truncate(CONFIRMED);
     let confirmed = leaders.into_iter().filter_map(|(experiment, _)| {
@@ -171,7 +179,7 @@ pub(super) fn parted(
             proposal.experiment = Some(proposed(experiment, &rivals[0], limits));
         }
     }
-    proposal.measure = measured(&proposal);
+    proposal.measure = measured(&proposal, rivals);
     Ok(proposal)
 }
 
@@ -214,7 +222,7 @@ fn separations(apart: &Separations, rivals: usize) -> Vec<Separation> {
 }
 
 /// Values of the file whose measurement parts what the experiment does not.
-fn measured(proposal: &ExperimentProposal) -> Vec<MeasuredValue> {
+fn measured(proposal: &ExperimentProposal, rivals: &[Rival]) -> Vec<MeasuredValue> {
     let every_pair = pairs(proposal.rivals.len());
     let open = every_pair.iter().filter(|pair| {
         let mut known = proposal.separations.iter();
@@ -222,7 +230,7 @@ fn measured(proposal: &ExperimentProposal) -> Vec<MeasuredValue> {
     });
     let mut found: Vec<MeasuredValue> = Vec::new();
     for &(a, b) in open {
-        let (a, b) = (&proposal.rivals[a].values, &proposal.rivals[b].values);
+        let (a, b) = (&rivals[a].measurable, &rivals[b].measurable);
         let only_a = a.iter().filter(|path| !b.contains(path));
         let only_b = b.iter().filter(|path| !a.contains(path));
         let measured = only_a.chain(only_b).find_map(|path| {

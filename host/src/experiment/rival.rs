@@ -1,7 +1,7 @@
 //! The explanations that a diagnosis leaves open, each fitted to all logs.
 
 use super::proposal::RivalName;
-use crate::diagnose::{Diagnosis, FittedEffect, WrongValue, independent_share};
+use crate::diagnose::{Diagnosis, FittedEffect, WrongValue, independent_share, values_behind};
 use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit};
 use crate::model::{Model, ParameterPath};
 use nalgebra::DMatrix;
@@ -18,6 +18,8 @@ pub(super) struct Rival {
     pub known: DMatrix<f64>,
     /// Share of the samples that count as independent.
     pub share: f64,
+    /// Values of the file whose measurement judges it: its own, and those behind its effects.
+    pub measurable: Vec<String>,
 }
 
 impl Rival {
@@ -25,6 +27,7 @@ impl Rival {
     pub fn fitted(name: RivalName, model: &Model, free: &[ParameterPath], logs: &FitData) -> Rival {
         let fit = fit(model, free, logs, None, FitOptions::iterations(ITERATIONS));
         Rival {
+            measurable: name.values.clone(),
             name,
             known: fit.information().matrix + fit.weak_prior(),
             share: independent_share(&fit, logs),
@@ -42,12 +45,12 @@ pub(super) fn rivals(model: &Model, diagnosis: &Diagnosis, logs: &FitData) -> Ve
     let given = model;
     let fitted = all.into_par_iter().map(|(effects, wrong)| {
         let (model, free) = explained(given, &diagnosis.base, effects, wrong);
-        Rival::fitted(
-            RivalName::of(effects, &own_values(given, wrong)),
-            &model,
-            &free,
-            logs,
-        )
+        let name = RivalName::of(effects, &own_values(given, wrong));
+        let mut rival = Rival::fitted(name, &model, &free, logs);
+        let candidates = effects.iter().filter_map(|effect| effect.candidate(given));
+        let behind = candidates.flat_map(|candidate| values_behind(&candidate, given));
+        rival.measurable.extend(behind.map(|path| path.to_string()));
+        rival
     });
     fitted.collect()
 }

@@ -27,6 +27,7 @@ pub fn proposal_text(
         text += &experiment_text(experiment, file, replayable);
     }
     text += &separations_text(proposal);
+    text += &alike_text(proposal);
     for value in &proposal.values {
         let _ = writeln!(text, "{}", tightened(value));
     }
@@ -93,6 +94,19 @@ fn separations_text(proposal: &ExperimentProposal) -> String {
     text
 }
 
+fn alike_text(proposal: &ExperimentProposal) -> String {
+    let mut text = String::new();
+    for &(a, b) in &proposal.alike {
+        let _ = writeln!(
+            text,
+            "{} and {} are one law here: each predicts what the other does, in every experiment \
+             within the limits. Add either.",
+            proposal.rivals[a].name, proposal.rivals[b].name
+        );
+    }
+    text
+}
+
 /// "link1.mass_kg = 0.2 kg: standard error 0.01 -> 0.002 kg".
 fn tightened(value: &TightenedValue) -> String {
     let (before, after) = (value.standard_error_before, value.standard_error_after);
@@ -132,6 +146,7 @@ fn no_help(proposal: &ExperimentProposal) -> String {
             "Every motion leaves the limits: allow wider --angles or a higher --speed.\n"
                 .to_string()
         }
+        _ if proposal.all_alike() => String::new(),
         _ => "No motion within the limits parts these explanations: allow wider --angles, a \
               higher --speed, more --seconds or a known --mass.\n"
             .to_string(),

@@ -3,14 +3,16 @@
 //! An arm hides one effect. Its owner has one log of it, bare and as it stands; the first two
 //! thirds are fitted, the last is held out. Where the diagnosis is ambiguous, an experiment is
 //! proposed, the true arm plays it by equations that are not the library's, and the diagnosis is
-//! repeated with both logs. A value that is proposed to be measured is right in the owner's file.
+//! repeated with both logs. A value that is proposed to be measured is right in the owner's file,
+//! but for a torque that is hidden in it.
 
-use handstand::challenge::{ArmInputs, Motions, bench, play};
+use handstand::challenge::{ArmInputs, BenchEffect, Motions, bench, play};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
 use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose,
 };
 use handstand::log::{LogRequest, Motion, read};
+use handstand::model::ParameterPath;
 use handstand::{Error, Model};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -34,8 +36,12 @@ pub struct ExperimentCase {
 /// What became of a case whose first diagnosis was ambiguous.
 #[derive(Debug, Clone, Serialize)]
 pub struct Settled {
-    /// Whether exactly what is hidden was named in the end.
+    /// Whether exactly what is hidden was named in the end, or the value behind it was measured and
+    /// nothing else is missing.
     pub settled: bool,
+    /// Whether no experiment could settle it, for the explanations are one law of this rig, and
+    /// whether that was said.
+    pub one_law: bool,
     /// What was proposed, in words.
     pub proposed: String,
     /// Predicted separation of the closest two explanations that are parted, in standard errors.
@@ -131,11 +137,17 @@ pub fn try_experiment(case: ExperimentCase) -> Result<ExperimentOutcome, Error> 
         ..options
     };
     let all: Vec<&[Vec<Motion>; 2]> = std::iter::once(&logs).chain(&played).collect();
-    let second = diagnosed(&model, &all, &again);
+    let measured = measured(&model, &bench.effects, &again.known);
+    let second = diagnosed(measured.as_ref().unwrap_or(&model), &all, &again);
     let parted = proposal.separations.iter().filter(|pair| pair.parted);
     let last = sets(&second);
+    let truth = Model::parse(&bench.true_model_toml, &dir.path().join("true.toml"))?;
     outcome.settled = Some(Settled {
-        settled: second.verdict == Verdict::Named && last.first() == hidden.first(),
+        settled: match measured {
+            Some(_) => second.effects.is_empty() && second.verdict != Verdict::Unexplained,
+            None => second.verdict == Verdict::Named && last.first() == hidden.first(),
+        },
+        one_law: proposal.all_alike() && is_one_law(&truth, &outcome.first_sets),
         proposed: words(&proposal),
         separation: parted.map(|pair| pair.standard_errors).reduce(f64::min),
         verdict: second.verdict,
@@ -143,6 +155,30 @@ pub fn try_experiment(case: ExperimentCase) -> Result<ExperimentOutcome, Error> 
         seconds,
     });
     Ok(outcome)
+}
+
+/// The owner's model with what was measured, where that is what the rig hides: who holds a known
+/// mass with the drive measures its torque as it is.
+fn measured(model: &Model, hidden: &[BenchEffect], known: &[ParameterPath]) -> Option<Model> {
+    let path: ParameterPath = "joint1.stall_torque_nm".parse().ok()?;
+    let scale = hidden.iter().find(|e| e.kind == "torque_scale")?;
+    let (_, factor) = scale.parameters.first()?;
+    let mut model = model.clone();
+    let right_nm = factor * path.get(&model)?;
+    (known.contains(&path) && path.set(&mut model, right_nm)).then_some(model)
+}
+
+/// Whether these explanations of an arm are one law: friction that differs by direction does what a
+/// constant torque does as long as it resists both ways.
+fn is_one_law(truth: &Model, sets: &[String]) -> bool {
+    let value = |id: &str| {
+        let effect = truth.effects.iter().find(|e| e.effect.info().id == id);
+        effect.map_or(0.0, |effect| effect.values[0])
+    };
+    let one_sided_nm = value("direction_asymmetry") + value("torque_offset");
+    let known = ["direction_asymmetry@1", "torque_offset@1"];
+    sets.iter().all(|set| known.contains(&set.as_str()))
+        && one_sided_nm.abs() <= value("coulomb").abs()
 }
 
 /// A log's motions to fit, and those held out.
