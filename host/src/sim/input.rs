@@ -2,7 +2,8 @@
 
 /// Mean over `[from_s, to_s]` of an input held from each sample to the next.
 ///
-/// The mean, rather than the value, makes the result continuous in the delay, which a fit needs.
+/// The mean, rather than the value, makes the result continuous in the delay, which a fit needs;
+/// where a run stops at the changes of the input, the two are the same.
 /// `cursor` is the index of a sample at or before `from_s` from an earlier call; it only moves
 /// forward.
 pub(super) fn held_mean(

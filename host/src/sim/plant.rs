@@ -23,6 +23,8 @@ pub struct Plant {
     pub(super) rates: Vec<bool>,
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
+    /// By how much the inputs of drives are late, each other than 0 once, s.
+    pub(super) delays_s: Vec<f64>,
     /// How many cells its effects remember things in.
     pub(super) remembers: usize,
     /// A base that gives way, and the place of the first of its two cells.
@@ -90,9 +92,14 @@ impl Plant {
             .fold(0, |next, joint| joint.place_memory(next));
         let base = rig.base_spring.map(|spring| (spring, of_joints));
         let senses = joints.iter().any(|j| !j.sense.is_empty());
+        let mut delays_s: Vec<f64> = joints.iter().map(|joint| joint.delay_s).collect();
+        delays_s.retain(|delay_s| *delay_s != 0.0);
+        delays_s.sort_by(f64::total_cmp);
+        delays_s.dedup();
         Plant {
             rates,
             senses,
+            delays_s,
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
             base,

@@ -24,6 +24,8 @@ pub struct Start {
     pub reading_slope: Option<Vec<f64>>,
 }
 
+/// Times this near to each other are one, s.
+const NEAR_S: f64 = 1e-9;
 /// Jitter must not cost steps: one may be longer than the model's step by up to a tenth, shared out
 /// over the period.
 const SPARED: f64 = 0.1;
@@ -131,8 +133,35 @@ impl<'a, R: Rows> Run<'a, R> {
     /// From sample `k` to the next.
     #[inline]
     fn follow(&mut self, k: usize) {
+        let span_s = self.motion.time_s[k]..self.motion.time_s[k + 1];
+        match self.plant.delays_s.is_empty() {
+            true => self.hold(k, span_s),
+            false => self.go(span_s),
+        }
+    }
+
+    /// From one time to another, with a stop wherever an input changes at a drive, late or not.
+    fn go(&mut self, span_s: Range<f64>) {
         let (plant, motion) = (self.plant, self.motion);
-        let (from, to) = (motion.time_s[k], motion.time_s[k + 1]);
+        let mut now_s = span_s.start;
+        while span_s.end - now_s > NEAR_S {
+            let after = |delay_s: f64| {
+                let known = |t: &f64| t + delay_s <= now_s + NEAR_S;
+                motion.time_s.partition_point(known)
+            };
+            let changes_s = |delay_s: f64| Some(motion.time_s.get(after(delay_s))? + delay_s);
+            let delays_s = plant.delays_s.iter().copied().chain([0.0]);
+            let until_s = delays_s.filter_map(changes_s).fold(span_s.end, f64::min);
+            self.hold(after(0.0).saturating_sub(1), now_s..until_s);
+            now_s = until_s;
+        }
+    }
+
+    /// From one time to another under the inputs of sample `k`.
+    #[inline]
+    fn hold(&mut self, k: usize, span_s: Range<f64>) {
+        let (plant, motion) = (self.plant, self.motion);
+        let (from, to) = (span_s.start, span_s.end);
         let steps = ((to - from) / plant.step_s - SPARED).ceil().max(1.0) as usize;
         let h = (to - from) / steps as f64;
         for step in 0..steps {
