@@ -115,6 +115,16 @@ class Recording:
         self.torque_on.append(torque_on)
         self.supply_v.append(supply_v)
 
+    def read_off_time(self, rig):
+        """Takes the readings of columns that are off in time, the rig having been driven to the
+        last sample; under its inputs it goes on until the last is read."""
+        for _ in range(math.ceil(rig.wait_s / SAMPLE_S)):
+            rig.advance(self.duty[-1], self.supply_v[-1], self.torque_on[-1])
+        for time_s, readings in zip(self.time_s, self.readings):
+            for joint, reading in enumerate(rig.logged(time_s)):
+                if reading is not None:
+                    readings[joint] = quantised(reading)
+
     def csv(self, driven):
         joints = len(self.readings[0])
         names = [f"q{j + 1}_rad" for j in range(joints)] + [f"duty{j + 1}" for j in driven]
@@ -196,6 +206,7 @@ def _hang_once(rig, start, gains, reference, supply, seconds, gentle):
             return None
         if k + 1 < samples:
             rig.advance(duty, supply_v, on)
+    recording.read_off_time(rig)
     return recording if clipped <= MOST_CLIPPED[rig.n > 1] * samples * len(rig.driven) else None
 
 
@@ -308,4 +319,5 @@ def balance(rig, rng, seconds):
             rig.advance(duty, supply_v, True)
         if np.abs(rig.angles() - pose).max() > 0.5:
             return None
+    recording.read_off_time(rig)
     return recording

@@ -165,6 +165,7 @@ EFFECTS = {
         },
     ),
     "grip_slip": (ANY, {"acceleration_rad_s2": (within(40.0, 100.0), within(40.0, 100.0))}),
+    "time_offset": (ANY, {"offset_s": (signed(0.01, 0.03), signed(0.01, 0.03))}),
 }
 
 OUTSIDE = {

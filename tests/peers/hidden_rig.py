@@ -78,6 +78,8 @@ class Rig:
         self.hooks += [d.step for d in self.drivers if d.remembers]
         self.hooks += [bristles.step for bristles in self.bristles]
         self.dense = bool(self.hooks) or any(e.remembers for e in self.encoders)
+        # For how long a row's reading may have to be waited for, s.
+        self.wait_s = max(0.0, *(-e.late_s for e in self.encoders))
 
     def smooth(self):
         """The same rig with only those effects that a linear model holds, without dry friction."""
@@ -343,6 +345,11 @@ class Rig:
         """What the encoders would read without steps."""
         return np.array([encoder.sensed() for encoder in self.encoders])
 
+    def logged(self, time_s):
+        """What a log's row of this time since the start holds, without steps; columns whose times
+        are right have nothing here."""
+        return [encoder.logged(time_s) for encoder in self.encoders]
+
 
 class Driver:
     """Dead zone, ramp, winding and overload protection of one joint's drive."""
@@ -409,7 +416,7 @@ class Bristles:
 
 
 class Encoder:
-    """Grip, scale, zero, play and lag of one joint's encoder."""
+    """Grip, scale, zero, play and lag of one joint's encoder, and the times of its column."""
 
     def __init__(self, rig, joint):
         self.rig, self.joint = rig, joint
@@ -418,7 +425,9 @@ class Encoder:
         self.half = 0.5 * rig.value(joint, "backlash", "gap_rad", 0.0)
         self.lag_s = rig.value(joint, "sensor_lag", "time_constant_s", 0.0)
         self.grip = rig.value(joint, "grip_slip", "acceleration_rad_s2", math.inf)
+        self.late_s = rig.value(joint, "time_offset", "offset_s", 0.0)
         self.remembers = self.half > 0.0 or self.lag_s > 0.0 or self.grip < math.inf
+        self.remembers |= self.late_s != 0.0
         self.start()
 
     def encoded(self):
@@ -427,6 +436,7 @@ class Encoder:
     def start(self):
         self.follower = self.lagged = self.turned = self.shaft = self.encoded()
         self.shaft_speed = 0.0
+        self.trace = [self.lagged]
 
     def gripped(self, encoded):
         """Angle of the shaft, which friction speeds up by no more than a limit."""
@@ -447,6 +457,17 @@ class Encoder:
             self.lagged += (middle - self.lagged) * STEP_S / (self.lag_s + 0.5 * STEP_S)
         else:
             self.lagged = self.follower
+        if self.late_s != 0.0:
+            self.trace.append(self.lagged)
+
+    def logged(self, time_s):
+        """The reading of a row, on a line between steps; at rest before the start."""
+        if self.late_s == 0.0:
+            return None
+        at = min(max((time_s - self.late_s) / STEP_S, 0.0), len(self.trace) - 1.0)
+        before = int(at)
+        after = min(before + 1, len(self.trace) - 1)
+        return self.trace[before] + (at - before) * (self.trace[after] - self.trace[before])
 
     def sensed(self):
         return self.lagged if self.remembers else self.encoded()

@@ -1,4 +1,5 @@
-//! An encoder whose shaft may slip, with play before it and a filter behind it.
+//! An encoder whose shaft may slip, with play before it and a filter behind it, and what a log
+//! holds of it.
 
 use super::physics::Physics;
 
@@ -11,6 +12,11 @@ pub struct Encoder {
     shaft_rad_s: f64,
     follower: f64,
     lagged: f64,
+    /// For how long it has been followed, s.
+    since_s: f64,
+    /// Where the log's times are off: the end of every step, s since the beginning, and the value
+    /// then, rad.
+    trace: Vec<[f64; 2]>,
 }
 
 impl Encoder {
@@ -21,6 +27,8 @@ impl Encoder {
             shaft_rad_s: 0.0,
             follower: encoded,
             lagged: encoded,
+            since_s: 0.0,
+            trace: vec![[0.0, encoded]],
         }
     }
 
@@ -36,6 +44,10 @@ impl Encoder {
             self.lagged += (middle - self.lagged) * h / (lag_s + h / 2.0);
         } else {
             self.lagged = self.follower;
+        }
+        self.since_s += h;
+        if physics.logged_late_s != 0.0 {
+            self.trace.push([self.since_s, self.lagged]);
         }
     }
 
@@ -56,5 +68,20 @@ impl Encoder {
     /// Its value before noise and rounding, rad.
     pub fn sensed(&self) -> f64 {
         self.lagged
+    }
+
+    /// Its value, rad, that a log whose times are off holds in a row of so many seconds since the
+    /// beginning. Before that it was at rest; it must have been followed for as long as the row's
+    /// reading is early.
+    pub fn logged(&self, physics: &Physics, row_s: f64) -> f64 {
+        let taken_s = row_s - physics.logged_late_s;
+        let after = self.trace.partition_point(|[end_s, _]| *end_s < taken_s);
+        let Some([to_s, to]) = self.trace.get(after) else {
+            return self.lagged;
+        };
+        let Some([from_s, from]) = after.checked_sub(1).map(|before| self.trace[before]) else {
+            return *to;
+        };
+        from + (taken_s - from_s) / (to_s - from_s) * (to - from)
     }
 }

@@ -78,8 +78,10 @@ fn attempt(
     let mut commands = ArmCommands::default();
     let mut position = Vec::with_capacity(times.len());
     let mut noise = NOISE.0 * normal(rng);
+    let mut noises = Vec::with_capacity(times.len());
     for (k, &time_s) in times.iter().enumerate() {
         let reading = quantised(arm.sensed() + noise);
+        noises.push(noise);
         let asked = goal.at(time_s);
         let duty = controller.duty(&asked, reading, span_before(&times, k));
         position.push(reading);
@@ -94,11 +96,20 @@ fn attempt(
             noise = kept * noise + (1.0 - kept * kept).sqrt() * NOISE.0 * normal(rng);
         }
     }
+    if let Some(logged) = commands.logged(&mut arm) {
+        position = noisy(&logged, &noises);
+    }
     ArmRecording {
         commands,
         position,
         mount,
     }
+}
+
+/// Rounded readings of these encoder values with this noise, rad.
+pub fn noisy(sensed: &[f64], noise: &[f64]) -> Vec<f64> {
+    let readings = sensed.iter().zip(noise);
+    readings.map(|(q, noise)| quantised(q + noise)).collect()
 }
 
 /// When the samples of a motion are taken, s: at 100 Hz, with jitter.

@@ -58,6 +58,8 @@ pub struct Physics {
     pub gap: f64,
     /// Time constant of the encoder's filter, s.
     pub lag_s: f64,
+    /// By how much later than the encoder read it the log holds a reading, s.
+    pub logged_late_s: f64,
     /// Fastest change of the duty, 1/s.
     pub duty_per_s: f64,
     /// Relative rise of the winding's resistance, warm from full duty, and how long that takes, s.

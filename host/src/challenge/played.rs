@@ -1,6 +1,6 @@
 //! A bench arm that plays given inputs: what its log holds after an experiment.
 
-use super::motion::{ArmRecording, NOISE, SupplyDrift, normal, quantised};
+use super::motion::{ArmRecording, NOISE, SupplyDrift, noisy, normal};
 use super::physics::Mount;
 use super::truth::{Arm, ArmCommands};
 use super::{stage, stream};
@@ -47,10 +47,12 @@ pub fn play(seed: u64, kinds: &[&'static str], inputs: &ArmInputs) -> String {
         supply_v: supply_v.collect(),
     };
     let mut arm = Arm::settled(&truth, mount);
-    let mut position = Vec::with_capacity(commands.time_s.len());
+    let mut sensed = Vec::with_capacity(commands.time_s.len());
+    let mut noises = Vec::with_capacity(commands.time_s.len());
     let mut noise = NOISE.0 * normal(&mut rng);
     for k in 0..commands.time_s.len() {
-        position.push(quantised(arm.sensed() + noise));
+        sensed.push(arm.sensed());
+        noises.push(noise);
         if let Some(next_s) = commands.time_s.get(k + 1) {
             let span_s = next_s - commands.time_s[k];
             commands.carry(&mut arm, k, span_s);
@@ -58,9 +60,10 @@ pub fn play(seed: u64, kinds: &[&'static str], inputs: &ArmInputs) -> String {
             noise = kept * noise + (1.0 - kept * kept).sqrt() * NOISE.0 * normal(&mut rng);
         }
     }
+    let sensed = commands.logged(&mut arm).unwrap_or(sensed);
     let recording = ArmRecording {
         commands,
-        position,
+        position: noisy(&sensed, &noises),
         mount,
     };
     recording.csv("Bench arm, an experiment.")

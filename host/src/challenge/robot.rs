@@ -190,6 +190,12 @@ impl<'a> Robot<'a> {
         std::array::from_fn(|k| self.encoders[k].sensed())
     }
 
+    /// Those that columns whose times are off hold in a row of so many seconds since the beginning,
+    /// rad.
+    pub fn logged(&self, row_s: f64) -> Joints {
+        std::array::from_fn(|k| self.encoders[k].logged(&self.laws.joints[k], row_s))
+    }
+
     /// Kinetic and potential energy in gravity, J, without tilt; tests only look at its change.
     #[cfg(test)]
     pub fn energy_j(&self) -> f64 {

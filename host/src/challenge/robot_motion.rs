@@ -83,6 +83,23 @@ impl RobotRecording {
         self.supply_v.push(supply_v);
     }
 
+    /// Puts what the log holds where its columns are off in time in the place of what was read with
+    /// this noise, after the robot has been driven to the last sample.
+    fn read_off_time(&mut self, robot: &mut Robot, laws: &Laws, noises: &[Noise]) {
+        let late_s = |k: usize| laws.joints[k].logged_late_s;
+        let early_s = (0..LINKS).map(|k| -late_s(k)).fold(0.0, f64::max);
+        if early_s > 0.0 {
+            self.carry(robot, laws, early_s);
+        }
+        let rows = self.time_s.iter().zip(&mut self.position).zip(noises);
+        for ((time_s, position), noise) in rows {
+            let readings = noise.readings(robot.logged(time_s - self.time_s[0]));
+            for k in (0..LINKS).filter(|k| late_s(*k) != 0.0) {
+                position[k] = readings[k];
+            }
+        }
+    }
+
     /// The log as a file.
     pub fn csv(&self, title: &str) -> String {
         let mut text = format!(
@@ -108,6 +125,7 @@ impl RobotRecording {
 }
 
 /// Noise of the encoders, correlated in time.
+#[derive(Clone, Copy)]
 struct Noise(Joints);
 
 impl Noise {
@@ -115,8 +133,7 @@ impl Noise {
         Noise(std::array::from_fn(|_| NOISE.0 * normal(rng)))
     }
 
-    fn readings(&self, robot: &Robot) -> Joints {
-        let sensed = robot.sensed();
+    fn readings(&self, sensed: Joints) -> Joints {
         std::array::from_fn(|k| stepped(sensed[k] + self.0[k]))
     }
 
@@ -176,10 +193,11 @@ fn hang_once(
     };
     let times = sample_times(rng);
     let mut robot = Robot::new(laws, start, [0.0; LINKS]);
-    let mut noise = Noise::new(rng);
+    let (mut noise, mut noises) = (Noise::new(rng), Vec::with_capacity(times.len()));
     let (mut speed, mut clipped) = ([0.0; DRIVEN.len()], 0);
     for (k, &time_s) in times.iter().enumerate() {
-        let readings = noise.readings(&robot);
+        let readings = noise.readings(robot.sensed());
+        noises.push(noise);
         // One goal tells when the motors rest.
         let on = goals[0].at(time_s).torque_on;
         let duty = std::array::from_fn(|drive| {
@@ -209,6 +227,7 @@ fn hang_once(
             noise.advance(next_s - time_s, rng);
         }
     }
+    recording.read_off_time(&mut robot, laws, &noises);
     let most = MOST_CLIPPED * (times.len() * DRIVEN.len()) as f64;
     (recording, clipped as f64 <= most)
 }
@@ -234,13 +253,14 @@ pub fn balance(laws: &Laws, smooth: &Laws, rng: &mut ChaCha8Rng) -> Option<Robot
     };
     let times = sample_times(rng);
     let mut robot = Robot::new(laws, start, [0.0; LINKS]);
-    let mut noise = Noise::new(rng);
+    let (mut noise, mut noises) = (Noise::new(rng), Vec::with_capacity(times.len()));
     for (k, &time_s) in times.iter().enumerate() {
         let probe = sines.map(|sines| {
             let wave = |[a, f, p]: [f64; 3]| a * (TAU * f * time_s + p).sin();
             sines.into_iter().map(wave).sum()
         });
-        let readings = noise.readings(&robot);
+        let readings = noise.readings(robot.sensed());
+        noises.push(noise);
         let duty = regulator.duty(&robot.angle, &robot.speed, &probe);
         let duty = duty.map(|duty| rounded(duty, 6));
         recording.add(time_s, readings, duty, true, supply.at(time_s));
@@ -253,5 +273,6 @@ pub fn balance(laws: &Laws, smooth: &Laws, rng: &mut ChaCha8Rng) -> Option<Robot
             return None;
         }
     }
+    recording.read_off_time(&mut robot, laws, &noises);
     Some(recording)
 }

@@ -123,6 +123,12 @@ impl<'a> Arm<'a> {
         self.encoder.sensed()
     }
 
+    /// The same that a log whose times are off holds in a row of so many seconds since the
+    /// beginning.
+    fn logged(&self, row_s: f64) -> f64 {
+        self.encoder.logged(self.physics, row_s)
+    }
+
     /// Kinetic and potential energy in gravity, J, of an arm without tilt; tests only look at its
     /// change.
     #[cfg(test)]
@@ -176,6 +182,21 @@ impl ArmCommands {
         });
     }
 
+    /// What a log whose column is off in time holds of every command, before noise and rounding,
+    /// rad, after these commands have driven an arm to the last; none where the column is on time.
+    pub(super) fn logged(&self, arm: &mut Arm) -> Option<Vec<f64>> {
+        let early_s = -arm.physics.logged_late_s;
+        let last = self.time_s.len().checked_sub(1)?;
+        if early_s == 0.0 {
+            return None;
+        }
+        if early_s > 0.0 {
+            self.carry(arm, last, early_s);
+        }
+        let rows_s = self.time_s.iter().map(|time_s| time_s - self.time_s[0]);
+        Some(rows_s.map(|row_s| arm.logged(row_s)).collect())
+    }
+
     /// Encoder values before noise and rounding, rad, at every command, when these commands drive
     /// the settled arm.
     #[cfg(test)]
@@ -188,6 +209,6 @@ impl ArmCommands {
                 self.carry(&mut arm, k, next_s - self.time_s[k]);
             }
         }
-        sensed
+        self.logged(&mut arm).unwrap_or(sensed)
     }
 }

@@ -33,6 +33,7 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
                 && !at(joint).in_model(model)
                 && visible(info.needs, model, motions, joint)
                 && joint.is_none_or(|joint| is_read(effect, model, joint))
+                && joint.is_none_or(|joint| is_timed(effect, model, motions, joint))
                 && joint.is_none_or(|joint| info.id != COM_ANGLE || turns(model, joint))
         };
         let twins = twins(model);
@@ -60,11 +61,15 @@ fn turns(model: &Model, joint: usize) -> bool {
 }
 
 /// Whether an encoder or sensor that this effect changes is read at a joint: by the log, or by the
-/// regulator of its drive. A rate shows what scales the reading, or lets it trail.
+/// regulator of its drive, to which the times of the log's columns are all one. A rate shows what
+/// scales the reading, lets it trail or moves it in time.
 fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
     let info = effect.info();
     let regulated = matches!(model.joints[joint].drive, Drive::Position { .. });
     let signal = model.log.joints[joint].signal();
+    if effect.reading_offset_s(&first_values(info)).is_some() {
+        return signal != MeasuredSignal::Nothing;
+    }
     match info.site {
         Site::Encoder | Site::Sensor if regulated => true,
         Site::Encoder => match signal {
@@ -83,6 +88,16 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
         Site::Rate => signal == MeasuredSignal::Rate,
         _ => true,
     }
+}
+
+/// Whether something tells the times that an effect of a log's column changes: another joint, or
+/// the input.
+fn is_timed(effect: &dyn Effect, model: &Model, motions: &[Motion], joint: usize) -> bool {
+    effect
+        .reading_offset_s(&first_values(effect.info()))
+        .is_none()
+        || model.link_count() > 1
+        || suits(Scope::DrivenJoint, model, motions, joint)
 }
 
 /// The values from which a fit of an effect starts first.

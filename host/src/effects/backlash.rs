@@ -33,6 +33,8 @@ static INFO: EffectInfo = EffectInfo {
          arm drift in angle",
         "stribeck: both halt the reading at reversal; stiction lasts until a fixed torque, not \
          over a fixed angle",
+        "time_offset: both trail the motion; an offset trails farther the faster the motion, and \
+         not at all where it turns back slowly",
         "sensor_lag: both trail the motion; a lag is wider the faster the motion, backlash always \
          the same",
     ],

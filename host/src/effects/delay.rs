@@ -28,6 +28,8 @@ static INFO: EffectInfo = EffectInfo {
         "gear_compliance: both answer late; only a spring rings",
         "slew_limit: both are late after a step; a delay is the same for small and large ones",
         "sensor_lag: both lag; a filter also flattens fast motion, and it lags a free swing too",
+        "time_offset: a late input and a late reading look alike while the drive moves the joint; \
+         what needs no input, a fall after the torque is off or a passive joint, is then not late",
         "viscous: both trail the input; friction trails less as the motion slows",
     ],
     experiment: "drive a chirp: only a delay's phase grows in proportion to the frequency",

@@ -43,6 +43,7 @@ mod stribeck;
 mod supply_sag;
 mod supply_sensitivity;
 mod thermal_drift;
+mod time_offset;
 mod torque_offset;
 mod torque_saturation;
 mod torque_scale;
@@ -103,6 +104,7 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &grip_slip::GripSlip,
     &backlash::Backlash,
     &sensor_lag::SensorLag,
+    &time_offset::TimeOffset,
     &rate_bias::RateBias,
 ];
 
@@ -249,6 +251,12 @@ pub trait Effect: Sync + fmt::Debug {
     /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long
     /// changed by `speed_rad_s`; `None` where the past decides.
     fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
+        None
+    }
+
+    /// Sensor, of the log: by how much later than the encoder read it a row holds a reading, s;
+    /// `None` where the rows' times are right. It moves what is logged and acts in no loop.
+    fn reading_offset_s(&self, _values: &[f64]) -> Option<f64> {
         None
     }
 

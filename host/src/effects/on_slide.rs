@@ -123,6 +123,10 @@ impl Effect for OnSlide {
         self.effect.trail_rad(values, speed_rad_s)
     }
 
+    fn reading_offset_s(&self, values: &[f64]) -> Option<f64> {
+        self.effect.reading_offset_s(values)
+    }
+
     fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
         self.effect.slope(values, at)
     }

@@ -29,6 +29,8 @@ static INFO: EffectInfo = EffectInfo {
         "delay: both trail; a delay shifts without rounding, and only what is driven",
         "viscous: both make the reading trail; friction takes energy from a free swing, a lag \
          does not",
+        "time_offset: both trail in proportion to the speed; an offset shifts fast motion without \
+         rounding it",
         "backlash: both trail the motion; backlash trails by the same angle at every speed",
         "grip_slip: both trail where the motion is fast; a lag is back once the arm rests",
     ],

@@ -229,26 +229,26 @@ fn friction(
     direction * effect.friction(values, &slide)
 }
 
-/// Angle of a triangle of 0.2 rad at a point of a curve; a period is a curve.
-fn triangle(index: usize) -> f64 {
-    let phase = (index as f64 / (POINTS - 1) as f64).rem_euclid(1.0);
+/// Angle of a triangle of 0.2 rad at a point of a curve, or between two; a period is a curve.
+fn triangle(point: f64) -> f64 {
+    let phase = (point / (POINTS - 1) as f64).rem_euclid(1.0);
     0.2 * (1.0 - 4.0 * (phase - 0.5).abs())
 }
 
 /// Two periods of the triangle, 2 s each, of which the second is drawn.
 fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
     let step_s = 2.0 / (POINTS - 1) as f64;
+    let ago = effect.reading_offset_s(values).unwrap_or(0.0) / step_s;
     let mut memory = None;
     let read = (0..2 * POINTS - 1).map(|index| {
-        let (angle_rad, before_rad) = (triangle(index), triangle(index.saturating_sub(1)));
+        let taken = index as f64 - ago;
+        let (angle_rad, before_rad) = (triangle(taken), triangle(taken - 1.0));
         let encoded = Encoded {
             angle_rad: effect.encode(values, angle_rad),
             speed_rad_s: (angle_rad - before_rad) / step_s,
         };
-        (
-            angle_rad,
-            effect.sense(values, &mut memory, encoded, step_s),
-        )
+        let reading_rad = effect.sense(values, &mut memory, encoded, step_s);
+        (triangle(index as f64), reading_rad)
     });
     read.skip(POINTS - 1).collect()
 }

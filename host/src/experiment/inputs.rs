@@ -53,7 +53,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     for (at, &joint) in driven.iter().enumerate() {
         start_rad[joint] = goals.excitation.angle_rad[0][at];
     }
-    let plant = Plant::new(model, &motion);
+    let plant = Plant::new(model, &motion).read_on_time();
     let regulator = GoalRegulator::new(model, &motion, limits);
     let mut state = at_rest(&plant, &start_rad);
     let mut memory = Memory::default();

@@ -8,11 +8,13 @@ use crate::sim::{Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};
 
 /// Start state of a window with n joints: 3 n unknowns. Where a sensor trails, the angle follows
-/// from the readings' speed and the joint's speed from their acceleration.
+/// from the readings' speed and the joint's speed from their acceleration; so where columns are off
+/// in time by different times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// What the n encoders read, rad in the log's convention; then how the log's angles change,
-    /// rad/s; then how these speeds change, rad/s^2, which says nothing where no sensor trails.
+    /// rad/s; then how these speeds change, rad/s^2, which says nothing where no sensor trails and
+    /// all columns are off by the same time.
     pub unknowns: DVector<f64>,
 }
 
@@ -123,10 +125,11 @@ impl Node {
         let joints = self.unknowns.len() / 3;
         let (reading, rates) = self.unknowns.as_slice().split_at(joints);
         let (speed, acceleration) = rates.split_at(joints);
+        let [reading, speed] = plant.at_begin([reading, speed, acceleration]);
         Start {
-            angle_rad: plant.decode_rad(&plant.ahead_rad(reading, speed)),
-            speed_rad_s: plant.decode_rad_s(&plant.ahead_rad_s(speed, acceleration)),
-            reading_slope: Some(plant.reading_slopes(speed, acceleration)),
+            angle_rad: plant.decode_rad(&plant.ahead_rad(&reading, &speed)),
+            speed_rad_s: plant.decode_rad_s(&plant.ahead_rad_s(&speed, acceleration)),
+            reading_slope: Some(plant.reading_slopes(&speed, acceleration)),
         }
     }
 }

@@ -220,10 +220,15 @@ impl Model {
         }
     }
 
-    /// Whether a sensor's reading trails the motion.
+    /// Whether a sensor's reading trails the motion, or a joint's column is off in time against
+    /// those of others: the state of the joints then follows from how fast readings change.
     pub fn trails(&self) -> bool {
-        let trail = |e: &EffectInstance| e.effect.trail_rad(&e.values, 1.0);
-        self.effects.iter().any(|e| trail(e).is_some())
+        let several = self.link_count() > 1;
+        let trails = |e: &EffectInstance| {
+            let offset_s = e.effect.reading_offset_s(&e.values).filter(|_| several);
+            offset_s.or(e.effect.trail_rad(&e.values, 1.0)).is_some()
+        };
+        self.effects.iter().any(trails)
     }
 
     /// Adds an effect of the library at a joint, if there is one of this id.

@@ -48,6 +48,8 @@ pub(super) struct JointPlan {
     pub gear_cell: Option<usize>,
     pub encode: Vec<ActiveEffect>,
     pub sense: Vec<ActiveEffect>,
+    /// By how much later than the sensor read it the log holds a reading, s.
+    pub offset_s: f64,
     /// What a sensor of rates reads at rest, rad/s.
     pub rate_bias_rad_s: f64,
 }
@@ -68,6 +70,7 @@ impl JointPlan {
             gear_cell: None,
             encode: Vec::new(),
             sense: Vec::new(),
+            offset_s: 0.0,
             rate_bias_rad_s: 0.0,
         }
     }
@@ -156,7 +159,10 @@ impl JointPlan {
             Site::Joint => self.torque.push(active),
             Site::Body => {}
             Site::Encoder => self.encode.push(active),
-            Site::Sensor => self.sense.push(active),
+            Site::Sensor => match effect.reading_offset_s(values) {
+                Some(offset_s) => self.offset_s += offset_s,
+                None => self.sense.push(active),
+            },
             Site::Rate => self.rate_bias_rad_s += effect.rate_bias_rad_s(values),
         }
     }

@@ -25,6 +25,11 @@ pub struct Plant {
     pub(super) senses: bool,
     /// By how much the inputs of drives are late, each other than 0 once, s.
     pub(super) delays_s: Vec<f64>,
+    /// Whether the log holds any reading of another time than its row's.
+    pub(super) has_offsets: bool,
+    /// By how much the log's latest column is late, s; below 0 where all are early. The simulation
+    /// of a stretch begins so much before its first sample.
+    pub(super) late_s: f64,
     /// How many cells its effects remember things in.
     pub(super) remembers: usize,
     /// A base that gives way, and the place of the first of its two cells.
@@ -96,10 +101,13 @@ impl Plant {
         delays_s.retain(|delay_s| *delay_s != 0.0);
         delays_s.sort_by(f64::total_cmp);
         delays_s.dedup();
+        let offsets_s = || joints.iter().map(|joint| joint.offset_s);
         Plant {
             rates,
             senses,
             delays_s,
+            has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
+            late_s: offsets_s().reduce(f64::max).unwrap_or(0.0),
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
             base,
@@ -123,6 +131,15 @@ impl Plant {
     pub fn without_log(model: &Model) -> Plant {
         let angles = vec![false; model.link_count()];
         Plant::read_by(model, &Motion::default(), angles)
+    }
+
+    /// The plant as a loop reads it, whose sensors know nothing of the times of a log's columns.
+    pub fn read_on_time(mut self) -> Plant {
+        for joint in &mut self.joints {
+            joint.offset_s = 0.0;
+        }
+        (self.has_offsets, self.late_s) = (false, 0.0);
+        self
     }
 
     /// Whether any motor turns apart from its joint, or the base gives way.

@@ -1,5 +1,7 @@
 //! Simulation along a stretch of a motion: predicted encoder readings at every sample.
 
+mod time_offset;
+
 use super::drive::DriveInput;
 use super::input::held_mean;
 use super::memory::Memory;
@@ -12,7 +14,9 @@ use crate::model::Drive;
 use std::ops::Range;
 
 /// State at the first sample of a stretch: relative angles (joint 1 from hanging), rad, and speeds,
-/// rad/s.
+/// rad/s. Where the log's latest column is late by some time, below 0 where all are early, the
+/// state is of so much before that sample; see
+/// [`Effect::reading_offset_s`](crate::effects::Effect::reading_offset_s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Start {
     /// Per joint, rad.
@@ -35,7 +39,8 @@ const SPARED: f64 = 0.1;
 ///
 /// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are
 /// the recorded ones, each held until the next sample. Returns the state at the last sample of the
-/// stretch. A state that grows beyond all bounds leaves not-a-number in the rest.
+/// stretch, or as much before it as `start` is before the first. A state that grows beyond all
+/// bounds leaves not-a-number in the rest.
 pub fn predict(
     plant: &Plant,
     motion: &Motion,
@@ -64,6 +69,9 @@ fn predicted<R: Rows>(
     cross_gap::<R>(plant, motion, stretch.start, memory);
     let start = &memory.sensors.beside_slips(plant, start);
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
+    if plant.has_offsets && samples > 0 {
+        return run.record_offset(stretch, memory, readings);
+    }
     run.sensors.record(readings, 0, samples);
     for k in stretch.start..stretch.end.saturating_sub(1) {
         run.follow(k);
@@ -133,11 +141,15 @@ impl<'a, R: Rows> Run<'a, R> {
     /// From sample `k` to the next.
     #[inline]
     fn follow(&mut self, k: usize) {
-        let span_s = self.motion.time_s[k]..self.motion.time_s[k + 1];
-        match self.plant.delays_s.is_empty() {
-            true => self.hold(k, span_s),
-            false => self.go(span_s),
+        if self.plant.has_offsets || !self.plant.delays_s.is_empty() {
+            return self.go(self.begin_s(k)..self.begin_s(k + 1));
         }
+        self.hold(k, self.motion.time_s[k]..self.motion.time_s[k + 1]);
+    }
+
+    /// When the simulation of a stretch begins that begins with sample `k`, s.
+    fn begin_s(&self, k: usize) -> f64 {
+        self.motion.time_s[k] - self.plant.late_s
     }
 
     /// From one time to another, with a stop wherever an input changes at a drive, late or not.

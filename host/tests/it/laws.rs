@@ -71,6 +71,7 @@ fn windows_begin_with_what_was_remembered() {
         ("gear_backlash", 1.3),
         ("base_compliance", 1.3),
         ("grip_slip", 2.0),
+        ("time_offset", 1.3),
     ];
     assert_within(Motions::Arm, Horizon::Seconds(0.5), bounds);
 }
@@ -84,6 +85,7 @@ fn the_true_model_predicts_the_robot() {
         ("gear_backlash", 2.6),
         ("base_compliance", 1.5),
         ("grip_slip", 6.0),
+        ("time_offset", 1.5),
     ];
     assert_within(Motions::Hanging, Horizon::Seconds(1.0), bounds);
 }

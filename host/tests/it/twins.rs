@@ -251,6 +251,7 @@ fn only_what_comes_with_servos_of_one_type_is_shared() {
         "mass",
         "com_angle",
         "encoder_zero",
+        "time_offset",
         "cable_spring",
         "bearing_friction",
     ] {

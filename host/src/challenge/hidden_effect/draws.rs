@@ -21,7 +21,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 pub(super) type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-pub(super) const EFFECTS: [(&str, Parameters); 34] = [
+pub(super) const EFFECTS: [(&str, Parameters); 35] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -136,6 +136,7 @@ pub(super) const EFFECTS: [(&str, Parameters); 34] = [
         ],
     ),
     ("grip_slip", &[("acceleration_rad_s2", Within(40.0, 100.0))]),
+    ("time_offset", &[("offset_s", Signed(0.01, 0.03))]),
 ];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.

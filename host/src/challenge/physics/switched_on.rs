@@ -43,6 +43,7 @@ impl Physics {
             ("encoder_zero", &[offset]) => self.encoder_offset = offset,
             ("backlash", &[gap]) => self.gap = gap,
             ("sensor_lag", &[constant]) => self.lag_s = constant,
+            ("time_offset", &[offset]) => self.logged_late_s = offset,
             ("slew_limit", &[rate]) => self.duty_per_s = rate,
             ("thermal_drift", &[rise, time]) => (self.warming, self.warming_s) = (rise, time),
             ("fold_back", &[share, level, after]) => {

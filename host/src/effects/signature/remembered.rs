@@ -74,8 +74,8 @@ fn driven(effect: &dyn Effect, values: &[f64], memory: &mut MemoryCell, step_s: 
 
 /// The second of two periods of a triangle.
 fn to_and_fro(effect: &dyn Effect, values: &[f64], mut memory: MemoryCell) -> Points {
-    let at = |index| {
-        let angle_rad = triangle(index);
+    let at = |index: usize| {
+        let angle_rad = triangle(index as f64);
         let joint = JointState {
             memory,
             ..JointState::undriven(angle_rad, 0.0)

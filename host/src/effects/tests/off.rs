@@ -41,6 +41,7 @@ fn off_leaves_no_torque() {
 fn off_reads_the_angle_itself() {
     for effect in EFFECTS {
         let (id, off) = (effect.info().id, off_values(*effect));
+        assert_eq!(effect.reading_offset_s(&off).unwrap_or(0.0), 0.0, "{id}");
         let mut memory = None;
         for angle_rad in [0.3, 0.31, -1.0, -1.0, 2.0] {
             assert_eq!(effect.encode(&off, angle_rad), angle_rad, "{id}");

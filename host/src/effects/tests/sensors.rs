@@ -72,6 +72,19 @@ fn lagged(constant_s: f64, rate_hz: usize, end_s: f64, angle: impl Fn(f64) -> f6
 }
 
 #[test]
+fn an_offset_is_of_either_sign_and_never_longer_than_its_bounds() {
+    let offset_s = |value| effect("time_offset").reading_offset_s(&[value]).unwrap();
+    assert_eq!([offset_s(0.02), offset_s(-0.02)], [0.02, -0.02]);
+    assert_eq!([offset_s(1e300), offset_s(f64::NEG_INFINITY)], [0.1, -0.1]);
+    assert!(offset_s(f64::NAN).is_nan());
+    let others = EFFECTS.iter().filter(|e| e.info().id != "time_offset");
+    for other in others {
+        let values = off_values(*other);
+        assert_eq!(other.reading_offset_s(&values), None, "{}", other.info().id);
+    }
+}
+
+#[test]
 fn a_lag_trails_a_ramp_by_its_time_constant() {
     near(
         lagged(0.05, 100, 2.0, |time_s| 3.0 * time_s),

@@ -130,6 +130,8 @@ fn only_what_needs_the_general_simulation_gets_it() {
         ("torque_saturation", 2, &[1.0])
     ]));
     assert!(dense(&[("encoder_scale", 1, &[1.1])]));
+    // A column's times are of the log, not of the loop.
+    assert!(dense(&[("time_offset", 1, &[0.02])]));
     for (id, joint, values) in [
         ("coulomb", 0, &[0.01][..]),
         ("viscous", 2, &[0.01]),

@@ -44,6 +44,20 @@ impl Plant {
         }
     }
 
+    /// What the log holds at a stretch's first sample, how fast that changes and how fast that
+    /// does, carried to the time at which the simulation of the stretch begins, for columns that
+    /// are off in time by different times.
+    pub fn at_begin(&self, [reading, speed, acceleration]: [&[f64]; 3]) -> [Vec<f64>; 2] {
+        let moved = |joint: usize| {
+            let by_s = self.joints[joint].offset_s - self.late_s;
+            let change = by_s * acceleration[joint];
+            let reading = reading[joint] + by_s * (speed[joint] + 0.5 * change);
+            (reading, speed[joint] + change)
+        };
+        let (reading, speed) = (0..self.len()).map(moved).unzip();
+        [reading, speed]
+    }
+
     /// What the encoders would read without the sensors that trail, where these read `reading_rad`
     /// and the readings change by `speed_rad_s`.
     pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
