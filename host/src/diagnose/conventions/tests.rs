@@ -5,13 +5,13 @@ use crate::challenge::{Motions, bench};
 use crate::model::AngleZero;
 use std::path::{Path, PathBuf};
 
-/// A virtual arm whose model lacks nothing but an effect, with the first of its logs.
+/// A virtual arm whose model lacks nothing but an effect, or effects, with the first of its logs.
 fn arm(kind: &'static str) -> (tempfile::TempDir, PathBuf, PathBuf) {
-    arm_of(kind, 5)
+    arm_of(&[kind], 5)
 }
 
-fn arm_of(kind: &'static str, seed: u64) -> (tempfile::TempDir, PathBuf, PathBuf) {
-    let bench = bench(Motions::Arm, seed, &[kind]).unwrap();
+fn arm_of(kinds: &[&'static str], seed: u64) -> (tempfile::TempDir, PathBuf, PathBuf) {
+    let bench = bench(Motions::Arm, seed, kinds).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (model, log) = (folder.path().join("arm.toml"), folder.path().join("a.csv"));
     std::fs::write(&model, &bench.model_toml).unwrap();
@@ -60,23 +60,31 @@ fn a_reversed_position_is_refused_with_the_line_that_mends_it() {
 #[test]
 fn a_wrong_mass_is_not_taken_for_another_drive() {
     // Read as torque, this arm's duty is weaker, which a heavier arm looks like.
-    let (_folder, model, log) = arm_of("mass", 1);
+    let (_folder, model, log) = arm_of(&["mass"], 1);
     assert_eq!(found(&model, &log, |_| ()), []);
 }
 
 #[test]
 fn a_torque_that_is_declared_as_duty_is_found() {
-    let (_folder, model, log) = arm_of("coulomb", 1);
-    let model_text = std::fs::read_to_string(&model).unwrap();
-    let right = Model::parse(&model_text, &model).unwrap();
-    let stall_nm = right.joints[0].drive.motor().unwrap().stall_torque_nm;
+    let (_folder, model, log) = arm_of(&[], 1);
+    let motor = Model::load(&model).unwrap().joints[0]
+        .drive
+        .motor()
+        .cloned();
+    let motor = motor.unwrap();
     let text = std::fs::read_to_string(&log).unwrap();
-    let header = text.lines().find(|line| line.contains("duty,")).unwrap();
-    let duty = header.split(',').position(|name| name == "duty").unwrap();
+    let header = text
+        .lines()
+        .find(|line| line.starts_with("time_s,"))
+        .unwrap();
+    let place = |name: &str| header.split(',').position(|column| column == name).unwrap();
+    let (duty, supply_v) = (place("duty"), place("supply_v"));
     let torques = text.lines().map(|line| {
         let mut cells: Vec<String> = line.split(',').map(str::to_string).collect();
-        if let Some(Ok(share)) = cells.get(duty).map(|cell| cell.parse::<f64>()) {
-            cells[duty] = format!("{}", stall_nm * share);
+        let number = |at: usize| cells.get(at).and_then(|cell| cell.parse::<f64>().ok());
+        if let (Some(share), Some(volts)) = (number(duty), number(supply_v)) {
+            let ratio = volts / motor.nominal_supply_v.unwrap();
+            cells[duty] = (motor.stall_torque_nm * ratio * share).to_string();
         }
         cells.join(",") + "\n"
     });
