@@ -28,7 +28,7 @@ mod visit;
 mod write;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use check::{LogFinding, Proof, Severity, check};
 pub use folder::expanded;

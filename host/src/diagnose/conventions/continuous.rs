@@ -2,6 +2,7 @@
 
 use super::remedy::{LogColumn, Remedy};
 use super::trial::{Effort, RemedyTrial, Trial};
+use crate::log::{LEAST_ROWS, Motion};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -55,12 +56,26 @@ fn shift(bench: &RemedyTrial, quantity: LogColumn) -> Option<Remedy> {
     let samples: usize = bench.motions.iter().map(|m| m.len()).sum();
     let seconds: f64 = bench.motions.iter().map(|m| m.duration_s()).sum();
     let step = LEAST_STEP_S.max(seconds / samples.max(1) as f64);
-    let steps = (-SHIFT_STEPS..=SHIFT_STEPS).filter(|i| *i != 0);
+    // A refinement goes one step further than the shift that it refines.
+    let leaves_samples = |i: &i32| {
+        let moved_s = step * f64::from(i.abs() + 1);
+        bench.motions.iter().all(|motion| spares(motion, moved_s))
+    };
+    let steps = (-SHIFT_STEPS..=SHIFT_STEPS).filter(|i| *i != 0 && leaves_samples(i));
     let shifts = steps.map(|i| given + step * f64::from(i)).collect();
     let best = best(bench, shifts, step, |shift_s| {
         Remedy::Shift(quantity, shift_s)
     })?;
     Some(best.remedy)
+}
+
+/// Whether a motion that loses so many seconds at either end is still one.
+fn spares(motion: &Motion, seconds: f64) -> bool {
+    let Some(last_s) = motion.time_s.last() else {
+        return false;
+    };
+    let kept = motion.time_s.iter().filter(|t| **t <= last_s - seconds);
+    kept.count() >= LEAST_ROWS
 }
 
 /// The best of some values, refined within a step of it by golden section.
@@ -96,4 +111,20 @@ fn best(
         }
     }
     Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::tests::fixture::{columns, model, motion, position_drive};
+
+    #[test]
+    fn a_motion_shorter_than_every_shift_is_shifted_by_none() {
+        let mut short = motion("short", 800);
+        short.time_s.iter_mut().for_each(|t| *t *= 1e-5);
+        let bench = RemedyTrial::new(&model(position_drive(), columns()), vec![short]);
+        let shifts = continuous(&bench).into_iter();
+        let shifts = shifts.filter(|remedy| matches!(remedy, Remedy::Shift(..)));
+        assert_eq!(shifts.collect::<Vec<_>>(), []);
+    }
 }
