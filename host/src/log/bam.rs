@@ -7,6 +7,7 @@
 use super::read::LEAST_ROWS;
 use super::reason::LogReason;
 use super::request::LogRequest;
+use super::row_reader::LARGEST_READING;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
 use crate::model::ArmFigures;
@@ -198,9 +199,13 @@ impl Entries<'_> {
     }
 
     fn number(&self, index: usize, key: &'static str, value: Option<&Value>) -> Result<f64> {
-        value
+        let number = value
             .and_then(Value::as_f64)
-            .ok_or_else(|| self.wrong(index, key, value, "a number"))
+            .ok_or_else(|| self.wrong(index, key, value, "a number"))?;
+        match key == "timestamp" || number.abs() <= LARGEST_READING {
+            true => Ok(number),
+            false => Err(self.wrong(index, key, value, "a reading of at most 1000000")),
+        }
     }
 
     fn wrong(

@@ -2,6 +2,7 @@
 
 use super::LEAST_ROWS;
 use super::lines::LONGEST_LINE;
+use super::row_reader::LARGEST_READING;
 use crate::error::Reason;
 use std::borrow::Cow;
 
@@ -71,6 +72,22 @@ pub enum LogReason {
         found: String,
         /// What it must be.
         expected: &'static str,
+    },
+    /// A number that no sensor of a joint gives.
+    #[error(
+        "{column}: {} is {} {unit}, beyond the {LARGEST_READING:.0} {unit} that a reading may be",
+        quoted(found),
+        scientific(*si)
+    )]
+    NoReading {
+        /// The column.
+        column: String,
+        /// What the field holds.
+        found: String,
+        /// That in SI.
+        si: f64,
+        /// The SI unit.
+        unit: &'static str,
     },
     /// A column that holds no value throughout a motion.
     #[error("{column} holds no value in {motion}")]
@@ -222,6 +239,10 @@ impl Reason for LogReason {
                 "the model reads this column: delete the line, or leave it out by a row range \
                  such as log.csv:26-139"
             }
+            NoReading { .. } => {
+                "check the column's unit in the model's [log]; of a broken cell, delete the value, \
+                 which leaves a gap"
+            }
             EmptyColumn { .. } => {
                 "record it (goals: by `handstand replay --record`), or take the column out of the \
                  model's [log]"
@@ -277,6 +298,11 @@ fn listed(names: &[String]) -> String {
         .collect();
     let more = if names.len() > 40 { ", ..." } else { "" };
     format!("{}{more}", shown.join(", "))
+}
+
+/// A number of any size in few characters.
+fn scientific(value: f64) -> String {
+    format!("{value:.3e}")
 }
 
 /// What a field holds, up to 40 characters.

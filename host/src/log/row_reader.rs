@@ -5,10 +5,14 @@ use super::iso::iso_ns;
 use super::reason::LogReason;
 use super::row::{Fields, LogRow};
 use crate::error::{Error, Place, Result};
-use crate::model::{Column, ColumnMean, LogColumns};
+use crate::model::{Column, ColumnMean, Dimension, LogColumns};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::Path;
+
+/// No angle, speed, torque, voltage or mass is read beyond this, SI: 160,000 turns. Larger numbers
+/// come of damaged bytes or of another unit, and their squares drown those of all other samples.
+pub(super) const LARGEST_READING: f64 = 1e6;
 
 /// Where a quantity stands, and how it is scaled.
 struct LogQuantity<'a> {
@@ -225,10 +229,25 @@ impl Cells<'_> {
             LogCell::Field(index) => self.written(*index),
         };
         match written.map(|written| column.to_si(written)) {
-            Some(value) if value.is_finite() => Ok(value),
+            Some(value) if value.is_finite() => self.reading(cell, column, value),
             Some(_) => Err(self.refuse(cell, "finite")),
             None => Err(self.refuse(cell, "a number")),
         }
+    }
+
+    /// The value, unless no sensor gives one as large.
+    fn reading(&self, cell: &LogCell, column: &Column, value: f64) -> Result<f64> {
+        let dimension = column.unit.dimension;
+        if dimension == Dimension::Time || value.abs() <= LARGEST_READING {
+            return Ok(value);
+        }
+        let reason = LogReason::NoReading {
+            column: self.name(cell).to_string(),
+            found: self.text(cell).into(),
+            si: value,
+            unit: dimension.si_unit(),
+        };
+        Err(Error::refused(self.place(cell), reason))
     }
 
     /// The number that stands in a field, if one does.
@@ -283,15 +302,26 @@ impl Cells<'_> {
     }
 
     fn refuse(&self, cell: &LogCell, expected: &'static str) -> Error {
-        let (line, column) = match cell {
-            LogCell::Field(index) => (self.at, self.reader.names[*index].as_str()),
-            LogCell::Constant(_, line) => (*line, "a constant"),
-        };
         let reason = LogReason::WrongField {
-            column: column.to_string(),
+            column: self.name(cell).to_string(),
             found: self.text(cell).into(),
             expected,
         };
-        Error::refused(Place::at(self.reader.path, line, cell.column()), reason)
+        Error::refused(self.place(cell), reason)
+    }
+
+    fn name(&self, cell: &LogCell) -> &str {
+        match cell {
+            LogCell::Field(index) => &self.reader.names[*index],
+            LogCell::Constant(..) => "a constant",
+        }
+    }
+
+    fn place(&self, cell: &LogCell) -> Place {
+        let line = match cell {
+            LogCell::Field(_) => self.at,
+            LogCell::Constant(_, line) => *line,
+        };
+        Place::at(self.reader.path, line, cell.column())
     }
 }

@@ -92,6 +92,14 @@ impl Dimension {
         units.filter(|unit| unit.si.is_finite())
     }
 
+    /// Name of the SI unit; empty for a share.
+    pub fn si_unit(self) -> &'static str {
+        let mut units = self.plain_units().filter(|unit| unit.name != "1");
+        units
+            .find(|unit| unit.si == 1.0)
+            .map_or("", |unit| unit.name)
+    }
+
     /// Names of the units that measure this, for error messages.
     pub fn unit_names(self) -> impl Iterator<Item = &'static str> {
         UNITS

@@ -213,6 +213,9 @@ fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         return None;
     }
     let scaled = DMatrix::from_fn(count, count, |r, c| matrix[(r, c)] / (scale[r] * scale[c]));
+    if !scaled.iter().all(|value| value.is_finite()) {
+        return None;
+    }
     let spectrum = scaled.clone().symmetric_eigen().eigenvalues;
     if spectrum.min() <= 1e-12 * spectrum.max() {
         return None;

@@ -83,6 +83,10 @@ fn regress(
             normal[(i, k)] /= scale[i] * scale[k];
         }
     }
+    // An instrument that grows without bound: no decomposition ends on numbers that are none.
+    if !normal.iter().chain(right.iter()).all(|v| v.is_finite()) {
+        return None;
+    }
     let mut weights = normal.svd(true, true).solve(&right, 1e-12).ok()?;
     for (weight, scale) in weights.iter_mut().zip(&scale) {
         *weight /= scale;

@@ -130,3 +130,16 @@ fn what_the_data_do_not_tell_is_not_fitted() {
         "{found:?}"
     );
 }
+
+#[test]
+fn records_whose_squares_exceed_all_numbers_are_not_fitted() {
+    let mut record = paper_record(1);
+    record.output[700] = 1e200;
+    for text in ["arx:2,1,1", "armax:2,1,1,1", "oe:1,1,1", "bj:1,2,1,2,1"] {
+        let structure = structures(text).unwrap()[0];
+        assert!(
+            estimate(&structure, std::slice::from_ref(&record)).is_err(),
+            "{text}"
+        );
+    }
+}

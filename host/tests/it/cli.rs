@@ -273,6 +273,31 @@ fn a_bad_log_is_named_by_line_and_column_and_nothing_is_written() {
 }
 
 #[test]
+fn a_number_that_no_sensor_gives_is_refused_by_every_command() {
+    let bench = Bench::new();
+    let mut lines: Vec<String> = bench.get("a.csv").lines().map(str::to_string).collect();
+    lines[200] = "1.99,1e200".into();
+    bench.put("huge.csv", lines.join("\n"));
+    let driven = lines.iter().enumerate().map(|(k, line)| match k {
+        0 => format!("{line},u\n"),
+        _ => format!("{line},{}\n", k % 7),
+    });
+    bench.put("driven.csv", driven.collect::<String>());
+    let identify = "identify driven.csv --time time_s=s --input u=1 --output angle_rad=rad";
+    for line in [
+        "fit model.toml huge.csv --free link1.com_m -o new.toml",
+        "compare model.toml huge.csv",
+        identify,
+    ] {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(3), "{line}: {ran:?}");
+        let said = ".csv:201:2: angle_rad: '1e200' is 1.000e200 rad, beyond the 1000000 rad";
+        assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+    }
+    assert_eq!(bench.run("log check model.toml huge.csv").code, Some(1));
+}
+
+#[test]
 fn a_good_log_passes_its_check() {
     let bench = Bench::new();
     let check = bench.run("log check model.toml a.csv b.csv");

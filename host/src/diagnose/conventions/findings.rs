@@ -98,7 +98,7 @@ fn what(remedy: &Remedy, model: &Model) -> String {
                 given - offset,
                 quantity
                     .column(model)
-                    .map_or("rad", |column| si_name(column.unit.dimension))
+                    .map_or("rad", |column| column.unit.dimension.si_unit())
             )
         }
         Remedy::Unit(columns) => {
@@ -137,13 +137,6 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             )
         }
     }
-}
-
-fn si_name(dimension: Dimension) -> &'static str {
-    let mut units = dimension.plain_units();
-    units
-        .find(|unit| unit.si == 1.0)
-        .map_or("", |unit| unit.name)
 }
 
 /// In which unit a column is written, and in which the model says it is.

@@ -33,9 +33,10 @@ impl Severity {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFinding {
     /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`,
-    /// `payload`, `turned`, `wrap`, `stuck`, `held`, `extreme`, `step`, `missing`, `unobserved`,
-    /// `unit`, `relation`, `supply`, `excitation`; of [`crate::diagnose::conventions`] `sign`,
-    /// `zero`, `unit`, `angles`, `drive`, `time_unit`, `time_shift`, `stalled` or `clipped`.
+    /// `payload`, `turned`, `wrap`, `stuck`, `held`, `outlier`, `extreme`, `step`, `missing`,
+    /// `unobserved`, `unit`, `relation`, `supply`, `excitation`; of
+    /// [`crate::diagnose::conventions`] `sign`, `zero`, `unit`, `angles`, `drive`, `time_unit`,
+    /// `time_shift`, `stalled` or `clipped`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,

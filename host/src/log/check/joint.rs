@@ -4,6 +4,7 @@ use super::excitation::name;
 use super::extremes::Extremes;
 use super::finding::Findings;
 use super::held::HeldReadings;
+use super::outlier::Outliers;
 use crate::error::Place;
 use crate::log::LogReason;
 use crate::log::row::LogRow;
@@ -100,6 +101,7 @@ pub(super) struct JointCheck {
     still: Option<Still>,
     stuck: Vec<Still>,
     held: HeldReadings,
+    outliers: Outliers,
 }
 
 impl JointCheck {
@@ -115,6 +117,7 @@ impl JointCheck {
             still: None,
             stuck: Vec::new(),
             held: HeldReadings::default(),
+            outliers: Outliers::default(),
         }
     }
 
@@ -123,6 +126,9 @@ impl JointCheck {
         let energised = row.torque_on != Some(false);
         let input = row.input[joint].filter(|input| energised && input.is_finite());
         let angle = row.position_rad[joint];
+        if fresh || !angle.is_finite() {
+            self.outliers.restart();
+        }
         if !angle.is_finite() {
             self.rate
                 .take(row.velocity_rad_s[joint].unwrap_or(f64::NAN));
@@ -148,6 +154,7 @@ impl JointCheck {
         let smallest = self.position.steps.smallest;
         self.held.take(angle, smallest, || place.clone());
         self.position.take(angle);
+        self.outliers.take(angle, place.clone());
         let still = self.still.get_or_insert(Still {
             begin: place,
             from_s: row.time_s,
@@ -181,6 +188,8 @@ impl JointCheck {
         self.judge_missing(place, findings);
         self.judge_stuck(findings);
         self.held.judge(&self.position.name, findings);
+        let unit = self.signal.unit();
+        self.outliers.judge(&self.position.name, unit, findings);
         self.judge_extremes(place, drive, findings);
         self.judge_steps(place, findings);
         let (column, range) = (&self.position.name, self.position.extremes.range());

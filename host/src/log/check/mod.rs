@@ -10,6 +10,7 @@ mod finding;
 mod fit;
 mod held;
 mod joint;
+mod outlier;
 mod relation;
 mod sampling;
 mod stretch;

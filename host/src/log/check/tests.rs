@@ -318,3 +318,25 @@ fn frames_that_were_lost_and_a_slow_sensor_are_told() {
     finds(&slow, Severity::Warn, "slower than the log");
     assert_eq!(held(&|k| k == 100 || k == 300), []);
 }
+#[test]
+fn single_rows_far_off_are_warned_of_with_their_lines() {
+    let mut spoiled = good();
+    spoiled.position_rad[0][300] = 87.0;
+    spoiled.position_rad[0][420] = -3.0;
+    let findings = found(&text(&spoiled), &servo());
+    let outliers: Vec<&LogFinding> = findings.iter().filter(|f| f.kind == "outlier").collect();
+    let lines = outliers.iter().map(|f| f.place.as_ref().unwrap().line);
+    assert_eq!(lines.collect::<Vec<_>>(), [Some(302), Some(422)]);
+    let what = "q is 87.0000 rad in this row alone, ";
+    assert!(outliers[0].what.starts_with(what), "{}", outliers[0].what);
+    // A knock turns the joint round within a sample, but no faster than it came.
+    let mut knocked = good();
+    let swing = &mut knocked.position_rad[0];
+    swing.iter_mut().for_each(|q| *q = q.abs());
+    let findings = found(&text(&knocked), &servo());
+    assert!(
+        !findings.iter().any(|f| f.kind == "outlier"),
+        "{findings:#?}"
+    );
+}
+

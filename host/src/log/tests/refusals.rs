@@ -102,6 +102,20 @@ fn each_refusal_names_its_place() {
             "'inf' is not finite",
         ),
         (
+            plain.replace("0.06,0.5,-1", "0.06,1e200,-1"),
+            &columns(),
+            Some(8),
+            Some(2),
+            "q: '1e200' is 1.000e200 rad, beyond the 1000000 rad that a reading may be",
+        ),
+        (
+            plain.replace("0.06,0.5,-1", "0.06,0.5,-2e6"),
+            &columns(),
+            Some(8),
+            Some(3),
+            "u: '-2e6' is -2.000e6 rad",
+        ),
+        (
             plain.replace("0.06", "0.05"),
             &columns(),
             Some(8),
