@@ -62,6 +62,13 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let log = RawLog::read_request(&args.log)?;
     let mut draft = Draft::of(&log, &args.log.name(), args.drive.as_deref())?;
+    if let Some(drive) = args
+        .drive
+        .as_deref()
+        .filter(|drive| !draft.has_input_of(drive))
+    {
+        return Err(no_input(args, drive, &log));
+    }
     for guess in &draft.guesses {
         talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
@@ -87,6 +94,24 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         talk.print(&text)?;
     }
     Ok(ExitStatus::Done)
+}
+
+/// Why `--drive` cannot be followed.
+fn no_input(args: &InitArgs, drive: &str, log: &RawLog) -> Error {
+    let (means, name) = match drive {
+        "torque" => ("a torque", "tau_nm"),
+        "duty" => ("a duty", "duty"),
+        "position" => ("a goal angle", "goal_rad"),
+        _ => ("a goal speed", "goal_speed_rad_s"),
+    };
+    let names = log.names.join(", ");
+    Error::usage(
+        format!(
+            "--drive {drive}: no column of {} that changes is named as {means}: {names}",
+            args.log
+        ),
+        format!("name the input's column {name}, or leave --drive out"),
+    )
 }
 
 /// Takes the options in place of guesses.

@@ -207,3 +207,69 @@ fn two_recorders_logs_become_one_that_is_compared() {
     assert!(repeats.stderr.contains("repeat themselves"), "{repeats:?}");
     assert!(!bench.path("far.csv").exists());
 }
+
+/// The input's column, its drive in the model begun, and what else is said.
+const INPUTS: [(&str, &str); 8] = [
+    ("motor_torque_nm", "torque"),
+    ("torque_nm", "torque"),
+    ("tau", "torque"),
+    ("torque", "torque"),
+    ("u", "torque"),
+    ("m1_tau", "torque"),
+    ("motor_duty", "duty"),
+    ("goal_deg", "position"),
+];
+
+/// A log of one joint, `shoulder_deg`, and an input of this name.
+fn with_input(name: &str) -> String {
+    let row = |k: u32| {
+        let t = 0.01 * f64::from(k);
+        let (angle, input) = (30.0 * (3.0 * t).sin(), 0.5 * (5.0 * t).cos());
+        format!("{},{angle:.3},{input:.5}\n", 1e3 * t)
+    };
+    let rows: String = (0..400).map(row).collect();
+    format!("stamp_ms,shoulder_deg,{name}\n{rows}")
+}
+
+#[test]
+fn the_only_input_belongs_to_the_only_joint() {
+    let bench = Bench::new();
+    for (name, drive) in INPUTS {
+        bench.put("log.csv", with_input(name));
+        let ran = bench.run("init log.csv");
+        assert_eq!(ran.code, Some(0), "{name}: {ran:?}");
+        let line = format!("drive = \"{drive}\"");
+        assert!(ran.stdout.contains(&line), "{name}: {}", ran.stdout);
+        let column = format!("input = {{ column = \"{name}\"");
+        assert!(ran.stdout.contains(&column), "{name}: {}", ran.stdout);
+        assert!(!ran.stderr.contains("not used"), "{name}: {}", ran.stderr);
+    }
+    // What a current is in N m, no header tells.
+    bench.put("log.csv", with_input("current_a"));
+    let ran = bench.run("init log.csv");
+    assert!(ran.stderr.contains("torque_constant_nm_a"), "{ran:?}");
+}
+
+#[test]
+fn a_drive_without_its_input_and_a_log_without_joints_are_refused() {
+    let bench = Bench::new();
+    bench.put("log.csv", with_input("tau"));
+    assert_eq!(bench.run("init log.csv --drive torque").code, Some(0));
+    assert_eq!(bench.run("init log.csv --drive passive").code, Some(0));
+    let ran = bench.run("init log.csv --drive duty");
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    let said = "no column of log.csv that changes is named as a duty: stamp_ms, shoulder_deg, tau";
+    assert!(ran.stderr.contains(said), "{}", ran.stderr);
+    bench.put("log.csv", "t,angle_rad\n");
+    let ran = bench.run("init log.csv");
+    assert_eq!(ran.code, Some(3), "{ran:?}");
+    assert!(
+        ran.stderr.contains("log.csv: the log holds no sample"),
+        "{ran:?}"
+    );
+    bench.put("log.csv", "t,foo\n0,1\n1,2\n");
+    let ran = bench.run("init log.csv");
+    assert_eq!(ran.code, Some(3), "{ran:?}");
+    let said = "log.csv: no column is named as an angle or a speed: t, foo";
+    assert!(ran.stderr.contains(said), "{}", ran.stderr);
+}

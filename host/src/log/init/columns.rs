@@ -2,10 +2,10 @@
 
 use super::Guess;
 use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
-use super::name::{NameGuess, Role, name_guess};
+use super::name::{NameGuess, Role, name_guess, says_current};
 use super::values::{angle_unit, counts, median, range, speed_fit, stands_still, time_unit};
-use crate::error::{Error, Result};
-use crate::log::RawLog;
+use crate::error::{Error, Place, Result};
+use crate::log::{LogReason, RawLog};
 use crate::model::Unit;
 
 /// Roles of a joint's columns.
@@ -38,7 +38,11 @@ pub fn log_guess(
     drive: Option<&str>,
     said: &mut Vec<Guess>,
 ) -> Result<LogGuess> {
-    let names: Vec<NameGuess> = log.names.iter().map(|name| name_guess(name)).collect();
+    let mut names: Vec<NameGuess> = log.names.iter().map(|name| name_guess(name)).collect();
+    if !names.is_empty() && log.columns.iter().all(Vec::is_empty) {
+        return Err(Error::refused(Place::file(file), LogReason::NoSample));
+    }
+    give_inputs(&mut names);
     let reader = GuessReader { log, names, drive };
     let time = reader.time(file, said)?;
     let time_s = time.si(log);
@@ -50,11 +54,9 @@ pub fn log_guess(
         joints.retain(|joint| joint.position.is_some());
     }
     if joints.is_empty() {
-        return Err(Error::usage(
-            format!(
-                "{file}: no column is named as an angle or a speed: {}",
-                listed(log)
-            ),
+        return Err(Error::data(
+            Place::file(file),
+            format!("no column is named as an angle or a speed: {}", listed(log)),
             "name the angle's column angle_rad, q1_rad or position, or write the model by hand: \
              docs/model.md",
         ));
@@ -71,6 +73,35 @@ pub fn log_guess(
     };
     reader.say_rest(&guess, said);
     Ok(guess)
+}
+
+/// Where the names tell of one joint's angle or speed, inputs that name no joint are that joint's;
+/// so is the only input, whatever its name says: `shoulder_deg` with `motor_torque_nm` or `m1_tau`.
+fn give_inputs(names: &mut [NameGuess]) {
+    let is_input = |name: &NameGuess| INPUTS.iter().any(|(role, _)| name.role == Some(*role));
+    let with = |role: Role| -> Vec<&String> {
+        let mut joints: Vec<&String> = Vec::new();
+        for name in names.iter().filter(|name| name.role == Some(role)) {
+            if !joints.contains(&&name.joint) {
+                joints.push(&name.joint);
+            }
+        }
+        joints
+    };
+    let measured = match with(Role::Position) {
+        angles if angles.is_empty() => with(Role::Velocity),
+        angles => angles,
+    };
+    let [joint] = measured[..] else {
+        return;
+    };
+    let joint = joint.clone();
+    let only = names.iter().filter(|name| is_input(name)).count() == 1;
+    for name in names.iter_mut().filter(|name| is_input(name)) {
+        if only || name.joint.is_empty() {
+            name.joint.clone_from(&joint);
+        }
+    }
 }
 
 fn listed(log: &RawLog) -> String {
@@ -132,8 +163,9 @@ impl GuessReader<'_> {
 
     fn time(&self, file: &str, said: &mut Vec<Guess>) -> Result<ColumnGuess> {
         let index = self.first(Role::Time).or_else(|| self.log.time()).ok_or_else(|| {
-            Error::usage(
-                format!("{file}: no column is named time, and none only grows: {}", listed(self.log)),
+            Error::data(
+                Place::file(file),
+                format!("no column is named time, and none only grows: {}", listed(self.log)),
                 "add a column time_s; rows a fixed period apart are their number times the period",
             )
         })?;
@@ -305,6 +337,15 @@ impl GuessReader<'_> {
                 rest.join(", "),
                 "another value is more direct, or none needs it",
             ));
+        }
+        let current = |name: &&String| says_current(name);
+        if let Some(name) = self.log.names.iter().find(current)
+            && guess.joints.iter().all(|joint| joint.input.is_none())
+        {
+            let guess = format!("no column; {name:?} is a current");
+            let remedy = "drive = \"torque\" takes it as input = { column, unit = \"A\", \
+                          torque_constant_nm_a }";
+            said.push(Guess::new("input", guess, remedy));
         }
         if self.first(Role::Payload).is_some() {
             let remedy = "payload = { column, unit, at_m } says where it is bolted";

@@ -103,6 +103,12 @@ impl Draft {
         })
     }
 
+    /// Whether some joint has an input that a drive of this name takes; a passive one takes none.
+    pub fn has_input_of(&self, drive: &str) -> bool {
+        let mut joints = self.columns.joints.iter();
+        joints.any(|joint| joint.drive == drive)
+    }
+
     /// A model file of these figures, whose `[log]` is as guessed; `head` are comments.
     ///
     /// # Errors

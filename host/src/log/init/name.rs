@@ -75,6 +75,12 @@ pub fn name_guess(name: &str) -> NameGuess {
     }
 }
 
+/// Whether a name says that the column holds a current.
+pub fn says_current(name: &str) -> bool {
+    let words = words(bracketed(name).0);
+    words.iter().any(|word| word == "current")
+}
+
 fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
     let is = |unit: Option<&str>, names: &[&str]| unit.is_some_and(|unit| names.contains(&unit));
