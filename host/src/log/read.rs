@@ -47,8 +47,7 @@ fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> 
         request,
         columns,
         pieces: Vec::new(),
-        without_input: None,
-        without_torque: false,
+        left_out: LeftOut::default(),
     };
     let facts = visit(
         &request.path,
@@ -104,24 +103,52 @@ struct Cutter<'a> {
     request: &'a LogRequest,
     columns: &'a LogColumns,
     pieces: Vec<Piece>,
+    left_out: LeftOut,
+}
+
+/// Rows before the first of a motion that lack what a motion begins with.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut {
     /// Joint without input in the rows that were left out last.
     without_input: Option<usize>,
     /// Whether rows were left out that do not say if torque is on.
     without_torque: bool,
 }
 
+impl LeftOut {
+    /// Leaves the row out if it does not say whether torque is on.
+    pub fn lacks_torque(&mut self, row: &LogRow, columns: &LogColumns) -> bool {
+        let lacks = columns.torque_on.is_some() && row.torque_on.is_none();
+        self.without_torque |= lacks;
+        lacks
+    }
+
+    /// Leaves the row out, with which a motion would begin, if an energised joint lacks its input.
+    pub fn lacks_input(&mut self, row: &LogRow) -> bool {
+        let joint = lacks_input(row);
+        self.without_input = joint.or(self.without_input);
+        joint.is_some()
+    }
+
+    /// The column for want of which all rows were left out.
+    pub fn reason(&self, columns: &LogColumns, name: &str) -> Option<LogReason> {
+        let input = |joint: usize| columns.joints[joint].input.as_ref();
+        let torque_on = columns.torque_on.clone().filter(|_| self.without_torque);
+        let input = self.without_input.and_then(input).map(|input| input.name());
+        Some(empty(input.or(torque_on)?, name))
+    }
+}
+
 impl Cutter<'_> {
     fn take(&mut self, row: &LogRow) -> Result<()> {
-        if self.columns.torque_on.is_some() && row.torque_on.is_none() {
-            self.without_torque = true;
+        if self.left_out.lacks_torque(row, self.columns) {
             return Ok(());
         }
         let previous = self.pieces.last().map(Piece::before);
         let split_at_gap_s = self.columns.split_at_gap_s;
         match previous.and_then(|previous| row.follows(&previous, split_at_gap_s)) {
             None => {
-                if let Some(joint) = lacks_input(row) {
-                    self.without_input = Some(joint);
+                if self.left_out.lacks_input(row) {
                     return Ok(());
                 }
                 self.close()?;
@@ -166,15 +193,8 @@ impl Cutter<'_> {
     fn finish(mut self, sha256: &str) -> Result<Vec<Motion>> {
         if self.pieces.is_empty() {
             let place = Place::file(&self.request.path);
-            let input = |joint: usize| self.columns.joints[joint].input.as_ref();
-            let torque_on = self.columns.torque_on.clone();
-            let torque_on = torque_on.filter(|_| self.without_torque);
-            let input = self.without_input.and_then(input).map(|input| input.name());
-            let reason = match input.or(torque_on) {
-                Some(column) => empty(column, &self.request.name()),
-                None => LogReason::NoSample,
-            };
-            return Err(Error::refused(place, reason));
+            let reason = self.left_out.reason(self.columns, &self.request.name());
+            return Err(Error::refused(place, reason.unwrap_or(LogReason::NoSample)));
         }
         self.close()?;
         let file = self.request.name();

@@ -4,6 +4,7 @@
 //! question open (too few reversals) is warned of; the rest is noted. Judging goes on after a
 //! finding.
 
+mod empty;
 mod excitation;
 mod extremes;
 mod finding;
@@ -21,12 +22,14 @@ mod tests;
 pub use finding::{LogFinding, Proof, Severity};
 
 use super::bam::BamBench;
+use super::read::LeftOut;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::LogRow;
 use super::{LEAST_ROWS, bam, expanded, visit};
 use crate::error::{Error, Place, Result, words};
 use crate::model::Model;
+use empty::EmptyColumns;
 use excitation::ExcitationCheck;
 use finding::Findings;
 use joint::JointCheck;
@@ -85,6 +88,8 @@ struct FileCheck<'a> {
     excitation: &'a mut ExcitationCheck,
     previous: Option<LogRow>,
     rows_in_motion: usize,
+    left_out: LeftOut,
+    empty: EmptyColumns<'a>,
     sampling: Sampling,
     joints: Vec<JointCheck>,
     relations: Relations,
@@ -104,6 +109,8 @@ impl<'a> FileCheck<'a> {
             excitation,
             previous: None,
             rows_in_motion: 0,
+            left_out: LeftOut::default(),
+            empty: EmptyColumns::new(&model.log, request.name()),
             sampling: Sampling::default(),
             joints: model.log.joints.iter().map(JointCheck::new).collect(),
             relations: Relations::new(model),
@@ -134,7 +141,13 @@ impl<'a> FileCheck<'a> {
         if row.position_rad.len() != self.joints.len() {
             return;
         }
+        if self.left_out.lacks_torque(row, &self.model.log) {
+            return;
+        }
         let fresh = self.begins(row);
+        if fresh && self.left_out.lacks_input(row) {
+            return;
+        }
         if fresh {
             self.close_motion();
         }
@@ -144,6 +157,7 @@ impl<'a> FileCheck<'a> {
             return;
         }
         self.rows_in_motion += 1;
+        self.empty.take(row);
         for joint in 0..self.joints.len() {
             self.joints[joint].take(row, joint, fresh, self.findings);
         }
@@ -177,6 +191,10 @@ impl<'a> FileCheck<'a> {
 
     fn close_motion(&mut self) {
         let rows = std::mem::take(&mut self.rows_in_motion);
+        if rows > 0 {
+            let place = Place::file(&self.request.path);
+            self.empty.close(&place, self.findings);
+        }
         if let Some(last) = self.previous.as_ref().filter(|_| rows < LEAST_ROWS) {
             let place = last.place(last.fields.time);
             self.findings
@@ -195,11 +213,15 @@ impl<'a> FileCheck<'a> {
             self.findings.refuse("range", place.clone(), &reason);
         }
         if self.previous.is_none() {
-            let reason = words(
-                "no sample could be read",
-                "see the rows refused, or record again",
-            );
-            self.findings.refuse("none", place, &reason);
+            let name = self.request.name();
+            match self.left_out.reason(&self.model.log, &name) {
+                Some(reason) => self.findings.refuse("missing", place, &reason),
+                None => {
+                    let remedy = "see the rows refused, or record again";
+                    let reason = words("no sample could be read", remedy);
+                    self.findings.refuse("none", place, &reason);
+                }
+            }
             return;
         }
         self.close_motion();

@@ -318,6 +318,41 @@ fn frames_that_were_lost_and_a_slow_sensor_are_told() {
     finds(&slow, Severity::Warn, "slower than the log");
     assert_eq!(held(&|k| k == 100 || k == 300), []);
 }
+
+#[test]
+fn a_column_that_the_reader_misses_is_refused() {
+    let without = |change: &dyn Fn(&mut Vec<f64>)| {
+        let mut motion = good();
+        change(motion.input[0].as_mut().unwrap());
+        found(&text(&motion).replace("NaN", "nan"), &servo())
+    };
+    let never = without(&|input| input.fill(f64::NAN));
+    finds(&never, Severity::Refuse, "u holds no value in ");
+    // The reader begins with the first input.
+    let late = without(&|input| input[..100].fill(f64::NAN));
+    assert!(
+        late.iter().all(|f| f.severity == Severity::Note),
+        "{late:#?}"
+    );
+
+    let mut released = servo();
+    released.log.torque_on = Some("on".into());
+    let table = |on: fn(usize) -> u8, input: fn(usize) -> &'static str| {
+        let row = |k: usize| {
+            let q = 0.7 * (0.03 * k as f64).sin();
+            format!("{},{q:.4},{},{}\n", 0.01 * k as f64, input(k), on(k))
+        };
+        format!("t_s,q,u,on\n{}", (0..400).map(row).collect::<String>())
+    };
+    let unknown = found(
+        &table(|k| u8::from(k > 9), |k| if k > 20 { "0.1" } else { "" }),
+        &released,
+    );
+    finds(&unknown, Severity::Refuse, "u holds no value in ");
+    let idle = found(&table(|_| 0, |_| ""), &released);
+    assert!(!idle.iter().any(|f| f.kind == "missing"), "{idle:#?}");
+}
+
 #[test]
 fn single_rows_far_off_are_warned_of_with_their_lines() {
     let mut spoiled = good();
