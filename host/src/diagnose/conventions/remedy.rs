@@ -270,10 +270,40 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
         return Vec::new();
     }
     let declared = model.log.time.unit;
+    // Stamps are text, which no unit of numbers reads, and the other way round.
+    let is_text = |unit: &Unit| unit.name == "iso8601";
+    if is_text(&declared) {
+        return Vec::new();
+    }
     Dimension::Time
         .plain_units()
-        .filter(|unit| unit.name != declared.name)
+        .filter(|unit| unit.name != declared.name && !is_text(unit))
         .filter(|unit| plausible.contains(&(spacing_s / declared.si * unit.si)))
         .map(|unit| Remedy::Unit(vec![(LogColumn::Time, unit)]))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::tests::fixture::{columns, model, position_drive};
+
+    fn proposed(declared: &str, spacing_s: f64) -> Vec<&'static str> {
+        let mut model = model(position_drive(), columns());
+        model.log.time.unit = Unit::named(declared, None).unwrap();
+        let units = time_units(&model, spacing_s).into_iter();
+        let units = units.filter_map(|remedy| match remedy {
+            Remedy::Unit(columns) => Some(columns[0].1.name),
+            _ => None,
+        });
+        units.collect()
+    }
+
+    #[test]
+    fn numbers_are_not_read_as_time_stamps_nor_stamps_as_numbers() {
+        for (declared, spacing_s) in [("ms", 1e-5), ("us", 1e-8), ("ns", 1e-11)] {
+            assert_eq!(proposed(declared, spacing_s), ["s"], "{declared}");
+        }
+        assert_eq!(proposed("iso8601", 10.0), [""; 0]);
+    }
 }

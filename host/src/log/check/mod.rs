@@ -225,7 +225,8 @@ impl<'a> FileCheck<'a> {
             return;
         }
         self.close_motion();
-        self.sampling.judge(&place, self.findings);
+        let unit = self.model.log.time.unit;
+        self.sampling.judge(&place, unit, self.findings);
         for (joint, check) in self.joints.iter_mut().enumerate() {
             check.judge(&place, &self.model.joints[joint].drive, self.findings);
         }

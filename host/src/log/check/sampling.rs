@@ -4,13 +4,18 @@ use super::finding::Findings;
 use crate::error::Place;
 use crate::log::LogReason;
 use crate::log::row::LogRow;
+use crate::model::{Dimension, Unit};
 
 /// Bins per e-fold of the interval: 2 % each.
 const BINS_PER_E: f64 = 50.0;
-/// Bins from 1 ns to some 10^9 s.
-const BINS: usize = 2100;
+/// The shortest interval told from shorter ones, s.
+const SHORTEST_S: f64 = 1e-15;
+/// Bins from there to some 10^9 s.
+const BINS: usize = 2800;
 /// Gaps remembered with their place.
 const LARGEST: usize = 20;
+/// Samples of a joint lie so far apart, s.
+const PLAUSIBLE_S: std::ops::RangeInclusive<f64> = 50e-6..=1.0;
 /// An interval of more medians than this is a gap.
 const GAP: f64 = 5.0;
 
@@ -53,7 +58,7 @@ impl Sampling {
             return false;
         }
         self.previous_s = Some(row.time_s);
-        let bin = ((interval.ln() + 9.0 * std::f64::consts::LN_10) * BINS_PER_E).max(0.0);
+        let bin = ((interval / SHORTEST_S).ln() * BINS_PER_E).max(0.0);
         self.bins[(bin as usize).min(BINS - 1)] += 1;
         let shortest = self.largest.last().map_or(0.0, |(length, _)| *length);
         if self.largest.len() < LARGEST || interval > shortest {
@@ -77,18 +82,21 @@ impl Sampling {
         Some(centre_s(bin))
     }
 
-    /// Says what the intervals show.
-    pub fn judge(&mut self, place: &Place, findings: &mut Findings) {
+    /// Says what the intervals show; times are declared in `unit`.
+    pub fn judge(&mut self, place: &Place, unit: Unit, findings: &mut Findings) {
         let Some(median) = self.median_s() else {
             return;
         };
-        let shown = milliseconds(median);
-        if median > 1.0 {
-            let what = format!("samples {median:.3} s apart: milliseconds declared as seconds?");
-            let remedy = "check the time column's unit in the model's [log]";
-            findings.warn("unit", place.clone(), (what, remedy));
-        } else if median < 50e-6 {
-            let what = format!("samples {shown} apart: seconds declared as milliseconds?");
+        let shown = duration(median);
+        if !PLAUSIBLE_S.contains(&median) {
+            let question = match likelier(median, unit) {
+                Some(other) => format!("{} declared as {}?", spelt(other), spelt(unit)),
+                None => format!(
+                    "no unit of time explains that; declared are {}",
+                    spelt(unit)
+                ),
+            };
+            let what = format!("samples {shown} apart: {question}");
             let remedy = "check the time column's unit in the model's [log]";
             findings.warn("unit", place.clone(), (what, remedy));
         }
@@ -130,9 +138,9 @@ impl Sampling {
             };
             let what = format!(
                 "a gap of {} before this sample, {:.0} times the usual {}{more}",
-                milliseconds(length),
+                duration(length),
                 length / median,
-                milliseconds(median)
+                duration(median)
             );
             let remedy = "set split_at_gap_s in the model's [log] to begin a new motion there";
             findings.warn("gap", place, (what, remedy));
@@ -141,9 +149,38 @@ impl Sampling {
 }
 
 fn centre_s(bin: usize) -> f64 {
-    ((bin as f64 + 0.5) / BINS_PER_E - 9.0 * std::f64::consts::LN_10).exp()
+    SHORTEST_S * ((bin as f64 + 0.5) / BINS_PER_E).exp()
 }
 
-fn milliseconds(seconds: f64) -> String {
-    format!("{:.3} ms", 1e3 * seconds)
+/// The unit of numbers in which samples that lie `median` seconds apart, read in `declared`, would
+/// lie as far apart as a joint's do.
+fn likelier(median: f64, declared: Unit) -> Option<Unit> {
+    let numbers = |unit: &Unit| unit.name != "iso8601";
+    if !numbers(&declared) {
+        return None;
+    }
+    let likely = |unit: &Unit| PLAUSIBLE_S.contains(&(median / declared.si * unit.si));
+    let distance = |unit: &Unit| (median / declared.si * unit.si / 0.01).ln().abs();
+    let units = Dimension::Time.plain_units().filter(numbers).filter(likely);
+    units.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+fn spelt(unit: Unit) -> &'static str {
+    match unit.name {
+        "s" => "seconds",
+        "ms" => "milliseconds",
+        "us" => "microseconds",
+        "ns" => "nanoseconds",
+        _ => "time stamps",
+    }
+}
+
+/// In the unit of time that shows it.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        ..1e-9 => format!("{seconds:.1e} s"),
+        ..1e-6 => format!("{:.3} ns", 1e9 * seconds),
+        ..50e-6 => format!("{:.3} us", 1e6 * seconds),
+        _ => format!("{:.3} ms", 1e3 * seconds),
+    }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::log::tests::fixture::{columns, first, model, motion, position_drive};
 use crate::log::{Motion, to_csv};
-use crate::model::{Drive, LogColumns};
+use crate::model::{Drive, LogColumns, Unit};
 
 fn found(text: &str, model: &Model) -> Vec<LogFinding> {
     let log = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
@@ -127,8 +127,18 @@ fn time_faults_are_found() {
     finds(
         &scaled(1e-3),
         Severity::Warn,
-        "seconds declared as milliseconds?",
+        " us apart: no unit of time explains that; declared are seconds",
     );
+    for (declared, spelt) in [
+        ("ms", "milliseconds"),
+        ("us", "microseconds"),
+        ("ns", "nanoseconds"),
+    ] {
+        let mut declaring = servo();
+        declaring.log.time.unit = Unit::named(declared, None).unwrap();
+        let what = format!(" apart: seconds declared as {spelt}?");
+        finds(&found(&text(&good()), &declaring), Severity::Warn, &what);
+    }
     let mut jittery = good();
     let late = |(i, t): (usize, &mut f64)| *t += if i % 2 == 0 { 0.004 } else { 0.0 };
     jittery.time_s.iter_mut().enumerate().for_each(late);
