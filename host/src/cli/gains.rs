@@ -22,12 +22,12 @@
 
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk};
-use handstand::Result;
 use handstand::model::Model;
 use handstand::report::gains_json;
 use handstand::study::{left_out, verification_steps, verify};
-use handstand::synth::Design;
 use handstand::synth::export::{self, Provenance};
+use handstand::synth::{Design, DesignError};
+use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 
 mod request;
@@ -120,8 +120,15 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
-    let (part, request, made) = requested(args, talk)?;
-    let design = Design::of(&part, &request)?;
+    let (part, request, made) = requested(args, talk).map_err(of_options)?;
+    let design = match Design::of(&part, &request) {
+        // Gains that exist and lose their stability in fixed point are the answer no.
+        Err(error @ DesignError::UnstableWhenRounded { .. }) => {
+            talk.error(error.into());
+            return Ok(ExitStatus::Refused);
+        }
+        design => design.map_err(|error| of_options(error.into()))?,
+    };
     let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
     let bar = talk.bar(verification_steps(&left_out) as u64);
@@ -139,6 +146,15 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     })?;
     write(args, &design, &made, &data, talk)?;
     Ok(ExitStatus::answer(verified.stabilised))
+}
+
+/// What lies in the options' numbers is a request that makes no sense.
+pub(super) fn of_options(error: Error) -> Error {
+    let asked = error.reason().is_some_and(DesignError::in_request);
+    match error {
+        Error::Design(reason) if asked => Error::Usage(reason),
+        other => other,
+    }
 }
 
 impl GainsArgs {

@@ -35,6 +35,15 @@ pub struct Sweep {
     pub levels: Vec<Level>,
 }
 
+impl Sweep {
+    /// Why no level has a controller, if none has: the first one's reason.
+    pub fn refused(&self) -> Option<&str> {
+        let first = self.levels.first()?.refused.as_deref()?;
+        let all = self.levels.iter().all(|level| level.refused.is_some());
+        all.then_some(first)
+    }
+}
+
 /// Judges `case` at every level; `done` is called after each.
 ///
 /// # Errors

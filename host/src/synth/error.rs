@@ -156,6 +156,9 @@ pub enum DesignError {
     SpreadTooWide { share: f64 },
 }
 
+/// A plant that grows by more within a sample is sampled too slowly, not too fast.
+const MOST_GROWTH: f64 = 10.0;
+
 /// A mode of a plant that a Riccati equation cannot move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantMode {
@@ -200,6 +203,16 @@ impl RiccatiRole {
                 "the process noise W does not excite it, so the best filter ignores it",
                 "give that state process noise in W",
             ),
+        }
+    }
+}
+
+impl PlantMode {
+    /// By what factor it grows within a sample; 1 in continuous time.
+    fn grows_by(&self) -> f64 {
+        match self.sampled {
+            true => self.mode.pole.norm(),
+            false => 1.0,
         }
     }
 }
@@ -277,6 +290,16 @@ impl Reason for DesignError {
             }
             E::Innovation => "raise the measurement noise V",
             E::Eigenvalues => "look for entries that are not numbers or of very different size",
+            E::Uncontrollable { mode, .. }
+            | E::NoSolution {
+                weakest: Some(mode),
+            } if mode.grows_by() > MOST_GROWTH => {
+                return format!(
+                    "sample faster: within one sample the mode grows by a factor of {:.3e}",
+                    mode.grows_by()
+                )
+                .into();
+            }
             E::Uncontrollable { role, .. } => role.uncontrollable().1,
             E::Unweighted { role, .. } => role.unweighted().1,
             E::NoSolution { .. } => {
@@ -293,6 +316,28 @@ impl Reason for DesignError {
             E::UnstableStart => "start from plants that differ less",
             E::SpreadTooWide { .. } => "ask for less spread, or for more stages on the way",
         })
+    }
+}
+
+impl DesignError {
+    /// Whether it lies in the request's own numbers, whatever the model is.
+    pub fn in_request(&self) -> bool {
+        use DesignError as E;
+        matches!(
+            self,
+            E::PoseSize { .. }
+                | E::PoseAngle(_)
+                | E::SamplingTime(_)
+                | E::Delay { .. }
+                | E::DiagonalSize { .. }
+                | E::ListSize { .. }
+                | E::Entry { .. }
+                | E::Indefinite { .. }
+                | E::NotDefinite { .. }
+                | E::WordLength(_)
+                | E::Count { .. }
+                | E::NotPositive { .. }
+        )
     }
 }
 

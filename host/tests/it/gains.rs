@@ -153,12 +153,6 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
         model.replace("gravity_m_s2 = 9.81", "gravity_m_s2 = 0.0"),
     );
     for (line, said) in [
-        ("handstand.toml --q -1", "Q is not positive semidefinite"),
-        (
-            "handstand.toml --q 1,2,3",
-            "Q has 3 values, but there are 6 states",
-        ),
-        ("handstand.toml --r 0", "R is not positive definite"),
         (
             "handstand.toml --r skew.csv",
             "R is not symmetric: entry (2, 1) is 0, entry (1, 2) is 0.5",
@@ -171,12 +165,8 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
             "handstand.toml --r ragged.csv",
             "ragged.csv:2:1: 1 numbers where",
         ),
-        ("handstand.toml --q nan", "Q has an entry of NaN"),
-        ("handstand.toml --ts 0", "a sampling time of 0 s"),
-        ("handstand.toml --delay -0.1", "a delay of -0.1 s"),
         ("handstand.toml --pose 1,0,0", "joint 1 is passive"),
-        ("handstand.toml --pose 1.5", "the pose has 1 angles"),
-        ("handstand.toml --range 0", "the range of state 1 is 0"),
+        ("handstand.toml --ts 3", "sample faster: within one sample"),
         (
             "handstand.toml --state-step 1e-5,1e-5,1e-5,1,1,1",
             "but a word holds 32767",
@@ -254,6 +244,21 @@ fn requests_that_make_no_sense_end_in_2() {
         ("handstand.toml --state-space plant.txt", ".json"),
         ("handstand.toml --without coulomb", "it holds none at all"),
         ("handstand.toml --csv a.csv", "exists"),
+        ("handstand.toml --q -1", "Q is not positive semidefinite"),
+        (
+            "handstand.toml --q 1,2,3",
+            "Q has 3 values, but there are 6 states",
+        ),
+        ("handstand.toml --q nan", "Q has an entry of NaN"),
+        ("handstand.toml --r 0", "R is not positive definite"),
+        ("handstand.toml --ts 0", "a sampling time of 0 s"),
+        ("handstand.toml --ts nan", "a sampling time of NaN s"),
+        ("handstand.toml --delay -0.1", "a delay of -0.1 s"),
+        ("handstand.toml --delay 5", "a delay of 5 s"),
+        ("handstand.toml --pose 1.5", "the pose has 1 angles"),
+        ("handstand.toml --range 0", "the range of state 1 is 0"),
+        ("handstand.toml --range 1,2,3", "the range of states has 3"),
+        ("handstand.toml --state-step 1,2,3", "--state-step has 3"),
     ] {
         let ran = bench.run(&format!("gains {line}"));
         assert_eq!(ran.code, Some(2), "{line}: {}{}", ran.stdout, ran.stderr);
@@ -340,4 +345,13 @@ fn gains_for_continuous_time_are_verified_fast_enough_for_their_poles() {
     let ran = bench.run("gains handstand.toml --continuous --json");
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     assert_eq!(ran.json()["verification"]["stabilised"], true);
+}
+
+#[test]
+fn gains_that_rounding_makes_unstable_are_the_answer_no() {
+    let bench = bench();
+    let ran = bench.run("gains handstand.toml --delay 0.4");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let said = "the gains no longer stabilise";
+    assert!(ran.stderr.contains(said), "{}", ran.stderr);
 }

@@ -134,3 +134,13 @@ fn a_sweep_leaves_a_table_and_a_plot_and_overwrites_nothing() {
     let listed = bench.run("study sweep --json").json();
     assert_eq!(listed.as_array().unwrap().len(), 10);
 }
+
+#[test]
+fn a_sweep_without_any_controller_is_an_error() {
+    let bench = bench();
+    bench.put("unfit.toml", "[robot]\nmodel = \"model.toml\"\n");
+    let ran = bench.run("study sweep delay --study unfit.toml --levels 0,5 --runs 2");
+    assert_eq!(ran.code, Some(3), "{ran:?}");
+    let said = "no level of delay has a controller: no joint of `pendulum` is driven";
+    assert!(ran.stderr.contains(said), "{}", ran.stderr);
+}

@@ -150,8 +150,9 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<(Plan, Vec<ModeLimit>)> {
         let plan = deploy::plan(&model, BoardLaw::Observer(&machine), &board)?;
         return Ok((plan, deploy::mode_limits(&model, &board, &timing)?));
     }
-    let (reduced, request, made) = gains::requested(&args.gains, talk)?;
-    let design = deploy::state_design(&reduced, request, &board)?;
+    let (reduced, request, made) =
+        gains::requested(&args.gains, talk).map_err(gains::of_options)?;
+    let design = deploy::state_design(&reduced, request, &board).map_err(gains::of_options)?;
     let plan = deploy::plan(&model, BoardLaw::State(&design), &board)?;
     let data = handstand::synth::export::json(&design, &made);
     gains::write(&args.gains, &design, &made, &data, talk)?;

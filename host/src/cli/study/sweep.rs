@@ -133,6 +133,12 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if talk.json {
         talk.data(&all)?;
     }
+    if let Some((ran, why)) = all.iter().find_map(|ran| Some((ran, ran.refused()?))) {
+        return Err(Error::design(
+            format!("no level of {} has a controller: {why}", ran.sweep),
+            "design for another model, sampling time or controller, or sweep other levels",
+        ));
+    }
     Ok(ExitStatus::Done)
 }
 
