@@ -15,7 +15,7 @@
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
-use handstand::log::{LogRequest, read};
+use handstand::log::{LogRequest, expanded, read};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::{Model, Result};
@@ -40,6 +40,8 @@ pub struct DriftArgs {
 pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::load(&args.model)?;
     let free = free_parameters(&model, &args.free)?;
+    // A session is read by itself; that none shares rows with another shows in all of them.
+    expanded(&args.logs)?;
     let sessions = args.logs.iter().map(|log| {
         Ok(DriftSession {
             name: log.to_string(),

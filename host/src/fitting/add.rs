@@ -34,7 +34,7 @@ pub fn candidates_named(names: &[String], model: &Model) -> Result<Vec<Candidate
     for name in names {
         let candidate = Candidate::named(name, model)?;
         if candidates.contains(&candidate) {
-            return Err(CandidateError::InModel(candidate).into());
+            return Err(CandidateError::Twice(candidate).into());
         }
         candidates.push(candidate);
     }

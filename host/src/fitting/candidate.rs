@@ -187,6 +187,9 @@ pub enum CandidateError {
     /// The model holds the effect already.
     #[error("the model holds `{0}` already")]
     InModel(Candidate),
+    /// Two names mean the same effect.
+    #[error("`{0}` is named twice")]
+    Twice(Candidate),
 }
 
 impl From<CandidateError> for Error {
@@ -210,6 +213,7 @@ impl From<CandidateError> for Error {
             }
             E::UnsuitedDrive { wanted, .. } => format!("name a {wanted} joint, or another effect"),
             E::NotOnSlide { .. } => "name a joint that turns, or another effect".to_string(),
+            E::Twice(_) => "name each effect once".to_string(),
             E::InModel(_) => "refit its values with `handstand fit`".to_string(),
         };
         Error::usage(error.to_string(), remedy)

@@ -5,12 +5,13 @@ use super::request::LogRequest;
 use crate::error::{Error, Result};
 use std::path::PathBuf;
 
-/// The requests with each folder replaced by the logs in it, in the order of their names.
+/// The requests with each folder replaced by the logs in it, in the order of their names; no row
+/// may be asked for twice, for it would count twice.
 ///
 /// A folder's own folders are not searched; files of other endings are passed over.
 ///
 /// # Errors
-/// A folder without a log, rows of a folder, and what the system refuses.
+/// A folder without a log, rows of a folder, rows asked for twice, and what the system refuses.
 pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
     let mut all = Vec::new();
     for request in requests {
@@ -19,7 +20,25 @@ pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
             false => all.push(request.clone()),
         }
     }
+    told_apart(&all)?;
     Ok(all)
+}
+
+fn told_apart(requests: &[LogRequest]) -> Result<()> {
+    for (index, request) in requests.iter().enumerate() {
+        let Some(before) = requests[..index].iter().find(|log| log.overlaps(request)) else {
+            continue;
+        };
+        let message = match before.rows == request.rows {
+            true => format!("{request} is given twice"),
+            false => format!("{request} shares rows with {before}"),
+        };
+        return Err(Error::usage(
+            message,
+            "name each row once, a range includes its end: a row named twice counts twice",
+        ));
+    }
+    Ok(())
 }
 
 fn of_folder(request: &LogRequest) -> Result<Vec<LogRequest>> {

@@ -4,7 +4,7 @@ use super::format::LogFormat;
 use super::reason::LogReason;
 use crate::error::{Error, Result};
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// A log file, whole or in part, as named on the command line: `drop.csv` or `drop.csv:26-139`.
@@ -39,7 +39,7 @@ impl LogRequest {
             }
             _ => false,
         };
-        self.path == other.path && !apart
+        !apart && is_same_file(&self.path, &other.path)
     }
 
     /// Why a log of so many rows cannot give the rows wanted, if it cannot.
@@ -62,6 +62,13 @@ impl LogRequest {
     pub fn is_json(&self) -> bool {
         LogFormat::of(&self.path) == LogFormat::Bam
     }
+}
+
+/// Whether two names are one file's: `a.csv`, `./a.csv`.
+fn is_same_file(path: &Path, other: &Path) -> bool {
+    let same_name = path.file_name() == other.file_name();
+    let real = |path: &Path| path.canonicalize().ok();
+    path == other || (same_name && real(path).is_some_and(|own| Some(own) == real(other)))
 }
 
 impl FromStr for LogRequest {

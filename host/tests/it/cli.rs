@@ -147,6 +147,24 @@ fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
             "add model.toml base_tilt@1 --fit a.csv -o new.toml",
             "whole rig",
         ),
+        (
+            "add model.toml viscous viscous@1 --fit a.csv -o new.toml",
+            "`viscous@1` is named twice",
+        ),
+        (
+            "fit model.toml a.csv ./a.csv --free link1.com_m -o new.toml",
+            "./a.csv is given twice",
+        ),
+        ("compare model.toml - -", "- is given twice"),
+        (
+            "drift model.toml a.csv a.csv --free link1.com_m",
+            "a.csv is given twice",
+        ),
+        ("diagnose model.toml a.csv a.csv", "a.csv is given twice"),
+        (
+            "log check model.toml a.csv:0-50 a.csv:40-90",
+            "a.csv:40-90 shares rows with a.csv:0-50",
+        ),
         ("log check model.toml", "LOG"),
     ] {
         let ran = bench.run(line);
