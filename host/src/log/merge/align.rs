@@ -7,7 +7,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 /// Correlations below this are chance, or another motion.
-const LEAST_CORRELATION: f64 = 0.8;
+const LEAST_CORRELATION: f64 = 0.9;
 /// Another peak this near the best one leaves the offset open.
 const AS_GOOD: f64 = 0.98;
 /// Least share of the shorter log that must overlap.
@@ -40,7 +40,9 @@ pub(super) fn aligned(
     let mut best: Option<(Peak, usize, usize)> = None;
     for (i, a) in own.iter().enumerate() {
         for (j, b) in other.iter().enumerate() {
-            let peak = peak(a, b);
+            // Columns of one name count the same way round.
+            let same_name = first.log.names[ours[i]] == second.log.names[theirs[j]];
+            let peak = peak(a, b, same_name);
             let better = |(found, ..): &(Peak, usize, usize)| {
                 peak.correlation.abs() > found.correlation.abs()
             };
@@ -57,8 +59,10 @@ pub(super) fn aligned(
     let percent = |correlation: f64| short(100.0 * correlation.abs());
     if peak.correlation.abs() < LEAST_CORRELATION {
         let what = format!(
-            "no signal of the logs agrees: `{a}` and `{b}` correlate best, by {} %",
-            percent(peak.correlation)
+            "no signal of the logs agrees: `{a}` and `{b}` correlate best, by {} %, where {} % are \
+             the least of two records of one motion",
+            percent(peak.correlation),
+            percent(LEAST_CORRELATION)
         );
         return Err(Error::usage(what, remedy));
     }
@@ -91,8 +95,9 @@ struct Peak {
     rival: f64,
 }
 
-/// Correlates by Fourier transforms; what overlaps too little does not count.
-fn peak(a: &[f64], b: &[f64]) -> Peak {
+/// Correlates by Fourier transforms; what overlaps too little does not count, nor do negative
+/// correlations if `same_way`.
+fn peak(a: &[f64], b: &[f64], same_way: bool) -> Peak {
     let size = (a.len() + b.len()).next_power_of_two();
     let raw = correlated(a, b, size);
     let (own, other) = (energies(a), energies(b));
@@ -110,7 +115,11 @@ fn peak(a: &[f64], b: &[f64]) -> Peak {
         if scale <= 1e-4 * whole {
             return 0.0;
         }
-        raw[lag.rem_euclid(size as i64) as usize] / scale.sqrt()
+        let correlation = raw[lag.rem_euclid(size as i64) as usize] / scale.sqrt();
+        match same_way {
+            true => correlation.max(0.0),
+            false => correlation,
+        }
     };
     let values: Vec<f64> = lags.clone().map(at).collect();
     let best = (0..values.len()).max_by(|i, j| values[*i].abs().total_cmp(&values[*j].abs()));

@@ -92,6 +92,14 @@ fn what_cannot_be_aligned_is_refused() {
     }
     let other = merge(&chirp, &noise, &MergePlan::default()).unwrap_err();
     assert!(other.to_string().contains("agrees"), "{other}");
+    // Of two columns of one name, neither counts the other way round.
+    let mut turned = chirp.clone();
+    turned.columns[1].iter_mut().for_each(|q| *q = -*q);
+    let other = merge(&chirp, &turned, &MergePlan::default()).unwrap_err();
+    assert!(
+        other.to_string().contains("90.0 % are the least"),
+        "{other}"
+    );
     let align = Some(("q".to_string(), "missing".to_string()));
     let plan = MergePlan {
         align,
