@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Result of everything in this crate that can fail.
@@ -188,8 +189,36 @@ impl Error {
 
     /// What the reader can do about it, if anything is known.
     pub fn remedy(&self) -> Option<Cow<'_, str>> {
-        self.any_reason().map(Reason::remedy)
+        match self {
+            Error::File {
+                path,
+                action,
+                refusal,
+            } => of_system(path, action, refusal.kind()),
+            _ => self.any_reason().map(Reason::remedy),
+        }
     }
+}
+
+/// What to do where the system refuses a file.
+fn of_system(path: &Path, action: &str, kind: ErrorKind) -> Option<Cow<'static, str>> {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new(".")).display();
+    Some(match (action, kind) {
+        ("write", ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            format!("create the folder first: mkdir -p {folder}").into()
+        }
+        ("write", ErrorKind::PermissionDenied) => {
+            format!("name a file in a folder that you may write to: {folder} is none").into()
+        }
+        ("read", ErrorKind::IsADirectory) => "this is a folder: name a file in it".into(),
+        ("read", ErrorKind::InvalidData) => {
+            "this is no text: name a text file, saved as UTF-8".into()
+        }
+        ("read", ErrorKind::NotFound) => "check the name and the folder that you are in".into(),
+        ("read", ErrorKind::PermissionDenied) => "allow yourself to read it".into(),
+        _ => return None,
+    })
 }
 
 impl miette::Diagnostic for Error {

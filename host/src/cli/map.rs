@@ -17,6 +17,7 @@
 use super::servo_columns::ServoColumns;
 use super::show::{self, known};
 use super::{ExitStatus, Talk, input};
+use handstand::error::Reason;
 use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, IntervalEstimate, Side, SupplyLine, blocks};
@@ -71,7 +72,7 @@ fn dead_zone(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
-        Err(why) => return refused(&why.to_string(), talk),
+        Err(why) => return refused(&why, talk),
     };
     let data = json!({
         "input_unit": input_unit,
@@ -123,7 +124,7 @@ fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let line = match SupplyLine::fit(&blocks) {
         Ok(line) => line,
-        Err(why) => return refused(&why.to_string(), talk),
+        Err(why) => return refused(&why, talk),
     };
     talk.result(&line, || supply_text(&line))?;
     Ok(ExitStatus::Done)
@@ -155,7 +156,8 @@ fn supply_text(line: &SupplyLine) -> String {
     )
 }
 
-fn refused(why: &str, talk: &Talk) -> Result<ExitStatus> {
-    talk.result(&json!({ "refused": why }), || format!("refused: {why}"))?;
+fn refused(why: &dyn Reason, talk: &Talk) -> Result<ExitStatus> {
+    let data = json!({ "refused": why.to_string(), "remedy": why.remedy() });
+    talk.result(&data, || format!("refused: {why} ({})", why.remedy()))?;
     Ok(ExitStatus::Refused)
 }

@@ -29,7 +29,7 @@ pub fn write_new_bytes(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
         _ => Path::new("."),
     };
     let refused = |source| Error::file(path, "write", source);
-    let mut file = temporary(folder).map_err(refused)?;
+    let mut file = temporary(folder).map_err(|error| refused(own_words(folder, &error)))?;
     file.write_all(bytes).map_err(refused)?;
     file.as_file().sync_all().map_err(refused)?;
     let kept = match force {
@@ -41,6 +41,12 @@ pub fn write_new_bytes(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(exists(path)),
         Err(error) => Err(refused(error)),
     }
+}
+
+/// Why nothing can be made in a folder, without the temporary file's name, which is not the user's.
+fn own_words(folder: &Path, error: &std::io::Error) -> std::io::Error {
+    let missing = std::fs::metadata(folder).err();
+    missing.unwrap_or_else(|| error.kind().into())
 }
 
 /// Refuses a name that is taken before the work begins, not after it.
@@ -99,6 +105,16 @@ mod tests {
         let path = folder.path().join("nowhere").join("model.toml");
         let error = write_new(&path, "text", false).unwrap_err();
         assert_eq!(error.exit_code(), 3);
-        assert!(error.to_string().contains("nowhere"), "{error}");
+        let shown = path.display();
+        assert!(
+            error
+                .to_string()
+                .starts_with(&format!("{shown}: cannot write: ")),
+            "{error}"
+        );
+        assert!(!error.to_string().contains(".handstand-"), "{error}");
+        let remedy = error.remedy().unwrap();
+        assert!(remedy.starts_with("create the folder first: "), "{remedy}");
+        assert!(remedy.ends_with("nowhere"), "{remedy}");
     }
 }

@@ -3,9 +3,11 @@
 
 use super::blocks::BlockMean;
 use super::dynamics::IntervalEstimate;
+use crate::error::Reason;
 use crate::fitting::quantile_975;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Places tried for the zone's edge and for the onset of saturation.
 const GRID: usize = 60;
@@ -57,11 +59,30 @@ pub struct Inverse {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Unmapped {
     /// Too few blocks on one side of zero.
-    #[error("fewer than {LEAST} blocks of {0} inputs")]
-    OneSided(&'static str),
+    #[error("{found} blocks of {side} inputs where {LEAST} are the least")]
+    OneSided {
+        /// `positive` or `negative`.
+        side: &'static str,
+        /// Blocks there.
+        found: usize,
+    },
     /// No line outside the zone.
     #[error("the output does not grow with {0} inputs")]
     Flat(&'static str),
+}
+
+impl Reason for Unmapped {
+    fn remedy(&self) -> Cow<'_, str> {
+        Cow::Borrowed(match self {
+            Unmapped::OneSided { .. } => {
+                "a block counts where the input hardly changes over it and the one before: record \
+                 slow ramps or steps of a second to either side, or average over less: --block 0.1"
+            }
+            Unmapped::Flat(_) => {
+                "record inputs that move the servo, and check the columns' signs and units"
+            }
+        })
+    }
 }
 
 impl DeadZoneMap {
@@ -198,7 +219,8 @@ impl DeadZoneCurve {
 
 fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Unmapped> {
     if points.len() < LEAST {
-        return Err(Unmapped::OneSided(name));
+        let (side, found) = (name, points.len());
+        return Err(Unmapped::OneSided { side, found });
     }
     let count = points.len() as f64;
     let criterion = |curve: &DeadZoneCurve, coefficients: f64| {

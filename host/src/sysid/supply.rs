@@ -2,8 +2,10 @@
 
 use super::blocks::BlockMean;
 use super::dynamics::IntervalEstimate;
+use crate::error::Reason;
 use crate::fitting::quantile_975;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Share of the largest command below which a block does not count: there the dead zone speaks.
 const LEAST_COMMAND: f64 = 0.5;
@@ -29,11 +31,29 @@ pub struct SupplyLine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoLine {
     /// Too few blocks under a large command with the supply logged.
-    #[error("fewer than {LEAST} blocks with a supply and at least half the largest command")]
-    TooFew,
+    #[error(
+        "{found} blocks with a supply and at least half the largest command where {LEAST} are the \
+         least"
+    )]
+    TooFew {
+        /// Such blocks.
+        found: usize,
+    },
     /// The supply hardly changed.
     #[error("the supply does not change")]
     Constant,
+}
+
+impl Reason for NoLine {
+    fn remedy(&self) -> Cow<'_, str> {
+        Cow::Borrowed(match self {
+            NoLine::TooFew { .. } => {
+                "a block counts where the input hardly changes over it and the one before: hold \
+                 large commands for a second each, or average over less: --block 0.1"
+            }
+            NoLine::Constant => "record at several supply voltages",
+        })
+    }
 }
 
 /// Blocks that count, as (supply, speed / command - 1).
@@ -58,7 +78,8 @@ impl SupplyLine {
     pub fn fit(blocks: &[BlockMean]) -> Result<SupplyLine, NoLine> {
         let points = errors(blocks);
         if points.len() < LEAST {
-            return Err(NoLine::TooFew);
+            let found = points.len();
+            return Err(NoLine::TooFew { found });
         }
         let count = points.len() as f64;
         let mean_v = points.iter().map(|p| p.0).sum::<f64>() / count;
@@ -171,6 +192,9 @@ mod tests {
         let mut blocks = measured(0.1, 9.8, 1);
         blocks.iter_mut().for_each(|block| block.supply_v = 9.8);
         assert_eq!(SupplyLine::fit(&blocks), Err(NoLine::Constant));
-        assert_eq!(SupplyLine::fit(&blocks[..3]), Err(NoLine::TooFew));
+        assert_eq!(
+            SupplyLine::fit(&blocks[..3]),
+            Err(NoLine::TooFew { found: 3 })
+        );
     }
 }

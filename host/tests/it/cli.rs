@@ -425,3 +425,42 @@ fn a_reader_that_leaves_early_is_no_error() {
     assert!(output.status.success(), "{output:?}");
     assert!(output.stderr.is_empty(), "{output:?}");
 }
+
+#[test]
+fn what_the_system_refuses_is_said_with_a_remedy() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("logs")).unwrap();
+    bench.put("bytes.toml", b"\xff\xfe\x00");
+    for (line, said, remedy) in [
+        (
+            "add model.toml viscous --fit a.csv -o nowhere/new.toml",
+            "nowhere/new.toml: cannot write: No such file",
+            "help: create the folder first: mkdir -p nowhere",
+        ),
+        (
+            "compare logs a.csv",
+            "logs: cannot read: ",
+            "help: this is a folder",
+        ),
+        (
+            "compare bytes.toml a.csv",
+            "bytes.toml: cannot read: ",
+            "help: this is no text",
+        ),
+        (
+            "compare no.toml a.csv",
+            "no.toml: cannot read: ",
+            "help: check the name",
+        ),
+    ] {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(3), "{line}: {ran:?}");
+        assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains(remedy), "{line}: {}", ran.stderr);
+        assert!(
+            !ran.stderr.contains(".handstand-"),
+            "{line}: {}",
+            ran.stderr
+        );
+    }
+}

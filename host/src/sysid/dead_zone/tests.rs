@@ -56,6 +56,9 @@ fn what_never_moves_is_no_map() {
         .collect();
     assert_eq!(
         DeadZoneMap::fit(&one_sided),
-        Err(Unmapped::OneSided("negative"))
+        Err(Unmapped::OneSided {
+            side: "negative",
+            found: 0
+        })
     );
 }
