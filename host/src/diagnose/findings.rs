@@ -239,6 +239,12 @@ impl Diagnosis {
     pub fn unfit(findings: &[LogFinding]) -> Diagnosis {
         let refused = || findings.iter().filter(|f| f.severity == Severity::Refuse);
         let said = "The logs cannot be learned from.".to_string();
+        let mut next: Vec<String> = Vec::new();
+        for finding in refused() {
+            if !next.contains(&finding.remedy) {
+                next.push(finding.remedy.clone());
+            }
+        }
         Diagnosis {
             verdict: Verdict::Unfit,
             effects: Vec::new(),
@@ -263,7 +269,7 @@ impl Diagnosis {
             summary: std::iter::once(said)
                 .chain(refused().map(LogFinding::statement))
                 .collect(),
-            next: refused().map(|finding| finding.remedy.clone()).collect(),
+            next,
             warnings: Vec::new(),
             horizon_s: None,
             windows: Vec::new(),

@@ -291,6 +291,18 @@ fn a_bad_log_is_named_by_line_and_column_and_nothing_is_written() {
 }
 
 #[test]
+fn one_remedy_of_many_rows_is_said_once() {
+    let bench = Bench::new();
+    let broken = bench.get("a.csv").replace(",0.", ",x");
+    bench.put("bad.csv", broken);
+    let found = bench.run("diagnose model.toml bad.csv --json").json();
+    assert_eq!(found["verdict"], "unfit", "{found}");
+    let next = found["next"].as_array().unwrap();
+    let cell = |next: &&serde_json::Value| next.as_str().unwrap().contains("delete the line");
+    assert_eq!(next.iter().filter(cell).count(), 1, "{next:#?}");
+}
+
+#[test]
 fn a_number_that_no_sensor_gives_is_refused_by_every_command() {
     let bench = Bench::new();
     let mut lines: Vec<String> = bench.get("a.csv").lines().map(str::to_string).collect();

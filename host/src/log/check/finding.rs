@@ -7,6 +7,15 @@ use std::fmt;
 /// Findings of one kind shown per file; the rest are counted.
 const SHOWN: usize = 20;
 
+/// How many findings of a kind are shown before the one that counts the rest: none where all have
+/// one cause, which one remedy mends.
+fn shown(kind: &str) -> usize {
+    match kind {
+        "wrap" => 0,
+        _ => SHOWN,
+    }
+}
+
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -120,7 +129,7 @@ impl Findings {
         };
         let (count, first_hidden) = self.counts.entry(kind).or_default();
         *count += 1;
-        if *count <= SHOWN {
+        if *count <= shown(kind) {
             self.list.push(finding);
         } else if first_hidden.is_none() {
             *first_hidden = Some(finding);
@@ -129,12 +138,13 @@ impl Findings {
 
     /// Ends a file: says how many of each kind were not shown.
     pub fn close(&mut self) {
-        for (count, hidden) in std::mem::take(&mut self.counts).into_values() {
+        for (kind, (count, hidden)) in std::mem::take(&mut self.counts) {
             if let Some(first) = hidden {
-                self.list.push(LogFinding {
-                    what: format!("{}; and {} more like it", first.what, count - SHOWN - 1),
-                    ..first
-                });
+                let what = match count - shown(kind) - 1 {
+                    0 => first.what,
+                    more => format!("{}; and {more} more like it", first.what),
+                };
+                self.list.push(LogFinding { what, ..first });
             }
         }
     }

@@ -232,29 +232,37 @@ impl JointCheck {
     }
 
     fn judge_extremes(&self, place: &Place, drive: &Drive, findings: &mut Findings) {
-        let mut warn = |name: &str, unit: &str, (value, share): (f64, f64), remedy: &str| {
-            let share = 100.0 * share;
-            let what = format!(
-                "{name} sits at its extreme, {value:.4}{unit}, for {share:.0} % of the samples"
+        let mut warn = |name: &str, unit: &str, found: &[(f64, f64)], remedy: &str| {
+            let values: Vec<String> = found.iter().map(|(v, _)| format!("{v:.4}{unit}")).collect();
+            let shares = found
+                .iter()
+                .map(|(_, share)| format!("{:.0} %", 100.0 * share));
+            let (values, shares) = (
+                values.join(" and "),
+                shares.collect::<Vec<_>>().join(" and "),
             );
+            let extremes = match found.len() {
+                0 => return,
+                1 => "extreme",
+                _ => "extremes",
+            };
+            let what =
+                format!("{name} sits at its {extremes}, {values}, for {shares} of the samples");
             findings.warn("extreme", place.clone(), (what, remedy));
         };
         let remedy =
             "an end stop, a hold, or a joint at rest: leave an end stop out by a row range";
         let unit = format!(" {}", self.signal.unit());
-        for extreme in self.position.crowded() {
-            warn(&self.position.name, &unit, extreme, remedy);
-        }
+        let found: Vec<_> = self.position.crowded().collect();
+        warn(&self.position.name, &unit, &found, remedy);
         let drawn = matches!(drive, Drive::Torque | Drive::Duty(_));
         let remedy =
             "if the drive was saturated, the log may hold what was asked, not what was done";
-        for extreme in self
+        let found = self
             .input
             .crowded()
-            .filter(|extreme| drawn && extreme.0 != 0.0)
-        {
-            warn(&self.input.name, "", extreme, remedy);
-        }
+            .filter(|extreme| drawn && extreme.0 != 0.0);
+        warn(&self.input.name, "", &found.collect::<Vec<_>>(), remedy);
     }
 
     fn judge_steps(&self, place: &Place, findings: &mut Findings) {

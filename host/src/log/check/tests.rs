@@ -385,3 +385,27 @@ fn single_rows_far_off_are_warned_of_with_their_lines() {
     );
 }
 
+#[test]
+fn both_extremes_of_a_column_are_one_finding() {
+    let mut stopped = good();
+    stopped.position_rad[0]
+        .iter_mut()
+        .for_each(|q| *q = q.clamp(-0.5, 0.5));
+    let findings = found(&text(&stopped), &servo());
+    let extremes: Vec<&LogFinding> = findings.iter().filter(|f| f.kind == "extreme").collect();
+    assert_eq!(extremes.len(), 1, "{extremes:#?}");
+    let what = "q sits at its extremes, -0.5000 rad and 0.5000 rad, for ";
+    assert!(extremes[0].what.starts_with(what), "{}", extremes[0].what);
+}
+
+#[test]
+fn an_angle_that_wraps_is_one_finding_with_a_count() {
+    let mut turning = good();
+    let angle = |k: usize| (0.1 * k as f64).rem_euclid(std::f64::consts::TAU);
+    turning.position_rad[0] = (0..600).map(angle).collect();
+    let findings = found(&text(&turning), &servo());
+    let wraps: Vec<&LogFinding> = findings.iter().filter(|f| f.kind == "wrap").collect();
+    assert_eq!(wraps.len(), 1, "{wraps:#?}");
+    assert_eq!(wraps[0].what, "q jumps by a whole turn; and 8 more like it");
+    assert_eq!(wraps[0].place.as_ref().unwrap().line, Some(65));
+}
