@@ -6,6 +6,7 @@ use super::evaluator::Evaluator;
 use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
+use super::longer_runs::longer_runs;
 use super::values::{compared, contradicted};
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
@@ -115,6 +116,7 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
             percent(evidence.per_motion_reduction.unwrap_or(0.0))
         ));
     }
+    warnings.extend(longer_runs(evidence));
     warnings.extend(evidence.evaluator.start.log.notes());
     warnings
 }

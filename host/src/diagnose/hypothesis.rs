@@ -30,7 +30,8 @@ pub(super) struct Evaluation {
     pub fit: Fit,
     pub training: BlockErrors,
     pub held_out: Option<BlockErrors>,
-    /// Whether every added effect differs from nothing by more than its interval.
+    /// Whether every added effect differs from nothing by more than its interval; one alone, whether
+    /// the motions say anything of its values.
     pub significant: bool,
 }
 
@@ -174,7 +175,10 @@ impl Hypothesis {
             .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
         self.evaluation = Some(Evaluation {
             // One effect alone is judged by the error; only among several may one be idle.
-            significant: self.set.len() < 2 || significant(&self.set, &fit, training),
+            significant: match self.set.as_slice() {
+                [alone] => determined(alone, &fit, training),
+                set => significant(set, &fit, training),
+            },
             training: BlockErrors::of(&fit.residuals, training),
             held_out,
             fit,
@@ -225,6 +229,21 @@ impl Hypothesis {
         let own = self.values.len() + self.added_values();
         on_bound[on_bound.len() - own..].contains(&true)
     }
+}
+
+/// Whether the interval of any value of an effect, the last one freed, is narrower than what the
+/// value may be at all.
+fn determined(effect: &Candidate, fit: &Fit, data: &FitData) -> bool {
+    let parameters = effect.parameters();
+    let Some((intervals, _)) = intervals(fit, data) else {
+        return true;
+    };
+    let own = &intervals[intervals.len() - parameters.len()..];
+    let mut own = parameters.iter().zip(own);
+    own.any(|(parameter, interval)| {
+        let (low, high) = parameter.bounds;
+        interval.low > low || interval.high < high
+    })
 }
 
 /// Whether every effect of the set, the last ones freed, has a value whose interval leaves out

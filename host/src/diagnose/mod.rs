@@ -19,6 +19,7 @@ mod initial_guess;
 mod inseparable;
 mod log_outcome;
 mod logs;
+mod longer_runs;
 mod measured_value;
 mod multistart;
 pub(crate) mod names;
