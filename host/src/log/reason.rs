@@ -98,7 +98,7 @@ pub enum LogReason {
         motion: String,
     },
     /// Time that does not increase.
-    #[error("time does not increase: {time_s} s after {previous_s} s")]
+    #[error("time does not increase: {} s after {} s", short(*time_s), short(*previous_s))]
     TimeNotIncreasing {
         /// Time of the row.
         time_s: f64,
@@ -106,7 +106,11 @@ pub enum LogReason {
         previous_s: f64,
     },
     /// A gap too long to be simulated.
-    #[error("time jumps from {previous_s} s to {time_s} s within a motion")]
+    #[error(
+        "time jumps from {} s to {} s within a motion",
+        short(*previous_s),
+        short(*time_s)
+    )]
     TimeJumps {
         /// Time of the row.
         time_s: f64,
@@ -303,6 +307,14 @@ fn listed(names: &[String]) -> String {
 /// A number of any size in few characters.
 fn scientific(value: f64) -> String {
     format!("{value:.3e}")
+}
+
+/// A time with all its digits, unless it is too large to be one.
+fn short(time_s: f64) -> String {
+    match time_s.abs() < 1e15 {
+        true => time_s.to_string(),
+        false => format!("{time_s:e}"),
+    }
 }
 
 /// What a field holds, up to 40 characters.

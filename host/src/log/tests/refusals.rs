@@ -116,6 +116,13 @@ fn each_refusal_names_its_place() {
             "u: '-2e6' is -2.000e6 rad",
         ),
         (
+            plain.replace("0.06", "1e200"),
+            &columns(),
+            Some(8),
+            Some(1),
+            "time jumps from 0.05 s to 1e200 s",
+        ),
+        (
             plain.replace("0.06", "0.05"),
             &columns(),
             Some(8),
