@@ -10,7 +10,7 @@
 //! Exit code 1, and no file, when the logs do not determine the values. `--json` prints `model`
 //! (the new file), `values` (`path`, `key`, `unit`, `value`, `low`, `high`, `on_bound`), `error`
 //! (`before_rad`, `after_rad`, `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or
-//! `refused` and `blind`.
+//! `refused`, `blind` and `mixed`.
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
@@ -52,7 +52,11 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
 
 /// Says why there is no new model.
 pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<ExitStatus> {
-    let data = json!({ "refused": why.to_string(), "blind": why.blind });
+    let data = json!({
+        "refused": why.to_string(),
+        "blind": why.blind,
+        "mixed": why.mixed,
+    });
     talk.result(&data, || show::undetermined(why))?;
     Ok(ExitStatus::Refused)
 }

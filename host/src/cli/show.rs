@@ -2,6 +2,7 @@
 
 use super::Talk;
 use comfy_table::{ContentArrangement, Table};
+use handstand::diagnose::how_to_measure;
 use handstand::fitting::Undetermined;
 use handstand::output::number::exact;
 use handstand::output::table::{self, TableColumn, plain_table};
@@ -31,10 +32,13 @@ pub fn wide_table() -> Table {
 
 /// Values that cannot be had, for people.
 pub fn undetermined(refused: &Undetermined) -> String {
-    format!(
-        "refused: {refused}; nothing is written. Fit fewer values, or record motions that show \
-         them."
-    )
+    let measured = refused.mixed.iter().find_map(|path| how_to_measure(path));
+    let measured = measured.map_or(String::new(), |how| format!(" ({how})"));
+    let remedy = match refused.mixed.is_empty() {
+        true => "Fit fewer values, or record motions that show them.".to_string(),
+        false => format!("Measure one of them by itself{measured}, and leave it out of the fit."),
+    };
+    format!("refused: {refused}; nothing is written. {remedy}")
 }
 
 /// Says which effects of the model a linear design leaves out.

@@ -4,7 +4,7 @@
 use super::data::FitData;
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
-use super::refit::{Undetermined, blind};
+use super::refit::{Undetermined, blind, told_apart};
 use super::staged::fit_staged;
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
@@ -79,10 +79,12 @@ pub fn drift(
     let fitted = sessions.par_iter().map(|session| {
         let data = FitData::new(model, session.motions.clone(), horizon);
         let found = fit_staged(model, free, &data);
+        told_apart(&found)?;
         match fitted_values(&found, &data) {
             (values, Some(_)) => Ok(values),
             _ => Err(Undetermined {
                 blind: blind(&found, &data),
+                mixed: Vec::new(),
             }),
         }
     });

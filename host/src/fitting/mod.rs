@@ -26,6 +26,7 @@ mod jacobian;
 mod levenberg_marquardt;
 #[cfg(test)]
 mod log_tests;
+mod mixture;
 mod node;
 mod noise;
 mod normal;

@@ -9,6 +9,7 @@ use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
+use super::mixture::untold_mixture;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
@@ -52,15 +53,21 @@ pub struct Refitted {
 
 /// The motions do not determine the values.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}", undetermined(.blind))]
+#[error("{}", undetermined(.blind, .mixed))]
 pub struct Undetermined {
     /// Parameters that change nothing in these motions; none when only a mixture of several is
     /// undetermined.
     pub blind: Vec<String>,
+    /// Parameters of which these motions tell only a mixture, where that is known.
+    pub mixed: Vec<String>,
 }
 
-fn undetermined(blind: &[String]) -> String {
+fn undetermined(blind: &[String], mixed: &[String]) -> String {
     match blind {
+        [] if !mixed.is_empty() => format!(
+            "these motions tell only mixtures of `{}`",
+            mixed.join("`, `")
+        ),
         [] => "these motions do not tell the free parameters apart".to_string(),
         [one] => format!("`{one}` has no effect on these motions"),
         several => format!("`{}` have no effect on these motions", several.join("`, `")),
@@ -121,7 +128,20 @@ pub fn refit(
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
+    told_apart(&found)?;
     finish(model, found, &data, split, horizon)
+}
+
+/// Refuses values of which the data tell only a mixture.
+pub(super) fn told_apart(found: &Fit) -> Result<(), Undetermined> {
+    let mixed = untold_mixture(found);
+    match mixed.is_empty() {
+        true => Ok(()),
+        false => Err(Undetermined {
+            blind: Vec::new(),
+            mixed: mixed.iter().map(ToString::to_string).collect(),
+        }),
+    }
 }
 
 /// Adds the candidates, one after the other, and fits their values along with the model's free
@@ -175,7 +195,10 @@ fn finish(
 ) -> Result<Refitted, Undetermined> {
     let (values, Some(_)) = fitted_values(&found, data) else {
         let blind = blind(&found, data);
-        return Err(Undetermined { blind });
+        return Err(Undetermined {
+            blind,
+            mixed: Vec::new(),
+        });
     };
     let judged = match split.held_out.as_slice() {
         [] => data.clone(),

@@ -119,6 +119,23 @@ fn a_value_that_nothing_shows_is_refused() {
 }
 
 #[test]
+fn values_that_a_free_swing_tells_only_together_are_refused_by_name() {
+    let mut truth = pendulum();
+    truth.links[0].mass_kg = 0.21;
+    let split = swings(&truth);
+    // A pendulum swings by the ratio of the two.
+    let free = ["link1.mass_kg", "link1.inertia_kg_m2"];
+    let paths = free.map(|path| path.parse::<ParameterPath>().unwrap());
+    let error = refit(&pendulum(), &paths, &split, None).unwrap_err();
+    assert_eq!(error.mixed, free);
+    assert!(error.to_string().contains("mixtures"), "{error}");
+    // Each by itself is told.
+    for path in paths {
+        assert!(refit(&pendulum(), &[path], &split, None).is_ok());
+    }
+}
+
+#[test]
 fn a_refit_finds_a_mass_moved_outwards() {
     let mut truth = pendulum();
     truth.links[0].com_m = 0.12;
