@@ -94,19 +94,26 @@ impl ModelReading {
 
     /// Rated with what the effort fits.
     pub fn rated(&self, effort: Effort) -> Rating {
+        self.fitted(effort).0
+    }
+
+    /// Rated with what the effort fits, and the model at the fitted values.
+    pub fn fitted(&self, effort: Effort) -> (Rating, Model) {
         let free = || free_parameters(&self.model, &[]).unwrap_or_default();
         let rough = FitOptions::iterations(ITERATIONS).rough();
         let (free, options) = match effort {
             Effort::Guess => {
                 let nodes = guessed_nodes(&self.data);
-                return Rating::of(&self.model, &self.data, &nodes);
+                let rating = Rating::of(&self.model, &self.data, &nodes);
+                return (rating, self.model.clone());
             }
             Effort::Starts => (Vec::new(), rough),
             Effort::Values => (free(), rough),
             Effort::ValuesToTheEnd => (free(), FitOptions::iterations(TO_THE_END)),
         };
         let fitted = fit(&self.model, &free, &self.data, None, options);
-        Rating::of(&fitted.model, &self.data, &fitted.nodes)
+        let rating = Rating::of(&fitted.model, &self.data, &fitted.nodes);
+        (rating, fitted.model)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::diagnose::values::values_of;
 use crate::effects::TorqueScale;
 use crate::fitting::Candidate;
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
 /// A remedy with its proof: the errors before and after it, on the same windows.
@@ -53,6 +53,9 @@ impl Trial {
         })
     }
 }
+
+/// A value of the file may be wrong by this factor; a unit is wrong by more.
+const PLAUSIBLE: f64 = 3.0;
 
 /// Which values the trials fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,24 +121,21 @@ impl RemedyTrial {
     }
 
     /// Error with one value of the file, or the torques of a joint, off by what explains the motions
-    /// best, over the error without; none where no joint says anything, or times are in doubt.
+    /// best, at most [`PLAUSIBLE`] times, over the error without; none where no joint says anything,
+    /// or times are in doubt.
     pub fn with_one_value_off(&self, joint: usize) -> Option<f64> {
         let reading = self.reading.as_ref()?;
-        let share = |model: Model| {
+        let least = with_one_free(&self.model, joint).into_par_iter();
+        let least = least.filter_map(|(model, path)| {
             let freed = reading.read_as(&model, self.motions.clone());
-            freed.rated(Effort::ValuesToTheEnd).share()
-        };
-        let mut freed = vec![with_free_scale(&self.model, joint)];
-        freed.extend(values_of(&self.model).into_iter().map(|path| {
-            let mut model = self.model.clone();
-            model
-                .free
-                .extend((!model.free.contains(&path)).then_some(path));
-            model
-        }));
-        let least = freed.into_par_iter().filter_map(share);
+            let (rating, fitted) = freed.fitted(Effort::ValuesToTheEnd);
+            let off = path.get(&fitted)? / path.get(&model)?;
+            let is_plausible = (1.0 / PLAUSIBLE..=PLAUSIBLE).contains(&off);
+            rating.share().filter(|_| is_plausible)
+        });
+        let before = reading.rated(Effort::ValuesToTheEnd).share()?;
         let least = least.min_by(f64::total_cmp)?;
-        Some(least / share(self.model.clone())?.max(1e-12))
+        Some(least / before.max(1e-12))
     }
 
     /// The motions without the ends that others lack.
@@ -164,8 +164,8 @@ impl RemedyTrial {
     }
 }
 
-/// The model with a free scale of the torques of a joint.
-fn with_free_scale(model: &Model, joint: usize) -> Model {
+/// The model with one more value free: each of its own, and a scale of the torques of a joint.
+fn with_one_free(model: &Model, joint: usize) -> Vec<(Model, ParameterPath)> {
     let mut scaled = model.clone();
     let scale = Candidate {
         effect: &TorqueScale,
@@ -174,8 +174,14 @@ fn with_free_scale(model: &Model, joint: usize) -> Model {
     if !scale.in_model(model) {
         scaled.effects.push(scale.instance(&[1.0]));
     }
-    scaled
-        .free
-        .extend(scale.paths().filter(|path| !model.free.contains(path)));
-    scaled
+    let own = values_of(model).into_iter().map(|path| (model, path));
+    let all = own.chain(scale.paths().map(|path| (&scaled, path)));
+    let freed = all.map(|(model, path)| {
+        let mut freed = model.clone();
+        freed
+            .free
+            .extend((!model.free.contains(&path)).then_some(path));
+        (freed, path)
+    });
+    freed.collect()
 }
