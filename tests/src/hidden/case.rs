@@ -77,8 +77,13 @@ impl HiddenEffect {
     }
 }
 
-/// Laws that are another's with two of its values equal: that one explains them rightly.
-const GENERAL: [(&str, &str); 1] = [("load_friction", "drive_asymmetry")];
+/// Laws that another's holds as a special case (with two of its values equal, or while the drive is
+/// on): that one explains them rightly.
+const GENERAL: [(&str, &str); 3] = [
+    ("load_friction", "drive_asymmetry"),
+    ("delay", "time_offset"),
+    ("time_offset", "delay"),
+];
 
 impl Case {
     /// Effects that the library is to lack: what is hidden, and what holds it as a special case.
