@@ -100,7 +100,7 @@ fn alike_text(proposal: &ExperimentProposal) -> String {
         let _ = writeln!(
             text,
             "{} and {} are one law here: each predicts what the other does, in every experiment \
-             within the limits. Add either.",
+             within the limits. Either will do.",
             proposal.rivals[a].name, proposal.rivals[b].name
         );
     }
