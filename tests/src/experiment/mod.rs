@@ -7,10 +7,13 @@
 //! but for a torque that is hidden in it.
 
 use handstand::challenge::{ArmInputs, BenchEffect, Motions, bench, play};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::diagnose::{
+    DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose, values_behind,
+};
 use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose,
 };
+use handstand::fitting::Candidate;
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
 use handstand::{Error, Model};
@@ -145,7 +148,7 @@ pub fn try_experiment(case: ExperimentCase) -> Result<ExperimentOutcome, Error> 
     outcome.settled = Some(Settled {
         settled: match measured {
             Some(_) => second.effects.is_empty() && second.verdict != Verdict::Unexplained,
-            None => second.verdict == Verdict::Named && last.first() == hidden.first(),
+            None => is_settled(&second, &last, &hidden[0], &model),
         },
         one_law: proposal.all_alike() && is_one_law(&truth, &outcome.first_sets),
         proposed: words(&proposal),
@@ -166,6 +169,19 @@ fn measured(model: &Model, hidden: &[BenchEffect], known: &[ParameterPath]) -> O
     let mut model = model.clone();
     let right_nm = factor * path.get(&model)?;
     (known.contains(&path) && path.set(&mut model, right_nm)).then_some(model)
+}
+
+/// Whether nothing is left but what is hidden, and the value of the file that it changes.
+fn is_settled(last: &Diagnosis, sets: &[String], hidden: &str, model: &Model) -> bool {
+    let candidate = Candidate::named(hidden, model).ok();
+    let behind = candidate.map_or(Vec::new(), |candidate| values_behind(&candidate, model));
+    let behind: Vec<String> = behind.iter().map(ToString::to_string).collect();
+    let is_it = |set: &String| {
+        let mut parts = set.split(" + ");
+        set == hidden || parts.any(|part| behind.iter().any(|path| path == part))
+    };
+    let is_said = matches!(last.verdict, Verdict::Named | Verdict::Ambiguous);
+    is_said && sets.iter().any(|set| set == hidden) && sets.iter().all(is_it)
 }
 
 /// Whether these explanations of an arm are one law: friction that differs by direction does what a
