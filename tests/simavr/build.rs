@@ -11,7 +11,8 @@ fn main() {
     println!("cargo::rerun-if-changed={HEADER}");
     println!("cargo::rerun-if-changed=src/shim.c");
     if !Path::new(HEADER).exists() {
-        // Packages bring files older than the last build; only what is not there is looked for again.
+        // Packages bring files older than the last build; only what is not there is looked for
+        // again.
         println!("cargo::rerun-if-changed={HEADER}.missing");
         return;
     }

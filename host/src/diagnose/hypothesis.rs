@@ -30,8 +30,8 @@ pub(super) struct Evaluation {
     pub fit: Fit,
     pub training: BlockErrors,
     pub held_out: Option<BlockErrors>,
-    /// Whether every added effect differs from nothing by more than its interval; one alone, whether
-    /// the motions say anything of its values.
+    /// Whether every added effect differs from nothing by more than its interval; one alone,
+    /// whether the motions say anything of its values.
     pub significant: bool,
 }
 

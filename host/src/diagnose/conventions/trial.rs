@@ -120,9 +120,9 @@ impl RemedyTrial {
         Trial::new(remedy, &rated(before), &rated(&after))
     }
 
-    /// Error with one value of the file, or the torques of a joint, off by what explains the motions
-    /// best, at most [`PLAUSIBLE`] times, over the error without; none where no joint says anything,
-    /// or times are in doubt.
+    /// Error with one value of the file, or the torques of a joint, off by what explains the
+    /// motions best, at most [`PLAUSIBLE`] times, over the error without; none where no joint says
+    /// anything, or times are in doubt.
     pub fn with_one_value_off(&self, joint: usize) -> Option<f64> {
         let reading = self.reading.as_ref()?;
         let least = with_one_free(&self.model, joint).into_par_iter();
