@@ -3,13 +3,12 @@
 //!
 //! Layers read downward only: `dynamics` (plain chain) -> `effects` (laws) -> `model` (instances,
 //! TOML) -> `sim` (the one plant, along a log or in a closed loop); `sim` + `log` -> `fitting` ->
-//! `diagnose` -> `report`; `model` -> `synth` -> `controllers`; `sim` + `controllers` -> `study` ->
-//! `paper`; `synth` + `controllers` + `link` -> `deploy`; `cli` sits on top and nothing depends on
-//! it. Every layer may read `error`, and `output`, which writes files, numbers and plots.
+//! `diagnose` -> `report`; `model` -> `synth`; `sim` + `synth` -> `study`; `synth` + `link` ->
+//! `deploy`; `cli` sits on top and nothing depends on it. Every layer may read `error`, and
+//! `output`, which writes files, numbers and plots.
 
 pub mod challenge;
 pub mod compare;
-pub mod controllers;
 pub mod deploy;
 pub mod diagnose;
 pub mod dynamics;
@@ -22,7 +21,6 @@ pub mod link;
 pub mod log;
 pub mod model;
 pub mod output;
-pub mod paper;
 pub mod report;
 pub mod sim;
 pub mod study;

@@ -22,10 +22,10 @@
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::controllers::{ControllerDesign, DESIGNS};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
 };
+use handstand::synth::controllers::{ControllerDesign, DESIGNS};
 use handstand::{Error, Model, Result, output};
 use serde::Serialize;
 use std::path::PathBuf;

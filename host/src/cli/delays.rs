@@ -23,12 +23,12 @@
 
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::{ExitStatus, Talk, input, show};
-use handstand::controllers::{ControllerDesign, DesignModel};
 use handstand::output::table::TableColumn;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
     longest_stabilised,
 };
+use handstand::synth::controllers::{ControllerDesign, DesignModel};
 use handstand::synth::upright;
 use handstand::{Model, Result};
 use serde::Serialize;

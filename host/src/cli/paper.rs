@@ -17,7 +17,7 @@ use super::page::PageFile;
 use super::{ExitStatus, Talk, show};
 use handstand::Result;
 use handstand::output::table::TableColumn;
-use handstand::paper::{
+use handstand::study::paper::{
     Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, html, reproduce,
 };
 use serde_json::{Value, json};

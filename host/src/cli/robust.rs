@@ -15,10 +15,10 @@
 //! and `k`, by rows.
 
 use super::{ExitStatus, Talk, input, show};
-use handstand::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
+use handstand::synth::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::synth::{dlqr, upright, zoh};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;

@@ -8,10 +8,10 @@
 //! t} when the first input that knows of it acts.
 
 use super::observer_known;
-use crate::controllers::BoardTiming;
 use crate::deploy::Board;
 use crate::error::Result;
 use crate::model::Model;
+use crate::synth::controllers::BoardTiming;
 use crate::synth::poles;
 use handstand_shared::message::Attitude;
 use handstand_shared::observer::JOINTS;

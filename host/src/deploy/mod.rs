@@ -21,9 +21,9 @@ pub use rust_file::{plan_file, plan_of_file};
 pub use state::state_design;
 pub use transfer::{read_back, upload, verify};
 
-use crate::controllers::{BoardTiming, DesignModel, OnBoard};
 use crate::error::Result;
 use crate::model::Model;
+use crate::synth::controllers::{BoardTiming, DesignModel, OnBoard};
 use crate::synth::{Design, upright};
 use handstand_shared::observer::INPUTS;
 use handstand_shared::plan::{Law, Plan};

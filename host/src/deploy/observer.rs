@@ -4,8 +4,8 @@
 //! a position code or half a step of attitude, speeds in 5e-4 rad/s, equilibrium angles four times
 //! as fine as angles, torques in 2^-13 N m.
 
-use crate::controllers::OnBoard;
 use crate::error::{Error, Result};
+use crate::synth::controllers::OnBoard;
 use crate::synth::{Format, Ranges, quantise};
 use handstand_shared::gains::GainTable;
 use handstand_shared::message::Attitude;

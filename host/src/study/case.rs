@@ -1,14 +1,14 @@
 //! One robot under one set of circumstances, and the controller designed for it.
 
-use crate::controllers::{
-    ControllerDesign, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through,
-};
 use crate::error::Result;
 use crate::model::{Angles, Model};
 use crate::sim::closed_loop::{
     Clock, ClosedLoop, Commands, Controller, Drives, Sensor, StabilityCriteria,
 };
 use crate::synth;
+use crate::synth::controllers::{
+    ControllerDesign, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through,
+};
 
 /// What is run.
 #[derive(Debug, Clone)]

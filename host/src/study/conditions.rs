@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use super::quantity::Uncertain;
-use crate::controllers::ServoLag;
 use crate::sim::closed_loop::{Drives, Sensor, Velocity};
+use crate::synth::controllers::ServoLag;
 
 /// By how much of its dead zone a robot's own may differ.
 const DEAD_ZONE_ERROR: f64 = 0.2;

@@ -3,8 +3,8 @@
 use super::case::Case;
 use super::judge::{Judging, STABILISED_SHARE, judge};
 use super::quantity::Uncertain;
-use crate::controllers::{ControllerDesign, DesignModel, LinearLaw};
 use crate::error::{Error, Result};
+use crate::synth::controllers::{ControllerDesign, DesignModel, LinearLaw};
 use serde::Serialize;
 
 /// The delays around one that a controller tolerates.

@@ -3,8 +3,8 @@
 use super::case::Case;
 use super::quantity::Uncertain;
 use super::region::bisect;
-use crate::controllers::DesignModel;
 use crate::error::Result;
+use crate::synth::controllers::DesignModel;
 use crate::synth::{Discrete, spectral_radius, upright, zoh};
 use nalgebra::DMatrix;
 

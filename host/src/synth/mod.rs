@@ -3,9 +3,10 @@
 //! `operating_point` -> `linearise` -> `discretise`; `riccati` -> `gains`, `estimator`; `eigen` ->
 //! `controllability`, `zeros` look at plants; `quantise` -> `fixed_law` is what
 //! ships; `design` is all of it as one value, `export` writes that, `plan` reads its law back;
-//! `robust` makes one gain for many plants.
+//! `robust` makes one gain for many plants; [`controllers`] lists all the laws that there are.
 
 mod controllability;
+pub mod controllers;
 mod design;
 mod discretise;
 mod eigen;

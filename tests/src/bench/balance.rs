@@ -4,8 +4,8 @@
 use super::SimulatedCm5;
 use super::robot::{GYRO_STEP_RAD_S, GYRO_ZERO, Robot, model};
 use super::run::Run;
-use handstand::controllers::{BoardTiming, OnBoard};
 use handstand::deploy::{self, Board, BoardLaw};
+use handstand::synth::controllers::{BoardTiming, OnBoard};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT};
 use handstand_shared::crc::crc32;
 use handstand_shared::message::{

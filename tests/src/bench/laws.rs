@@ -4,8 +4,8 @@
 use super::SimulatedCm5;
 use super::balance::{Balanced, Conditions, Source, Tick, balance};
 use super::robot::{FULL_NM, GYRO_STEP_RAD_S, Robot, STEP_MS};
-use handstand::controllers::{BoardTiming, OnBoard};
 use handstand::deploy::{reading_steps, state_steps};
+use handstand::synth::controllers::{BoardTiming, OnBoard};
 use handstand_shared::message::{Attitude, Refusal};
 use handstand_shared::observer::{FINE, Memory, WIDTH};
 use handstand_shared::plan::{AppliedInput, Law, Plan};

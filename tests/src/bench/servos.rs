@@ -2,10 +2,10 @@
 //! `handstand balance` does it.
 
 use handstand::Model;
-use handstand::controllers::BoardTiming;
 use handstand::deploy::balance::{AttitudeSource, Balancer};
 use handstand::deploy::{self, Board, BoardLaw};
 use handstand::link::virtual_cm5::{Cm5Port, SimLink, attitude_sensor, set_up, spec};
+use handstand::synth::controllers::BoardTiming;
 use handstand_shared::message::{ArmLimits, Attitude};
 use handstand_shared::plan::{Gyro, Plan};
 use rand::{Rng as _, SeedableRng as _};

@@ -88,7 +88,10 @@ fn the_worked_examples_of_contributing_compile() {
     let page = std::fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
     let blocks = blocks(&page);
     let files: BTreeSet<&str> = blocks.iter().map(|block| block.file.as_str()).collect();
-    for list in ["host/src/effects/mod.rs", "host/src/controllers/mod.rs"] {
+    for list in [
+        "host/src/effects/mod.rs",
+        "host/src/synth/controllers/mod.rs",
+    ] {
         assert!(files.contains(list), "no example changes {list}: {files:?}");
     }
     let copied = tempfile::tempdir().unwrap();

@@ -1,6 +1,5 @@
 //! From recordings to a better model, and from a model to the plan that the CM-5 gets.
 
-use crate::controllers::BoardTiming;
 use crate::deploy::{self, Board, BoardLaw};
 use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Progress, diagnose_logs};
@@ -10,6 +9,7 @@ use crate::fitting::{Addition, Candidate, Horizon, add_effects, candidates_named
 use crate::log::LogSet;
 use crate::model::edit::add_effect;
 use crate::model::{EffectInstance, Model};
+use crate::synth::controllers::BoardTiming;
 use handstand_shared::plan::Plan;
 use std::path::Path;
 

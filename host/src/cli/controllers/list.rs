@@ -2,8 +2,8 @@
 
 use crate::cli::{ExitStatus, Talk, show};
 use handstand::Result;
-use handstand::controllers::{DESIGNS, Speeds};
 use handstand::study::CONDITIONS;
+use handstand::synth::controllers::{DESIGNS, Speeds};
 use serde_json::json;
 
 /// Lists them.

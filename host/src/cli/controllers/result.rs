@@ -2,10 +2,10 @@
 
 use super::ControllerTrial;
 use crate::cli::show;
-use handstand::controllers::ControllerDesign;
 use handstand::output::plot::heat_map;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::study::LoopCondition;
+use handstand::synth::controllers::ControllerDesign;
 
 /// Three tables: share stabilised, region, and how well under the last condition.
 pub fn text(

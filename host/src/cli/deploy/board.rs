@@ -1,8 +1,8 @@
 //! Arguments for servos, limits and sensors of the robot.
 
 use crate::cli::port::id_list;
-use handstand::controllers::BoardTiming;
 use handstand::deploy::{Board, ServoPair};
+use handstand::synth::controllers::BoardTiming;
 use handstand::{Error, Result};
 use handstand_shared::message::Attitude;
 use handstand_shared::plan::Gyro;

@@ -10,12 +10,12 @@
 
 use crate::cli::show::{or_dash, table, table_of};
 use crate::cli::{ExitStatus, Talk};
-use handstand::controllers::{DESIGNS, design};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::study::{
     Figures, Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps,
 };
+use handstand::synth::controllers::{DESIGNS, design};
 use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;

@@ -1,12 +1,12 @@
 //! Balancing a simulated robot whose line dies.
 
 use super::*;
-use crate::controllers::BoardTiming;
 use crate::deploy::{self, Board, BoardLaw};
 use crate::error::Result;
 use crate::link::SerialLink;
 use crate::link::virtual_cm5::{Cm5Port, SimLink, set_up, spec};
 use crate::model::Model;
+use crate::synth::controllers::BoardTiming;
 use handstand_cm5_sim::RobotState;
 use handstand_shared::message::ArmLimits;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,10 +1,10 @@
 //! How the robot is reached.
 
-use crate::controllers::BoardTiming;
 use crate::deploy::Board;
 use crate::deploy::balance::AttitudeSource;
 use crate::error::Result;
 use crate::link::SerialLink;
+use crate::synth::controllers::BoardTiming;
 use std::fmt;
 use std::sync::Arc;
 

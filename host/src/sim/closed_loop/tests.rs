@@ -1,6 +1,6 @@
 use super::*;
-use crate::controllers::KnownEquilibrium;
 use crate::model::Model;
+use crate::synth::controllers::KnownEquilibrium;
 use std::path::Path;
 
 mod drives;

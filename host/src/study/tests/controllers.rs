@@ -2,9 +2,11 @@
 
 use super::super::*;
 use crate::Model;
-use crate::controllers::{DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design};
 use crate::effects::named;
 use crate::model::EffectInstance;
+use crate::synth::controllers::{
+    DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design,
+};
 use crate::synth::{Design, Format, Request, Time, Weight, dlqr, upright, zoh};
 use nalgebra::DMatrix;
 use std::path::Path;

@@ -10,7 +10,7 @@ use serde_json::json;
 /// In ten different tenths of the servos' motor interrupts.
 #[cfg(simavr)]
 pub(super) fn readings(args: &Args, built: Option<&Built>) -> Vec<Row> {
-    use handstand::controllers::BoardTiming;
+    use handstand::synth::controllers::BoardTiming;
     use handstand_tests::bench::{Ages, REPORT_MS, Spread, ages};
     let Some(built) = built else {
         return Vec::new();

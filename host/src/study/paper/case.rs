@@ -1,12 +1,12 @@
 //! The robot's closed loop under the paper's circumstances: what a run is made of, and what is seen
 //! of it.
 
-use crate::controllers::{ControllerDesign, ControllerInfo, DEFAULT, DesignModel, Speeds};
 use crate::error::Result;
 use crate::sim::closed_loop::{
     Controller, Drives, Gyro, InitialState, Outcome, StateFeedback, stream,
 };
 use crate::study::{Case, Uncertain, handstand};
+use crate::synth::controllers::{ControllerDesign, ControllerInfo, DEFAULT, DesignModel, Speeds};
 use crate::synth::lqr;
 use nalgebra::DMatrix;
 

@@ -6,10 +6,10 @@ use super::computed::Computed;
 use super::figure::{Holds, PaperFigure};
 use super::pushed_servo::position_and_velocity;
 use super::robot::edge;
-use crate::controllers::{DEFAULT, DesignModel};
 use crate::error::Result;
 use crate::output::number::short;
 use crate::study::{SIGNAL_PATHS, SignalPath, longest_linear};
+use crate::synth::controllers::{DEFAULT, DesignModel};
 use crate::synth::{linearise, poles, upright, zoh};
 use serde::Serialize;
 
