@@ -157,6 +157,23 @@ impl<'a> Robot<'a> {
             let most = |direction| h * joints[k].friction(state, direction, motor, holding);
             (-most(1.0), most(-1.0))
         });
+        let impulse = self.dry_impulses(h, &inverse, &limits, &mut speed);
+        let base = moving.map_or(self.base, |(base, force)| {
+            let gained = std::array::from_fn(|k| speed[k] - self.speed[k]);
+            self.base.kicked(base, &on_base, (force, h), &gained)
+        });
+        (speed, impulse.map(|impulse| impulse / h), base)
+    }
+
+    /// The impulses of dry friction that stop every joint as far as their limits let them, N m s,
+    /// by Gauss and Seidel's rounds from those of the step before; they change the speeds.
+    fn dry_impulses(
+        &self,
+        h: f64,
+        inverse: &[Joints; LINKS],
+        limits: &[(f64, f64); LINKS],
+        speed: &mut Joints,
+    ) -> Joints {
         let mut impulse: Joints =
             std::array::from_fn(|k| (h * self.dry[k]).clamp(limits[k].0, limits[k].1));
         for (k, speed) in speed.iter_mut().enumerate() {
@@ -178,11 +195,7 @@ impl<'a> Robot<'a> {
                 break;
             }
         }
-        let base = moving.map_or(self.base, |(base, force)| {
-            let gained = std::array::from_fn(|k| speed[k] - self.speed[k]);
-            self.base.kicked(base, &on_base, (force, h), &gained)
-        });
-        (speed, impulse.map(|impulse| impulse / h), base)
+        impulse
     }
 
     /// The encoders' values before noise and rounding, rad.

@@ -7,8 +7,8 @@
 //! the end.
 
 use super::budget::{
-    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, PARTNERS, SECOND_LOOKS,
-    STRUCTURE_STEPS, steps_up_to,
+    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, SECOND_LOOKS, STRUCTURE_STEPS,
+    steps_up_to,
 };
 use super::conclusion::conclude;
 use super::consistency::per_motion_reduction;
@@ -16,7 +16,7 @@ use super::evaluator::{Evaluator, every_change};
 use super::explanation::{Explanation, Tried, VerdictEvidence};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual, changes_like};
+use super::initial_guess::InitialGuess;
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
 use super::stability::folds;
@@ -25,6 +25,8 @@ use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
+
+mod partners;
 
 /// A placebo that gains this share of what the chosen set does on the short windows, both in
 /// factors of the error, is evaluated: half of the share that would make it rank.
@@ -241,54 +243,6 @@ impl Evaluator<'_> {
         }
         let finals = self.evaluated(self.successive_halving(tried));
         self.swapped(finals)
-    }
-
-    /// The most promising guesses on top of a hypothesis that make a set not yet tried.
-    ///
-    /// Which candidates promise most shows in what they change in the base model's prediction; only
-    /// those are simulated on top of the hypothesis.
-    fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
-        let residual = ProjectedResidual::new(&from.search);
-        let is_new = |changes: &&Vec<PredictionChange>| {
-            changes.first().is_some_and(|change| {
-                let set = from.set_with(change.candidate);
-                let mut kept = from.set.iter();
-                kept.all(|kept| !kept.overlaps(change.candidate, &self.start))
-                    && !tried.iter().any(|t| t.adds(&set))
-            })
-        };
-        let new = self.changes.par_iter().filter(is_new);
-        let gains = new.filter_map(|changes| {
-            let gains = changes.iter().map(|c| (c, residual.guess(c).gain));
-            gains.max_by(|a, b| a.1.total_cmp(&b.1))
-        });
-        let mut promising: Vec<(&PredictionChange, f64)> = gains.collect();
-        promising.sort_by(|a, b| b.1.total_cmp(&a.1));
-        promising.truncate(2 * PARTNERS);
-        let simulated = promising.par_iter().filter_map(|(like, _)| {
-            let changes = changes_like(&from.search, like, &self.search);
-            residual.guesses(&changes).into_iter().next()
-        });
-        let mut guesses: Vec<InitialGuess> = simulated.collect();
-        guesses.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        guesses.truncate(PARTNERS);
-        guesses
-    }
-
-    /// Tries to replace each older member of the best set: what led may no longer be needed.
-    fn swapped(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let Some(best) = hypotheses.first().cloned() else {
-            return hypotheses;
-        };
-        for leaving in 0..best.set.len().saturating_sub(1) {
-            let rest = best.without(leaving, &self.base, &self.search, LOOK);
-            let mut partners = self.partners(&rest, &hypotheses);
-            partners.truncate(2);
-            let found = partners.par_iter().map(|guess| self.look(&rest, guess));
-            let found: Vec<Hypothesis> = found.collect();
-            hypotheses.extend(found);
-        }
-        self.evaluated(self.successive_halving(hypotheses))
     }
 }
 

@@ -122,15 +122,10 @@ type Height = fn(&dyn Effect, &[f64], f64) -> f64;
 /// Each site has its plot; where a law may depend on more than one quantity, the law itself is
 /// asked.
 fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
-    let full = 0.0..FULL_TORQUE_NM;
     let over_delay: Height = |e, v, time_s| f64::from(time_s >= e.delay_s(v));
     let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);
     let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
     let over_duty: Height = |e, v, duty| drive(e, v, duty, 0.0, 1.0);
-    let by_gear: Height = |e, v, load_nm| friction(e, v, [0.0, 1.0], [load_nm, 0.0]);
-    let by_bearing: Height = |e, v, load_n| friction(e, v, [0.0, 1.0], [0.0, load_n]);
-    let by_speed: Height = |e, v, speed| friction(e, v, [0.0, speed], [0.0, 0.0]);
-    let by_angle: Height = |e, v, angle| friction(e, v, [angle, 1.0], [0.0, 0.0]);
     let at_angle: Height = |e, v, x| e.torque(v, &JointState::undriven(x, 0.0));
     let at_speed: Height = |e, v, x| e.torque(v, &JointState::undriven(0.0, x));
     let wound: Height = wound_nm;
@@ -148,22 +143,7 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
         }
         (Site::Drive, _) => ("duty, 1", "torque at rest, N m", -1.0..1.0, over_duty),
         (Site::Gear, _) => ("motor ahead of the joint, rad", joint, -0.15..0.15, wound),
-        (Site::Friction, Needs::GearLoad) => (
-            "torque through the gear, N m",
-            "friction, N m",
-            full,
-            by_gear,
-        ),
-        (Site::Friction, Needs::BearingLoad) => (
-            "force in the bearing, N",
-            "friction, N m",
-            0.0..30.0,
-            by_bearing,
-        ),
-        (Site::Friction, _) if varies(by_angle, 0.1, 0.2) => {
-            ("angle, rad", "friction, N m", -1.6..1.6, by_angle)
-        }
-        (Site::Friction, _) => ("speed, rad/s", "resisting torque, N m", -2.0..2.0, by_speed),
+        (Site::Friction, _) => friction_law(effect, values),
         (Site::Joint, _) if varies(at_angle, 0.1, 0.2) => {
             ("angle, rad", joint, -1.6..1.6, at_angle)
         }
@@ -195,6 +175,32 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
         (Site::Encoder | Site::Sensor, _) => {
             ("angle, to and fro, rad", "reading, rad", -0.2..0.2, encode)
         }
+    }
+}
+
+fn friction_law(effect: &dyn Effect, values: &[f64]) -> PlotLaw {
+    let by_gear: Height = |e, v, load_nm| friction(e, v, [0.0, 1.0], [load_nm, 0.0]);
+    let by_bearing: Height = |e, v, load_n| friction(e, v, [0.0, 1.0], [0.0, load_n]);
+    let by_speed: Height = |e, v, speed| friction(e, v, [0.0, speed], [0.0, 0.0]);
+    let by_angle: Height = |e, v, angle| friction(e, v, [angle, 1.0], [0.0, 0.0]);
+    let full = 0.0..FULL_TORQUE_NM;
+    match effect.info().needs {
+        Needs::GearLoad => (
+            "torque through the gear, N m",
+            "friction, N m",
+            full,
+            by_gear,
+        ),
+        Needs::BearingLoad => (
+            "force in the bearing, N",
+            "friction, N m",
+            0.0..30.0,
+            by_bearing,
+        ),
+        _ if by_angle(effect, values, 0.1) != by_angle(effect, values, 0.2) => {
+            ("angle, rad", "friction, N m", -1.6..1.6, by_angle)
+        }
+        _ => ("speed, rad/s", "resisting torque, N m", -2.0..2.0, by_speed),
     }
 }
 

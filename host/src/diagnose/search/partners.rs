@@ -1,0 +1,59 @@
+//! Partners of a set: which candidates promise most on top of it, and in place of its members.
+
+use super::super::budget::{LOOK, PARTNERS};
+use super::super::evaluator::Evaluator;
+use super::super::hypothesis::Hypothesis;
+use super::super::initial_guess::{
+    InitialGuess, PredictionChange, ProjectedResidual, changes_like,
+};
+use rayon::prelude::*;
+
+impl Evaluator<'_> {
+    /// The most promising guesses on top of a hypothesis that make a set not yet tried.
+    ///
+    /// Which candidates promise most shows in what they change in the base model's prediction; only
+    /// those are simulated on top of the hypothesis.
+    pub(super) fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
+        let residual = ProjectedResidual::new(&from.search);
+        let is_new = |changes: &&Vec<PredictionChange>| {
+            changes.first().is_some_and(|change| {
+                let set = from.set_with(change.candidate);
+                let mut kept = from.set.iter();
+                kept.all(|kept| !kept.overlaps(change.candidate, &self.start))
+                    && !tried.iter().any(|t| t.adds(&set))
+            })
+        };
+        let new = self.changes.par_iter().filter(is_new);
+        let gains = new.filter_map(|changes| {
+            let gains = changes.iter().map(|c| (c, residual.guess(c).gain));
+            gains.max_by(|a, b| a.1.total_cmp(&b.1))
+        });
+        let mut promising: Vec<(&PredictionChange, f64)> = gains.collect();
+        promising.sort_by(|a, b| b.1.total_cmp(&a.1));
+        promising.truncate(2 * PARTNERS);
+        let simulated = promising.par_iter().filter_map(|(like, _)| {
+            let changes = changes_like(&from.search, like, &self.search);
+            residual.guesses(&changes).into_iter().next()
+        });
+        let mut guesses: Vec<InitialGuess> = simulated.collect();
+        guesses.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        guesses.truncate(PARTNERS);
+        guesses
+    }
+
+    /// Tries to replace each older member of the best set: what led may no longer be needed.
+    pub(super) fn swapped(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let Some(best) = hypotheses.first().cloned() else {
+            return hypotheses;
+        };
+        for leaving in 0..best.set.len().saturating_sub(1) {
+            let rest = best.without(leaving, &self.base, &self.search, LOOK);
+            let mut partners = self.partners(&rest, &hypotheses);
+            partners.truncate(2);
+            let found = partners.par_iter().map(|guess| self.look(&rest, guess));
+            let found: Vec<Hypothesis> = found.collect();
+            hypotheses.extend(found);
+        }
+        self.evaluated(self.successive_halving(hypotheses))
+    }
+}
