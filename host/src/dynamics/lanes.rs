@@ -86,8 +86,11 @@ impl<const L: usize> Lane for Lanes<L> {
 
     #[inline(always)]
     fn sin_cos_of<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
-        let both: [(Self, Self); N] = each(|i| angles[i].sin_cos());
-        (each(|i| both[i].0), each(|i| both[i].1))
+        let (mut sin, mut cos) = ([Self::default(); N], [Self::default(); N]);
+        for i in 0..N {
+            (sin[i], cos[i]) = angles[i].sin_cos();
+        }
+        (sin, cos)
     }
 }
 

@@ -132,8 +132,9 @@ fn stepped<const N: usize>(
     states
 }
 
-/// All lanes on by `steps` steps.
-#[inline]
+/// All lanes on by `steps` steps. Wider registers give the same bits: no product is fused with a
+/// sum.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
 fn advance<const N: usize>(
     dense: &Dense<N, Lanes<WIDTH>>,
     states: &mut [Absolute<N>; WIDTH],
