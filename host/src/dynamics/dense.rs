@@ -65,7 +65,8 @@ impl<const N: usize> Dense<N> {
     }
 
     /// A step of `step_s` with the joints' angles and speeds as [`Dense::forward`] has them, under
-    /// constant torques; held joints stay where they are.
+    /// constant torques; held joints stay where they are. `first` are the accelerations at the
+    /// beginning where they are known already, which is of use only with joints held.
     #[inline]
     pub fn step(
         &self,
@@ -74,6 +75,7 @@ impl<const N: usize> Dense<N> {
         torque_nm: &[f64; N],
         held: &[bool; N],
         step_s: f64,
+        first: Option<&[f64; N]>,
     ) {
         if held.contains(&true) {
             let accelerate = |angle: &[f64; N], speed: &[f64; N]| {
@@ -81,7 +83,7 @@ impl<const N: usize> Dense<N> {
                 each(|i| if held[i] { 0.0 } else { found[i] })
             };
             let state = (*angle_rad, *speed_rad_s);
-            (*angle_rad, *speed_rad_s) = runge_kutta(state, step_s, accelerate);
+            (*angle_rad, *speed_rad_s) = runge_kutta(state, step_s, first.copied(), accelerate);
         } else {
             let (mut angle, mut speed, load) = absolute(angle_rad, speed_rad_s, torque_nm);
             self.advance(&mut angle, &mut speed, &load, step_s, 1);
@@ -195,6 +197,7 @@ impl<const N: usize, V: Lane> Dense<N, V> {
             state = runge_kutta(
                 state,
                 step_s,
+                None,
                 #[inline(always)]
                 |q, w| self.accelerate(q, w, load_nm),
             );

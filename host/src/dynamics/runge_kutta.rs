@@ -6,7 +6,8 @@
 
 use super::lanes::{Lane, each};
 
-/// Angles and speeds after `step_s`; `accelerate` gives the accelerations at angles and speeds.
+/// Angles and speeds after `step_s`; `accelerate` gives the accelerations at angles and speeds, and
+/// `first` those at the beginning where they are known already.
 ///
 /// Give the closure `#[inline(always)]` where the step must be fast: without it, a chain of three
 /// takes half as long again.
@@ -14,11 +15,15 @@ use super::lanes::{Lane, each};
 pub fn runge_kutta<const N: usize, V: Lane>(
     (q, w): ([V; N], [V; N]),
     step_s: V,
+    first: Option<[V; N]>,
     accelerate: impl Fn(&[V; N], &[V; N]) -> [V; N],
 ) -> ([V; N], [V; N]) {
     let (half_s, sixth_s) = (step_s * V::splat(0.5), step_s * V::splat(1.0 / 6.0));
     let ahead = |x: &[V; N], span: V, slope: &[V; N]| each(|i| x[i] + span * slope[i]);
-    let a1 = accelerate(&q, &w);
+    let a1 = match first {
+        Some(first) => first,
+        None => accelerate(&q, &w),
+    };
     let w2 = ahead(&w, half_s, &a1);
     let a2 = accelerate(&ahead(&q, half_s, &w), &w2);
     let w3 = ahead(&w, half_s, &a2);
@@ -54,13 +59,15 @@ impl<R: Clone> RungeKutta<R> {
     }
 
     /// Advances angles and speeds by `step_s`. `accelerate` writes the accelerations at the angles
-    /// and speeds it is given into its third argument.
+    /// and speeds it is given into its third argument; `first` holds them at the beginning where
+    /// they are known already.
     #[inline(always)]
     pub fn step<V: Lane>(
         &mut self,
         angle_rad: &mut R,
         speed_rad_s: &mut R,
         step_s: V,
+        first: Option<&R>,
         mut accelerate: impl FnMut(&R, &R, &mut R),
     ) where
         R: AsRef<[V]> + AsMut<[V]>,
@@ -73,7 +80,10 @@ impl<R: Clone> RungeKutta<R> {
         } = self;
         let [s0, s1, s2, s3] = slope;
         let [w1, w2, w3] = speed;
-        accelerate(angle_rad, speed_rad_s, s0);
+        match first {
+            Some(first) => s0.clone_from(first),
+            None => accelerate(angle_rad, speed_rad_s, s0),
+        }
         ahead(angle, angle_rad, half_s, speed_rad_s);
         ahead(w1, speed_rad_s, half_s, s0);
         accelerate(angle, w1, s1);
@@ -129,8 +139,10 @@ mod tests {
             let (mut q, mut w) = (vec![1.0], vec![0.0]);
             let mut scratch = RungeKutta::new(vec![0.0]);
             for _ in 0..steps {
-                state = runge_kutta(state, h, |q, w| [pull(q[0], w[0])]);
-                scratch.step(&mut q, &mut w, h, |q, w, out| out[0] = pull(q[0], w[0]));
+                state = runge_kutta(state, h, None, |q, w| [pull(q[0], w[0])]);
+                scratch.step(&mut q, &mut w, h, None, |q, w, out| {
+                    out[0] = pull(q[0], w[0])
+                });
             }
             assert_eq!((state.0[0], state.1[0]), (q[0], w[0]));
             (q[0] - exact(2.0)).abs()

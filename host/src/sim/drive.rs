@@ -6,7 +6,7 @@ use crate::effects::{AtRest, DriveState, MemoryCell};
 use crate::model::Drive;
 
 /// Input of a drive at an instant.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DriveInput {
     /// The input in SI of the drive's kind.
     pub input: f64,

@@ -79,7 +79,8 @@ impl<R: Rows> Forces<R> {
     }
 
     /// One step of `h` s from these angles and speeds, in place, where the torques stay as they
-    /// are through it and the equations have a closed form; else nothing, and false.
+    /// are through it and the equations have a closed form; else nothing, and false. `first` are
+    /// the accelerations at its beginning where they are known already.
     #[inline]
     pub fn step(
         &mut self,
@@ -88,6 +89,7 @@ impl<R: Rows> Forces<R> {
         contact: &[Contact],
         (angle, speed): (&mut R::Of<f64>, &mut R::Of<f64>),
         h: f64,
+        first: Option<&R::Of<f64>>,
     ) -> bool {
         if !plant.torques_stay {
             return false;
@@ -98,7 +100,15 @@ impl<R: Rows> Forces<R> {
             contact,
         };
         self.find_torques(plant, inputs, at, &mut []);
-        R::step(&self.closed, angle, speed, &self.torque, &self.held, h)
+        R::step(
+            &self.closed,
+            angle,
+            speed,
+            &self.torque,
+            &self.held,
+            h,
+            first,
+        )
     }
 
     /// Torques at the joints, and which of them are held. `out` is scratch.

@@ -32,7 +32,7 @@ pub(super) trait Rows {
     ) -> Option<Self::Of<f64>>;
 
     /// A step of `h` s under constant torques, by the equations in closed form; false where there
-    /// are none.
+    /// are none. `first` are the accelerations at its beginning where they are known already.
     fn step(
         closed: &Self::Closed,
         angle_rad: &mut Self::Of<f64>,
@@ -40,6 +40,7 @@ pub(super) trait Rows {
         torque_nm: &Self::Of<f64>,
         held: &Self::Of<bool>,
         h: f64,
+        first: Option<&Self::Of<f64>>,
     ) -> bool;
 }
 
@@ -83,11 +84,12 @@ impl<const N: usize> Rows for Few<N> {
         torque_nm: &[f64; N],
         held: &[bool; N],
         h: f64,
+        first: Option<&[f64; N]>,
     ) -> bool {
         let Some(dense) = closed else {
             return false;
         };
-        dense.step(angle_rad, speed_rad_s, torque_nm, held, h);
+        dense.step(angle_rad, speed_rad_s, torque_nm, held, h, first);
         true
     }
 }
@@ -117,6 +119,7 @@ impl Rows for Many {
         _: &Vec<f64>,
         _: &Vec<bool>,
         _: f64,
+        _: Option<&Vec<f64>>,
     ) -> bool {
         false
     }

@@ -58,10 +58,14 @@ pub(super) struct Stepper<R: Rows> {
     start_auxiliary: Auxiliary,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
+    /// Whether those, and the excess, are of the present state, contacts and inputs.
+    slope_is_known: bool,
     /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
     excess: R::Of<f64>,
     /// Inputs as the drives follow them, where effects remember.
     obeyed: Vec<DriveInput>,
+    /// The inputs last followed.
+    followed: Vec<DriveInput>,
 }
 
 impl<R: Rows> Stepper<R> {
@@ -82,8 +86,10 @@ impl<R: Rows> Stepper<R> {
             start_speed: zeros(),
             start_auxiliary: Auxiliary::new(plant),
             slope: zeros(),
+            slope_is_known: false,
             excess: zeros(),
             obeyed: Vec::new(),
+            followed: Vec::new(),
         };
         stepper.forces.memory = EffectMemory::beginning(plant, angle, speed);
         for (joint, plan) in plant.joints.iter().enumerate() {
@@ -149,7 +155,7 @@ impl<R: Rows> Stepper<R> {
     /// Advances by `step_s` under inputs that the drives follow at once.
     fn advance_bodies(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
-        self.forces.command(plant, inputs);
+        self.follow(plant, inputs);
         // Chatter between contacts can't go on for ever: after this many events the step is taken
         // as it comes.
         for _ in 0..8 {
@@ -161,6 +167,8 @@ impl<R: Rows> Stepper<R> {
             let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
+            // What is known is of the step's end.
+            self.slope_is_known = false;
             self.angle.clone_from(&self.start_angle);
             self.speed.clone_from(&self.start_speed);
             self.forces.auxiliary.copy_motion(&self.start_auxiliary);
@@ -182,6 +190,26 @@ impl<R: Rows> Stepper<R> {
                 self.contact[joint] = Contact::Held;
             }
         }
+        self.slope_is_known = false;
+    }
+
+    /// Takes what follows from the inputs alone; the same inputs leave all as it is.
+    #[inline]
+    fn follow(&mut self, plant: &Plant, inputs: &[DriveInput]) {
+        if plant.remembers == 0 && self.followed == inputs {
+            return;
+        }
+        self.forces.command(plant, inputs);
+        self.slope_is_known = false;
+        self.followed.clear();
+        self.followed.extend_from_slice(inputs);
+    }
+
+    /// Whether friction holds every joint.
+    #[inline]
+    fn rests(&self) -> bool {
+        let mut contacts = self.contact.as_ref().iter();
+        contacts.all(|contact| *contact == Contact::Held)
     }
 
     fn stopped(&self, joint: usize) -> bool {
@@ -219,9 +247,8 @@ impl<R: Rows> Stepper<R> {
     /// pushes beyond its breakaway torque.
     fn first_release(&mut self, plant: &Plant, inputs: &[DriveInput]) -> Option<Event> {
         let is_held = |contact: &Contact| *contact == Contact::Held;
-        let held = self.contact.as_ref().iter().filter(|c| is_held(c)).count();
-        let moves = held < self.len() || plant.has_auxiliary();
-        if held == 0 || !moves {
+        let moves = !self.rests() || plant.has_auxiliary();
+        if !moves || !self.contact.as_ref().iter().any(is_held) {
             return None;
         }
         let before = self.excess.clone();
@@ -239,20 +266,24 @@ impl<R: Rows> Stepper<R> {
     /// Lets go of held joints that are pushed beyond their breakaway torque, the most pushed first.
     fn release(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         while self.contact.as_ref().contains(&Contact::Held) {
-            self.find_excess(plant, inputs);
+            if !self.slope_is_known {
+                self.find_excess(plant, inputs);
+            }
             let pushed = (0..self.len())
                 .filter(|&joint| self.contact[joint] == Contact::Held)
                 .max_by(|a, b| self.excess[*a].total_cmp(&self.excess[*b]));
             match pushed {
                 Some(joint) if self.excess[joint] > 0.0 => {
                     self.contact[joint] = Contact::Sliding(self.push_direction(joint));
+                    self.slope_is_known = false;
                 }
                 _ => return,
             }
         }
     }
 
-    /// By how much held joints are pushed beyond their breakaway torque at the present state.
+    /// By how much held joints are pushed beyond their breakaway torque at the present state. Bodies
+    /// beside the links have accelerations of their own, which are not kept.
     fn find_excess(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
         let contact = self.contact.as_ref();
@@ -271,6 +302,7 @@ impl<R: Rows> Stepper<R> {
                 self.excess[joint] = push.abs() - breakaway;
             }
         }
+        self.slope_is_known = !plant.has_auxiliary();
     }
 
     /// Where a held joint is pushed, +1 or -1.

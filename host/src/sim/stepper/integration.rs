@@ -9,18 +9,27 @@ use crate::sim::rows::Rows;
 impl<R: Rows> Stepper<R> {
     /// Advances by `h` s under constant inputs.
     pub(super) fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
-        let (forces, contact) = (&mut self.forces, self.contact.as_ref());
-        let state = (&mut self.angle, &mut self.speed);
         if plant.has_auxiliary() {
             return self.step_with_auxiliary(plant, inputs, h);
         }
-        if forces.step(plant, inputs, contact, state, h) {
+        if self.rests() {
+            return;
+        }
+        let (forces, contact) = (&mut self.forces, self.contact.as_ref());
+        let known = std::mem::replace(&mut self.slope_is_known, false);
+        let first = known.then_some(&mut self.slope).map(|slope| {
+            hold(slope.as_mut(), contact);
+            &*slope
+        });
+        let state = (&mut self.angle, &mut self.speed);
+        if forces.step(plant, inputs, contact, state, h, first) {
             return;
         }
         self.runge_kutta.step(
             &mut self.angle,
             &mut self.speed,
             h,
+            first,
             #[inline(always)]
             |angle, speed, slope: &mut R::Of<f64>| {
                 let (angle, speed) = (angle.as_ref(), speed.as_ref());
@@ -44,7 +53,7 @@ impl<R: Rows> Stepper<R> {
         place[joints..].copy_from_slice(&forces.auxiliary.place);
         speed[..joints].copy_from_slice(self.speed.as_ref());
         speed[joints..].copy_from_slice(&forces.auxiliary.speed);
-        (self.with_auxiliary).step(place, speed, h, |place, speed, slope| {
+        (self.with_auxiliary).step(place, speed, h, None, |place, speed, slope| {
             let (angle, own_place) = place.split_at(joints);
             let (speed, own_speed) = speed.split_at(joints);
             let (slope, own_slope) = slope.split_at_mut(joints);
