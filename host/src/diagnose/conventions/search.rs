@@ -10,6 +10,7 @@ use crate::diagnose::step_size::coarsened;
 use crate::log::Motion;
 use crate::model::{Model, Unit};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Samples looked at with each remedy, and with each of the many values of a continuous one.
 pub(super) const SAMPLES: usize = 6000;
@@ -106,14 +107,22 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
             return None;
         }
         let given = bench.tried(trial.remedy, Effort::Starts)?;
-        (given.ratio() < 1.0 && beats_a_wrong_value(bench, &refitted)).then_some(refitted)
+        (given.ratio() < 1.0).then_some(refitted)
     });
-    judged.collect()
+    let mut judged: Vec<Trial> = judged.collect();
+    let mut off = BTreeMap::new();
+    judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
+    judged
 }
 
 /// Whether a remedy that only changes how strong an input is leaves no more than one wrong value of
-/// the file does: a mass, a stall torque, a gear, which diagnosis finds.
-fn beats_a_wrong_value(bench: &RemedyTrial, trial: &Trial) -> bool {
+/// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one value
+/// leaves for the joints that were asked for.
+fn beats_a_wrong_value(
+    bench: &RemedyTrial,
+    trial: &Trial,
+    off: &mut BTreeMap<usize, Option<f64>>,
+) -> bool {
     let joint = match &trial.remedy {
         Remedy::Drive(joint, ..) => *joint,
         Remedy::Unit(columns) => match columns.as_slice() {
@@ -122,7 +131,9 @@ fn beats_a_wrong_value(bench: &RemedyTrial, trial: &Trial) -> bool {
         },
         _ => return true,
     };
-    let off = bench.with_one_value_off(joint);
+    let off = off
+        .entry(joint)
+        .or_insert_with(|| bench.with_one_value_off(joint));
     off.is_none_or(|ratio| trial.ratio() < AS_GOOD * ratio)
 }
 
