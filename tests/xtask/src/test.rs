@@ -16,6 +16,12 @@ use handstand_xtask::program::{self, overheard};
 use std::path::Path;
 use std::time::Instant;
 
+/// Tests at a time: of libtest.
+const TEST_THREADS: &str = "RUST_TEST_THREADS";
+
+/// Half the time of a test is spent waiting: for a timer, a line, a child.
+const THREADS_PER_CORE: usize = 2;
+
 /// Install what the tests need, then run all of them.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -145,9 +151,13 @@ impl Tally {
 
 fn tests(tally: &mut Tally) {
     let failed_before = tally.failed;
-    let words = ["test", "--workspace", "--no-fail-fast"];
+    let mut tests = cargo(&["test", "--workspace", "--no-fail-fast"]);
+    if std::env::var_os(TEST_THREADS).is_none() {
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+        tests.env(TEST_THREADS, (THREADS_PER_CORE * cores).to_string());
+    }
     let mut in_failures = false;
-    let well = overheard(&mut cargo(&words), |line| {
+    let well = overheard(&mut tests, |line| {
         // Between this line and the result lies what the failed tests printed, then their names.
         in_failures |= line == "failures:";
         if let Some((passed, failed)) = result(line) {
