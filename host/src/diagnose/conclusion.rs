@@ -37,7 +37,7 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         wrong_values: wrong_values(evidence, base),
         error: error(evidence),
         budget: error_budget(evidence),
-        alternatives: rivals.iter().map(|h| alternative(h, evaluator)).collect(),
+        alternatives: rivals.iter().map(|h| alternative(h, evidence)).collect(),
         base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
@@ -137,7 +137,8 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
     hypothesis.set.iter().map(effect).collect()
 }
 
-fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
+fn alternative(hypothesis: &Hypothesis, evidence: &VerdictEvidence) -> Alternative {
+    let evaluator = evidence.evaluator;
     let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
     let added = values.len() - hypothesis.added_values();
     let own: Vec<FittedValue> = values[..added]
@@ -154,6 +155,7 @@ fn alternative(hypothesis: &Hypothesis, evaluator: &Evaluator) -> Alternative {
         effects: effects(hypothesis, &values[added..]),
         wrong_values: compared(&evaluator.start, &own),
         error_rad: hypothesis.deciding_rms_rad(),
+        same_law: evidence.says_the_same(hypothesis),
     }
 }
 

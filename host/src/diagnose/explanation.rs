@@ -3,6 +3,7 @@
 use super::evaluator::Evaluator;
 use super::findings::{Fold, ResidualStructure, Verdict};
 use super::hypothesis::Hypothesis;
+use super::measured_value::values_behind;
 use super::verdict::{Kind, Signs};
 
 /// Every explanation that was tried.
@@ -122,10 +123,27 @@ impl<'a> VerdictEvidence<'a> {
             Explanation::Value(value) => value.values.iter().all(|path| free.contains(path)),
             _ => false,
         };
+        let open = |rivals: &[&Hypothesis]| rivals.iter().any(|rival| !self.says_the_same(rival));
         match is_freed {
-            true => !self.as_good().is_empty(),
-            false => !rivals.is_empty(),
+            true => open(&self.as_good()),
+            false => open(rivals),
         }
+    }
+
+    /// Whether a rival is the explanation in other words in any experiment: a scale, and the value
+    /// of the file that it scales.
+    pub fn says_the_same(&self, rival: &Hypothesis) -> bool {
+        let model = &self.evaluator.start;
+        let is_behind = |value: &Hypothesis, effect: &Hypothesis| {
+            let [candidate] = &effect.set[..] else {
+                return false;
+            };
+            value.set.is_empty()
+                && effect.values.is_empty()
+                && !value.values.is_empty()
+                && value.values == values_behind(candidate, model)
+        };
+        is_behind(self.chosen(), rival) || is_behind(rival, self.chosen())
     }
 
     /// Explanations that are significantly no worse.

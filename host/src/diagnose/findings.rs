@@ -59,6 +59,9 @@ pub struct Alternative {
     pub wrong_values: Vec<WrongValue>,
     /// Root-mean-square error it leaves, rad, on the motions of [`Diagnosis::error`].
     pub error_rad: f64,
+    /// Whether it says what the explanation says, in every experiment: a scale, and the value of
+    /// the file that it scales. Such an alternative leaves nothing open.
+    pub same_law: bool,
 }
 
 /// A candidate that was tried and not chosen.

@@ -1,13 +1,22 @@
 //! That explanations cannot be told apart by these logs, and what would tell them apart.
 
-use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
+use super::findings::{Alternative, Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::words::{SHOWN, explained_by};
 use crate::effects;
 use crate::model::{JointField, LinkField, ParameterPath};
 
+/// "A says the same in other words." where an alternative does.
+pub(super) fn same_in_other_words(diagnosis: &Diagnosis) -> Option<String> {
+    let same = diagnosis.alternatives.iter().find(|other| other.same_law)?;
+    let explained = explained_by(&same.effects, &same.wrong_values);
+    Some(format!(
+        "In other words, which say the same of every experiment: {explained}."
+    ))
+}
+
 /// "These logs cannot tell them apart; what parts them: ..." where the verdict has rivals.
 pub(super) fn inseparable(diagnosis: &Diagnosis) -> Option<String> {
-    let others = diagnosis.alternatives.first()?;
+    let others = others(diagnosis).next()?;
     let what = match diagnosis.verdict {
         Verdict::Ambiguous => "them apart".to_string(),
         _ => format!(
@@ -21,10 +30,16 @@ pub(super) fn inseparable(diagnosis: &Diagnosis) -> Option<String> {
     Some(format!("These logs cannot tell {what}{remedy}."))
 }
 
+/// The alternatives that say something else.
+fn others(diagnosis: &Diagnosis) -> impl Iterator<Item = &Alternative> {
+    let all = diagnosis.alternatives.iter();
+    all.filter(|other| !other.same_law)
+}
+
 /// What separates the first explanations: a value measured by itself, or the experiment in which
 /// two effects differ.
 fn remedy(diagnosis: &Diagnosis) -> Option<String> {
-    let others = diagnosis.alternatives.iter().take(SHOWN - 1);
+    let others = others(diagnosis).take(SHOWN - 1);
     let own = (&diagnosis.effects, &diagnosis.wrong_values);
     let sets: Vec<(&Vec<FittedEffect>, &Vec<WrongValue>)> = std::iter::once(own)
         .chain(others.map(|other| (&other.effects, &other.wrong_values)))

@@ -4,7 +4,7 @@
 //! the files.
 
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
-use super::inseparable::inseparable;
+use super::inseparable::{inseparable, same_in_other_words};
 use super::names::{effect_name, joined, listed};
 use super::warnings::{on_bound, pairs};
 
@@ -112,7 +112,10 @@ pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> St
 
 /// "A at joint 1, or B and C, or 3 more".
 fn rivals(diagnosis: &Diagnosis) -> String {
-    let others = diagnosis.alternatives.iter();
+    let others = diagnosis
+        .alternatives
+        .iter()
+        .filter(|rival| !rival.same_law);
     let others = others.map(|rival| explained_by(&rival.effects, &rival.wrong_values));
     let first = explained_by(&diagnosis.effects, &diagnosis.wrong_values);
     let mut sets: Vec<String> = std::iter::once(first).chain(others).collect();
@@ -126,6 +129,7 @@ fn rivals(diagnosis: &Diagnosis) -> String {
 
 fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     let mut lines = vec![headline(diagnosis)];
+    lines.extend(same_in_other_words(diagnosis));
     lines.extend(inseparable(diagnosis));
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
         lines.push(

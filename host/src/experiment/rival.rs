@@ -36,10 +36,13 @@ impl Rival {
     }
 }
 
-/// The explanation of a diagnosis, then its alternatives.
+/// The explanation of a diagnosis, then the alternatives that say something else.
 pub(super) fn rivals(model: &Model, diagnosis: &Diagnosis, logs: &FitData) -> Vec<Rival> {
     let own = (&diagnosis.effects, &diagnosis.wrong_values);
-    let others = diagnosis.alternatives.iter();
+    let others = diagnosis
+        .alternatives
+        .iter()
+        .filter(|other| !other.same_law);
     let others = others.map(|other| (&other.effects, &other.wrong_values));
     let all: Vec<_> = std::iter::once(own).chain(others).collect();
     let given = model;

@@ -62,3 +62,15 @@ fn a_mass_twice_the_right_one_is_named() {
 fn a_centre_of_mass_at_two_thirds_of_its_place_is_named() {
     is_named("link1.com_m", 0.667);
 }
+
+#[test]
+fn a_stall_torque_is_named_though_a_torque_scale_says_the_same() {
+    is_named("joint1.stall_torque_nm", 1.4);
+    let (diagnosis, _) = diagnosed("joint1.stall_torque_nm", 1.4);
+    let same = diagnosis.alternatives.iter().filter(|other| other.same_law);
+    let kinds: Vec<&str> = same
+        .flat_map(|other| &other.effects)
+        .map(|effect| effect.kind.as_str())
+        .collect();
+    assert_eq!(kinds, ["torque_scale"]);
+}

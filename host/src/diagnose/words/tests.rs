@@ -29,6 +29,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
         effects,
         wrong_values: Vec::new(),
         error_rad: 2e-3,
+        same_law: false,
     });
     let mut diagnosis = Diagnosis {
         verdict,
@@ -212,6 +213,7 @@ fn what_does_as_well_as_a_free_value_is_said() {
         effects: vec![effect("armature", Some(1))],
         wrong_values: Vec::new(),
         error_rad: 2e-3,
+        same_law: false,
     }];
     complete(&mut diagnosis);
     assert_eq!(
@@ -219,4 +221,26 @@ fn what_does_as_well_as_a_free_value_is_said() {
         "These logs cannot tell this from armature inertia at joint 1; what parts them: swing link 1 off its \
          drive and time it."
     );
+}
+
+#[test]
+fn the_same_in_other_words_is_told_and_parted_by_nothing() {
+    let mut diagnosis = said(Verdict::WrongValue, vec![], vec![]);
+    diagnosis.wrong_values = vec![wrong("joint1.stall_torque_nm", 1.5, 1.2)];
+    diagnosis.alternatives = vec![Alternative {
+        effects: vec![effect("torque_scale", Some(1))],
+        wrong_values: Vec::new(),
+        error_rad: 2e-3,
+        same_law: true,
+    }];
+    complete(&mut diagnosis);
+    assert_eq!(
+        diagnosis.summary[1],
+        "In other words, which say the same of every experiment: torque scale at joint 1."
+    );
+    let cannot = diagnosis
+        .summary
+        .iter()
+        .find(|line| line.contains("cannot tell"));
+    assert_eq!(cannot, None);
 }

@@ -222,6 +222,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
             effects: vec![effect("dead_zone", "Dead zone", vec![dead_zone])],
             wrong_values: Vec::new(),
             error_rad: 6.5e-3,
+            same_law: false,
         }],
         base: vec![fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]), delay],
         ruled_out: ruled_out(),
