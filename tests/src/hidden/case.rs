@@ -77,10 +77,14 @@ impl HiddenEffect {
     }
 }
 
-/// Laws that another's holds as a special case (with two of its values equal, or while the drive is
-/// on): that one explains them rightly.
-const GENERAL: [(&str, &str); 3] = [
+/// Laws that another's holds as a special case (with two of its values equal, while the drive is
+/// on, while friction is larger than the offset): that one explains them rightly.
+const GENERAL: [(&str, &str); 6] = [
     ("load_friction", "drive_asymmetry"),
+    // With a torque offset of half the difference it resists both ways alike.
+    ("coulomb", "direction_asymmetry"),
+    ("direction_asymmetry", "torque_offset"),
+    ("torque_offset", "direction_asymmetry"),
     ("delay", "time_offset"),
     ("time_offset", "delay"),
 ];
