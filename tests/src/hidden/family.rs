@@ -185,7 +185,11 @@ impl Plan {
             Family::Robot => each(&kinds(self.truth)),
             Family::Single | Family::Hanging | Family::Balancing => each(&kinds(self.truth)),
             Family::Outside => match self.truth {
-                Truth::Own => each(&kinds(self.truth)),
+                Truth::Own => {
+                    // The file's stall torque says what a torque scale does.
+                    let kinds = kinds(self.truth).into_iter();
+                    each(&kinds.filter(|kind| *kind != "torque_scale").collect::<Vec<_>>())
+                }
                 Truth::Mujoco => each(&OUTSIDE),
                 Truth::Robot => Vec::new(),
             },
