@@ -188,7 +188,11 @@ impl Plan {
                 Truth::Own => {
                     // The file's stall torque says what a torque scale does.
                     let kinds = kinds(self.truth).into_iter();
-                    each(&kinds.filter(|kind| *kind != "torque_scale").collect::<Vec<_>>())
+                    each(
+                        &kinds
+                            .filter(|kind| *kind != "torque_scale")
+                            .collect::<Vec<_>>(),
+                    )
                 }
                 Truth::Mujoco => each(&OUTSIDE),
                 Truth::Robot => Vec::new(),

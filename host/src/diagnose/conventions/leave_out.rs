@@ -70,14 +70,7 @@ pub fn leave_out(model: &Model, motions: &[Motion]) -> Vec<LeaveOut> {
 }
 
 fn stalled(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> {
-    let mut runs = Vec::new();
-    for (index, motion) in motions.iter().enumerate() {
-        let angle = &motion.position_rad[joint];
-        let still = equal_runs(angle, |a, b| a == b);
-        let lasts_s = |run: &Range<usize>| motion.time_s[run.end - 1] - motion.time_s[run.start];
-        let long = still.into_iter().filter(|run| lasts_s(run) >= STALLED_S);
-        runs.extend(long.map(|run| (index, run)));
-    }
+    let runs = stalled_runs(motions, joint);
     if runs.is_empty() {
         return None;
     }
@@ -89,6 +82,41 @@ fn stalled(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> 
         Unusable::Stalled,
         LogColumn::Position(joint),
     )
+}
+
+/// The runs of samples in which a joint stands still for too long.
+fn stalled_runs(motions: &[Motion], joint: usize) -> Vec<(usize, Range<usize>)> {
+    let mut runs = Vec::new();
+    for (index, motion) in motions.iter().enumerate() {
+        let still = equal_runs(&motion.position_rad[joint], |a, b| a == b);
+        let lasts_s = |run: &Range<usize>| motion.time_s[run.end - 1] - motion.time_s[run.start];
+        let long = still.into_iter().filter(|run| lasts_s(run) >= STALLED_S);
+        runs.extend(long.map(|run| (index, run)));
+    }
+    runs
+}
+
+/// The motions without the samples in which a joint stalls; as they are where nothing else is left.
+pub(super) fn without_stalled(model: &Model, motions: &[Motion]) -> Vec<Motion> {
+    let joints = 0..model.link_count();
+    let mut runs: Vec<_> = joints.flat_map(|j| stalled_runs(motions, j)).collect();
+    runs.sort_by_key(|(motion, run)| (*motion, run.start));
+    let mut rest = Vec::new();
+    for (index, motion) in motions.iter().enumerate() {
+        let own = runs.iter().filter(|(of, _)| *of == index);
+        let end = motion.len()..motion.len();
+        let mut from = 0;
+        for run in own.map(|(_, run)| run).chain([&end]) {
+            if run.start > from + 1 {
+                rest.push(motion.part(from..run.start));
+            }
+            from = from.max(run.end);
+        }
+    }
+    match rest.is_empty() {
+        true => motions.to_vec(),
+        false => rest,
+    }
 }
 
 fn clipped(model: &Model, motions: &[Motion], joint: usize) -> Option<LeaveOut> {

@@ -3,6 +3,7 @@
 use super::continuous::{LEAST_ZERO_RAD, continuous};
 use super::drives::drives;
 use super::excerpts::excerpts;
+use super::leave_out::without_stalled;
 use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Effort, RemedyTrial, Trial};
@@ -36,7 +37,12 @@ pub fn search(model: &Model, motions: &[Motion]) -> Vec<Found> {
     let mut found = Vec::new();
     let (mut model, mut motions) = (model.clone(), motions.to_vec());
     for _ in 0..ROUNDS {
-        let Some(fault) = fault(&model, &motions) else {
+        // A run that failed proves nothing: what the log holds besides is judged.
+        let judged = match is_doubtful_time(&model, &motions) {
+            true => motions.clone(),
+            false => without_stalled(&model, &motions),
+        };
+        let Some(fault) = fault(&model, &judged) else {
             break;
         };
         let remedy = &fault.trial.remedy;
