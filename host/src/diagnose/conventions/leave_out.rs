@@ -244,3 +244,41 @@ fn equal_runs(values: &[f64], alike: impl Fn(f64, f64) -> bool) -> Vec<Range<usi
     }
     runs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::{Motions, bench};
+    use crate::log::{LogRequest, read};
+
+    /// The motions of a bench arm's first log.
+    fn arm() -> (Model, Vec<Motion>) {
+        let bench = bench(Motions::Arm, 1, &[]).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, &bench.logs[0].csv).unwrap();
+        let model = Model::parse(&bench.model_toml, std::path::Path::new("arm.toml")).unwrap();
+        let motions = read(&[LogRequest::whole(&path)], &model.log).unwrap();
+        (model, motions)
+    }
+
+    #[test]
+    fn what_lies_beside_a_stall_is_kept() {
+        let (model, mut motions) = arm();
+        assert_eq!(without_stalled(&model, &motions).len(), motions.len());
+        let motion = &mut motions[0];
+        let count = motion.len();
+        // The middle third takes 25 s, at one place.
+        let stall = count / 3..2 * count / 3;
+        let time_s = motion.time_s.clone();
+        let lasts_s = time_s[stall.end] - time_s[stall.start];
+        for k in stall.start..count {
+            let into_s = time_s[k.min(stall.end)] - time_s[stall.start];
+            motion.time_s[k] += into_s * (25.0 / lasts_s - 1.0);
+        }
+        motion.position_rad[0][stall.clone()].fill(0.25);
+        let rest = without_stalled(&model, &motions[..1]);
+        let lengths: Vec<usize> = rest.iter().map(Motion::len).collect();
+        assert_eq!(lengths, [stall.start, count - stall.end]);
+    }
+}
