@@ -18,6 +18,9 @@ pub(super) const SAMPLES: usize = 6000;
 const SAMPLES_CONTINUOUS: usize = 2000;
 /// Remedies that are judged with fitted start states.
 const JUDGED: usize = 6;
+/// Units of the same columns among them: where an input hardly matters, each that makes it small
+/// does well.
+const UNITS: usize = 2;
 /// An error ratio this high, from guessed start states, is not looked at again.
 const HOPELESS: f64 = 1.05;
 /// Faults that one log may have at once.
@@ -105,8 +108,8 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
         .filter(|trial| trial.ratio() < HOPELESS)
         .collect();
     screened.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
-    screened.truncate(JUDGED);
-    let judged = screened.into_par_iter().filter_map(|trial| {
+    let judged = most_promising(screened).into_par_iter();
+    let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
         let refitted = bench.tried(trial.remedy.clone(), Effort::Values)?;
         if !least(bench, &refitted.remedy).allows(&refitted) {
@@ -119,6 +122,24 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
     let mut off = BTreeMap::new();
     judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
     judged
+}
+
+/// The first of the sorted trials, of units of the same columns no more than a few.
+fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
+    let units = |trial: &Trial| match &trial.remedy {
+        Remedy::Unit(columns) => Some(columns.iter().map(|(c, _)| *c).collect::<Vec<_>>()),
+        _ => None,
+    };
+    let mut kept: Vec<Trial> = Vec::new();
+    for trial in sorted {
+        let own = units(&trial);
+        let alike = kept.iter().filter(|kept| units(kept) == own).count();
+        if own.is_none() || alike < UNITS {
+            kept.push(trial);
+        }
+    }
+    kept.truncate(JUDGED);
+    kept
 }
 
 /// Whether a remedy that only changes how strong an input is leaves no more than one wrong value of
@@ -241,4 +262,28 @@ fn spacing_s(motions: &[Motion]) -> f64 {
     }
     let middle = steps.len() / 2;
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_one_column_do_not_crowd_out_other_remedies() {
+        let tried = |remedy| Trial {
+            remedy,
+            before: 1.0,
+            after: 0.5,
+            before_rad: 1.0,
+            after_rad: 0.5,
+            better: 1.0,
+        };
+        let unit = Unit::named("N m", None).unwrap();
+        let input = |joint| tried(Remedy::Unit(vec![(LogColumn::Input(joint), unit)]));
+        let reversed = tried(Remedy::Reverse(vec![LogColumn::Input(0)]));
+        let mut sorted: Vec<Trial> = (0..JUDGED).map(|_| input(0)).collect();
+        sorted.extend([input(1), reversed.clone()]);
+        let kept = most_promising(sorted);
+        assert_eq!(kept, [input(0), input(0), input(1), reversed]);
+    }
 }
