@@ -25,15 +25,16 @@ use super::{ExitStatus, Talk};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose_logs};
 use handstand::experiment::{
-    Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose, propose_values,
+    Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, propose,
+    propose_values,
 };
 use handstand::fitting::{Horizon, effect_named, free_parameters};
 use handstand::log::{LogRequest, LogSet, read, to_csv};
 use handstand::model::Model;
-use handstand::report::proposal_text;
+use handstand::report::{next_steps, proposal_text};
 use handstand::{Error, Result, output};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Propose the next experiment.
 #[derive(Debug, clap::Args)]
@@ -136,32 +137,48 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     let helps = proposal.as_ref().is_some_and(ExperimentProposal::helps);
     let experiment = proposal.as_ref().and_then(|p| p.experiment.as_ref());
-    let mut written = None;
+    let mut written: Option<&Path> = None;
     if let (Some(file), Some(experiment)) = (&args.output, experiment) {
         let columns = inputs_alone(&model);
         let comments = [experiment.instructions.join("\n")];
         let text = to_csv(&experiment.motion, &columns, &comments);
         output::write_new(file, &text, args.force)?;
-        written = Some(file.display().to_string());
+        written = Some(file);
     }
+    let (diagnosis, proposal) = (diagnosis.as_ref(), proposal.as_ref());
+    let follow_up = args.follow_up(&logs, written, is_replayable(&model));
     let data = json!({
         "proposal": proposal,
-        "diagnosis": diagnosis.as_ref().map(|d| &d.summary),
-        "file": written,
-        "replayable": is_replayable(&model),
+        "diagnosis": diagnosis.map(|d| &d.summary),
+        "file": written.map(|file| file.display().to_string()),
+        "next": next_steps(diagnosis, proposal, &follow_up),
+        "replayable": follow_up.replayable,
     });
-    talk.result(&data, || {
-        proposal_text(
-            diagnosis.as_ref(),
-            proposal.as_ref(),
-            written.as_deref(),
-            is_replayable(&model),
-        )
-    })?;
+    talk.result(&data, || proposal_text(diagnosis, proposal, &follow_up))?;
     Ok(ExitStatus::answer(helps))
 }
 
 impl NextArgs {
+    /// What the commands that follow name.
+    fn follow_up<'a>(
+        &'a self,
+        logs: &'a LogSet,
+        motion: Option<&'a Path>,
+        replayable: bool,
+    ) -> FollowUp<'a> {
+        FollowUp {
+            model: &self.model,
+            logs,
+            motion,
+            replayable,
+            values: &self.value,
+            without: &self.without,
+            known: &self.known,
+            trust_log: self.trust_log,
+            horizon: self.judging.run.horizon,
+        }
+    }
+
     fn diagnosed(&self, model: &Model, logs: &LogSet, talk: &Talk) -> Result<Diagnosis> {
         let options = DiagnoseOptions {
             without: self.without.clone(),

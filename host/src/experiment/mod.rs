@@ -11,6 +11,7 @@
 mod candidates;
 mod condition;
 pub mod excite;
+mod follow_up;
 mod inputs;
 mod limits;
 mod prediction;
@@ -24,6 +25,7 @@ mod tighten;
 mod tests;
 
 pub use condition::Condition;
+pub use follow_up::FollowUp;
 pub use limits::ExperimentLimits;
 pub use proposal::{
     ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation, TightenedValue,

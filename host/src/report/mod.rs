@@ -26,7 +26,7 @@ mod words;
 pub use json::{diagnosis_json, gains_json, json};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
-pub use proposal::proposal_text;
+pub use proposal::{next_steps, proposal_text};
 pub use raw_plot::{raw_html, raw_text};
 pub use refitted::{refitted_json, refitted_text};
 pub(crate) use signatures::chart as signature_chart;

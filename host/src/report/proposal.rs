@@ -1,37 +1,37 @@
 //! A proposed experiment as text.
 
 use crate::diagnose::{Diagnosis, Verdict};
-use crate::experiment::{ExperimentProposal, ProposedExperiment, TightenedValue};
+use crate::experiment::{ExperimentProposal, FollowUp, ProposedExperiment, TightenedValue};
 use crate::output::number::{given, percent, short, with_unit};
 use std::fmt::Write as _;
 
-/// What the logs leave open, what to do next, and what that is expected to give. `file` is where
-/// the motion was written, `replayable` whether `handstand replay` plays it.
+/// What the logs leave open, what to do next, and what that is expected to give.
 pub fn proposal_text(
     diagnosis: Option<&Diagnosis>,
     proposal: Option<&ExperimentProposal>,
-    file: Option<&str>,
-    replayable: bool,
+    follow_up: &FollowUp,
 ) -> String {
     let mut text = String::new();
     for line in diagnosis.iter().flat_map(|d| &d.summary) {
         let _ = writeln!(text, "{line}");
     }
+    let steps = next_steps(diagnosis, proposal, follow_up);
     let Some(proposal) = proposal else {
-        for line in diagnosis.iter().flat_map(|d| &d.next) {
-            let _ = writeln!(text, "{line}");
-        }
-        return text;
+        return text + &lines(&steps);
     };
-    if let Some(experiment) = &proposal.experiment {
-        text += &experiment_text(experiment, file, replayable);
+    if proposal.experiment.is_some() {
+        text += "\nDo this next:\n";
+        for (index, step) in steps.iter().enumerate() {
+            let _ = writeln!(text, "{}. {step}", index + 1);
+        }
+        text.push('\n');
     }
     text += &separations_text(proposal);
     text += &alike_text(proposal);
     for value in &proposal.values {
         let _ = writeln!(text, "{}", tightened(value));
     }
-    text += &measure_text(proposal);
+    text += &lines(&measures(proposal, follow_up));
     if !proposal.helps() {
         text += &no_help(proposal);
     }
@@ -45,16 +45,23 @@ pub fn proposal_text(
     text
 }
 
-fn experiment_text(experiment: &ProposedExperiment, file: Option<&str>, playable: bool) -> String {
-    let mut text = String::from("\nDo this next:\n");
-    let mut number = 0;
-    let mut step = |line: &str| {
-        number += 1;
-        let _ = writeln!(text, "{number}. {line}");
-    };
-    for line in &experiment.instructions {
-        step(line);
+/// What to do next, with the commands: the experiment and what follows it; without one the values
+/// to measure; without a proposal what the diagnosis says.
+pub fn next_steps(
+    diagnosis: Option<&Diagnosis>,
+    proposal: Option<&ExperimentProposal>,
+    follow_up: &FollowUp,
+) -> Vec<String> {
+    match proposal {
+        None => diagnosis.map_or(Vec::new(), |found| found.next.clone()),
+        Some(proposal) => match &proposal.experiment {
+            Some(experiment) => experiment_steps(experiment, follow_up),
+            None => measures(proposal, follow_up),
+        },
     }
+}
+
+fn experiment_steps(experiment: &ProposedExperiment, follow_up: &FollowUp) -> Vec<String> {
     let kinds: Vec<&str> = experiment.motions.iter().map(|kind| kind.name()).collect();
     let motion = format!(
         "{}, {} s at {} Hz, over {} of the allowed angles",
@@ -63,23 +70,33 @@ fn experiment_text(experiment: &ProposedExperiment, file: Option<&str>, playable
         given(experiment.hz),
         percent(experiment.width)
     );
-    match (file, playable) {
-        (Some(file), true) => {
-            step(&format!(
-                "Play {file} ({motion}): handstand replay {file} --record LOG"
-            ));
-        }
-        (Some(file), false) => step(&format!(
-            "Play {file} ({motion}) by the rig's own controller: its columns are inputs of the \
-             drives, not goals of servos, and `replay` does not play them."
-        )),
-        (None, _) => step(&format!(
-            "Play the motion that -o MOTION.csv writes ({motion})."
-        )),
-    }
-    step("Diagnose again, with the new log added.");
-    text.push('\n');
-    text
+    let mut steps = experiment.instructions.clone();
+    steps.push(match (follow_up.motion, follow_up.replay()) {
+        (Some(file), Some(replay)) => format!("Play {} ({motion}): {replay}", file.display()),
+        (Some(file), None) => format!(
+            "Play {} ({motion}) by the rig's own controller, and record {}: its columns are \
+             inputs of the drives, not goals of servos, and `replay` does not play them.",
+            file.display(),
+            follow_up.new_log()
+        ),
+        (None, _) => format!(
+            "Play the motion that -o MOTION.csv writes ({motion}), and record {}.",
+            follow_up.new_log()
+        ),
+    });
+    let what = match follow_up.values {
+        [] => "Diagnose",
+        _ => "Fit",
+    };
+    steps.push(format!(
+        "{what} again, with the new log added: {}",
+        follow_up.again()
+    ));
+    steps
+}
+
+fn lines(sentences: &[String]) -> String {
+    sentences.iter().map(|line| format!("{line}\n")).collect()
 }
 
 fn separations_text(proposal: &ExperimentProposal) -> String {
@@ -119,18 +136,17 @@ fn tightened(value: &TightenedValue) -> String {
     )
 }
 
-fn measure_text(proposal: &ExperimentProposal) -> String {
-    let mut text = String::new();
-    for value in &proposal.measure {
+fn measures(proposal: &ExperimentProposal, follow_up: &FollowUp) -> Vec<String> {
+    let values = proposal.measure.iter().map(|value| {
         let path = &value.path;
-        let _ = writeln!(
-            text,
+        format!(
             "No motion within the limits parts {path} from the rest: {}. If the file is right, \
-             diagnose again with --known {path}; if not, mend the file first.",
-            value.instruction
-        );
-    }
-    text
+             diagnose again: {}; if not, mend the file first.",
+            value.instruction,
+            follow_up.with_known(path)
+        )
+    });
+    values.collect()
 }
 
 fn no_help(proposal: &ExperimentProposal) -> String {
