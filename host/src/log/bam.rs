@@ -5,9 +5,9 @@
 //! `input_volts`, `torque_enable`.
 
 use super::read::LEAST_ROWS;
+use super::reading_limit::LARGEST_READING;
 use super::reason::LogReason;
 use super::request::LogRequest;
-use super::row_reader::LARGEST_READING;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
 use crate::model::ArmFigures;

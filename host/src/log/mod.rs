@@ -17,6 +17,7 @@ mod merge;
 mod motion;
 mod raw;
 mod read;
+mod reading_limit;
 mod reason;
 mod request;
 mod row;

@@ -5,6 +5,7 @@ use super::format::LogFormat;
 use super::header::{LogHeader, fields, number};
 use super::iso::iso_ns;
 use super::lines::Lines;
+use super::reading_limit::ReadingLimit;
 use super::request::LogRequest;
 use super::table::LogTable;
 use crate::error::{Error, Place, Result};
@@ -22,25 +23,34 @@ pub struct RawLog {
 }
 
 impl RawLog {
-    /// Reads a log of any format.
+    /// Reads a log of any format as it stands, with numbers that no sensor gives.
     ///
     /// # Errors
     /// A file without a header, or that is no text.
     pub fn read(path: &Path) -> Result<RawLog> {
+        RawLog::read_checked(path, None)
+    }
+
+    /// Reads a log of any format; in the rows asked for, readings must be ones that a sensor gives.
+    fn read_checked(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
         match LogFormat::of(path) {
             LogFormat::Bam => Ok(of_bam(bam::read(
                 &LogRequest::whole(path),
                 None,
                 &mut BamBench::default(),
             )?)),
-            LogFormat::Csv => read_csv(path),
+            LogFormat::Csv => read_csv(path, checked),
             format => {
                 let table = LogTable::read(path, format)?;
-                Ok(RawLog {
+                let log = RawLog {
                     iso: vec![false; table.names.len()],
                     names: table.names,
                     columns: table.columns,
-                })
+                };
+                if let Some(request) = checked {
+                    ReadingLimit::new(request, &log.names).hold_table(&log)?;
+                }
+                Ok(log)
             }
         }
     }
@@ -48,9 +58,10 @@ impl RawLog {
     /// Reads the rows asked for.
     ///
     /// # Errors
-    /// As [`RawLog::read`]; rows beyond the file.
+    /// As [`RawLog::read`]; rows beyond the file; numbers that no sensor gives, in columns whose
+    /// names tell readings.
     pub fn read_request(request: &LogRequest) -> Result<RawLog> {
-        let mut log = RawLog::read(&request.path)?;
+        let mut log = RawLog::read_checked(&request.path, Some(request))?;
         let rows = log.columns.first().map_or(0, Vec::len);
         if let Some(reason) = request.beyond(rows) {
             return Err(Error::refused(Place::file(&request.path), reason));
@@ -91,41 +102,68 @@ impl RawLog {
     }
 }
 
-fn read_csv(path: &Path) -> Result<RawLog> {
+fn read_csv(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
     let mut lines = Lines::open(path)?;
     let (header, first) = LogHeader::read(path, &mut lines, "")?;
-    let mut log = RawLog {
-        columns: vec![Vec::new(); header.names.len()],
-        iso: vec![false; header.names.len()],
-        names: header.names,
-    };
-    let mut first_ns = vec![None; log.names.len()];
-    let mut take = |line: &str| {
-        let cells = fields(line, header.separator);
-        for (index, column) in log.columns.iter_mut().enumerate() {
-            let value = cells
-                .get(index)
-                .and_then(|cell| match number(cell, header.separator) {
-                    None if log.iso[index] || column.is_empty() => {
-                        let stamp_ns = iso_ns(cell)?;
-                        log.iso[index] = true;
-                        let first_ns = *first_ns[index].get_or_insert(stamp_ns);
-                        Some(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
-                    }
-                    value => value,
-                });
-            column.push(value.unwrap_or(f64::NAN));
-        }
+    let mut rows = CsvRows {
+        limit: checked.map(|request| ReadingLimit::new(request, &header.names)),
+        separator: header.separator,
+        first_ns: vec![None; header.names.len()],
+        log: RawLog {
+            columns: vec![Vec::new(); header.names.len()],
+            iso: vec![false; header.names.len()],
+            names: header.names,
+        },
     };
     if let Some(line) = first {
-        take(&line);
+        rows.take(&line, lines.number)?;
     }
-    while let Some(line) = lines.next()? {
-        if !line.trim().is_empty() && !line.trim_start().starts_with('#') {
-            take(line);
+    loop {
+        let at = lines.number + 1;
+        match lines.next()? {
+            None => return Ok(rows.log),
+            Some(line) if line.trim().is_empty() || line.trim_start().starts_with('#') => {}
+            Some(line) => rows.take(line, at)?,
         }
     }
-    Ok(log)
+}
+
+/// Rows of text as they become columns.
+struct CsvRows<'a> {
+    log: RawLog,
+    separator: u8,
+    /// The first time stamp of each column that holds them, ns.
+    first_ns: Vec<Option<i64>>,
+    limit: Option<ReadingLimit<'a>>,
+}
+
+impl CsvRows<'_> {
+    fn take(&mut self, line: &str, at: usize) -> Result<()> {
+        let cells = fields(line, self.separator);
+        for index in 0..self.log.columns.len() {
+            let cell = cells.get(index).map_or("", |cell| cell);
+            let value = number(cell, self.separator).or_else(|| self.stamp_s(index, cell));
+            let value = value.unwrap_or(f64::NAN);
+            let row = self.log.columns[index].len();
+            if let Some(limit) = &self.limit {
+                let name = (self.log.names[index].as_str(), index);
+                limit.hold(row, at, name, value, || cell.to_string())?;
+            }
+            self.log.columns[index].push(value);
+        }
+        Ok(())
+    }
+
+    /// A time stamp, s from the column's first; none in a column that began with something else.
+    fn stamp_s(&mut self, index: usize, cell: &str) -> Option<f64> {
+        if !self.log.iso[index] && !self.log.columns[index].is_empty() {
+            return None;
+        }
+        let stamp_ns = iso_ns(cell)?;
+        self.log.iso[index] = true;
+        let first_ns = *self.first_ns[index].get_or_insert(stamp_ns);
+        Some(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
+    }
 }
 
 fn of_bam(motion: super::Motion) -> RawLog {
@@ -171,5 +209,33 @@ mod tests {
         let log = RawLog::read(&path).unwrap();
         assert_eq!(log.columns[0], [0.0, 0.25]);
         assert_eq!(log.iso, [true, false]);
+    }
+
+    #[test]
+    fn readings_that_no_sensor_gives_are_refused_as_elsewhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let refused = |text: &str, rows| {
+            std::fs::write(&path, text).unwrap();
+            let path = path.clone();
+            RawLog::read_request(&LogRequest { path, rows }).err()
+        };
+        let broken =
+            "# of a bench\nstamp_ns,q1_deg\n1700000000000000000,1\n1700000000010000000,1e9\n";
+        let error = refused(broken, None).unwrap();
+        let said = error.to_string();
+        assert!(said.contains("a.csv:4:2"), "{said}");
+        assert!(
+            said.contains("q1_deg: '1e9' is 1.745e7 rad, beyond the 1000000 rad"),
+            "{said}"
+        );
+        assert!(error.remedy().unwrap().contains("leaves a gap"));
+        assert_eq!(error.exit_code(), 3);
+        // Who looks at a broken log sees it, and a row that is not asked for does no harm.
+        assert_eq!(RawLog::read(&path).unwrap().columns[1], [1.0, 1e9]);
+        assert!(refused(broken, Some((0, 0))).is_none());
+        // Degrees and ticks are not rad, and what is no reading may be large.
+        let fine = "time_us,angle_deg,position_ticks,sequence\n1,2e6,3e7,4e12\n";
+        assert!(refused(fine, None).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::LEAST_ROWS;
 use super::lines::LONGEST_LINE;
-use super::row_reader::LARGEST_READING;
+use super::reading_limit::LARGEST_READING;
 use crate::error::Reason;
 use std::borrow::Cow;
 
@@ -244,8 +244,8 @@ impl Reason for LogReason {
                  such as log.csv:26-139"
             }
             NoReading { .. } => {
-                "check the column's unit in the model's [log]; of a broken cell, delete the value, \
-                 which leaves a gap"
+                "check the column's unit in the model's [log], or in its name where there is no \
+                 model; of a broken cell, delete the value, which leaves a gap"
             }
             EmptyColumn { .. } => {
                 "record it (goals: by `handstand replay --record`), or take the column out of the \

@@ -2,17 +2,14 @@
 
 use super::header::{LogCell, LogHeader, fields, number};
 use super::iso::iso_ns;
+use super::reading_limit::beyond_readings;
 use super::reason::LogReason;
 use super::row::{Fields, LogRow};
 use crate::error::{Error, Place, Result};
-use crate::model::{Column, ColumnMean, Dimension, LogColumns};
+use crate::model::{Column, ColumnMean, LogColumns};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::Path;
-
-/// No angle, speed, torque, voltage or mass is read beyond this, SI: 160,000 turns. Larger numbers
-/// come of damaged bytes or of another unit, and their squares drown those of all other samples.
-pub(super) const LARGEST_READING: f64 = 1e6;
 
 /// Where a quantity stands, and how it is scaled.
 struct LogQuantity<'a> {
@@ -237,17 +234,11 @@ impl Cells<'_> {
 
     /// The value, unless no sensor gives one as large.
     fn reading(&self, cell: &LogCell, column: &Column, value: f64) -> Result<f64> {
-        let dimension = column.unit.dimension;
-        if dimension == Dimension::Time || value.abs() <= LARGEST_READING {
-            return Ok(value);
+        let found = || self.text(cell).into();
+        match beyond_readings(self.name(cell), value, column.unit.dimension, found) {
+            Some(reason) => Err(Error::refused(self.place(cell), reason)),
+            None => Ok(value),
         }
-        let reason = LogReason::NoReading {
-            column: self.name(cell).to_string(),
-            found: self.text(cell).into(),
-            si: value,
-            unit: dimension.si_unit(),
-        };
-        Err(Error::refused(self.place(cell), reason))
     }
 
     /// The number that stands in a field, if one does.

@@ -318,6 +318,9 @@ fn a_number_that_no_sensor_gives_is_refused_by_every_command() {
         "fit model.toml huge.csv --free link1.com_m -o new.toml",
         "compare model.toml huge.csv",
         identify,
+        "init huge.csv -o new.toml",
+        "log plot huge.csv",
+        "log merge huge.csv b.csv --offset 0 -o merged.csv",
     ] {
         let ran = bench.run(line);
         assert_eq!(ran.code, Some(3), "{line}: {ran:?}");

@@ -1,10 +1,11 @@
 //! Words of a column's name: the quantity, the unit and the joint they say.
 
+use super::values::counts;
 use super::words::{
     AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PLAIN, POSITION, SEGMENT, SUPPLY, TIME,
     TORQUE, UNIT_WORDS, VELOCITY,
 };
-use crate::model::Unit;
+use crate::model::{Dimension, Unit};
 
 /// What a column's name says it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +47,28 @@ pub struct NameGuess {
     pub joint: String,
     /// How direct the value is: 0 measured, then plain, then filtered and the like.
     pub rank: u8,
+}
+
+impl NameGuess {
+    /// Unit of a reading of this name, SI where it says none; none of times, marks and names that
+    /// tell no quantity. Ticks whose size it does not say are those of the finest encoder.
+    pub fn reading_unit(&self) -> Option<Unit> {
+        let in_si = match self.role? {
+            Role::Time | Role::Segment | Role::TorqueOn => return None,
+            Role::Supply => "V",
+            Role::Payload => "kg",
+            Role::Position | Role::GoalPosition => "rad",
+            Role::Velocity | Role::GoalVelocity => "rad/s",
+            Role::Torque | Role::Effort => "N m",
+            Role::Duty => "1",
+        };
+        let said = self.unit.and_then(|(unit, ticks)| {
+            let finest = (unit == "ticks").then(|| counts(f64::INFINITY));
+            Unit::named(unit, ticks.or(finest))
+        });
+        let said = said.filter(|unit| unit.dimension != Dimension::Time);
+        said.or_else(|| Unit::named(in_si, None))
+    }
 }
 
 /// Takes a column's name apart.
