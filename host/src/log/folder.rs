@@ -2,17 +2,28 @@
 
 use super::format::LogFormat;
 use super::request::LogRequest;
+use super::same_rows::{SameBy, SizedRequest};
 use crate::error::{Error, Result};
 use std::path::PathBuf;
 
-/// The requests with each folder replaced by the logs in it, in the order of their names; no row
-/// may be asked for twice, for it would count twice.
+/// The requests as [`unfolded`]; no row may be asked for twice, by one name or as a copy under
+/// another, for it would count twice.
+///
+/// # Errors
+/// As [`unfolded`]; rows asked for twice.
+pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
+    let all = unfolded(requests)?;
+    told_apart(&all)?;
+    Ok(all)
+}
+
+/// The requests with each folder replaced by the logs in it, in the order of their names.
 ///
 /// A folder's own folders are not searched; files of other endings are passed over.
 ///
 /// # Errors
-/// A folder without a log, rows of a folder, rows asked for twice, and what the system refuses.
-pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
+/// A folder without a log, rows of a folder, and what the system refuses.
+pub fn unfolded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
     let mut all = Vec::new();
     for request in requests {
         match request.path.is_dir() {
@@ -20,21 +31,25 @@ pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
             false => all.push(request.clone()),
         }
     }
-    told_apart(&all)?;
     Ok(all)
 }
 
 fn told_apart(requests: &[LogRequest]) -> Result<()> {
-    for (index, request) in requests.iter().enumerate() {
-        let Some(before) = requests[..index].iter().find(|log| log.overlaps(request)) else {
+    let sized = SizedRequest::all(requests);
+    for (index, own) in sized.iter().enumerate() {
+        let before = sized[..index].iter();
+        let mut before = before.filter_map(|log| Some((log.request, log.same(own)?)));
+        let Some((before, by)) = before.next() else {
             continue;
         };
-        let message = match before.rows == request.rows {
-            true => format!("{request} is given twice"),
-            false => format!("{request} shares rows with {before}"),
+        let request = own.request;
+        let message = match (by, before.rows == request.rows) {
+            (SameBy::Name, true) => format!("{request} is given twice"),
+            (SameBy::Content, true) => format!("{request} is a copy of {before}"),
+            (_, false) => format!("{request} shares rows with {before}"),
         };
         return Err(Error::usage(
-            message,
+            format!("{message}{}", by.words()),
             "name each row once, a range includes its end: a row named twice counts twice",
         ));
     }

@@ -4,6 +4,7 @@ use super::folder::expanded;
 use super::holdout::Split;
 use super::read::read;
 use super::request::LogRequest;
+use super::same_rows::SizedRequest;
 use crate::error::{Error, Result};
 use crate::model::LogColumns;
 
@@ -36,13 +37,18 @@ impl LogSet {
 
     /// Refuses rows that are both learned from and judged by.
     fn told_apart(&self) -> Result<()> {
-        let training = expanded(&self.training)?;
-        for held in &expanded(&self.held_out)? {
-            if let Some(fitted) = training.iter().find(|log| log.overlaps(held)) {
+        let (training, held_out) = (expanded(&self.training)?, expanded(&self.held_out)?);
+        let training = SizedRequest::all(&training);
+        for own in SizedRequest::all(&held_out) {
+            let mut fitted = training.iter();
+            let fitted = fitted.find_map(|log| Some((log.request, log.same(&own)?)));
+            if let Some((fitted, by)) = fitted {
+                let held = own.request;
                 let message = match fitted == held {
                     true => format!("{held} is fitted and held out"),
                     false => format!(
-                        "{held} is held out, and shares rows with {fitted}, which is fitted"
+                        "{held} is held out, and shares rows with {fitted}, which is fitted{}",
+                        by.words()
                     ),
                 };
                 let remedy = "name each row once, a range includes its end: what was learned \

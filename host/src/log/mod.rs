@@ -22,6 +22,7 @@ mod reason;
 mod request;
 mod row;
 mod row_reader;
+mod same_rows;
 mod shift;
 mod standard_input;
 mod table;
@@ -32,7 +33,7 @@ mod write;
 pub(crate) mod tests;
 
 pub use check::{LogFinding, Proof, Severity, check};
-pub use folder::expanded;
+pub use folder::{expanded, unfolded};
 pub use format::LogFormat;
 pub use holdout::{Split, split};
 pub(crate) use init::time_si;

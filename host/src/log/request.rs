@@ -31,15 +31,22 @@ impl LogRequest {
             .is_none_or(|(first, last)| (first..=last).contains(&number))
     }
 
-    /// Whether both want some row of the same file.
-    pub fn overlaps(&self, other: &LogRequest) -> bool {
-        let apart = match (self.rows, other.rows) {
+    /// Whether both want some row of one number.
+    pub(super) fn rows_meet(&self, other: &LogRequest) -> bool {
+        match (self.rows, other.rows) {
             (Some((first, last)), Some((other_first, other_last))) => {
-                last < other_first || other_last < first
+                first <= other_last && other_first <= last
             }
-            _ => false,
-        };
-        !apart && is_same_file(&self.path, &other.path)
+            _ => true,
+        }
+    }
+
+    /// Whether both name one file: `a.csv`, `./a.csv`.
+    pub(super) fn is_same_file(&self, other: &LogRequest) -> bool {
+        let (path, other) = (&self.path, &other.path);
+        let same_name = path.file_name() == other.file_name();
+        let real = |path: &Path| path.canonicalize().ok();
+        path == other || (same_name && real(path).is_some_and(|own| Some(own) == real(other)))
     }
 
     /// Why a log of so many rows cannot give the rows wanted, if it cannot.
@@ -62,13 +69,6 @@ impl LogRequest {
     pub fn is_json(&self) -> bool {
         LogFormat::of(&self.path) == LogFormat::Bam
     }
-}
-
-/// Whether two names are one file's: `a.csv`, `./a.csv`.
-fn is_same_file(path: &Path, other: &Path) -> bool {
-    let same_name = path.file_name() == other.file_name();
-    let real = |path: &Path| path.canonicalize().ok();
-    path == other || (same_name && real(path).is_some_and(|own| Some(own) == real(other)))
 }
 
 impl FromStr for LogRequest {

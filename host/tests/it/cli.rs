@@ -104,6 +104,7 @@ fn files(bench: &Bench) -> Vec<std::ffi::OsString> {
 #[test]
 fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
     let bench = Bench::new();
+    bench.put("copy.csv", bench.get("a.csv"));
     for (line, said) in [
         ("", "Usage"),
         ("fly", "unrecognized subcommand"),
@@ -161,6 +162,26 @@ fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
             "a.csv is given twice",
         ),
         ("diagnose model.toml a.csv a.csv", "a.csv is given twice"),
+        (
+            "diagnose model.toml a.csv b.csv copy.csv",
+            "copy.csv is a copy of a.csv; the two files hold the same bytes",
+        ),
+        (
+            "fit model.toml a.csv copy.csv --free link1.com_m -o new.toml",
+            "copy.csv is a copy of a.csv",
+        ),
+        (
+            "compare model.toml copy.csv a.csv",
+            "a.csv is a copy of copy.csv",
+        ),
+        (
+            "drift model.toml a.csv:0-90 copy.csv:80-200 --free link1.com_m",
+            "copy.csv:80-200 shares rows with a.csv:0-90; the two files hold the same bytes",
+        ),
+        (
+            "fit model.toml a.csv --holdout copy.csv --free link1.com_m -o new.toml",
+            "copy.csv is held out, and shares rows with a.csv, which is fitted; the two files",
+        ),
         (
             "log check model.toml a.csv:0-50 a.csv:40-90",
             "a.csv:40-90 shares rows with a.csv:0-50",

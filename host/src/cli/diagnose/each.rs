@@ -12,7 +12,7 @@ use super::{DiagnoseArgs, options};
 use crate::cli::{ExitStatus, Talk, input};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, LogOutcome, OutcomeFile, OutcomeKey, outcomes_in};
-use handstand::log::{LogRequest, expanded};
+use handstand::log::{LogRequest, unfolded};
 use handstand::output::write_new;
 use handstand::report::{outcomes_csv, outcomes_html, outcomes_text};
 use handstand::study::Shard;
@@ -44,7 +44,8 @@ pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus
         text: &text,
     };
     let options = options(&model, args)?;
-    let logs = expanded(&[LogRequest::whole(folder)])?;
+    // Each by itself: a copy counts for nothing else.
+    let logs = unfolded(&[LogRequest::whole(folder)])?;
     let keys: Vec<OutcomeKey> = logs
         .iter()
         .map(|log| OutcomeKey::of(log, &file, &options))
