@@ -2,8 +2,9 @@
 //!
 //! Each log is one session, or one servo on the same bench. The values that the model frees, or
 //! those that `--free` names, are fitted to each log by itself; a test of homogeneity says which
-//! differ by more than chance, and which log stands out. Values of one effect at several joints are
-//! compared with each other too: which servo is worn?
+//! differ by more than chance, and which log stands out from those that agree, where these are more
+//! than half. Values of one effect at several joints are compared with each other too: which servo
+//! is worn?
 //!
 //! ```console
 //! $ handstand drift arm.toml monday.csv friday.csv --free coulomb@1.torque_nm
@@ -40,7 +41,7 @@ pub struct DriftArgs {
 pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::load(&args.model)?;
     let free = free_parameters(&model, &args.free)?;
-    // A session is read by itself; that none shares rows with another shows in all of them.
+    // A session is read by itself; that none shares rows with another, or is a copy, shows in all.
     expanded(&args.logs)?;
     let sessions = args.logs.iter().map(|log| {
         Ok(DriftSession {
@@ -87,8 +88,12 @@ fn of(drift: &Drift, heading: &str) -> String {
     let table = show::table_of(&drift.values, columns);
     let verdict = match (drift.differ, drift.probability) {
         (true, Some(p)) => format!(
-            "They differ: chance alone scatters as much in {}.",
-            cases(p)
+            "They differ: chance alone scatters as much in {}.{}",
+            cases(p),
+            match drift.values.iter().any(|value| value.stands_out) {
+                true => "",
+                false => " None stands out by itself.",
+            }
         ),
         (false, Some(p)) => format!("They agree: chance scatters as much in {}.", cases(p)),
         (_, None) => "There is nothing to compare it with.".to_string(),

@@ -34,7 +34,7 @@ pub struct OneValue {
     /// Its value with the 95 % interval.
     #[serde(flatten)]
     pub fitted: FittedValue,
-    /// Whether it differs from the mean of all others by more than chance.
+    /// Whether it differs by more than chance from those that agree, which are more than half.
     pub stands_out: bool,
 }
 
@@ -196,7 +196,36 @@ fn tested(groups: Vec<(String, Vec<OneValue>)>) -> Vec<Drift> {
     drifts
 }
 
-/// Cochran's Q of one group, and which of its values stand out from the mean of the others.
+/// Standard errors between a value and the mean of the others of these; none without others.
+fn departure(values: &[OneValue], of: usize, among: &[usize]) -> f64 {
+    let others = among.iter().filter(|other| **other != of);
+    let own = &values[of].fitted;
+    weighted(others.map(|other| &values[*other])).map_or(0.0, |others| {
+        let error = error(own).hypot(others.error).max(1e-300);
+        (own.value - others.value).abs() / error
+    })
+}
+
+/// Which values stand out from those that agree: the one farthest from the mean of the others is
+/// taken away until all that are left agree, for it draws the mean of the others to itself. Where
+/// no more than half agree, there is nothing to stand out from.
+fn standing_out(values: &[OneValue], most: f64) -> Vec<bool> {
+    let mut agree: Vec<usize> = (0..values.len()).collect();
+    loop {
+        let far = agree.iter().map(|of| (*of, departure(values, *of, &agree)));
+        match far.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((farthest, departure)) if departure > most => {
+                agree.retain(|of| *of != farthest);
+            }
+            _ => break,
+        }
+    }
+    let settled = 2 * agree.len() > values.len();
+    let stands_out = |of| settled && departure(values, of, &agree) > most;
+    (0..values.len()).map(stands_out).collect()
+}
+
+/// Cochran's Q of one group, and which of its values stand out.
 fn homogeneity((path, mut values): (String, Vec<OneValue>), groups: usize) -> Drift {
     let mean = weighted(&values);
     let probability = mean.filter(|_| values.len() > 1).and_then(|mean| {
@@ -209,18 +238,7 @@ fn homogeneity((path, mut values): (String, Vec<OneValue>), groups: usize) -> Dr
     });
     let level = LEVEL / (groups * values.len()).max(1) as f64;
     let most = Normal::standard().inverse_cdf(1.0 - level / 2.0);
-    let stands_out = |index: usize| {
-        let others = values
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != index);
-        let others = weighted(others.map(|(_, value)| value));
-        let own = &values[index].fitted;
-        others.is_some_and(|others| {
-            (own.value - others.value).abs() > most * error(own).hypot(others.error)
-        })
-    };
-    let out: Vec<bool> = (0..values.len()).map(stands_out).collect();
+    let out = standing_out(&values, most);
     for (value, out) in values.iter_mut().zip(out) {
         value.stands_out = out;
     }

@@ -44,12 +44,42 @@ fn one_worn_servo_stands_out_and_the_others_do_not() {
         .iter()
         .map(|value| value.stands_out)
         .collect();
-    assert!(out[5]);
+    assert_eq!(out, [false, false, false, false, false, true]);
     // Without it all agree.
     values.pop();
     let agreeing = tested(vec![group(&values, 0.001)]);
     assert!(!agreeing[0].differ);
     assert!(agreeing[0].values.iter().all(|value| !value.stands_out));
+}
+
+/// Which of these values stand out, each with a standard error.
+fn out(values: &[(f64, f64)]) -> Vec<bool> {
+    let named = values
+        .iter()
+        .enumerate()
+        .map(|(k, (v, error))| value(&format!("log{k}"), *v, *error));
+    let drift = homogeneity(("coulomb@1.torque_nm".to_string(), named.collect()), 1);
+    drift.values.iter().map(|value| value.stands_out).collect()
+}
+
+#[test]
+fn an_outlier_does_not_make_those_that_agree_stand_out() {
+    let equal = (0.03, 0.001);
+    // However certain the outlier is of itself, and however much it draws the mean.
+    for error in [1e-5, 1e-3, 5e-3] {
+        let values = [equal, equal, equal, (0.09, error)];
+        assert_eq!(out(&values), [false, false, false, true], "{error}");
+    }
+    let two = [equal, (0.09, 0.001), equal, (0.06, 0.001), equal];
+    assert_eq!(out(&two), [false, true, false, true, false]);
+}
+
+#[test]
+fn where_no_more_than_half_agree_none_stands_out() {
+    let (low, high) = ((0.03, 0.001), (0.09, 0.001));
+    assert_eq!(out(&[low, high]), [false; 2]);
+    assert_eq!(out(&[low, low, high, high]), [false; 4]);
+    assert_eq!(out(&[low]), [false]);
 }
 
 #[test]
