@@ -2,7 +2,7 @@
 //! design leaves out included.
 
 use super::judge::{Figures, STABILISED_SHARE};
-use super::region::{REGION_JUDGEMENTS, largest};
+use super::region::{REGION_JUDGEMENTS, Region, largest};
 use crate::effects::Effect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
@@ -28,11 +28,20 @@ pub struct Verification {
     pub stabilised: bool,
     /// Figures of those starts.
     pub near: Figures,
+    /// Whether 95 % of the same starts stay so with all gains at zero: then friction or the drives'
+    /// own loops hold the robot, and `stabilised` says nothing of the gains.
+    pub stays_uncontrolled: bool,
+    /// Figures of those starts with all gains at zero.
+    pub uncontrolled: Figures,
     /// Half-width of the largest cube of starting angles of which 95 % are stabilised, rad; 0 if
     /// there is none.
     pub region_rad: f64,
+    /// Whether it may be larger still: the search ends there.
+    pub region_open: bool,
     /// The same without the effects that the design leaves out.
     pub region_as_designed_rad: f64,
+    /// Whether that may be larger still.
+    pub region_as_designed_open: bool,
     /// The same without one of them, each in turn.
     pub without: Vec<Without>,
 }
@@ -46,6 +55,8 @@ pub struct Without {
     pub joint: Option<usize>,
     /// Region without it, rad.
     pub region_rad: f64,
+    /// Whether it may be larger still.
+    pub region_open: bool,
 }
 
 impl Verification {
@@ -93,7 +104,7 @@ pub fn verification_steps(left_out: &[UndesignedEffect]) -> usize {
         count @ 0..2 => 1 + count,
         count => 2 + count,
     };
-    1 + regions * REGION_JUDGEMENTS
+    2 + regions * REGION_JUDGEMENTS
 }
 
 /// Simulates the loop of a design from random starts around its pose, the same every time. The
@@ -115,25 +126,39 @@ pub fn verify(
         request,
         done,
     };
-    let near = tested.figures(&tested.closed_loop(&[])?, NEAR_RAD);
-    let region_rad = tested.region_rad(&[])?;
+    let closed = tested.closed_loop(&[])?;
+    let gains = rows(&design.gains.k);
+    let near = tested.figures(&closed, &gains, NEAR_RAD);
+    let none: Vec<Vec<f64>> = gains.iter().map(|row| vec![0.0; row.len()]).collect();
+    let uncontrolled = tested.figures(&closed, &none, NEAR_RAD);
+    let region = tested.region(&[])?;
     let mut without = Vec::new();
     for one in left_out {
+        let region = tested.region(&[*one])?;
         without.push(Without {
             effect: one.effect.info().id,
             joint: one.joint.map(|joint| joint + 1),
-            region_rad: tested.region_rad(&[*one])?,
+            region_rad: region.spread_rad,
+            region_open: region.open,
         });
     }
+    let as_designed = match without.as_slice() {
+        [] => region,
+        [one] => Region {
+            spread_rad: one.region_rad,
+            open: one.region_open,
+        },
+        _ => tested.region(left_out)?,
+    };
     Ok(Verification {
         stabilised: near.stabilised_share >= STABILISED_SHARE,
         near,
-        region_rad,
-        region_as_designed_rad: match without.as_slice() {
-            [] => region_rad,
-            [one] => one.region_rad,
-            _ => tested.region_rad(left_out)?,
-        },
+        stays_uncontrolled: uncontrolled.stabilised_share >= STABILISED_SHARE,
+        uncontrolled,
+        region_rad: region.spread_rad,
+        region_open: region.open,
+        region_as_designed_rad: as_designed.spread_rad,
+        region_as_designed_open: as_designed.open,
         without,
     })
 }
@@ -160,11 +185,10 @@ impl Tested<'_> {
         closed_loop(model, self.design, self.request)
     }
 
-    /// From random starts within a spread.
-    fn figures(&self, closed: &ClosedLoop, spread_rad: f64) -> Figures {
+    /// With these gains, from random starts within a spread.
+    fn figures(&self, closed: &ClosedLoop, gains: &[Vec<f64>], spread_rad: f64) -> Figures {
         let (joints, u0) = (self.model.link_count(), &self.design.u0);
-        let rows = rows(&self.design.gains.k);
-        let controller = StateFeedback::new(joints, rows).feeding(u0);
+        let controller = StateFeedback::new(joints, gains.to_vec()).feeding(u0);
         let start = |run| InitialState {
             command: u0.clone(),
             ..InitialState::random(joints, spread_rad, &mut stream(1, run))
@@ -175,11 +199,13 @@ impl Tested<'_> {
         figures
     }
 
-    fn region_rad(&self, without: &[UndesignedEffect]) -> Result<f64> {
+    fn region(&self, without: &[UndesignedEffect]) -> Result<Region> {
         let closed = self.closed_loop(without)?;
-        let stabilises =
-            |spread_rad| Ok(self.figures(&closed, spread_rad).stabilised_share >= STABILISED_SHARE);
-        Ok(largest(stabilises)?.spread_rad)
+        let gains = rows(&self.design.gains.k);
+        largest(|spread_rad| {
+            let figures = self.figures(&closed, &gains, spread_rad);
+            Ok(figures.stabilised_share >= STABILISED_SHARE)
+        })
     }
 }
 

@@ -36,4 +36,5 @@ mod servos;
 mod study;
 mod sysid;
 mod twins;
+mod verification;
 mod wrong_values;

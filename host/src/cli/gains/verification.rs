@@ -10,22 +10,28 @@ pub fn text(verified: &Verification, slides: bool) -> String {
         true => format!(" and {:.1} mm", 1e3 * rad),
         false => String::new(),
     };
-    let degrees = |rad: f64| format!("{:.1} deg{}", rad.to_degrees(), also_mm(rad));
+    // Where the search ends, the region may be larger.
+    let reach = |rad: f64, open: bool| {
+        let from = if open { "at least" } else { "within" };
+        format!("{from} {:.1} deg{}", rad.to_degrees(), also_mm(rad))
+    };
     let near = &verified.near;
     let mut lines = vec![format!(
         "\nSimulated with every effect of the model, 5 s from {} random starts within 0.5 deg{}: \
          {}.",
         near.runs,
         also_mm(0.5f64.to_radians()),
-        match verified.stabilised {
-            true => "stabilised".to_string(),
-            false => format!(
+        match (verified.stabilised, verified.stays_uncontrolled) {
+            (true, true) => "it stays, but without control it stays, too".to_string(),
+            (true, false) => "stabilised".to_string(),
+            (false, _) => format!(
                 "NOT stabilised: {} of them, {:.0} % fall",
                 near.stabilised,
                 100.0 * near.fallen_share
             ),
         }
     )];
+    lines.extend(uncontrolled(verified));
     if let (Some(cycle), Some(torque)) = (near.limit_cycle_rad, near.rms_torque_nm) {
         lines.push(format!(
             "Limit cycle {:.2} deg{} peak to peak, {torque:.3} N m{} RMS (medians).",
@@ -40,8 +46,8 @@ pub fn text(verified: &Verification, slides: bool) -> String {
     }
     lines.push(match verified.region_rad > 0.0 {
         true => format!(
-            "Largest cube of starts of which 95 % are stabilised: within {}.",
-            degrees(verified.region_rad)
+            "Largest cube of starts of which 95 % are stabilised: {}.",
+            reach(verified.region_rad, verified.region_open)
         ),
         false => "There is no cube of starts of which 95 % are stabilised.".to_string(),
     });
@@ -51,17 +57,36 @@ pub fn text(verified: &Verification, slides: bool) -> String {
             None => without.effect.to_string(),
         };
         lines.push(format!(
-            "Without the effects that the design leaves out: within {}.",
-            degrees(verified.region_as_designed_rad)
+            "Without the effects that the design leaves out: {}.",
+            reach(
+                verified.region_as_designed_rad,
+                verified.region_as_designed_open
+            )
         ));
         lines.push(match verified.limiting() {
             Some(limiting) => format!(
-                "It is limited by {}: without it within {}.",
+                "It is limited by {}: without it {}.",
                 place(limiting),
-                degrees(limiting.region_rad)
+                reach(limiting.region_rad, limiting.region_open)
             ),
             None => "None of them alone limits it.".to_string(),
         });
     }
     lines.join("\n")
+}
+
+/// That the robot stays without control as well, if it does.
+fn uncontrolled(verified: &Verification) -> Option<String> {
+    let without = &verified.uncontrolled;
+    let verdict = match verified.stabilised {
+        true => "these runs prove nothing of the gains",
+        false => "the gains drive it away",
+    };
+    verified.stays_uncontrolled.then(|| {
+        format!(
+            "With all gains at zero it stays from {} of the same {} starts: friction or the drives \
+             themselves hold it, and {verdict}.",
+            without.stabilised, without.runs
+        )
+    })
 }

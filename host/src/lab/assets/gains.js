@@ -57,8 +57,10 @@ const show = (said) => {
     said.omitted.join(", ")]);
   if (said.region_rad !== null) {
     lines.push(["Starts that 95 % are stabilised from",
-      `within ${(said.region_rad * 180 / Math.PI).toFixed(2)}°`]);
+      `${said.region_open ? "at least" : "within"} ${
+        (said.region_rad * 180 / Math.PI).toFixed(2)}°`]);
     lines.push(["Stabilised from half a degree", said.stabilised ? "yes" : "no"]);
+    lines.push(["It stays without control, too", said.stays_uncontrolled ? "yes" : "no"]);
   }
   $("figures").replaceChildren(table(["Quantity", "Value"], lines));
   $("gain").replaceChildren(table(["Input", ...said.states], said.k.map((row, i) => [said.inputs[i],

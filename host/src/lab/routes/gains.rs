@@ -135,6 +135,8 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
             "command": response.command,
         },
         "region_rad": verified.as_ref().map(|v| v.region_rad),
+        "region_open": verified.as_ref().map(|v| v.region_open),
+        "stays_uncontrolled": verified.as_ref().map(|v| v.stays_uncontrolled),
         "stabilised": verified.as_ref().map(|v| v.stabilised),
         "command": made.command,
     }))

@@ -250,6 +250,21 @@ fn what_limits_a_design_is_named() {
     assert!(!verified.stabilised && verified.without.len() == 2);
 }
 
+/// Friction beyond the weight's torque near upright holds the robot without any gains.
+#[test]
+fn a_robot_that_friction_holds_is_said_to_stay_without_control() {
+    let stuck = verified(&[
+        ("coulomb", 0, &[2.0]),
+        ("coulomb", 1, &[2.0]),
+        ("coulomb", 2, &[2.0]),
+    ]);
+    assert!(stuck.stabilised && stuck.stays_uncontrolled, "{stuck:?}");
+    assert_eq!(stuck.uncontrolled.stabilised, stuck.uncontrolled.runs);
+    let free = verified(&[("coulomb", 0, &[1e-4])]);
+    assert!(!free.stays_uncontrolled, "{free:?}");
+    assert_eq!(free.uncontrolled.stabilised, 0, "{free:?}");
+}
+
 /// A design has the motor's inertia: without the gear the loop is the one designed, not one of a
 /// motor less.
 #[test]
