@@ -3,6 +3,8 @@
 
 mod common;
 
+mod add;
+mod bad_logs;
 mod balance;
 mod begin;
 mod bus;
@@ -29,6 +31,7 @@ mod mixed_motions;
 mod recipes;
 mod record;
 mod render;
+mod requests;
 mod riccati;
 mod robot_demo;
 mod rounds;

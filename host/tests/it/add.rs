@@ -1,0 +1,60 @@
+//! An effect added to a model file, and what is not written.
+
+use crate::common::Bench;
+
+#[test]
+fn an_effect_is_added_with_its_value_and_provenance() {
+    let bench = Bench::new();
+    let ran = bench.run("add model.toml viscous --fit a.csv --holdout b.csv -o new.toml --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let data = ran.json();
+    assert_eq!(data["effects"][0], "viscous@1");
+    let value = data["values"][0]["value"].as_f64().unwrap();
+    assert!((value - 0.001).abs() < 2e-5, "{value}");
+    let error = &data["error"];
+    assert_eq!(error["held_out"], true);
+    assert!(error["after_rad"].as_f64() < error["before_rad"].as_f64());
+    let text = bench.get("new.toml");
+    assert!(text.starts_with("# A pendulum.\n"), "{text}");
+    for part in [
+        "kind = \"viscous\"",
+        "[effect.fitted]",
+        "intervals",
+        "name = \"a.csv\", sha256",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let again = bench.run("fit new.toml b.csv -o newer.toml");
+    assert_eq!(again.code, Some(0), "{again:?}");
+    assert!(
+        again.stdout.contains("viscous@1.coefficient_nm_s_rad"),
+        "{again:?}"
+    );
+}
+
+#[test]
+fn values_without_effect_are_refused_and_nothing_is_written() {
+    let bench = Bench::new();
+    // An arm that nobody moves shows no friction.
+    let still: String = (0..100)
+        .map(|k| format!("{:.2},0\n", f64::from(k) * 0.01))
+        .collect();
+    bench.put("still.csv", format!("time_s,angle_rad\n{still}"));
+    let ran = bench.run("add model.toml air_drag --fit still.csv -o new.toml");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.stdout.contains("refused"), "{ran:?}");
+    assert!(!bench.path("new.toml").exists());
+}
+
+#[test]
+fn nothing_is_overwritten_unasked() {
+    let bench = Bench::new();
+    bench.put("kept.toml", "mine");
+    let line = "add model.toml viscous --fit a.csv -o kept.toml";
+    let ran = bench.run(line);
+    assert_eq!(ran.code, Some(2), "{ran:?}");
+    assert!(ran.stderr.contains("--force"), "{ran:?}");
+    assert_eq!(bench.get("kept.toml"), "mine");
+    assert_eq!(bench.run(&format!("{line} --force")).code, Some(0));
+    assert_ne!(bench.get("kept.toml"), "mine");
+}
