@@ -6,6 +6,7 @@ use super::super::hypothesis::Hypothesis;
 use super::super::initial_guess::{
     InitialGuess, PredictionChange, ProjectedResidual, changes_like,
 };
+use crate::fitting::Candidate;
 use rayon::prelude::*;
 
 impl Evaluator<'_> {
@@ -16,12 +17,8 @@ impl Evaluator<'_> {
     pub(super) fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
         let residual = ProjectedResidual::new(&from.search);
         let is_new = |changes: &&Vec<PredictionChange>| {
-            changes.first().is_some_and(|change| {
-                let set = from.set_with(change.candidate);
-                let mut kept = from.set.iter();
-                kept.all(|kept| !kept.overlaps(change.candidate, &self.start))
-                    && !tried.iter().any(|t| t.adds(&set))
-            })
+            let change = changes.first();
+            change.is_some_and(|change| self.is_new(from, change.candidate, tried))
         };
         let new = self.changes.par_iter().filter(is_new);
         let gains = new.filter_map(|changes| {
@@ -41,7 +38,42 @@ impl Evaluator<'_> {
         guesses
     }
 
-    /// Tries to replace each older member of the best set: what led may no longer be needed.
+    /// Whether a candidate makes a set on top of a hypothesis that was not tried yet.
+    fn is_new(&self, from: &Hypothesis, candidate: Candidate, tried: &[Hypothesis]) -> bool {
+        let set = from.set_with(candidate);
+        let mut kept = from.set.iter();
+        kept.all(|kept| !kept.overlaps(candidate, &self.start))
+            && !tried.iter().any(|t| t.adds(&set))
+    }
+
+    /// The set with each of its effects replaced by plainer ones of its kind, where a value rests on
+    /// a bound: there a law is often another's, as Stribeck friction at the lowest speed is Coulomb
+    /// friction.
+    fn plainer(&self, whole: &Hypothesis, tried: &[Hypothesis]) -> Vec<Hypothesis> {
+        if !whole.rests_on_bound() {
+            return Vec::new();
+        }
+        let leaving = (0..whole.set.len()).into_par_iter();
+        let found = leaving.flat_map_iter(|leaving| {
+            let out = whole.set[leaving];
+            let rest = whole.without(leaving, &self.base, &self.search, LOOK);
+            let firsts = self.changes.iter().filter_map(|changes| changes.first());
+            let plainer = firsts.filter(|change| {
+                is_plainer(change.candidate, out) && self.is_new(&rest, change.candidate, tried)
+            });
+            let residual = ProjectedResidual::new(&rest.search);
+            let looked = plainer.filter_map(|like| {
+                let changes = changes_like(&rest.search, like, &self.search);
+                let guess = residual.guesses(&changes).into_iter().next()?;
+                Some(self.look(&rest, &guess))
+            });
+            looked.collect::<Vec<_>>()
+        });
+        found.collect()
+    }
+
+    /// Tries to replace each older member of the best set, which may no longer be needed, and any
+    /// that a plainer one may stand for.
     pub(super) fn swapped(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
         let Some(best) = hypotheses.first().cloned() else {
             return hypotheses;
@@ -54,6 +86,16 @@ impl Evaluator<'_> {
             let found: Vec<Hypothesis> = found.collect();
             hypotheses.extend(found);
         }
+        let plainer = self.plainer(&best, &hypotheses);
+        hypotheses.extend(plainer);
         self.evaluated(self.successive_halving(hypotheses))
     }
+}
+
+/// Whether a candidate acts where another does, with fewer values.
+fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
+    let site = |candidate: Candidate| candidate.effect.info().site;
+    candidate.joint == than.joint
+        && site(candidate) == site(than)
+        && candidate.parameters().len() < than.parameters().len()
 }

@@ -1,12 +1,12 @@
 use super::*;
 use crate::challenge::{Motions, bench};
+use crate::diagnose::Verdict;
 use crate::log::{LogRequest, read};
 use std::path::Path;
 
-/// An arm that lacks viscous friction, and a pair that was found without ever trying it alone.
-#[test]
-fn an_effect_that_is_not_needed_leaves_the_set() {
-    let bench = bench(Motions::Arm, 1, &["viscous"]).unwrap();
+/// The model of a virtual arm that hides effects, and its motions to fit and held out.
+fn arm(seed: u64, kinds: &[&'static str]) -> (Model, Vec<Motion>, Vec<Motion>) {
+    let bench = bench(Motions::Arm, seed, kinds).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let model = Model::parse(&bench.model_toml, Path::new("nominal.toml")).unwrap();
     let (mut training, mut held_out) = (Vec::new(), Vec::new());
@@ -21,6 +21,27 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
         };
         of.extend(motions);
     }
+    (model, training, held_out)
+}
+
+/// Without friction this arm whirls; beside viscous friction, Stribeck's at its lowest speed, which
+/// is Coulomb friction, promises most.
+#[test]
+fn a_plainer_effect_takes_the_place_of_one_on_its_bound() {
+    let (model, training, held_out) = arm(2, &["coulomb", "viscous"]);
+    let options = DiagnoseOptions::default();
+    let diagnosis = diagnose(&model, training, held_out, &options, &|_| ());
+    let named = diagnosis.effects.iter().map(|effect| effect.kind.as_str());
+    let mut named: Vec<&str> = named.collect();
+    named.sort_unstable();
+    assert_eq!(diagnosis.verdict, Verdict::Named);
+    assert_eq!(named, ["coulomb", "viscous"]);
+}
+
+/// An arm that lacks viscous friction, and a pair that was found without ever trying it alone.
+#[test]
+fn an_effect_that_is_not_needed_leaves_the_set() {
+    let (model, training, held_out) = arm(1, &["viscous"]);
     let options = DiagnoseOptions::default();
     let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
     let candidate = |id: &str| {
