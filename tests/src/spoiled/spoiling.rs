@@ -5,7 +5,7 @@ use super::edits::{
 };
 use super::rig::Rig;
 use handstand::Model;
-use handstand::diagnose::conventions::{LogColumn, Remedy};
+use handstand::diagnose::conventions::{LogColumn, Remedy, scales_torque_by};
 use handstand::log::Motion;
 use handstand::model::{AngleZero, Angles, Unit};
 use std::f64::consts::{PI, TAU};
@@ -76,7 +76,8 @@ pub fn spoilings(rig: &Rig) -> Vec<Spoiling> {
             all.extend([S::InputSign, S::InputUnit, S::Clipped].map(|s| s(joint)));
             let others = ["torque", "duty", "position", "speed"].into_iter();
             let others = others.filter(|name| *name != drive.name());
-            all.extend(others.map(|name| S::Drive(joint, name)));
+            let others = others.map(|name| S::Drive(joint, name));
+            all.extend(others.filter(|other| !other.only_scales(rig)));
             // Later instead of earlier is what a delay of the drive does: no fault of the log.
             all.push(S::Shift(LogColumn::Input(joint), -shift_s));
         }
@@ -91,6 +92,19 @@ pub fn spoilings(rig: &Rig) -> Vec<Spoiling> {
 }
 
 impl Spoiling {
+    /// Whether it is no fault of the log but a stall torque that may be wrong: a duty declared as a
+    /// torque, or the other way round.
+    fn only_scales(&self, rig: &Rig) -> bool {
+        let Spoiling::Drive(joint, _) = *self else {
+            return false;
+        };
+        let Some(column) = LogColumn::Input(joint).column(&rig.model) else {
+            return false;
+        };
+        let mended = Remedy::Drive(joint, rig.model.joints[joint].drive.clone(), column.unit);
+        scales_torque_by(&mended, &self.applied(rig).model).is_some()
+    }
+
     /// Its kind, as the rows of the table name it.
     pub fn kind(&self) -> &'static str {
         match self {

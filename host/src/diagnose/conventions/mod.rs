@@ -22,7 +22,7 @@ pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
 pub use remedy::{LogColumn, Remedy};
 pub use search::{Found, search};
-pub use trial::Trial;
+pub use trial::{Trial, scales_torque_by};
 
 use crate::error::Result;
 use crate::log::{LogFinding, LogRequest, Motion, expanded, read};

@@ -6,7 +6,7 @@ use super::excerpts::excerpts;
 use super::leave_out::without_stalled;
 use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
-use super::trial::{Effort, RemedyTrial, Trial};
+use super::trial::{Effort, RemedyTrial, Trial, scales_torque_by};
 use crate::diagnose::step_size::coarsened;
 use crate::log::Motion;
 use crate::model::{Model, Unit};
@@ -142,8 +142,8 @@ fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
     kept
 }
 
-/// Whether a remedy that only changes how strong an input is leaves no more than one wrong value of
-/// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one value
+/// Whether a remedy that only changes how strong an input is leaves less than one wrong value
+/// of the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one value
 /// leaves for the joints that were asked for.
 fn beats_a_wrong_value(
     bench: &RemedyTrial,
@@ -158,10 +158,15 @@ fn beats_a_wrong_value(
         },
         _ => return true,
     };
-    let off = off
+    let fitted = off
         .entry(joint)
         .or_insert_with(|| bench.with_one_value_off(joint));
-    off.is_none_or(|ratio| trial.ratio() < AS_GOOD * ratio)
+    // A fit may not get as far as the remedy does.
+    let scaled = scales_torque_by(&trial.remedy, &bench.model)
+        .and_then(|factor| bench.with_torques_scaled(joint, factor));
+    let off = fitted.iter().copied().chain(scaled);
+    let least = off.fold(f64::INFINITY, f64::min);
+    trial.ratio() < least
 }
 
 /// What a remedy must do to be believed.

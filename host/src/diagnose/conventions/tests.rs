@@ -65,6 +65,13 @@ fn a_wrong_mass_is_not_taken_for_another_drive() {
 }
 
 #[test]
+fn missing_friction_is_not_taken_for_another_drive() {
+    // It whirls without; read as torque its duty is weaker, and it whirls less.
+    let (_folder, model, log) = arm_of(&["coulomb", "viscous"], 2);
+    assert_eq!(found(&model, &log, |_| ()), []);
+}
+
+#[test]
 fn a_torque_that_is_declared_as_duty_is_found() {
     let (_folder, model, log) = arm_of(&[], 1);
     let motor = Model::load(&model).unwrap().joints[0]

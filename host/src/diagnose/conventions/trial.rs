@@ -6,7 +6,7 @@ use crate::diagnose::values::values_of;
 use crate::effects::TorqueScale;
 use crate::fitting::Candidate;
 use crate::log::Motion;
-use crate::model::{Model, ParameterPath};
+use crate::model::{Drive, Model, ParameterPath, Unit};
 use rayon::prelude::*;
 
 /// A remedy with its proof: the errors before and after it, on the same windows.
@@ -56,6 +56,36 @@ impl Trial {
 
 /// A value of the file may be wrong by this factor; a unit is wrong by more.
 const PLAUSIBLE: f64 = 3.0;
+
+/// The factor by which a remedy multiplies a joint's torques, where that is all it does but for
+/// the supply, and a stall torque may be off by as much; else none.
+pub fn scales_torque_by(remedy: &Remedy, model: &Model) -> Option<f64> {
+    let (joint, drive, unit) = match remedy {
+        Remedy::Drive(joint, drive, unit) => (*joint, drive, unit),
+        Remedy::Unit(columns) => match columns.as_slice() {
+            [(LogColumn::Input(joint), unit)] => (*joint, &model.joints[*joint].drive, unit),
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let column = LogColumn::Input(joint).column(model)?;
+    let given = full_torque(&model.joints[joint].drive, &column.unit)?;
+    let factor = full_torque(drive, unit)? / given;
+    (1.0 / PLAUSIBLE..=PLAUSIBLE)
+        .contains(&factor)
+        .then_some(factor)
+}
+
+/// Torque of a written 1, N m; none where it also depends on speed or angle.
+fn full_torque(drive: &Drive, unit: &Unit) -> Option<f64> {
+    match drive {
+        Drive::Torque => Some(unit.si),
+        Drive::Duty(motor) if motor.no_load_speed_rad_s.is_infinite() => {
+            Some(unit.si * motor.stall_torque_nm)
+        }
+        _ => None,
+    }
+}
 
 /// Which values the trials fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,6 +168,21 @@ impl RemedyTrial {
         Some(least / before.max(1e-12))
     }
 
+    /// Error with a joint's torques multiplied by a factor over the error without, on windows as a
+    /// remedy has them.
+    pub fn with_torques_scaled(&self, joint: usize, factor: f64) -> Option<f64> {
+        let reading = self.reading.as_ref()?;
+        let mut scaled = self.model.clone();
+        scaled.effects.push(torque_scale(joint).instance(&[factor]));
+        let after = ModelReading::new(scaled, self.motions.clone());
+        let windows = reading.common_windows(&after);
+        let share = |reading: &ModelReading| {
+            let rating = reading.cut_as(&windows).rated(Effort::Values);
+            rating.share()
+        };
+        Some(share(&after)? / share(reading)?.max(1e-12))
+    }
+
     /// The motions without the ends that others lack.
     fn shortened_as(&self, reading: &ModelReading, others: &[Motion]) -> ModelReading {
         let motions = self.motions.iter().zip(others);
@@ -164,13 +209,17 @@ impl RemedyTrial {
     }
 }
 
+fn torque_scale(joint: usize) -> Candidate {
+    Candidate {
+        effect: &TorqueScale,
+        joint: Some(joint),
+    }
+}
+
 /// The model with one more value free: each of its own, and a scale of the torques of a joint.
 fn with_one_free(model: &Model, joint: usize) -> Vec<(Model, ParameterPath)> {
     let mut scaled = model.clone();
-    let scale = Candidate {
-        effect: &TorqueScale,
-        joint: Some(joint),
-    };
+    let scale = torque_scale(joint);
     if !scale.in_model(model) {
         scaled.effects.push(scale.instance(&[1.0]));
     }
