@@ -18,8 +18,7 @@ pub(super) const SAMPLES: usize = 6000;
 const SAMPLES_CONTINUOUS: usize = 2000;
 /// Remedies that are judged with fitted start states.
 const JUDGED: usize = 6;
-/// Units of the same columns among them: where an input hardly matters, each that makes it small
-/// does well.
+/// Units of one input among them: where it hardly matters, each that makes it small does well.
 const UNITS: usize = 2;
 /// An error ratio this high, from guessed start states, is not looked at again.
 const HOPELESS: f64 = 1.05;
@@ -124,10 +123,13 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
     judged
 }
 
-/// The first of the sorted trials, of units of the same columns no more than a few.
+/// The first of the sorted trials, of units of one input no more than a few.
 fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
     let units = |trial: &Trial| match &trial.remedy {
-        Remedy::Unit(columns) => Some(columns.iter().map(|(c, _)| *c).collect::<Vec<_>>()),
+        Remedy::Unit(columns) => match columns.as_slice() {
+            [(input @ LogColumn::Input(_), _)] => Some(*input),
+            _ => None,
+        },
         _ => None,
     };
     let mut kept: Vec<Trial> = Vec::new();
@@ -274,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_of_one_column_do_not_crowd_out_other_remedies() {
+    fn units_of_one_input_do_not_crowd_out_other_remedies() {
         let tried = |remedy| Trial {
             remedy,
             before: 1.0,
