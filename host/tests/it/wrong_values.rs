@@ -38,7 +38,7 @@ fn diagnosed(path: &str, factor: f64) -> (Diagnosis, f64) {
 }
 
 /// The bench's owner does not know the friction: it is free, and wrong too.
-fn is_named(path: &str, factor: f64) {
+fn is_named(path: &str, factor: f64) -> Diagnosis {
     let (diagnosis, right) = diagnosed(path, factor);
     assert_eq!(
         diagnosis.verdict,
@@ -51,6 +51,7 @@ fn is_named(path: &str, factor: f64) {
     let own = own.next().expect("the value that is wrong");
     let off = (own.fitted.value / right - 1.0).abs();
     assert!(off < 0.01, "{path} x {factor}: {:?}", own.fitted);
+    diagnosis
 }
 
 #[test]
@@ -65,8 +66,7 @@ fn a_centre_of_mass_at_two_thirds_of_its_place_is_named() {
 
 #[test]
 fn a_stall_torque_is_named_though_a_torque_scale_says_the_same() {
-    is_named("joint1.stall_torque_nm", 1.4);
-    let (diagnosis, _) = diagnosed("joint1.stall_torque_nm", 1.4);
+    let diagnosis = is_named("joint1.stall_torque_nm", 1.4);
     let same = diagnosis.alternatives.iter().filter(|other| other.same_law);
     let kinds: Vec<&str> = same
         .flat_map(|other| &other.effects)
