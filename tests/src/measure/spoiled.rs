@@ -62,8 +62,11 @@ pub fn run(args: &Args) -> bool {
         }
         eprintln!("{}", rig.name);
     }
+    // A column that was read at another time is a fault of the log, and is to be found.
+    let good = KINDS.into_iter().filter(|kind| *kind != "time_offset");
+    let good: Vec<&str> = good.collect();
     let simulated = (0..args.alarms).filter_map(|seed| {
-        let kind = KINDS[seed as usize % KINDS.len()];
+        let kind = good[seed as usize % good.len()];
         let motions = if seed % 4 == 3 {
             Motions::Hanging
         } else {
