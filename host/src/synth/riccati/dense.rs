@@ -66,42 +66,9 @@ fn solve(lu: &LU<f64, Dyn, Dyn>, b: &mut DMatrix<f64>) -> Option<()> {
     if factors.diagonal().iter().any(|pivot| *pivot == 0.0) {
         return None;
     }
-    match factors.nrows() {
-        1 => solve_of::<1>(factors, b),
-        2 => solve_of::<2>(factors, b),
-        3 => solve_of::<3>(factors, b),
-        4 => solve_of::<4>(factors, b),
-        5 => solve_of::<5>(factors, b),
-        6 => solve_of::<6>(factors, b),
-        7 => solve_of::<7>(factors, b),
-        8 => solve_of::<8>(factors, b),
-        _ => {
-            lower(factors.as_view(), b.as_view_mut());
-            upper(factors.as_view(), b.as_view_mut());
-        }
-    }
+    lower(factors.as_view(), b.as_view_mut());
+    upper(factors.as_view(), b.as_view_mut());
     Some(())
-}
-
-/// Both triangular solutions, with a column of the right side in registers.
-fn solve_of<const ROWS: usize>(factors: &DMatrix<f64>, b: &mut DMatrix<f64>) {
-    let (columns, _) = factors.as_slice().as_chunks::<ROWS>();
-    let (right, _) = b.as_mut_slice().as_chunks_mut::<ROWS>();
-    for x in right {
-        for (k, column) in columns.iter().enumerate() {
-            let value = x[k];
-            for i in k + 1..ROWS {
-                x[i] -= column[i] * value;
-            }
-        }
-        for (k, column) in columns.iter().enumerate().rev() {
-            let value = x[k] / column[k];
-            x[k] = value;
-            for i in 0..k {
-                x[i] -= column[i] * value;
-            }
-        }
-    }
 }
 
 /// b becomes l^-1 b, of the lower triangle with ones on its diagonal.
