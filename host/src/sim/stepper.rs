@@ -282,8 +282,8 @@ impl<R: Rows> Stepper<R> {
         }
     }
 
-    /// By how much held joints are pushed beyond their breakaway torque at the present state. Bodies
-    /// beside the links have accelerations of their own, which are not kept.
+    /// By how much held joints are pushed beyond their breakaway torque at the present state.
+    /// Bodies beside the links have accelerations of their own, which are not kept.
     fn find_excess(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
         let contact = self.contact.as_ref();

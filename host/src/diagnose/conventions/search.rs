@@ -144,9 +144,9 @@ fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
     kept
 }
 
-/// Whether a remedy that only changes how strong an input is leaves less than one wrong value
-/// of the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one value
-/// leaves for the joints that were asked for.
+/// Whether a remedy that only changes how strong an input is leaves less than one wrong value of
+/// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one
+/// value leaves for the joints that were asked for.
 fn beats_a_wrong_value(
     bench: &RemedyTrial,
     trial: &Trial,

@@ -46,9 +46,9 @@ impl Evaluator<'_> {
             && !tried.iter().any(|t| t.adds(&set))
     }
 
-    /// The set with each of its effects replaced by plainer ones of its kind, where a value rests on
-    /// a bound: there a law is often another's, as Stribeck friction at the lowest speed is Coulomb
-    /// friction.
+    /// The set with each of its effects replaced by plainer ones of its kind, where a value rests
+    /// on a bound: there a law is often another's, as Stribeck friction at the lowest speed is
+    /// Coulomb friction.
     fn plainer(&self, whole: &Hypothesis, tried: &[Hypothesis]) -> Vec<Hypothesis> {
         if !whole.rests_on_bound() {
             return Vec::new();
