@@ -111,7 +111,9 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
     let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
         let refitted = bench.tried(trial.remedy.clone(), Effort::Values)?;
-        if !least(bench, &refitted.remedy).allows(&refitted) {
+        let is_another_drive = matches!(refitted.remedy, Remedy::Drive(..));
+        let suits = refitted.ratio() < MOST_OF_ANOTHER_DRIVE || refitted.after < LITTLE;
+        if !least(bench, &refitted.remedy).allows(&refitted) || is_another_drive && !suits {
             return None;
         }
         let given = bench.tried(trial.remedy, Effort::Starts)?;
@@ -143,6 +145,11 @@ fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
     kept.truncate(JUDGED);
     kept
 }
+
+/// What the file's own motor lacks (a limit of its speed, a protection) may make another drive
+/// look better. The right one leaves at most this share of the error, or this share of the motion.
+const MOST_OF_ANOTHER_DRIVE: f64 = 0.42;
+const LITTLE: f64 = 0.08;
 
 /// Whether a remedy that only changes how strong an input is leaves less than one wrong value of
 /// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one

@@ -72,6 +72,22 @@ fn missing_friction_is_not_taken_for_another_drive() {
 }
 
 #[test]
+fn a_motor_that_protects_itself_is_not_taken_for_another_drive() {
+    let bench = bench(Motions::Arm, 2, &["fold_back"]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    let logs = [&bench.logs[0], &bench.logs[2]].map(|log| {
+        let path = folder.path().join(&log.name);
+        std::fs::write(&path, &log.csv).unwrap();
+        LogRequest::whole(path)
+    });
+    let model = Model::parse(&bench.model_toml, &path).unwrap();
+    let text = &bench.model_toml;
+    let file = ModelFile { path: &path, text };
+    assert_eq!(check(&logs, &model, file).unwrap(), []);
+}
+
+#[test]
 fn a_torque_that_is_declared_as_duty_is_found() {
     let (_folder, model, log) = arm_of(&[], 1);
     let motor = Model::load(&model).unwrap().joints[0]
