@@ -4,34 +4,71 @@
 //! value each time: a wrong torque for a wrong mass, until a payload is bolted on. A law holds in
 //! all motions at once (Chow 1960, Econometrica 28, 591; invariance across conditions: Peters,
 //! Buehlmann & Meinshausen 2016, JRSS B 78, 947).
+//!
+//! Where friction holds a joint or a law jumps, a fit to all motions may stop short of the values
+//! that suit them all, and one to a single motion find them. So values that one motion found are
+//! tried on all before they count as its own.
 
 use super::block_errors::AT_NOISE_FLOOR;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{FitData, FitOptions, fit};
+use super::verdict::FAR_OFF;
+use crate::fitting::{Fit, FitData, FitOptions, fit, fit_start_states};
 use rayon::prelude::*;
 
-/// Iterations of a motion's own fit, from the values found for all.
+/// Iterations of a motion's own fit, from the values found for all, and of a fit to all from its.
 const ITERATIONS: usize = 8;
 
-/// Share of the squared error above the noise, on the training motions, that goes when every motion
-/// has values of its own; `None` with fewer than two motions, and where nothing is left above the
-/// noise.
-pub(super) fn per_motion_reduction(hypothesis: &Hypothesis, training: &FitData) -> Option<f64> {
-    let evaluation = hypothesis.evaluation.as_ref()?;
-    if training.motions.len() < 2 || evaluation.training.rms() < AT_NOISE_FLOOR {
-        return None;
+/// A fit of each motion by itself, from the values found for all.
+pub(super) struct OwnFits(Vec<Fit>);
+
+impl OwnFits {
+    /// Fits each of the training motions; `None` with fewer than two of them, and where nothing is
+    /// left above the noise.
+    pub fn of(hypothesis: &Hypothesis, training: &FitData) -> Option<OwnFits> {
+        let evaluation = hypothesis.evaluation.as_ref()?;
+        if training.motions.len() < 2 || evaluation.training.rms() < AT_NOISE_FLOOR {
+            return None;
+        }
+        let joint = &evaluation.fit;
+        let own = |motion: usize| {
+            let own = training.only(motion);
+            let windows = training.windows_of(motion);
+            let nodes: Vec<_> = windows.map(|(w, _)| joint.nodes[w].clone()).collect();
+            let options = FitOptions::iterations(ITERATIONS);
+            fit(&joint.model, &joint.free, &own, Some(&nodes), options)
+        };
+        let motions = (0..training.motions.len()).into_par_iter();
+        Some(OwnFits(motions.map(own).collect()))
     }
-    let joint = &evaluation.fit;
-    let own_cost = |motion: usize| {
-        let own = training.only(motion);
-        let windows = training.windows_of(motion);
-        let nodes: Vec<_> = windows.map(|(w, _)| joint.nodes[w].clone()).collect();
+
+    /// The fit to all motions from the values of one of them, if it leaves less than the
+    /// hypothesis.
+    pub fn fit_to_all(&self, hypothesis: &Hypothesis, training: &FitData) -> Option<Fit> {
+        let joint = &hypothesis.evaluation.as_ref()?.fit;
+        let cost = |fit: &Fit| fit.residuals.cost();
+        let suits_all = |own: &Fit| {
+            let all = fit_start_states(&own.model, training);
+            (cost(&all) < cost(joint)).then_some(all)
+        };
+        let moved: Vec<Fit> = self.0.par_iter().filter_map(suits_all).collect();
+        let best = moved
+            .into_iter()
+            .min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let options = FitOptions::iterations(ITERATIONS);
-        let fit = fit(&joint.model, &joint.free, &own, Some(&nodes), options);
-        fit.residuals.cost()
-    };
-    let motions = (0..training.motions.len()).into_par_iter();
-    let alone: f64 = motions.map(own_cost).collect::<Vec<f64>>().iter().sum();
-    let together = joint.residuals.cost();
-    Some((together - alone) / (together - joint.residuals.count() as f64))
+        let nodes = Some(best.nodes.as_slice());
+        Some(fit(&best.model, &joint.free, training, nodes, options))
+    }
+
+    /// Share of the squared error above the noise, on the training motions, that goes when every
+    /// motion has values of its own; `None` where so little is left that a fit to one motion only
+    /// follows its noise.
+    pub fn reduction(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        let residuals = &hypothesis.evaluation.as_ref()?.fit.residuals;
+        if residuals.mean_square() < FAR_OFF {
+            return None;
+        }
+        let alone: f64 = self.0.iter().map(|fit| fit.residuals.cost()).sum();
+        let together = residuals.cost();
+        Some((together - alone) / (together - residuals.count() as f64))
+    }
 }

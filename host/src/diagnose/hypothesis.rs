@@ -171,6 +171,11 @@ impl Hypothesis {
         let search = &self.search;
         let nodes = training.nodes_from(short, &search.nodes);
         let fit = fit(&search.model, &search.free, training, Some(&nodes), options);
+        self.judge(fit, training, held_out);
+    }
+
+    /// Takes a fit over the evaluation horizon, and predicts the held-out motions with it.
+    pub fn judge(&mut self, fit: Fit, training: &FitData, held_out: Option<&FitData>) {
         let held_out = held_out
             .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
         self.evaluation = Some(Evaluation {

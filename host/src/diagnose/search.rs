@@ -11,7 +11,7 @@ use super::budget::{
     steps_up_to,
 };
 use super::conclusion::conclude;
-use super::consistency::per_motion_reduction;
+use super::consistency::OwnFits;
 use super::evaluator::{Evaluator, every_change};
 use super::explanation::{Explanation, Tried, VerdictEvidence};
 use super::findings::Diagnosis;
@@ -50,12 +50,13 @@ pub fn diagnose(
     let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
     evaluator.steps.begin(STRUCTURE, all);
     let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
-    let tried = Tried {
+    let mut tried = Tried {
         values: evaluator.try_values(Some(least)),
         values_refitted: evaluator.try_values_refitted(Some(least)),
         hypotheses,
         best,
     };
+    let own_fits = evaluator.tell_motions_apart(&mut tried);
     let explanation = tried.explanation(&evaluator);
     let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
     let mut evidence = VerdictEvidence {
@@ -76,13 +77,30 @@ pub fn diagnose(
     if !matches!(evidence.explanation, Explanation::Given(_)) {
         evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
     }
-    evidence.per_motion_reduction = per_motion_reduction(evidence.chosen(), &evaluator.training);
+    evidence.per_motion_reduction = own_fits
+        .as_ref()
+        .and_then(|own| own.reduction(evidence.chosen()));
     let diagnosis = conclude(&evidence);
     evaluator.steps.step(STRUCTURE_STEPS);
     diagnosis
 }
 
 impl Evaluator<'_> {
+    /// Fits of the explanation to each motion by itself. Where values that one motion found suit
+    /// all of them better than those found for all, the best set takes these.
+    fn tell_motions_apart(&self, tried: &mut Tried) -> Option<OwnFits> {
+        let explanation = tried.explanation(self);
+        let own = OwnFits::of(explanation.hypothesis(), &self.training)?;
+        if let Explanation::Effects(best) = explanation
+            && let Some(fit) = own.fit_to_all(best, &self.training)
+        {
+            let mut best = best.clone();
+            best.judge(fit, &self.training, self.held_out.as_ref());
+            tried.best = Some(best);
+        }
+        Some(own)
+    }
+
     /// A placebo regressor at each joint, fitted and evaluated like a candidate; those that gain
     /// next to nothing on the short windows are not evaluated.
     fn try_placebos(&self, chosen: &Hypothesis) -> Vec<Hypothesis> {

@@ -55,7 +55,7 @@ const MOST_VARYING: f64 = 0.5;
 /// A model that leaves more than so many floors is not nominal.
 const MOST_NOMINAL: f64 = 1.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
-const FAR_OFF: f64 = 2.0;
+pub(super) const FAR_OFF: f64 = 2.0;
 
 impl Signs {
     pub fn verdict(&self) -> Verdict {
