@@ -105,6 +105,14 @@ impl Case {
         }
     }
 
+    /// Its name as a folder's: `hanging-viscous-1`.
+    pub(super) fn name(&self) -> String {
+        let kinds = self.hidden.join("-");
+        let parts = [self.family.name(), &kinds, &self.seed.to_string()];
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        parts.join("-")
+    }
+
     /// Name of the rig's motions as the script takes it.
     pub(super) fn motions(&self) -> &'static str {
         match self.family.motions() {

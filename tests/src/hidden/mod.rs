@@ -22,16 +22,18 @@ pub use text::{line, misses, tables};
 pub use trial::{Answer, Outcome, Value, try_case};
 
 use rayon::ThreadPoolBuilder;
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Tries all cases, `jobs` at a time, sharing `threads` threads out among them; outcomes in the
 /// order of the cases, whatever these numbers are, and the cases that could not be made, with why.
-/// `heard` hears of every outcome as it comes.
+/// The rigs' files stay in folders of `rigs`, if one is given. `heard` hears of every outcome as it
+/// comes.
 pub fn try_all(
     cases: &[Case],
-    jobs: usize,
-    threads: usize,
+    rigs: Option<&Path>,
+    [jobs, threads]: [usize; 2],
     heard: &(dyn Fn(&Outcome) + Sync),
 ) -> (Vec<Outcome>, Vec<(Case, String)>) {
     let next = AtomicUsize::new(0);
@@ -49,8 +51,8 @@ pub fn try_all(
                         break;
                     };
                     let outcome = match &pool {
-                        Some(pool) => pool.install(|| try_case(case)),
-                        None => try_case(case),
+                        Some(pool) => pool.install(|| try_case(case, rigs)),
+                        None => try_case(case, rigs),
                     };
                     if let Ok(outcome) = &outcome {
                         heard(outcome);

@@ -104,12 +104,17 @@ impl Outcome {
 }
 
 /// Writes the rig's logs, reads them as a user's, diagnoses those to learn from by those held out.
+/// The files stay in a folder of `rigs`, if one is given.
 ///
 /// # Errors
 /// Logs that cannot be made, and files that cannot be written or are refused.
-pub fn try_case(case: &Case) -> Result<Outcome, String> {
-    let dir = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let files = case.write(dir.path())?;
+pub fn try_case(case: &Case, rigs: Option<&Path>) -> Result<Outcome, String> {
+    let passing = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let kept = rigs.map(|rigs| rigs.join(case.name()));
+    if let Some(dir) = &kept {
+        std::fs::create_dir_all(dir).map_err(|error| format!("{}: {error}", dir.display()))?;
+    }
+    let files = case.write(kept.as_deref().unwrap_or(passing.path()))?;
     diagnosed(case, &files).map_err(|error| error.to_string())
 }
 

@@ -9,7 +9,7 @@
 //!
 //! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is
 //! not tried again: a run that was stopped goes on, and the files of shards, put together, make one
-//! table.
+//! table (`--tabulate`).
 
 use super::page::Page;
 use clap::builder::PossibleValuesParser;
@@ -55,6 +55,12 @@ pub struct Args {
     /// Append every outcome to this file of JSON lines, and leave out what it holds
     #[arg(long, value_name = "FILE")]
     outcomes: Option<PathBuf>,
+    /// Try nothing: tabulate all that the file of outcomes holds, its number of rigs by family
+    #[arg(long, requires = "outcomes")]
+    tabulate: bool,
+    /// Keep every rig's model, true model and logs in this folder
+    #[arg(long, value_name = "DIR")]
+    rigs: Option<PathBuf>,
     /// Print every outcome and the figures as JSON
     #[arg(long)]
     json: bool,
@@ -105,14 +111,21 @@ fn measured(args: &Args) -> Result<bool, String> {
         number += 1;
         args.shard.holds(number - 1)
     });
-    old.retain(|outcome| cases.iter().any(|case| outcome.is_of(case)));
-    cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
+    if args.tabulate {
+        old.retain(|outcome| outcome.truth == args.truth);
+        cases.clear();
+    } else {
+        old.retain(|outcome| cases.iter().any(|case| outcome.is_of(case)));
+        cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
+    }
 
     let mut file = args.outcomes.as_deref().map(appended).transpose()?;
     let journal = std::sync::Mutex::new(file.as_mut());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let bar = ProgressBar::new(cases.len() as u64).with_style(style());
-    let (new, failed) = try_all(&cases, args.jobs.unwrap_or(threads), threads, &|outcome| {
+    let jobs = args.jobs.unwrap_or(threads);
+    let rigs = args.rigs.as_deref();
+    let (new, failed) = try_all(&cases, rigs, [jobs, threads], &|outcome| {
         bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
         if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
