@@ -49,14 +49,14 @@ pub fn compare(
 #[pymethods]
 impl Comparison {
     /// Per measured joint: the root-mean-square error, rad, or rad/s of a joint whose rate alone is
-    /// logged.
+    /// logged; then of the rate sensors that joints have beside those of their angles, rad/s.
     #[getter]
     fn rms(&self) -> Vec<f64> {
         let signals = self.report.comparisons[0].signals.iter();
         signals.map(|signal| signal.rms).collect()
     }
 
-    /// Per measured joint: what resolution and noise alone leave, as `rms`.
+    /// Per measured joint and rate sensor: what resolution and noise alone leave, as `rms`.
     #[getter]
     fn floor(&self) -> Vec<f64> {
         let signals = self.report.comparisons[0].signals.iter();

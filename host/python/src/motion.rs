@@ -19,8 +19,9 @@ impl Motion {
     /// A motion out of arrays: a row per joint, gaps as not-a-number. `input` is what each drive is
     /// told, in SI of its kind (N m, duty, rad, rad/s), `None` for passive joints.
     #[new]
-    #[pyo3(signature = (time_s, position_rad, *, input=None, velocity_rad_s=None, supply_v=None,
-                        torque_on=None, payload_kg=0.0, turned=false, name="motion"))]
+    #[pyo3(signature = (time_s, position_rad, *, input=None, velocity_rad_s=None, rate_rad_s=None,
+                        supply_v=None, torque_on=None, payload_kg=0.0, turned=false,
+                        name="motion"))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of a Python constructor"
@@ -30,6 +31,7 @@ impl Motion {
         position_rad: &Bound<'_, PyAny>,
         input: Option<&Bound<'_, PyAny>>,
         velocity_rad_s: Option<&Bound<'_, PyAny>>,
+        rate_rad_s: Option<&Bound<'_, PyAny>>,
         supply_v: Option<&Bound<'_, PyAny>>,
         torque_on: Option<Vec<bool>>,
         payload_kg: f64,
@@ -49,6 +51,7 @@ impl Motion {
             time_s,
             position_rad,
             velocity_rad_s: rows_or_none("velocity_rad_s", velocity_rad_s, joints)?,
+            rate_rad_s: rows_or_none("rate_rad_s", rate_rad_s, joints)?,
             input: rows_or_none("input", input, joints)?,
             supply_v: supply_v
                 .map(|given| numbers("supply_v", given))
@@ -82,6 +85,12 @@ impl Motion {
     #[getter]
     fn velocity_rad_s<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
         per_joint(py, &self.inner.velocity_rad_s)
+    }
+
+    /// Per joint: what a rate sensor of its own reads, rad/s, where it has one beside the angle's.
+    #[getter]
+    fn rate_rad_s<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+        per_joint(py, &self.inner.rate_rad_s)
     }
 
     /// Per joint: what the drive was told; `None` of a passive joint.
@@ -145,6 +154,7 @@ fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
     let joints = motion.position_rad.len();
     let per_joint = [
         ("velocity_rad_s", &motion.velocity_rad_s),
+        ("rate_rad_s", &motion.rate_rad_s),
         ("input", &motion.input),
     ];
     for (name, rows) in per_joint {
@@ -179,7 +189,8 @@ fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
     let measured = motion
         .position_rad
         .iter()
-        .chain(motion.velocity_rad_s.iter().flatten());
+        .chain(motion.velocity_rad_s.iter().flatten())
+        .chain(motion.rate_rad_s.iter().flatten());
     if motion.time_s.iter().any(|time| !time.is_finite())
         || measured.chain(&motion.supply_v).any(infinite)
     {

@@ -43,6 +43,7 @@ pub fn simulate(
         time_s,
         position_rad: vec![vec![0.0; samples]; joints],
         velocity_rad_s: vec![None; joints],
+        rate_rad_s: vec![None; joints],
         input: rows_or_none("input", input, joints)?,
         supply_v: supply_v
             .map(|given| numbers("supply_v", given))
@@ -81,7 +82,7 @@ fn simulated(model: &Model, motion: Motion, start: &Start) -> Motion {
     let mut motion = motion.inner;
     let (joints, samples) = (motion.position_rad.len(), motion.len());
     let plant = Plant::new(&model.inner, &motion);
-    let mut readings = vec![0.0; joints * samples];
+    let mut readings = vec![0.0; plant.signals() * samples];
     let mut memory = Memory::default();
     predict(
         &plant,
@@ -91,7 +92,11 @@ fn simulated(model: &Model, motion: Motion, start: &Start) -> Motion {
         &mut memory,
         &mut readings,
     );
-    for (joint, read) in readings.chunks(samples).enumerate() {
+    let (of_joints, of_rates) = readings.split_at(joints * samples);
+    for (&joint, read) in plant.rate_joints().iter().zip(of_rates.chunks(samples)) {
+        motion.rate_rad_s[joint] = Some(read.to_vec());
+    }
+    for (joint, read) in of_joints.chunks(samples).enumerate() {
         match model
             .inner
             .log

@@ -133,6 +133,7 @@ impl ServoColumns {
                 position: Some(output.clone().into()),
                 velocity: None,
                 input: Some(input.clone().into()),
+                ..JointColumns::default()
             }],
             arm: None,
             split_at_gap_s: None,

@@ -3,8 +3,8 @@
 use super::conditions::{Met, met};
 use super::result::{Failure, SignalError};
 use super::sample_features::features;
-use crate::log::Motion;
-use crate::model::Model;
+use crate::fitting::FitData;
+use crate::model::{MeasuredSignal, Model};
 
 /// Most failures told.
 const MOST: usize = 6;
@@ -31,27 +31,29 @@ pub struct FailingSamples {
 ///
 /// It says where the error shows. In a long run an error shows after its cause, where angles move
 /// fast or late in the motion; the shorter the horizon, the nearer the two are. `residuals` is
-/// `[joint][motion][sample]`, rad or rad/s.
+/// `[signal][motion][sample]`, rad or rad/s.
 pub(super) fn failing(
     model: &Model,
-    motions: &[Motion],
+    data: &FitData,
     residuals: &[Vec<Vec<f64>>],
     signals: &[SignalError],
 ) -> Vec<FailingSamples> {
     let mut all = Vec::new();
-    for signal in signals {
+    let measured = residuals.iter().zip(&data.signals);
+    let measured = measured.filter(|(_, signal)| **signal != MeasuredSignal::Nothing);
+    for (signal, (residual, _)) in signals.iter().zip(measured) {
         let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
-            let error: Vec<f64> = residuals[joint].iter().flatten().copied().collect();
+            let error: Vec<f64> = residual.iter().flatten().copied().collect();
             let conditions = met(
-                &features(model, motions, joint),
+                &features(model, &data.motions, joint),
                 model.joints[joint].units()[0],
             );
             let ranked = ranked(&error, signal.floor, conditions);
             all.extend(
                 ranked
                     .into_iter()
-                    .map(|r| r.told(joint, model.link_count() > 1)),
+                    .map(|r| r.told(signal, model.link_count() > 1)),
             );
         }
     }
@@ -74,15 +76,20 @@ pub(super) struct Ranked {
 }
 
 impl Ranked {
-    fn told(self, joint: usize, several: bool) -> FailingSamples {
+    fn told(self, signal: &SignalError, several: bool) -> FailingSamples {
         let (error, samples) = (percent(self.error_share), percent(self.sample_share));
-        let of_joint = if several {
-            format!(" of joint {}", joint + 1)
+        let of_rate = if signal.beside_angle {
+            " of the rate"
         } else {
-            String::new()
+            ""
+        };
+        let of_joint = if several {
+            format!("{of_rate} of joint {}", signal.joint)
+        } else {
+            of_rate.to_string()
         };
         let failure = Failure {
-            joint: joint + 1,
+            joint: signal.joint,
             sentence: format!(
                 "{error} of the error{of_joint} falls in {samples} of the samples: {}",
                 self.words

@@ -15,8 +15,8 @@ pub struct ModelRun {
     pub horizon: Horizon,
     /// Where each window starts.
     pub nodes: Vec<Node>,
-    /// Predicted angles, rad, or rates where no angle is measured, rad/s,
-    /// `[motion][joint][sample]`.
+    /// Predicted angles, rad, or rates where no angle is measured, rad/s, then rates of sensors
+    /// beside an angle's: `[motion][signal][sample]`.
     pub predicted: Vec<Vec<Vec<f64>>>,
 }
 
@@ -44,11 +44,11 @@ impl ModelRun {
         }
     }
 
-    /// Measured minus predicted, rad or rad/s, `[joint][motion][sample]`; not a number where
-    /// nothing was measured.
+    /// Measured minus predicted, rad or rad/s, `[signal][motion][sample]`, the joints first; not a
+    /// number where nothing was measured.
     pub fn residuals(&self) -> Vec<Vec<Vec<f64>>> {
-        let joints = 0..self.model.link_count();
-        let residual = |joint| residual(&self.data, &self.predicted, joint);
-        joints.map(residual).collect()
+        let signals = 0..self.data.signals.len();
+        let residual = |signal| residual(&self.data, &self.predicted, signal);
+        signals.map(residual).collect()
     }
 }

@@ -1,11 +1,12 @@
-//! Measured and predicted angles (rates of joints without a measured angle) of whole motions.
+//! Measured and predicted angles (rates of joints without a measured angle, and of rate sensors
+//! beside an angle's) of whole motions.
 
 use crate::fitting::{self, FitData, Node};
 use crate::model::MeasuredSignal;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// Predicted signals, rad or rad/s, `[motion][joint][sample]`, every window started from its node.
+/// Predicted signals, rad or rad/s, `[motion][signal][sample]`, every window started from its node.
 ///
 /// Unlike the fit's residuals these are not capped, so an error counts in full however small the
 /// noise is. From where a prediction runs away to infinity its last finite value stands.
@@ -18,13 +19,13 @@ pub(super) fn predicted(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Ve
 
 fn one_motion(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
-    let mut angles = vec![Vec::with_capacity(log.len()); data.joints()];
+    let mut series = vec![Vec::with_capacity(log.len()); data.signals.len()];
     let windows = fitting::predicted(model, data, nodes, motion);
     for ((index, window), readings) in data.windows_of(motion).zip(windows) {
-        for (joint, part) in readings.chunks(window.samples.len()).enumerate() {
-            let order = usize::from(data.signals[joint] == MeasuredSignal::Rate);
-            let mut last = nodes[index].unknowns[order * data.joints() + joint];
-            angles[joint].extend(part.iter().map(|value| {
+        for (signal, part) in readings.chunks(window.samples.len()).enumerate() {
+            let order = usize::from(data.signals[signal] == MeasuredSignal::Rate);
+            let mut last = nodes[index].unknowns[order * data.joints() + data.joint_of(signal)];
+            series[signal].extend(part.iter().map(|value| {
                 if value.is_finite() {
                     last = *value;
                 }
@@ -32,18 +33,22 @@ fn one_motion(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> V
             }));
         }
     }
-    angles
+    series
 }
 
 /// Measured minus predicted, rad or rad/s, per motion; not a number where nothing was measured.
-pub(super) fn residual(data: &FitData, predicted: &[Vec<Vec<f64>>], joint: usize) -> Vec<Vec<f64>> {
+pub(super) fn residual(
+    data: &FitData,
+    predicted: &[Vec<Vec<f64>>],
+    signal: usize,
+) -> Vec<Vec<f64>> {
     let motions = predicted.iter().enumerate();
     motions
         .map(|(motion, predicted)| {
-            let measured = data.measured(motion, joint);
+            let measured = data.measured(motion, signal);
             measured
                 .iter()
-                .zip(&predicted[joint])
+                .zip(&predicted[signal])
                 .map(|(y, model)| y - model)
                 .collect()
         })

@@ -17,25 +17,26 @@ const LEAST_SAMPLES: usize = 40;
 /// Normal quantile of 1 - 0.01 / (2 * 51): the largest of 51 lags, two-sided (Bonferroni).
 const Z_99_OF_51: f64 = 3.725;
 
-/// Tests of one joint's residual, rad or rad/s, per motion; none where there are too few samples.
+/// Tests of one signal's residual, rad or rad/s, per motion; none where there are too few samples.
 pub(super) fn residual_tests(
     data: &FitData,
-    joint: usize,
+    signal: usize,
     residual: &[Vec<f64>],
 ) -> Vec<ResidualTest> {
     if residual.iter().map(Vec::len).sum::<usize>() < LEAST_SAMPLES {
         return Vec::new();
     }
-    let motions = &data.motions;
+    let (motions, joint) = (&data.motions, data.joint_of(signal));
     let driven = motions.iter().all(|m| m.input[joint].is_some());
     let cause: Vec<Vec<f64>> = motions
         .iter()
-        .map(|m| match &m.input[joint] {
+        .enumerate()
+        .map(|(index, m)| match &m.input[joint] {
             Some(input) if driven => input.clone(),
-            _ => m.measured(joint, data.signals[joint]).to_vec(),
+            _ => data.measured(index, signal).to_vec(),
         })
         .collect();
-    let cause_name = match (driven, data.signals[joint]) {
+    let cause_name = match (driven, data.signals[signal]) {
         (true, _) => "input",
         (false, MeasuredSignal::Rate) => "rate",
         (false, _) => "angle",

@@ -17,7 +17,7 @@ pub struct Comparison {
     pub windows: Vec<MotionWindow>,
     /// What the logs cannot observe of the joints' motion, a sentence each.
     pub unobserved: Vec<String>,
-    /// Per measured joint, all motions together.
+    /// Per measured joint, then per rate sensor beside the one of an angle, all motions together.
     pub signals: Vec<SignalError>,
     /// How the error grows with the time the model runs without correction, all joints together.
     pub horizons: Vec<HorizonError>,
@@ -29,14 +29,17 @@ pub struct Comparison {
     pub closed_loop: Option<ClosedLoopComparison>,
 }
 
-/// Error of one joint's angle, rad, or of its rate where no angle is measured, rad/s. Keys of JSON
-/// end in the unit: `rms_rad`, `rms_rad_s`.
+/// Error of one joint's angle, rad, or of its rate where no angle is measured, or where a sensor of
+/// its own measures it beside the angle, rad/s. Keys of JSON end in the unit: `rms_rad`,
+/// `rms_rad_s`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignalError {
     /// Joint counted from 1.
     pub joint: usize,
     /// What is measured of it.
     pub quantity: MeasuredSignal,
+    /// Whether it is the rate of a joint whose angle is measured, too.
+    pub beside_angle: bool,
     /// Root-mean-square error.
     pub rms: f64,
     /// Largest error.
@@ -93,7 +96,8 @@ pub struct Failure {
     pub sentence: String,
 }
 
-/// One joint of one motion: its angle, rad, or its rate where no angle is measured, rad/s.
+/// One joint of one motion: its angle, rad, or its rate where no angle is measured, or where a
+/// sensor of its own measures it beside the angle, rad/s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// The motion.

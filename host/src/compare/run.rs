@@ -75,7 +75,7 @@ impl ModelRun {
                 horizon_s: horizon.seconds(),
                 rms: pooled(data, &residuals),
             }],
-            failures: failing(model, &data.motions, &residuals, &signals)
+            failures: failing(model, data, &residuals, &signals)
                 .into_iter()
                 .map(|failing| failing.failure)
                 .collect(),
@@ -89,28 +89,29 @@ impl ModelRun {
     pub fn failing(&self) -> Vec<FailingSamples> {
         let residuals = self.residuals();
         let signals = self.signals(&residuals);
-        failing(&self.model, &self.data.motions, &residuals, &signals)
+        failing(&self.model, &self.data, &residuals, &signals)
     }
 
     /// Root-mean-square error of each joint, all motions together, rad or rad/s.
     pub fn joint_rms(&self) -> Vec<f64> {
         let residuals = self.residuals();
-        residuals.iter().map(|joint| rms(joint.iter())).collect()
+        let joints = residuals.iter().take(self.data.joints());
+        joints.map(|joint| rms(joint.iter())).collect()
     }
 
     fn signals(&self, residuals: &[Vec<Vec<f64>>]) -> Vec<SignalError> {
         let signals = residuals.iter().enumerate();
         signals
-            .filter(|(joint, _)| self.data.signals[*joint] != MeasuredSignal::Nothing)
-            .map(|(joint, residual)| signal(&self.data, joint, residual))
+            .filter(|(index, _)| self.data.signals[*index] != MeasuredSignal::Nothing)
+            .map(|(index, residual)| signal(&self.data, index, residual))
             .collect()
     }
 }
 
 /// Root-mean-square error of the joints that count together.
 fn pooled(data: &FitData, residuals: &[Vec<Vec<f64>>]) -> f64 {
-    let joints = residuals.iter().enumerate();
-    let counted = joints.filter(|(joint, _)| data.counts(*joint));
+    let signals = residuals.iter().enumerate();
+    let counted = signals.filter(|(signal, _)| data.counts(*signal));
     rms(counted.flat_map(|(_, motions)| motions))
 }
 
@@ -128,21 +129,22 @@ fn rms<'a>(residuals: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     }
 }
 
-fn signal(data: &FitData, joint: usize, residual: &[Vec<f64>]) -> SignalError {
+fn signal(data: &FitData, index: usize, residual: &[Vec<f64>]) -> SignalError {
     let rms = rms(residual.iter());
-    let floor = data.sigma[joint];
+    let floor = data.sigma[index];
     let motions = 0..data.motions.len();
-    let measured: Vec<&[f64]> = motions.map(|motion| data.measured(motion, joint)).collect();
+    let measured: Vec<&[f64]> = motions.map(|motion| data.measured(motion, index)).collect();
     let errors = residual.iter().flatten().map(|e| e.abs());
     SignalError {
-        joint: joint + 1,
-        quantity: data.signals[joint],
+        joint: data.joint_of(index) + 1,
+        quantity: data.signals[index],
+        beside_angle: index >= data.joints(),
         rms,
         largest: errors.fold(0.0, f64::max),
         fit_percent: fit_percent(&measured, residual),
         floor,
         share_above_floor: share_above(rms, floor),
-        tests: residual_tests(data, joint, residual),
+        tests: residual_tests(data, index, residual),
     }
 }
 
@@ -191,8 +193,8 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon) -> Vec<HorizonError
         .map(|s| {
             let data = data.recut(Horizon::Seconds(s));
             let predicted = predicted(model, &data, &fit_start_states(model, &data).nodes);
-            let joints = 0..model.link_count();
-            let residuals: Vec<_> = joints.map(|j| residual(&data, &predicted, j)).collect();
+            let signals = 0..data.signals.len();
+            let residuals: Vec<_> = signals.map(|s| residual(&data, &predicted, s)).collect();
             HorizonError {
                 quantity: data.quantity(),
                 horizon_s: Some(s),
@@ -207,11 +209,11 @@ fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
     for (index, predicted) in predicted.iter().enumerate() {
         let motion = &data.motions[index];
         let stride = motion.len().div_ceil(DRAWN).max(1);
-        for (joint, predicted) in predicted.iter().enumerate() {
-            if data.signals[joint] == MeasuredSignal::Nothing {
+        for (signal, predicted) in predicted.iter().enumerate() {
+            if data.signals[signal] == MeasuredSignal::Nothing {
                 continue;
             }
-            let measured = data.measured(index, joint);
+            let measured = data.measured(index, signal);
             let error: Vec<f64> = measured.iter().zip(predicted).map(|(y, m)| y - m).collect();
             let drawn: Vec<usize> = (0..motion.len())
                 .step_by(stride)
@@ -220,8 +222,8 @@ fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
             let pick = |values: &[f64]| drawn.iter().map(|k| values[*k]).collect();
             traces.push(Trace {
                 motion: motion.name.clone(),
-                joint: joint + 1,
-                quantity: data.signals[joint],
+                joint: data.joint_of(signal) + 1,
+                quantity: data.signals[signal],
                 rms: rms(std::iter::once(&error)),
                 time_s: pick(&motion.time_s),
                 measured: pick(measured),

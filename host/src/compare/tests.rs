@@ -7,7 +7,7 @@ use super::failure::{failing, ranked};
 use super::run::fit_percent;
 use super::sample_features::{features, speed_rad_s};
 use super::*;
-use crate::fitting::Horizon;
+use crate::fitting::{FitData, Horizon};
 use crate::log::{Motion, MotionSource};
 use crate::model::Model;
 use crate::output::number::mrad_in_column;
@@ -51,6 +51,7 @@ fn motion(time_s: Vec<f64>, position_rad: Vec<f64>) -> Motion {
         time_s,
         position_rad: vec![position_rad],
         velocity_rad_s: vec![None],
+        rate_rad_s: Vec::new(),
         input: vec![None],
         supply_v: None,
         torque_on: None,
@@ -175,7 +176,8 @@ fn a_joint_at_its_floor_has_no_failures() {
         ..signal.clone()
     }];
     let error = vec![vec![noise(1, 300, 0.0)]];
-    assert!(failing(&pendulum(), &motions, &error, &signals).is_empty());
+    let data = FitData::new(&pendulum(), motions.to_vec(), Horizon::Whole);
+    assert!(failing(&pendulum(), &data, &error, &signals).is_empty());
 }
 
 #[test]

@@ -88,9 +88,17 @@ fn together(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
 
 fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
     if comparison.signals.len() > 1 || !comparison.unobserved.is_empty() {
-        format!(", joint {}", signal.joint)
+        format!(", joint {}{}", signal.joint, of_rate(signal.beside_angle))
     } else {
         String::new()
+    }
+}
+
+/// Behind a joint, where its rate is meant and not its angle.
+fn of_rate(beside_angle: bool) -> &'static str {
+    match beside_angle {
+        true => ", rate",
+        false => "",
     }
 }
 
@@ -125,11 +133,11 @@ fn table(comparisons: &[Comparison]) -> Table {
         in_windows(&c.windows)
     });
     let signals = comparisons.iter().flat_map(|c| &c.signals);
-    let mut joints: Vec<usize> = signals.map(|signal| signal.joint).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    for joint in joints {
-        signal_rows(&mut table, comparisons, joint);
+    let mut signals: Vec<(usize, bool)> = signals.map(|s| (s.joint, s.beside_angle)).collect();
+    signals.sort_unstable();
+    signals.dedup();
+    for signal in signals {
+        signal_rows(&mut table, comparisons, signal);
     }
     let mut rungs: Vec<f64> = comparisons
         .iter()
@@ -161,18 +169,20 @@ fn table(comparisons: &[Comparison]) -> Table {
 /// What a table tells of a signal.
 type Cell = fn(&SignalError) -> String;
 
-fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
-    fn own(comparison: &Comparison, joint: usize) -> Option<&SignalError> {
-        comparison.signals.iter().find(|s| s.joint == joint)
+/// The rows of a joint, or of the rate that it has beside its angle.
+fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bool)) {
+    fn own(comparison: &Comparison, wanted: (usize, bool)) -> Option<&SignalError> {
+        let mut signals = comparison.signals.iter();
+        signals.find(|s| (s.joint, s.beside_angle) == wanted)
     }
     let named = |c: &Comparison| c.signals.len() > 1 || !c.unobserved.is_empty();
     let prefix = match comparisons.iter().any(named) {
-        true => format!("joint {joint}: "),
+        true => format!("joint {}{}: ", wanted.0, of_rate(wanted.1)),
         false => String::new(),
     };
     let quantity = comparisons
         .iter()
-        .find_map(|c| Some(own(c, joint)?.quantity));
+        .find_map(|c| Some(own(c, wanted)?.quantity));
     let milli = quantity.map_or("mrad", MeasuredSignal::milli);
     let lines: [(&str, Cell); 6] = [
         ("rms, mrad", |s| mrad_in_column(s.rms)),
@@ -190,7 +200,7 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], joint: usize) {
     for (label, cell) in lines {
         let label = label.replace("mrad", milli);
         row(table, comparisons, &format!("{prefix}{label}"), |c| {
-            own(c, joint).map_or("-".to_string(), cell)
+            own(c, wanted).map_or("-".to_string(), cell)
         });
     }
 }

@@ -53,17 +53,17 @@ impl BlockErrors {
                 }
                 let (mut sum, mut count) = (0.0, 0);
                 let total = &mut errors.motions[window.motion];
-                for (joint, sigma) in data.sigma.iter().enumerate() {
-                    let measured = &data.measured(window.motion, joint)[window.samples.clone()];
+                for (signal, sigma) in data.sigma.iter().enumerate() {
+                    let measured = &data.measured(window.motion, signal)[window.samples.clone()];
                     let known = measured[begin..end]
                         .iter()
                         .filter(|y| y.is_finite())
                         .count();
                     count += known;
-                    total.1 += if data.counts(joint) { known } else { 0 };
-                    for r in &residuals[joint * samples + begin..joint * samples + end] {
+                    total.1 += if data.counts(signal) { known } else { 0 };
+                    for r in &residuals[signal * samples + begin..signal * samples + end] {
                         sum += r * r;
-                        if data.counts(joint) {
+                        if data.counts(signal) {
                             total.0 += (r * sigma).powi(2);
                         }
                     }

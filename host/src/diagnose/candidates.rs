@@ -85,18 +85,19 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
             MeasuredSignal::Rate => effect.trail_rad(&first_values(info), 1.0).is_some(),
             MeasuredSignal::Nothing => false,
         },
-        Site::Rate => signal == MeasuredSignal::Rate,
+        Site::Rate => signal == MeasuredSignal::Rate || has_rate_sensor(model, joint),
         _ => true,
     }
 }
 
-/// Whether something tells the times that an effect of a log's column changes: another joint, or
-/// the input.
+/// Whether something tells the times that an effect of a log's column changes: another joint, the
+/// joint's own rate sensor, or the input.
 fn is_timed(effect: &dyn Effect, model: &Model, motions: &[Motion], joint: usize) -> bool {
     effect
         .reading_offset_s(&first_values(effect.info()))
         .is_none()
         || model.link_count() > 1
+        || has_rate_sensor(model, joint)
         || suits(Scope::DrivenJoint, model, motions, joint)
 }
 
@@ -142,9 +143,16 @@ fn suits(scope: Scope, model: &Model, motions: &[Motion], joint: usize) -> bool 
     }
 }
 
+/// Whether a joint has a rate sensor beside the one of its angle. What scales or filters a rate
+/// that is read alone is `encoder_scale`, or `sensor_lag`.
+fn has_rate_sensor(model: &Model, joint: usize) -> bool {
+    model.log.joints[joint].rate.is_some()
+}
+
 fn visible(needs: Needs, model: &Model, motions: &[Motion], joint: Option<usize>) -> bool {
     match needs {
         Needs::Nothing | Needs::GearLoad | Needs::BearingLoad => true,
+        Needs::RateSensor => joint.is_some_and(|joint| has_rate_sensor(model, joint)),
         Needs::Supply => {
             let nominal = joint.and_then(|j| model.joints[j].drive.motor()?.nominal_supply_v);
             let logged = motions.iter().filter_map(|m| m.supply_v.as_ref()).flatten();

@@ -62,6 +62,8 @@ pub enum Needs {
     GearLoad,
     /// The force in the bearing, computed along with the dynamics.
     BearingLoad,
+    /// A rate sensor that the joint has beside the one of its angle.
+    RateSensor,
 }
 
 /// One value of an effect.

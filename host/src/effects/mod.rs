@@ -1,8 +1,7 @@
 //! The library of physical effects: each states its law once, and describes itself for people.
 //!
-//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`]. The
-//! simulator, the effect pages, the candidates, the fit's bounds and the law tests all iterate that
-//! list.
+//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`], which
+//! simulator, effect pages, candidates, the fit's bounds and the law tests iterate.
 
 mod air_drag;
 mod armature;
@@ -133,7 +132,7 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
 }
 
 /// What follows the id of an effect that acts on no single joint, in addresses: nothing for one of
-/// the whole rig, `@all` for one of joints, which then acts on all driven ones.
+/// the whole rig, `@all` for one of all driven joints.
 pub fn at_all(id: &str) -> &'static str {
     match named(id).map(|effect| effect.info().scope) {
         Some(Scope::WholeRig) | None => "",
@@ -143,8 +142,8 @@ pub fn at_all(id: &str) -> &'static str {
 
 /// A departure from the rigid chain with ideal drives and sensors.
 ///
-/// Every hook's default is identity; an effect overrides only the hook of its site. `values` are in
-/// the order of its parameters.
+/// Every hook's default is identity; an effect overrides that of its site. `values` are in its
+/// parameters' order.
 pub trait Effect: Sync + fmt::Debug {
     /// What people and tools need to know of it.
     fn info(&self) -> &'static EffectInfo;
@@ -212,8 +211,8 @@ pub trait Effect: Sync + fmt::Debug {
         0.0
     }
 
-    /// Friction: whether it is the same at every speed and load, so that it stays until the joint
-    /// turns back. Such a law is simulated faster.
+    /// Friction: whether it is the same at every speed and load until the joint turns back, which
+    /// is simulated faster.
     fn friction_is_constant(&self) -> bool {
         false
     }
@@ -232,13 +231,12 @@ pub trait Effect: Sync + fmt::Debug {
     /// What it remembers after a step of `step_s` that ended in this state.
     fn remember(&self, _values: &[f64], _memory: &mut MemoryCell, _at: &StepState, _step_s: f64) {}
 
-    /// Command, with memory: the mean input that the drive follows during a step of `step_s` in
-    /// which `input` arrives.
+    /// Command, with memory: the mean input followed during a step in which `input` arrives.
     fn obey(&self, _values: &[f64], _memory: MemoryCell, input: f64, _step_s: f64) -> f64 {
         input
     }
 
-    /// Sensor, static: what the encoder reads at this joint angle, rad.
+    /// Encoder: what it reads at this joint angle, rad.
     fn encode(&self, _values: &[f64], angle_rad: f64) -> f64 {
         angle_rad
     }
@@ -248,8 +246,13 @@ pub trait Effect: Sync + fmt::Debug {
         0.0
     }
 
-    /// Sensor, with memory: how far the reading trails, rad, while the encoded angle has long
-    /// changed by `speed_rad_s`; `None` where the past decides.
+    /// Rate: what a sensor of rates reads per rate.
+    fn rate_scale(&self, _values: &[f64]) -> f64 {
+        1.0
+    }
+
+    /// Sensor or rate, with memory: how far the reading trails, rad, while the encoded angle has
+    /// long changed by `speed_rad_s`; of a rate rad/s and rad/s^2. `None` where the past decides.
     fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
         None
     }
@@ -266,7 +269,7 @@ pub trait Effect: Sync + fmt::Debug {
         None
     }
 
-    /// Sensor, with memory: the reading after `step_s` at whose end the shaft is `encoded`.
+    /// Sensor or rate, with memory: the reading after `step_s` at whose end the shaft is `encoded`.
     /// `memory` is the effect's own, of the call before; `None` before the first call of a motion,
     /// which reads the angle itself.
     fn sense(

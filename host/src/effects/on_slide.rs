@@ -79,6 +79,10 @@ impl Effect for OnSlide {
         self.effect.drive(values, torque_nm, at)
     }
 
+    fn rate_scale(&self, values: &[f64]) -> f64 {
+        self.effect.rate_scale(values)
+    }
+
     fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {
         self.effect.rate_bias_rad_s(values)
     }
@@ -186,7 +190,8 @@ mod tests {
             .filter(|effect| on_axis(**effect, Axis::Slide).is_none())
             .map(|effect| effect.info().id)
             .collect();
-        assert_eq!(refused, ["bearing_friction", "cogging"]);
+        let known = ["bearing_friction", "cogging"];
+        assert_eq!(refused, known);
     }
 
     #[test]

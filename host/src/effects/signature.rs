@@ -96,6 +96,7 @@ fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
     let (x_label, y_label, range, y) = law(effect, &values, &off);
     let points = |values: &[f64]| match effect.info().site {
         Site::Encoder | Site::Sensor => reading(effect, values),
+        Site::Rate if effect.trail_rad(values, 1.0).is_some() => reading(effect, values),
         _ => over(&range, |x| y(effect, values, x)),
     };
     Signature {
@@ -166,11 +167,17 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
             -1.6..1.6,
             gravity_nm,
         ),
+        (Site::Rate, _) if effect.trail_rad(values, 1.0).is_some() => (
+            "rate, to and fro, rad/s",
+            "rate that is read, rad/s",
+            -0.2..0.2,
+            encode,
+        ),
         (Site::Rate, _) => (
             "rate, rad/s",
             "rate that is read, rad/s",
             -0.2..0.2,
-            |e, v, rate| rate + e.rate_bias_rad_s(v),
+            |e, v, rate| e.rate_scale(v) * rate + e.rate_bias_rad_s(v),
         ),
         (Site::Encoder | Site::Sensor, _) => {
             ("angle, to and fro, rad", "reading, rad", -0.2..0.2, encode)

@@ -57,8 +57,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     let regulator = GoalRegulator::new(model, &motion, limits);
     let mut state = at_rest(&plant, &start_rad);
     let mut memory = Memory::default();
-    let joints = model.link_count();
-    let mut readings = vec![0.0; 2 * joints];
+    let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
         let angles = regulator.pose(&plant, &state, &driven, &goals.excitation.angle_rad[k]);
         for (at, &joint) in driven.iter().enumerate() {

@@ -13,11 +13,11 @@ use rand_chacha::ChaCha8Rng;
 /// The experiment with what the log would hold of every joint; a joint that logs do not measure
 /// has gaps.
 pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion {
-    let mut motion = experiment.motion.clone();
+    let motion = experiment.motion.clone();
     let plant = Plant::new(model, &motion);
     let start = at_rest(&plant, &experiment.start_rad);
     let count = motion.len();
-    let mut readings = vec![0.0; count * model.link_count()];
+    let mut readings = vec![0.0; count * plant.signals()];
     let mut memory = Memory::default();
     predict(
         &plant,
@@ -27,7 +27,12 @@ pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion
         &mut memory,
         &mut readings,
     );
-    for (joint, readings) in readings.chunks(count).enumerate() {
+    let mut motion = motion.with_rates(plant.rate_joints());
+    let (of_joints, of_rates) = readings.split_at(count * plant.len());
+    for (&joint, readings) in plant.rate_joints().iter().zip(of_rates.chunks(count)) {
+        motion.rate_rad_s[joint] = Some(readings.to_vec());
+    }
+    for (joint, readings) in of_joints.chunks(count).enumerate() {
         match signal(model, joint) {
             MeasuredSignal::Angle | MeasuredSignal::Displacement => {
                 motion.position_rad[joint] = readings.to_vec();
@@ -49,21 +54,23 @@ pub(super) fn as_data(
 ) -> FitData {
     // How long windows may be depends on the noise; what is compared has none.
     let noisy = with_noise(&motion, logs, seed);
-    let mut data = FitData::new(model, vec![noisy], horizon).weighted_like(logs);
-    data.motions = vec![motion];
-    data
+    let data = FitData::new(model, vec![noisy], horizon).weighted_like(logs);
+    data.measured_in(vec![motion])
 }
 
 /// White noise as large as that of the logs on everything that is measured.
 fn with_noise(motion: &Motion, logs: &FitData, seed: u64) -> Motion {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut noisy = motion.clone();
-    for (joint, sigma) in logs.sigma.iter().enumerate() {
+    for (signal, sigma) in logs.sigma.iter().enumerate() {
         // Uniform, of this standard deviation.
         let reach = 3f64.sqrt() * sigma;
-        let readings = match &mut noisy.velocity_rad_s[joint] {
-            Some(rate) => rate,
-            None => &mut noisy.position_rad[joint],
+        let joint = logs.joint_of(signal);
+        let rate = noisy.rate_rad_s.get_mut(joint).and_then(Option::as_mut);
+        let readings = match (rate, &mut noisy.velocity_rad_s[joint]) {
+            (Some(rate), _) if signal >= logs.joints() => rate,
+            (_, Some(rate)) => rate,
+            (_, None) => &mut noisy.position_rad[joint],
         };
         for reading in readings {
             *reading += random.random_range(-reach..=reach);

@@ -50,6 +50,7 @@ pub(super) fn assumed(
     motion: &Motion,
 ) -> AssumedStates {
     let rest = hanging(model);
+    let signals = &signals[..model.link_count().min(signals.len())];
     let joint = |(joint, signal): (usize, &MeasuredSignal)| match signal {
         MeasuredSignal::Angle | MeasuredSignal::Displacement => None,
         MeasuredSignal::Rate => Some(integrated(motion, joint, rest[joint])),
@@ -202,7 +203,7 @@ fn cost(
             samples: edge(piece)..edge(piece + 1),
         };
         let samples = window.samples.clone();
-        let mut values = vec![0.0; samples.len() * plant.len()];
+        let mut values = vec![0.0; samples.len() * plant.signals()];
         let start = Node::guess(motion, sigma, states, &window).start(&plant);
         let mut memory = Memory::default();
         predict(
@@ -213,11 +214,12 @@ fn cost(
             &mut memory,
             &mut values,
         );
-        for (joint, part) in values.chunks(samples.len()).enumerate() {
-            let measured = &motion.measured(joint, signals[joint])[samples.clone()];
+        let parts = values.chunks(samples.len()).zip(signals);
+        for (joint, (part, signal)) in parts.enumerate() {
+            let measured = &motion.measured(joint, *signal)[samples.clone()];
             for (value, measured) in part.iter().zip(measured) {
                 // A few windows that run away decide nothing.
-                let most = 0.1 * worst(signals[joint], sigma[joint]);
+                let most = 0.1 * worst(*signal, sigma[joint]);
                 sum += weighted(*measured, *value, sigma[joint], most).powi(2);
             }
         }
@@ -236,7 +238,7 @@ fn run_free(
     let plant = Plant::new(model, motion);
     let mut start = Node::guess(motion, sigma, states, whole).start(&plant);
     let mut memory = Memory::default();
-    let mut readings = vec![0.0; plant.len()];
+    let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
         for (joint, state) in states.iter_mut().enumerate() {
             let unknown = state.as_mut().filter(|s| s.speed_deviation_rad_s.is_some());
@@ -250,7 +252,6 @@ fn run_free(
         }
         if k + 1 < motion.len() {
             let stretch = k..k + 2;
-            readings.resize(2 * plant.len(), 0.0);
             start = predict(&plant, motion, stretch, &start, &mut memory, &mut readings);
         }
     }

@@ -55,8 +55,8 @@ pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
                 });
             }
             if let Some(cluster) = clusters.last_mut() {
-                for joint in 0..data.joints() {
-                    let first = joint * samples + begin;
+                for signal in 0..data.signals.len() {
+                    let first = signal * samples + begin;
                     let rows = columns.rows(first, end - begin);
                     let residuals = DVector::from_column_slice(&residuals[first..][..end - begin]);
                     cluster.score += rows.tr_mul(&residuals);

@@ -1,17 +1,17 @@
-//! Motions cut into windows, with the weight of each joint's residual.
+//! Motions cut into windows, with the weight of each signal's residual.
+
+mod signals;
 
 use super::assumed::{AssumedStates, assumed};
 use super::cut::{cut, cut_evenly};
 use super::growth::stable_horizon;
 use super::horizon::{Horizon, Window};
 use super::node::{Node, StartGuess};
-use super::noise::noise;
 use super::windows::MotionWindow;
 use crate::log::Motion;
-use crate::model::{ColumnMean, MeasuredSignal, Model};
+use crate::model::{MeasuredSignal, Model};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::ops::Range;
 
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
@@ -20,19 +20,19 @@ pub struct FitData {
     pub motions: Vec<Motion>,
     /// Windows in the order of motions and time.
     pub windows: Vec<Window>,
-    /// Per joint: what is measured of it.
+    /// Per joint: what is measured of it. Behind the joints come the rates of those that have a
+    /// sensor of rates beside the one of their angle.
     pub signals: Vec<MeasuredSignal>,
-    /// Per joint: standard deviation of the measurement, rad, of a rate rad/s, by which residuals
+    /// Per signal: standard deviation of the measurement, rad, of a rate rad/s, by which residuals
     /// are divided.
     pub sigma: Vec<f64>,
+    /// The joints of the signals behind those of the joints.
+    rate_joints: Vec<usize>,
     /// Per motion: the longest windows in which start errors stay small.
     stable: Vec<Horizon>,
     /// Per motion: guessed states of the joints whose angle is not measured.
     assumed: Vec<AssumedStates>,
 }
-
-/// Stands for the noise of a joint of which nothing is measured.
-const NO_NOISE: f64 = 1e-3;
 
 impl FitData {
     /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
@@ -57,18 +57,10 @@ impl FitData {
         horizon: Horizon,
         stable: Option<&[Horizon]>,
     ) -> FitData {
-        let columns = model.log.joints.iter();
-        let signals: Vec<MeasuredSignal> = columns.map(|columns| columns.signal()).collect();
-        let sigma: Vec<f64> = (0..model.link_count())
-            .map(|joint| match signals[joint] {
-                MeasuredSignal::Nothing => NO_NOISE,
-                signal => {
-                    let columns = model.log.joints[joint].measured();
-                    let resolution = columns.and_then(ColumnMean::resolution);
-                    noise(&motions, joint, signal, resolution)
-                }
-            })
-            .collect();
+        let rate_joints = model.log.rate_joints();
+        let motions = motions.into_iter();
+        let motions: Vec<Motion> = motions.map(|m| m.with_rates(&rate_joints)).collect();
+        let (signals, sigma) = signals::of(model, &motions, &rate_joints);
         let prepared = motions.par_iter().enumerate().map(|(index, motion)| {
             let assumed = assumed(model, &signals, &sigma, motion);
             let stable = match stable {
@@ -83,6 +75,7 @@ impl FitData {
             motions,
             signals,
             sigma,
+            rate_joints,
             stable,
             assumed,
         }
@@ -133,28 +126,6 @@ impl FitData {
         joined
     }
 
-    /// The same windows with other readings in place of the measured ones, rad: per motion and
-    /// window, joint after joint. What was not measured stays so.
-    pub fn measuring(mut self, readings: &[Vec<Vec<f64>>]) -> FitData {
-        for (motion, readings) in readings.iter().enumerate() {
-            let windows: Vec<Range<usize>> = self
-                .windows_of(motion)
-                .map(|(_, window)| window.samples.clone())
-                .collect();
-            for (samples, readings) in windows.into_iter().zip(readings) {
-                let joints = readings.chunks(samples.len());
-                for (position, readings) in self.motions[motion].position_rad.iter_mut().zip(joints)
-                {
-                    let measured = position[samples.clone()].iter_mut().zip(readings);
-                    for (position, reading) in measured.filter(|(p, _)| !p.is_nan()) {
-                        *position = *reading;
-                    }
-                }
-            }
-        }
-        self
-    }
-
     /// Some of the motions, cut as they are here.
     pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
         let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();
@@ -169,6 +140,7 @@ impl FitData {
             motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             signals: self.signals.clone(),
             sigma: self.sigma.clone(),
+            rate_joints: self.rate_joints.clone(),
             stable: kept.iter().map(|&m| self.stable[m]).collect(),
             assumed: kept.iter().map(|&m| self.assumed[m].clone()).collect(),
         }
@@ -193,37 +165,15 @@ impl FitData {
         windows.filter(move |(_, window)| window.motion == motion)
     }
 
-    /// Number of joints.
-    pub fn joints(&self) -> usize {
-        self.sigma.len()
-    }
-
-    /// What is measured of a joint in a motion, rad, of a rate rad/s; not a number in gaps.
-    pub fn measured(&self, motion: usize, joint: usize) -> &[f64] {
-        self.motions[motion].measured(joint, self.signals[joint])
-    }
-
-    /// How many samples of joints in all windows were not measured.
-    pub fn gaps(&self) -> usize {
-        let of_window = |window: &Window| {
-            let gaps = |joint: usize| {
-                let values = &self.measured(window.motion, joint)[window.samples.clone()];
-                values.iter().filter(|value| value.is_nan()).count()
-            };
-            (0..self.joints()).map(gaps).sum::<usize>()
-        };
-        self.windows.iter().map(of_window).sum()
-    }
-
     /// What an error over all joints together is made of: angles and, 1 mm for 1 mrad,
     /// displacements; rates where neither is measured.
     pub fn quantity(&self) -> MeasuredSignal {
         MeasuredSignal::pooled(&self.signals)
     }
 
-    /// Whether a joint counts in an error over all joints together.
-    pub fn counts(&self, joint: usize) -> bool {
-        self.signals[joint].counts_in(self.quantity())
+    /// Whether a signal counts in an error over all joints together.
+    pub fn counts(&self, signal: usize) -> bool {
+        self.signals[signal].counts_in(self.quantity())
     }
 
     /// The start state that the samples around a window's start suggest.
@@ -275,10 +225,10 @@ impl FitData {
     /// Root-mean-square error that a perfect model would show, rad, all joints together; rad/s
     /// where no angle is measured.
     pub fn floor(&self) -> f64 {
-        let joints = (0..self.joints()).filter(|&joint| self.counts(joint));
+        let signals = (0..self.signals.len()).filter(|&signal| self.counts(signal));
         let (mut squares, mut count) = (0.0, 0);
-        for joint in joints {
-            squares += self.sigma[joint] * self.sigma[joint];
+        for signal in signals {
+            squares += self.sigma[signal] * self.sigma[signal];
             count += 1;
         }
         (squares / f64::from(count.max(1))).sqrt()

@@ -101,11 +101,11 @@ impl Fit {
     pub fn rms(&self, data: &FitData) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {
-            let joints = residuals.chunks(window.samples.len()).enumerate();
-            for (joint, part) in joints.filter(|(joint, _)| data.counts(*joint)) {
-                let measured = &data.measured(window.motion, joint)[window.samples.clone()];
+            let signals = residuals.chunks(window.samples.len()).enumerate();
+            for (signal, part) in signals.filter(|(signal, _)| data.counts(*signal)) {
+                let measured = &data.measured(window.motion, signal)[window.samples.clone()];
                 for (residual, _) in part.iter().zip(measured).filter(|(_, m)| !m.is_nan()) {
-                    sum += (residual * data.sigma[joint]).powi(2);
+                    sum += (residual * data.sigma[signal]).powi(2);
                     count += 1;
                 }
             }

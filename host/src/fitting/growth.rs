@@ -107,7 +107,7 @@ impl Growth {
 /// How the state at a window's end follows the one at its start.
 fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) -> DMatrix<f64> {
     let joints = plant.len();
-    let mut readings = vec![0.0; joints * window.samples.len()];
+    let mut readings = vec![0.0; plant.signals() * window.samples.len()];
     let mut end = |moved: Option<usize>| {
         let mut from = start.clone();
         match moved {
@@ -151,6 +151,7 @@ mod tests {
             },
             position_rad: vec![time_s.iter().map(|t| angle_rad(*t)).collect()],
             velocity_rad_s: vec![None],
+            rate_rad_s: Vec::new(),
             input: vec![None],
             supply_v: None,
             torque_on: None,

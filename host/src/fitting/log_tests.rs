@@ -4,7 +4,7 @@
 use super::*;
 use crate::effects::named;
 use crate::log::{Motion, Split};
-use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
+use crate::model::{ColumnMean, EffectInstance, MeasuredSignal, Model, ParameterPath};
 use crate::sim::{Memory, Plant, Start, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -27,7 +27,7 @@ pub(super) const ANGLE: &str =
 const RATE: &str = "velocity = { column = \"w\", unit = \"rad/s\", resolution_rad_s = 0.01 }";
 
 /// What a model does from this angle, at these times, let go at rest: what it predicts goes into
-/// the angles, or into the rates where it has those alone.
+/// the angles, or into the rates where it has those alone, or a sensor of them.
 pub(super) fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
     let joints = model.link_count();
     let gaps = vec![f64::NAN; time_s.len()];
@@ -45,26 +45,35 @@ pub(super) fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motio
         ..Start::default()
     };
     let plant = Plant::new(model, &motion);
-    let mut readings = vec![0.0; joints * motion.len()];
+    let mut readings = vec![0.0; plant.signals() * motion.len()];
     let mut memory = Memory::default();
     let whole = 0..motion.len();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
-    for (joint, values) in readings.chunks(motion.len()).enumerate() {
+    let (of_joints, of_rates) = readings.split_at(joints * motion.len());
+    for (joint, values) in of_joints.chunks(motion.len()).enumerate() {
         let columns = &model.log.joints[joint];
-        let step = columns
-            .measured()
-            .and_then(|c| c.resolution())
-            .unwrap_or(1e-9);
-        let rounded = values.iter().map(|value| (value / step).round() * step);
+        let rounded = rounded(values, columns.measured());
         match columns.signal() {
             MeasuredSignal::Angle | MeasuredSignal::Displacement => {
-                motion.position_rad[joint] = rounded.collect();
+                motion.position_rad[joint] = rounded;
             }
-            MeasuredSignal::Rate => motion.velocity_rad_s[joint] = Some(rounded.collect()),
+            MeasuredSignal::Rate => motion.velocity_rad_s[joint] = Some(rounded),
             MeasuredSignal::Nothing => {}
         }
     }
+    motion.rate_rad_s = vec![None; joints];
+    let rates = of_rates.chunks(motion.len());
+    for (&joint, values) in plant.rate_joints().iter().zip(rates) {
+        let read = rounded(values, model.log.joints[joint].rate.as_ref());
+        motion.rate_rad_s[joint] = Some(read);
+    }
     motion
+}
+
+fn rounded(values: &[f64], columns: Option<&ColumnMean>) -> Vec<f64> {
+    let step = columns.and_then(ColumnMean::resolution).unwrap_or(1e-9);
+    let rounded = values.iter().map(|value| (value / step).round() * step);
+    rounded.collect()
 }
 
 pub(super) fn even(samples: u32, hz: f64) -> Vec<f64> {

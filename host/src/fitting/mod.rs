@@ -32,6 +32,8 @@ mod noise;
 mod normal;
 mod profile;
 mod projector;
+#[cfg(test)]
+mod rate_tests;
 mod refit;
 mod residual;
 mod solve;

@@ -1,26 +1,19 @@
 //! How exactly a motion was measured: the floor below which no model can be judged.
 
 use crate::log::Motion;
-use crate::model::MeasuredSignal;
 
-/// Standard deviation of what is measured of a joint, rad, m or rad/s.
+/// Standard deviation of what was measured, rad, m or rad/s, in these motions one by one.
 ///
 /// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
 /// differences. Motion leaks into them where sampling is slow; then neighbours agree, while those
 /// of noise alternate (correlation -6/7), and the resolution alone counts. Over uneven time stamps
 /// they are divided differences: stamps that are right let no motion through, and the error of
 /// stamps that are not is an error of the reading.
-pub fn noise(
-    motions: &[Motion],
-    joint: usize,
-    signal: MeasuredSignal,
-    declared_resolution: Option<f64>,
-) -> f64 {
-    let series: Vec<&[f64]> = motions.iter().map(|m| m.measured(joint, signal)).collect();
-    let resolution = declared_resolution.or_else(|| estimated_resolution(&series));
+pub fn noise(motions: &[Motion], series: &[&[f64]], declared_resolution: Option<f64>) -> f64 {
+    let resolution = declared_resolution.or_else(|| estimated_resolution(series));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
     let times: Vec<&[f64]> = motions.iter().map(|m| m.time_s.as_slice()).collect();
-    let differences = differences(&times, &series);
+    let differences = differences(&times, series);
     let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
     rounding.max(if counts { seen } else { 0.0 }).max(1e-6)

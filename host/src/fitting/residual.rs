@@ -6,10 +6,10 @@ use crate::model::{MeasuredSignal, Model};
 use crate::sim::{Memory, Plant, predict};
 use rayon::prelude::*;
 
-/// Weighted residuals, (measured - predicted) / sigma; one vector per window, joint after joint.
+/// Weighted residuals, (measured - predicted) / sigma; one vector per window, signal after signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Residuals {
-    /// Per window: `joints * samples` values. A sample that was not measured counts 0.
+    /// Per window: `signals * samples` values. A sample that was not measured counts 0.
     pub windows: Vec<Vec<f64>>,
     /// How many of the values were not measured.
     pub gaps: usize,
@@ -76,9 +76,9 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
     }
 }
 
-/// What a model predicts for one motion's windows, in order, joint after joint: readings, rad, and
-/// rates, rad/s, of joints whose rate alone is logged. Every window starts from its node, and the
-/// memory runs on from window to window.
+/// What a model predicts for one motion's windows, in order, signal after signal: readings, rad,
+/// and rates, rad/s, of joints whose rate alone is logged and of rate sensors beside an angle's.
+/// Every window starts from its node, and the memory runs on from window to window.
 pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
@@ -87,7 +87,7 @@ pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -
     windows
         .map(|(index, window)| {
             let samples = window.samples.clone();
-            let mut readings = vec![0.0; samples.len() * plant.len()];
+            let mut readings = vec![0.0; samples.len() * plant.signals()];
             let start = nodes[index].start(&plant);
             predict(&plant, log, samples, &start, &mut memory, &mut readings);
             readings
@@ -104,10 +104,10 @@ pub(super) fn motion_residuals(
 ) -> Vec<Vec<f64>> {
     let mut windows = predicted(model, data, nodes, motion);
     for (values, (_, window)) in windows.iter_mut().zip(data.windows_of(motion)) {
-        for (joint, part) in values.chunks_mut(window.samples.len()).enumerate() {
-            let measured = &data.measured(motion, joint)[window.samples.clone()];
-            let sigma = data.sigma[joint];
-            let most = worst(data.signals[joint], sigma);
+        for (signal, part) in values.chunks_mut(window.samples.len()).enumerate() {
+            let measured = &data.measured(motion, signal)[window.samples.clone()];
+            let sigma = data.sigma[signal];
+            let most = worst(data.signals[signal], sigma);
             for (value, measured) in part.iter_mut().zip(measured) {
                 *value = weighted(*measured, *value, sigma, most);
             }

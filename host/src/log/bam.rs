@@ -84,6 +84,7 @@ pub(super) fn read(
         },
         position_rad: vec![entries.numbers("position")?],
         velocity_rad_s: vec![entries.optional("speed")?],
+        rate_rad_s: vec![None],
         input: vec![Some(entries.goals()?)],
         supply_v: entries.optional("input_volts")?,
         torque_on: entries.flags("torque_enable")?,

@@ -28,6 +28,9 @@ pub struct Motion {
     pub position_rad: Vec<Vec<f64>>,
     /// Per joint: measured speed, rad/s, where logged; not a number where it was not measured.
     pub velocity_rad_s: Vec<Option<Vec<f64>>>,
+    /// Per joint: what a rate sensor reads that it has beside the one of its angle, rad/s; not a
+    /// number where it was not measured. Empty where no joint has one.
+    pub rate_rad_s: Vec<Option<Vec<f64>>>,
     /// Per joint: the drive's input, in SI of its kind, never a gap; none for a passive joint.
     pub input: Vec<Option<Vec<f64>>>,
     /// Supply, V, where logged.
@@ -58,6 +61,25 @@ impl Motion {
             (MeasuredSignal::Rate, Some(rate)) => rate,
             _ => &self.position_rad[joint],
         }
+    }
+
+    /// What the rate sensor reads that a joint has beside the one of its angle, rad/s, if it has.
+    pub fn rate(&self, joint: usize) -> Option<&[f64]> {
+        self.rate_rad_s.get(joint)?.as_deref()
+    }
+
+    /// The same with gaps for those of these joints of whose rate sensor it holds nothing.
+    pub(crate) fn with_rates(mut self, joints: &[usize]) -> Motion {
+        let samples = self.len();
+        if !joints.is_empty() {
+            self.rate_rad_s.resize(self.position_rad.len(), None);
+        }
+        for &joint in joints {
+            if let Some(rate @ None) = self.rate_rad_s.get_mut(joint) {
+                *rate = Some(vec![f64::NAN; samples]);
+            }
+        }
+        self
     }
 
     /// From the first sample to the last, s.

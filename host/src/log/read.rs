@@ -252,7 +252,9 @@ fn filled(motion: &mut Motion, columns: &LogColumns, name: &str) -> Result<(), L
             Some(position) => (!known(&motion.position_rad[joint])).then_some(position),
             None => columns.velocity.as_ref().filter(|_| !measured),
         };
-        if let Some(column) = column {
+        let silent = motion.rate(joint).is_some_and(|rate| !known(rate));
+        let rate = columns.rate.as_ref().filter(|_| silent);
+        if let Some(column) = column.or(rate) {
             return Err(empty(column.name(), name));
         }
         let on = motion.torque_on.as_ref();
@@ -286,6 +288,7 @@ fn hold(values: &mut [f64], first: f64) {
 }
 
 fn begin(row: &LogRow) -> Motion {
+    let each = |values: &[Option<f64>]| values.iter().map(|v| v.map(|_| Vec::new())).collect();
     Motion {
         name: String::new(),
         source: MotionSource {
@@ -295,12 +298,9 @@ fn begin(row: &LogRow) -> Motion {
         },
         time_s: Vec::new(),
         position_rad: vec![Vec::new(); row.position_rad.len()],
-        velocity_rad_s: row
-            .velocity_rad_s
-            .iter()
-            .map(|v| v.map(|_| Vec::new()))
-            .collect(),
-        input: row.input.iter().map(|u| u.map(|_| Vec::new())).collect(),
+        velocity_rad_s: each(&row.velocity_rad_s),
+        rate_rad_s: each(&row.rate_rad_s),
+        input: each(&row.input),
         supply_v: row.supply_v.map(|_| Vec::new()),
         torque_on: row.torque_on.map(|_| Vec::new()),
         payload_kg: row.payload_kg,
@@ -319,6 +319,7 @@ fn append(motion: &mut Motion, row: &LogRow) {
     for (joint, value) in row.position_rad.iter().enumerate() {
         motion.position_rad[joint].push(*value);
         push(&mut motion.velocity_rad_s[joint], row.velocity_rad_s[joint]);
+        push(&mut motion.rate_rad_s[joint], row.rate_rad_s[joint]);
         push(&mut motion.input[joint], row.input[joint]);
     }
     push(&mut motion.supply_v, row.supply_v);

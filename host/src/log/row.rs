@@ -42,6 +42,9 @@ pub struct LogRow {
     pub position_rad: Vec<f64>,
     /// Per joint: speed, rad/s, where logged; not a number where it was not measured.
     pub velocity_rad_s: Vec<Option<f64>>,
+    /// Per joint: reading of its own rate sensor, rad/s, where it has one; not a number where it
+    /// was not measured.
+    pub rate_rad_s: Vec<Option<f64>>,
     /// Per joint: the drive's input, SI of its kind; not a number where the field is empty.
     pub input: Vec<Option<f64>>,
     /// Supply, V, where logged; not a number where the field is empty.
@@ -92,6 +95,7 @@ impl LogRow {
                 .map(|values| values[index])
                 .collect(),
             velocity_rad_s: motion.velocity_rad_s.iter().map(at).collect(),
+            rate_rad_s: vec![None; joints],
             input: motion.input.iter().map(at).collect(),
             supply_v: at(&motion.supply_v),
             torque_on: motion.torque_on.as_ref().map(|values| values[index]),

@@ -23,6 +23,7 @@ type Mean<'a> = Vec<LogQuantity<'a>>;
 struct JointQuantities<'a> {
     position: Mean<'a>,
     velocity: Mean<'a>,
+    rate: Mean<'a>,
     input: Mean<'a>,
 }
 
@@ -62,6 +63,7 @@ impl<'a> RowReader<'a> {
             Ok(JointQuantities {
                 position: mean(&joint.position)?,
                 velocity: mean(&joint.velocity)?,
+                rate: mean(&joint.rate)?,
                 input: mean(&joint.input)?,
             })
         });
@@ -166,11 +168,13 @@ impl<'a> RowReader<'a> {
         row.turned = line.flag(&self.turned)?.unwrap_or(false);
         row.position_rad.clear();
         row.velocity_rad_s.clear();
+        row.rate_rad_s.clear();
         row.input.clear();
         for joint in &self.joints {
             let position = line.mean(&joint.position)?;
             row.position_rad.push(position.unwrap_or(f64::NAN));
             row.velocity_rad_s.push(line.mean(&joint.velocity)?);
+            row.rate_rad_s.push(line.mean(&joint.rate)?);
             row.input.push(line.mean(&joint.input)?);
         }
         Ok(())

@@ -10,8 +10,8 @@ impl Motion {
         self.shifted_by(|joint| columns.joints[joint].shifts_s())
     }
 
-    /// As [`Motion::shifted`], by what each joint's position, velocity and input ask for, s.
-    pub(crate) fn shifted_by(mut self, shifts_s: impl Fn(usize) -> [f64; 3]) -> Motion {
+    /// As [`Motion::shifted`], by what each joint's position, velocity, rate and input ask for, s.
+    pub(crate) fn shifted_by(mut self, shifts_s: impl Fn(usize) -> [f64; 4]) -> Motion {
         let (mut earliest, mut latest) = (0.0_f64, 0.0_f64);
         for joint in 0..self.position_rad.len() {
             let shifts = shifts_s(joint);
@@ -25,7 +25,9 @@ impl Motion {
             };
             shift(Some(&mut self.position_rad[joint]), shifts[0]);
             shift(self.velocity_rad_s[joint].as_mut(), shifts[1]);
-            shift(self.input[joint].as_mut(), shifts[2]);
+            let rate = self.rate_rad_s.get_mut(joint);
+            shift(rate.and_then(Option::as_mut), shifts[2]);
+            shift(self.input[joint].as_mut(), shifts[3]);
         }
         if (earliest, latest) == (0.0, 0.0) {
             return self;
@@ -49,6 +51,7 @@ impl Motion {
             time_s: of(&self.time_s),
             position_rad: self.position_rad.iter().map(of).collect(),
             velocity_rad_s: of_each(&self.velocity_rad_s),
+            rate_rad_s: of_each(&self.rate_rad_s),
             input: of_each(&self.input),
             supply_v: self.supply_v.as_ref().map(of),
             torque_on: self
@@ -86,7 +89,7 @@ mod tests {
     #[test]
     fn a_shift_moves_a_column_and_shortens_the_motion() {
         let motion = motion("m", 100);
-        let late = motion.clone().shifted_by(|_| [0.0, 0.0, 0.025]);
+        let late = motion.clone().shifted_by(|_| [0.0, 0.0, 0.0, 0.025]);
         assert_eq!(late.time_s, motion.time_s[3..].to_vec());
         let (was, is) = (
             motion.input[0].as_ref().unwrap(),
@@ -94,9 +97,9 @@ mod tests {
         );
         assert!((is[0] - 0.5 * (was[0] + was[1])).abs() < 1e-12);
         assert_eq!(late.position_rad[0], motion.position_rad[0][3..]);
-        let early = motion.clone().shifted_by(|_| [-0.02, 0.0, 0.0]);
+        let early = motion.clone().shifted_by(|_| [-0.02, 0.0, 0.0, 0.0]);
         assert_eq!(early.len(), 98);
         assert!((early.position_rad[0][0] - motion.position_rad[0][2]).abs() < 1e-12);
-        assert_eq!(motion.clone().shifted_by(|_| [0.0; 3]), motion);
+        assert_eq!(motion.clone().shifted_by(|_| [0.0; 4]), motion);
     }
 }

@@ -51,6 +51,10 @@ fn series<'a>(motion: &'a Motion, columns: &'a LogColumns) -> Vec<(&'a str, Valu
         let own = [
             (&joint.position, Some(&motion.position_rad[i])),
             (&joint.velocity, motion.velocity_rad_s[i].as_ref()),
+            (
+                &joint.rate,
+                motion.rate_rad_s.get(i).and_then(Option::as_ref),
+            ),
             (&joint.input, motion.input[i].as_ref()),
         ];
         for (mean, values) in own {

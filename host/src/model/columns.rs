@@ -1,5 +1,6 @@
 //! The columns of a rig's logs: names, units, offsets.
 
+use super::rate_sensor::RateSensor;
 use super::unit::{Dimension, Unit};
 
 /// One quantity of the log.
@@ -82,7 +83,8 @@ impl ColumnMean {
 /// What a log holds of a joint's motion, and so what a model is compared with there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasuredSignal {
-    /// Its angle, rad; a logged speed only helps to guess start states.
+    /// Its angle, rad; a logged speed only helps to guess start states, unless it is of a rate
+    /// sensor of its own, which is a signal by itself.
     Angle,
     /// Its displacement, m, of a joint that slides; likewise.
     Displacement,
@@ -140,12 +142,16 @@ impl MeasuredSignal {
 }
 
 /// The columns of one joint.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct JointColumns {
     /// Measured angle in the model's convention, if logged.
     pub position: Option<ColumnMean>,
     /// Measured speed, if logged.
     pub velocity: Option<ColumnMean>,
+    /// What a rate sensor of its own reads, if the joint has one beside the angle's.
+    pub rate: Option<ColumnMean>,
+    /// Which sensor that is.
+    pub rate_sensor: RateSensor,
     /// The drive's input: torque, duty, goal angle or goal speed; none for a passive joint.
     pub input: Option<ColumnMean>,
 }
@@ -168,11 +174,11 @@ impl JointColumns {
 }
 
 impl JointColumns {
-    /// By how much position, velocity and input are moved in time, s; of several columns for one
-    /// quantity the first says so for all.
-    pub fn shifts_s(&self) -> [f64; 3] {
+    /// By how much position, velocity, rate and input are moved in time, s; of several columns for
+    /// one quantity the first says so for all.
+    pub fn shifts_s(&self) -> [f64; 4] {
         let of = |mean: &Option<ColumnMean>| mean.as_ref().map_or(0.0, |m| m.columns[0].shift_s);
-        [of(&self.position), of(&self.velocity), of(&self.input)]
+        [&self.position, &self.velocity, &self.rate, &self.input].map(of)
     }
 }
 
@@ -213,6 +219,13 @@ pub struct LogColumns {
 }
 
 impl LogColumns {
+    /// The joints that have a rate sensor beside the one of their angle.
+    pub fn rate_joints(&self) -> Vec<usize> {
+        let joints = self.joints.iter().enumerate();
+        let sensed = joints.filter(|(_, columns)| columns.rate.is_some());
+        sensed.map(|(joint, _)| joint).collect()
+    }
+
     /// What the logs cannot observe of the joints' motion, a sentence each.
     pub fn unobserved(&self) -> Vec<String> {
         let joints = (1..).zip(&self.joints);
@@ -240,9 +253,17 @@ impl LogColumns {
         sentences
     }
 
-    /// The same, and how errors of joints that turn and joints that slide become one figure.
+    /// The same, which rates count beside angles, and how errors of joints that turn and joints
+    /// that slide become one figure.
     pub fn notes(&self) -> Vec<String> {
         let mut sentences = self.unobserved();
+        for joint in self.rate_joints() {
+            sentences.push(format!(
+                "The rate of joint {} counts by its own noise; errors in mrad are of angles alone, \
+                 and `handstand compare` tells the rate's.",
+                joint + 1
+            ));
+        }
         let slides = |columns: &JointColumns| columns.signal() == MeasuredSignal::Displacement;
         if self.joints.iter().all(slides) {
             sentences.push(

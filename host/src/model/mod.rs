@@ -15,6 +15,7 @@ pub mod new_model;
 mod parse;
 mod path;
 mod pose;
+mod rate_sensor;
 pub(crate) mod reader;
 mod reason;
 mod rig;
@@ -29,6 +30,7 @@ pub use joint::{Drive, Joint, Motor, effect_on};
 pub use limits::Limits;
 pub use path::ParameterPath;
 pub use pose::{hanging, upright};
+pub use rate_sensor::RateSensor;
 pub use reason::{ModelReason, PathReason};
 pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
@@ -220,10 +222,19 @@ impl Model {
         }
     }
 
+    /// The hinges whose speeds add up to the rate that a sensor at a joint feels.
+    pub fn turning(&self, sensor: RateSensor, joint: usize) -> Vec<usize> {
+        let turns = |joint: &usize| self.joints[*joint].slide.is_none();
+        match sensor {
+            RateSensor::Tachometer => vec![joint],
+            RateSensor::Gyro => (0..=joint).filter(turns).collect(),
+        }
+    }
+
     /// Whether a sensor's reading trails the motion, or a joint's column is off in time against
-    /// those of others: the state of the joints then follows from how fast readings change.
+    /// others: the state of the joints then follows from how fast readings change.
     pub fn trails(&self) -> bool {
-        let several = self.link_count() > 1;
+        let several = self.link_count() > 1 || !self.log.rate_joints().is_empty();
         let trails = |e: &EffectInstance| {
             let offset_s = e.effect.reading_offset_s(&e.values).filter(|_| several);
             offset_s.or(e.effect.trail_rad(&e.values, 1.0)).is_some()

@@ -115,6 +115,21 @@ pub enum ModelReason {
     /// A log of which no joint is measured.
     #[error("[log] names neither a position nor a velocity of any joint")]
     NothingMeasured,
+    /// A rate sensor at a joint that slides.
+    #[error("a joint that slides has no `{key}`")]
+    RateOfSlide {
+        /// The sensor's key.
+        key: &'static str,
+    },
+    /// A rate sensor beside no angle.
+    #[error("`{key}` is a rate sensor beside an angle, and this joint has no `position`")]
+    RateWithoutAngle {
+        /// The sensor's key.
+        key: &'static str,
+    },
+    /// Two rate sensors at one joint.
+    #[error("a joint has one rate sensor: `gyro` or `tachometer`")]
+    TwoRates,
     /// A list of columns without any.
     #[error("`{quantity}` names no column")]
     NoColumns {
@@ -202,6 +217,9 @@ impl Reason for ModelReason {
                 return format!("write one of: {}", units(wanted)).into();
             }
             NothingMeasured => "name the column of an angle, or of a rate: `velocity`",
+            RateOfSlide { .. } => "remove it; a slide's `velocity` helps to guess start states",
+            RateWithoutAngle { .. } => "call it `velocity`: the joint is then compared by its rate",
+            TwoRates => "keep the one that reads more finely",
             NoColumns { .. } => "name one, such as { column = \"q_rad\", unit = \"rad\" }",
             PassiveInput => "remove `input`, or say what drives the joint",
             MissingInput { wanted, .. } => {

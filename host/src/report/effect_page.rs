@@ -92,6 +92,7 @@ fn needs(needs: Needs) -> &'static str {
     match needs {
         Needs::Nothing => "",
         Needs::Supply => " Needs the supply voltage in the log, and the nominal one in the model.",
+        Needs::RateSensor => " Needs a rate sensor beside the one of the angle.",
         Needs::GearLoad => " Needs the torque through the gear, which the dynamics compute.",
         Needs::BearingLoad => " Needs the force in the bearing, which the dynamics compute.",
     }

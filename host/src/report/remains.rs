@@ -97,7 +97,7 @@ fn tests(comparison: &Comparison) -> Markup {
         @for signal in &comparison.signals {
             @for test in &signal.tests {
                 tr {
-                    td.number { (signal.joint) }
+                    td.number { (signal.joint) @if signal.beside_angle { ", rate" } }
                     td { (test.name) }
                     td {
                         @if test.passed { span.good { "✓ passes" } }

@@ -47,15 +47,16 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn pairs<'a>(before: &'a Comparison, after: Option<&'a Comparison>) -> Vec<Pair<'a>> {
-    let same = |a: &Trace, b: &Trace| a.motion == b.motion && a.joint == b.joint;
-    let floor = |joint| {
-        let signal = before.signals.iter().find(|signal| signal.joint == joint);
-        signal.map(|signal| signal.floor)
+    let same_signal = |a: &Trace, b: &Trace| a.joint == b.joint && a.quantity == b.quantity;
+    let same = |a: &Trace, b: &Trace| a.motion == b.motion && same_signal(a, b);
+    let floor = |trace: &Trace| {
+        let own = |s: &&SignalError| s.joint == trace.joint && s.quantity == trace.quantity;
+        before.signals.iter().find(own).map(|signal| signal.floor)
     };
     let pair = |trace: &'a Trace| Pair {
         before: trace,
         after: after.and_then(|after| after.traces.iter().find(|other| same(trace, other))),
-        floor: floor(trace.joint),
+        floor: floor(trace),
     };
     before.traces.iter().map(pair).collect()
 }
@@ -154,7 +155,7 @@ fn fits(report: &Report) -> Markup {
             @for signal in &comparison.signals {
                 tr {
                     td { (comparison.model) }
-                    td.number { (signal.joint) }
+                    td.number { (signal.joint) @if signal.beside_angle { ", rate" } }
                     td.number { (mrad(signal.rms)) (per_s(signal)) }
                     td.number { (mrad(signal.largest)) (per_s(signal)) }
                     td.number { (short(signal.fit_percent)) " %" }

@@ -50,8 +50,11 @@ pub(super) struct JointPlan {
     pub sense: Vec<ActiveEffect>,
     /// By how much later than the sensor read it the log holds a reading, s.
     pub offset_s: f64,
-    /// What a sensor of rates reads at rest, rad/s.
+    /// What a sensor of rates reads at rest, rad/s, and per rate beyond that.
     pub rate_bias_rad_s: f64,
+    pub rate_scale: f64,
+    /// What a rate is read through, with memory.
+    pub rate_sense: Vec<ActiveEffect>,
 }
 
 impl JointPlan {
@@ -72,6 +75,8 @@ impl JointPlan {
             sense: Vec::new(),
             offset_s: 0.0,
             rate_bias_rad_s: 0.0,
+            rate_scale: 1.0,
+            rate_sense: Vec::new(),
         }
     }
 
@@ -115,10 +120,11 @@ impl JointPlan {
             .filter_map(|e| Some((e, e.cell?)))
     }
 
-    /// Leaves those sensors that a rate is read through.
+    /// Leaves those sensors that a rate is read through, where nothing else is read.
     pub fn keep_rate_sensors(&mut self) {
         self.sense
             .retain(|e| e.effect.trail_rad(e.values(), 1.0).is_some());
+        self.sense.append(&mut self.rate_sense);
     }
 
     /// Speed of the motor, rad/s, where the joint has this one.
@@ -163,7 +169,13 @@ impl JointPlan {
                 Some(offset_s) => self.offset_s += offset_s,
                 None => self.sense.push(active),
             },
-            Site::Rate => self.rate_bias_rad_s += effect.rate_bias_rad_s(values),
+            Site::Rate => {
+                self.rate_bias_rad_s += effect.rate_bias_rad_s(values);
+                self.rate_scale *= effect.rate_scale(values);
+                if effect.trail_rad(values, 1.0).is_some() {
+                    self.rate_sense.push(active);
+                }
+            }
         }
     }
 }

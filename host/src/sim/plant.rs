@@ -1,11 +1,13 @@
 //! A model made ready for one motion: effects sorted by site, conditions of the motion applied.
 
+mod rate_reading;
 mod readings;
 
 use super::joint_plan::JointPlan;
 use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
 use crate::log::Motion;
 use crate::model::{Angles, MeasuredSignal, Model};
+pub(super) use rate_reading::RateReading;
 
 /// A model compiled for one motion.
 #[derive(Debug, Clone)]
@@ -21,6 +23,10 @@ pub struct Plant {
     pub(super) absolute: bool,
     /// Per joint: whether the log holds its rate alone, which is then what is predicted.
     pub(super) rates: Vec<bool>,
+    /// What rate sensors read that joints have beside those of their angles, in the joints' order.
+    pub(super) rate_readings: Vec<RateReading>,
+    /// The joints that have one.
+    rate_joints: Vec<usize>,
     /// Whether any reading has a memory that must follow every step.
     pub(super) senses: bool,
     /// By how much the inputs of drives are late, each other than 0 once, s.
@@ -54,7 +60,7 @@ impl Plant {
             .map(|columns| columns.signal() == MeasuredSignal::Rate)
             .collect();
         rates.resize(model.link_count(), false);
-        Plant::read_by(model, motion, rates)
+        Plant::read_by(model, motion, rates).with_rate_sensors(model)
     }
 
     /// The same where `rates` says of which joints the rate is read, not the angle.
@@ -104,6 +110,8 @@ impl Plant {
         let offsets_s = || joints.iter().map(|joint| joint.offset_s);
         Plant {
             rates,
+            rate_readings: Vec::new(),
+            rate_joints: Vec::new(),
             senses,
             delays_s,
             has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
@@ -165,6 +173,17 @@ impl Plant {
     /// Number of joints.
     pub fn len(&self) -> usize {
         self.joints.len()
+    }
+
+    /// Number of signals that are predicted: one a joint, and behind those the rate sensors that
+    /// joints have beside those of their angles.
+    pub fn signals(&self) -> usize {
+        self.joints.len() + self.rate_readings.len()
+    }
+
+    /// The joints of those rate sensors, in their order.
+    pub fn rate_joints(&self) -> &[usize] {
+        &self.rate_joints
     }
 
     /// Whether there is no joint.

@@ -37,7 +37,9 @@ const SPARED: f64 = 0.1;
 /// Predicted readings, rad in the log's convention, at samples `stretch` of the motion; rates,
 /// rad/s, of joints whose rate alone is logged.
 ///
-/// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`. Inputs are
+/// `readings[joint * stretch.len() + k]` is joint `joint` at sample `stretch.start + k`; behind the
+/// joints come the rate sensors that joints have beside those of their angles, rad/s, so that
+/// `readings` holds [`Plant::signals`] values a sample. Inputs are
 /// the recorded ones, each held until the next sample. Returns the state at the last sample of the
 /// stretch, or as much before it as `start` is before the first. A state that grows beyond all
 /// bounds leaves not-a-number in the rest.

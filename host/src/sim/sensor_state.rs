@@ -1,6 +1,6 @@
 //! Sensors with memory (backlash, lag): what they read as the joints move.
 
-use super::joint_plan::JointPlan;
+use super::joint_plan::{ActiveEffect, JointPlan};
 use super::plant::Plant;
 use super::run::Start;
 use crate::effects::{Encoded, SenseMemory};
@@ -10,7 +10,8 @@ use crate::effects::{Encoded, SenseMemory};
 pub struct SensorState {
     /// Per sensor effect, what it remembers of the step before.
     cells: Vec<Option<SenseMemory>>,
-    /// Per joint, rad in the log's convention; rad/s where the rate is read.
+    /// Per joint, rad in the log's convention; rad/s where the rate is read. Then what the rate
+    /// sensors read that joints have beside those of their angles, rad/s.
     pub(super) reading: Vec<f64>,
 }
 
@@ -18,25 +19,33 @@ impl SensorState {
     /// Prepares for a stretch that begins at `start`: sensors that trail begin as far behind as the
     /// speed of their readings says, for a stretch may begin at speed.
     pub(super) fn begin(&mut self, plant: &Plant, start: &Start) {
-        let cells = plant.joints.iter().map(|j| j.sense.len()).sum();
+        let of_joints = plant.joints.iter().map(|j| j.sense.len());
+        let of_rates = plant.rate_readings.iter().map(|rate| rate.sense.len());
+        let cells = of_joints.chain(of_rates).sum();
         if self.cells.len() != cells {
             self.cells = vec![None; cells];
         }
-        self.reading.resize(plant.len(), 0.0);
+        self.reading.resize(plant.signals(), 0.0);
         let mut cells = self.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut reading = plant.encoded(joint, &start.angle_rad, &start.speed_rad_s);
+            let reading = plant.encoded(joint, &start.angle_rad, &start.speed_rad_s);
             let slope = match &start.reading_slope {
                 Some(slope) => slope[joint],
                 None if plant.rates[joint] => 0.0,
                 None => plant.encoded_rad_s(joint, &start.speed_rad_s),
             };
-            for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
-                    *cell = Some([reading, reading - trail, 0.0, 0.0]);
-                    reading -= trail;
-                }
-            }
+            trail_behind(&plan.sense, &mut cells, reading, slope);
+        }
+        for (index, rate) in plant.rate_readings.iter().enumerate() {
+            let reading = rate.encoded_rad_s(&start.speed_rad_s);
+            let slopes = start.reading_slope.as_ref();
+            let slope = slopes.and_then(|slopes| slopes.get(plant.len() + index));
+            trail_behind(
+                &rate.sense,
+                &mut cells,
+                reading,
+                slope.copied().unwrap_or(0.0),
+            );
         }
     }
 
@@ -81,12 +90,35 @@ impl SensorState {
             }
             self.reading[joint] = encoded.angle_rad;
         }
+        for (index, rate) in plant.rate_readings.iter().enumerate() {
+            let mut encoded = Encoded::still(rate.encoded_rad_s(speed_rad_s));
+            for (active, cell) in rate.sense.iter().zip(&mut cells) {
+                encoded.angle_rad = active.effect.sense(active.values(), cell, encoded, step_s);
+            }
+            self.reading[plant.len() + index] = encoded.angle_rad;
+        }
     }
 
-    /// Writes what the log holds as sample `k` of `samples`, joint by joint.
+    /// Writes what the log holds as sample `k` of `samples`, signal by signal.
     pub(super) fn record(&self, readings: &mut [f64], k: usize, samples: usize) {
         for (joint, reading) in self.reading.iter().enumerate() {
             readings[joint * samples + k] = *reading;
+        }
+    }
+}
+
+/// Lets sensors begin as far behind a `reading` as they come to be while it changes by `slope` a
+/// second.
+fn trail_behind<'a>(
+    sense: &[ActiveEffect],
+    cells: &mut impl Iterator<Item = &'a mut Option<SenseMemory>>,
+    mut reading: f64,
+    slope: f64,
+) {
+    for (active, cell) in sense.iter().zip(cells) {
+        if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
+            *cell = Some([reading, reading - trail, 0.0, 0.0]);
+            reading -= trail;
         }
     }
 }

@@ -98,6 +98,7 @@ mod tests {
             time_s: (0..41).map(|k| 0.1 * k as f64).collect(),
             position_rad: vec![angle],
             velocity_rad_s: vec![None],
+            rate_rad_s: Vec::new(),
             input: vec![Some(input)],
             supply_v: None,
             torque_on: None,

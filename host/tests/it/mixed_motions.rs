@@ -66,6 +66,7 @@ fn hanging(bench: &Bench, seed: f64, seconds: f64) -> String {
         },
         position_rad: vec![vec![0.0; samples]; 3],
         velocity_rad_s: vec![None; 3],
+        rate_rad_s: Vec::new(),
         input: vec![None, Some(input(1)), Some(input(2))],
         supply_v: None,
         torque_on: None,

@@ -69,6 +69,7 @@ fn log(truth: &Model, seed: f64) -> String {
         },
         position_rad: vec![vec![0.0; SAMPLES]; 2],
         velocity_rad_s: vec![None; 2],
+        rate_rad_s: Vec::new(),
         input: inputs.map(Some).to_vec(),
         supply_v: None,
         torque_on: None,

@@ -64,6 +64,7 @@ class Motion:
         *,
         input: _PerJoint | None = None,
         velocity_rad_s: _PerJoint | None = None,
+        rate_rad_s: _PerJoint | None = None,
         supply_v: ArrayLike | None = None,
         torque_on: Sequence[bool] | None = None,
         payload_kg: float = 0.0,
@@ -78,6 +79,8 @@ class Motion:
     def position_rad(self) -> _Row: ...
     @property
     def velocity_rad_s(self) -> list[_Row | None]: ...
+    @property
+    def rate_rad_s(self) -> list[_Row | None]: ...
     @property
     def input(self) -> list[_Row | None]: ...
     @property

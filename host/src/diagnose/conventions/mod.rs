@@ -9,6 +9,7 @@ mod continuous;
 mod drives;
 mod excerpts;
 mod findings;
+mod joint_remedies;
 mod leave_out;
 mod rating;
 mod remedy;

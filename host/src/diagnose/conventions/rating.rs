@@ -2,7 +2,7 @@
 //!
 //! An error in rad cannot rank two readings of one log: read in degrees, every angle and every
 //! error is 57 times smaller. The error is therefore divided by that of the plainest prediction,
-//! each joint going on at the speed it starts a window with.
+//! each joint going on at the speed it starts a window with; of a rate beside an angle, none.
 
 use super::trial::Effort;
 use crate::fitting::{
@@ -20,7 +20,7 @@ const ITERATIONS: usize = 8;
 const TO_THE_END: usize = 25;
 /// An error counts as at most this many times the plain prediction's.
 const MOST: f64 = 2.0;
-/// A joint whose movement beyond the plain prediction is less than this many times its noise says
+/// A signal whose movement beyond the plain prediction is less than this many times its noise says
 /// nothing.
 const LEAST_MOVEMENT: f64 = 5.0;
 
@@ -84,11 +84,9 @@ impl ModelReading {
 
     /// Another model that reads the same samples in its own way, cut into the same windows.
     pub fn read_as(&self, model: &Model, motions: Vec<Motion>) -> ModelReading {
-        let mut data = self.data.clone();
-        data.motions = motions;
         ModelReading {
             model: model.clone(),
-            data,
+            data: self.data.clone().measured_in(motions),
         }
     }
 
@@ -127,7 +125,7 @@ fn longest_s(motions: &[Motion]) -> f64 {
 /// Error of a model, window by window.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rating {
-    /// Per window, per joint that says something: error over the joint's plain prediction's, at
+    /// Per window, per signal that says something: error over the signal's plain prediction's, at
     /// most 2.
     pub shares: Vec<Vec<f64>>,
     /// Root-mean-square error, rad, over all joints.
@@ -136,9 +134,9 @@ pub(super) struct Rating {
 
 impl Rating {
     fn of(model: &Model, data: &FitData, nodes: &[Node]) -> Rating {
-        let joints = data.joints();
-        let mut squares = vec![vec![0.0; joints]; data.windows.len()];
-        let mut plain = vec![0.0; joints];
+        let (joints, signals) = (data.joints(), data.signals.len());
+        let mut squares = vec![vec![0.0; signals]; data.windows.len()];
+        let mut plain = vec![0.0; signals];
         let guesses = guessed_nodes(data);
         let (mut sum, mut count) = (0.0, 0usize);
         for motion in 0..data.motions.len() {
@@ -148,40 +146,46 @@ impl Rating {
                 let log = &data.motions[motion];
                 let start_s = log.time_s[window.samples.start];
                 let samples = window.samples.len();
-                for joint in 0..joints {
+                for signal in 0..signals {
                     let guess = &guesses[index].unknowns;
-                    let rate = data.signals[joint] == MeasuredSignal::Rate;
+                    let (rate, beside) = (
+                        data.signals[signal] == MeasuredSignal::Rate,
+                        signal >= joints,
+                    );
                     for (k, sample) in window.samples.clone().enumerate() {
-                        let measured = data.measured(motion, joint)[sample];
+                        let measured = data.measured(motion, signal)[sample];
                         if !measured.is_finite() {
                             continue;
                         }
                         let seconds = log.time_s[sample] - start_s;
                         let straight = match rate {
-                            true => guess[joints + joint],
-                            false => guess[joint] + guess[joints + joint] * seconds,
+                            true if beside => 0.0,
+                            true => guess[joints + signal],
+                            false => guess[signal] + guess[joints + signal] * seconds,
                         };
-                        let error = measured - predicted[joint * samples + k];
+                        let error = measured - predicted[signal * samples + k];
                         let error = if error.is_finite() {
                             error.clamp(-1e3, 1e3)
                         } else {
                             1e3
                         };
-                        plain[joint] += (measured - straight).powi(2);
-                        squares[index][joint] += error * error / samples as f64;
-                        sum += error * error;
-                        count += 1;
+                        plain[signal] += (measured - straight).powi(2);
+                        squares[index][signal] += error * error / samples as f64;
+                        if !beside {
+                            sum += error * error;
+                            count += 1;
+                        }
                     }
                 }
             }
         }
         let all = data.samples().max(1) as f64;
         let plain: Vec<f64> = plain.iter().map(|sum| (sum / all).sqrt()).collect();
-        let says = |joint: &usize| plain[*joint] > LEAST_MOVEMENT * data.sigma[*joint];
+        let says = |signal: &usize| plain[*signal] > LEAST_MOVEMENT * data.sigma[*signal];
         let share = |squares: &Vec<f64>| {
-            let joints = (0..joints).filter(says);
-            joints
-                .map(|joint| (squares[joint].sqrt() / plain[joint]).min(MOST))
+            let signals = (0..signals).filter(says);
+            signals
+                .map(|signal| (squares[signal].sqrt() / plain[signal]).min(MOST))
                 .collect()
         };
         Rating {

@@ -1,11 +1,11 @@
 //! What may be wrong between a model file and its logs, each as the change that mends it.
 
+use super::joint_remedies::{of_motion, of_speed};
 use super::reread::reread;
 use crate::log::Motion;
 use crate::model::{
     AngleZero, Angles, Column, ColumnMean, Dimension, Drive, Model, ParameterPath, Unit,
 };
-use std::f64::consts::PI;
 
 /// A column of the logs, or of one joint of them (index from 0).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum LogColumn {
     Position(usize),
     /// A joint's speed.
     Velocity(usize),
+    /// What a rate sensor reads that a joint has beside the one of its angle.
+    Rate(usize),
     /// A joint's input.
     Input(usize),
 }
@@ -28,6 +30,7 @@ impl LogColumn {
             LogColumn::Time => return std::slice::from_ref(&model.log.time),
             LogColumn::Position(j) => joint(j).and_then(|columns| columns.position.as_ref()),
             LogColumn::Velocity(j) => joint(j).and_then(|columns| columns.velocity.as_ref()),
+            LogColumn::Rate(j) => joint(j).and_then(|columns| columns.rate.as_ref()),
             LogColumn::Input(j) => joint(j).and_then(|columns| columns.input.as_ref()),
         };
         mean.map_or(&[], ColumnMean::columns)
@@ -44,6 +47,7 @@ impl LogColumn {
             LogColumn::Time => return std::slice::from_mut(&mut model.log.time),
             LogColumn::Position(j) => joints.get_mut(j).and_then(|c| c.position.as_mut()),
             LogColumn::Velocity(j) => joints.get_mut(j).and_then(|c| c.velocity.as_mut()),
+            LogColumn::Rate(j) => joints.get_mut(j).and_then(|c| c.rate.as_mut()),
             LogColumn::Input(j) => joints.get_mut(j).and_then(|c| c.input.as_mut()),
         };
         mean.map_or(&mut [], ColumnMean::columns_mut)
@@ -137,8 +141,6 @@ impl Remedy {
 const TICKS_PER_TURN: [f64; 8] = [
     1000.0, 1024.0, 1228.8, 2048.0, 4000.0, 4096.0, 8192.0, 16384.0,
 ];
-/// Travel of a joint that a unit may make plausible, rad or m.
-const PLAUSIBLE_RAD: std::ops::Range<f64> = 0.01..60.0;
 
 /// Every alternative to how the model reads its logs that has no free number: signs, zeros, units,
 /// what angles are measured from.
@@ -159,6 +161,7 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
     }
     for joint in 0..model.link_count() {
         all.extend(of_motion(model, motions, joint));
+        all.extend(of_speed(model, LogColumn::Rate(joint)));
         if model.joints[joint].drive.is_driven() {
             let input = LogColumn::Input(joint);
             all.push(Remedy::Reverse(vec![input]));
@@ -167,55 +170,6 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
         }
     }
     all
-}
-
-/// Other signs, units and half turns of what is measured of a joint: its angle, or its rate where
-/// that alone is.
-fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
-    let (position, velocity) = (LogColumn::Position(joint), LogColumn::Velocity(joint));
-    let Some(column) = position.column(model) else {
-        let Some(_) = velocity.column(model) else {
-            return Vec::new();
-        };
-        let units = other_units(model, velocity).into_iter();
-        let units = units.map(|unit| Remedy::Unit(vec![(velocity, unit)]));
-        return units.chain([Remedy::Reverse(vec![velocity])]).collect();
-    };
-    let slope = speed_slope(motions, joint);
-    let along = slope.filter(|slope| *slope > 0.0).map(|_| velocity);
-    let mut all = vec![Remedy::Reverse(
-        [position].into_iter().chain(along).collect(),
-    )];
-    let travel_rad = travel_rad(motions, joint);
-    let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
-    let units = other_units(model, position).into_iter().filter(plausible);
-    all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
-    if joint > 0 && model.joints[joint].slide.is_none() {
-        all.push(Remedy::Offset(position, column.offset + PI));
-    }
-    all
-}
-
-/// The position in another unit; a speed that agreed with it goes along.
-fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Remedy {
-    let mut columns = vec![(LogColumn::Position(joint), unit)];
-    let velocity = LogColumn::Velocity(joint);
-    let agreed = slope.is_some_and(|slope| (0.8..1.25).contains(&slope));
-    let name = match unit.name {
-        "deg" => Some("deg/s"),
-        "rad" => Some("rad/s"),
-        "m" => Some("m/s"),
-        "cm" => Some("cm/s"),
-        "mm" => Some("mm/s"),
-        _ => None,
-    };
-    let other = name.and_then(|name| Unit::named(name, None));
-    if let (true, Some(unit), Some(column)) = (agreed, other, velocity.column(model))
-        && column.unit.name != unit.name
-    {
-        columns.push((velocity, unit));
-    }
-    Remedy::Unit(columns)
 }
 
 /// How far the joint moves over all motions, rad.
@@ -229,26 +183,8 @@ pub(super) fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
     angles().fold(f64::NEG_INFINITY, f64::max) - angles().fold(f64::INFINITY, f64::min)
 }
 
-/// The logged speed per speed of the angle, by least squares; none where no speed is logged.
-fn speed_slope(motions: &[Motion], joint: usize) -> Option<f64> {
-    let (mut product, mut square) = (0.0, 0.0);
-    for motion in motions {
-        let logged = motion.velocity_rad_s[joint].as_ref()?;
-        let angle = &motion.position_rad[joint];
-        let (time_s, last) = (&motion.time_s, motion.len().saturating_sub(1));
-        for k in 3..last.saturating_sub(3) {
-            let speed = (angle[k + 3] - angle[k - 3]) / (time_s[k + 3] - time_s[k - 3]);
-            if speed.is_finite() && logged[k].is_finite() {
-                product += speed * logged[k];
-                square += speed * speed;
-            }
-        }
-    }
-    (square > 0.0).then(|| product / square)
-}
-
 /// The other units of the column's dimension.
-fn other_units(model: &Model, quantity: LogColumn) -> Vec<Unit> {
+pub(super) fn other_units(model: &Model, quantity: LogColumn) -> Vec<Unit> {
     let Some(column) = quantity.column(model) else {
         return Vec::new();
     };

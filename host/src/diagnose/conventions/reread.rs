@@ -15,6 +15,7 @@ pub(super) fn reread(motion: &Motion, old: &LogColumns, new: &LogColumns) -> Mot
     let joints = old.joints.iter().zip(&new.joints);
     for (joint, (old, new)) in joints.enumerate() {
         let positions = Some(&mut motion.position_rad[joint]);
+        let rates = motion.rate_rad_s.get_mut(joint);
         let triples = [
             (positions, &old.position, &new.position),
             (
@@ -22,6 +23,7 @@ pub(super) fn reread(motion: &Motion, old: &LogColumns, new: &LogColumns) -> Mot
                 &old.velocity,
                 &new.velocity,
             ),
+            (rates.and_then(Option::as_mut), &old.rate, &new.rate),
             (motion.input[joint].as_mut(), &old.input, &new.input),
         ];
         for (values, old, new) in triples {

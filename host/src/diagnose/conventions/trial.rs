@@ -201,6 +201,7 @@ impl RemedyTrial {
                 LogColumn::Time => Some(motion.time_s.clone()),
                 LogColumn::Position(joint) => Some(motion.position_rad[joint].clone()),
                 LogColumn::Velocity(joint) => motion.velocity_rad_s[joint].clone(),
+                LogColumn::Rate(joint) => motion.rate(joint).map(<[f64]>::to_vec),
                 LogColumn::Input(joint) => motion.input[joint].clone(),
             }
         };

@@ -72,7 +72,10 @@ fn off_leaves_the_rig_alone() {
 fn the_first_reading_is_the_angle() {
     for effect in EFFECTS.iter().filter(|effect| {
         effect.info().site != Site::Timing
-            && matches!(effect.info().site, Site::Encoder | Site::Sensor)
+            && matches!(
+                effect.info().site,
+                Site::Encoder | Site::Sensor | Site::Rate
+            )
     }) {
         let values: Vec<f64> = effect
             .info()

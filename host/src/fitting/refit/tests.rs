@@ -51,6 +51,7 @@ fn swing(model: &Model, angle: f64) -> Motion {
         position_rad: vec![vec![0.0; time_s.len()]],
         time_s,
         velocity_rad_s: vec![None],
+        rate_rad_s: Vec::new(),
         input: vec![None],
         supply_v: None,
         torque_on: None,

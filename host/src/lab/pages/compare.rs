@@ -147,7 +147,7 @@ fn signals(signals: &[SignalError]) -> Markup {
                     "Tests of the residual" }
             } }
             tbody { @for signal in signals { tr {
-                td { (signal.joint) }
+                td { (signal.joint) @if signal.beside_angle { ", rate" } }
                 td.number { (mrad(signal.rms)) " " (signal.quantity.milli()) }
                 td.number { (mrad(signal.largest)) " " (signal.quantity.milli()) }
                 td.number { (short(signal.fit_percent)) " %" }

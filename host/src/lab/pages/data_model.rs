@@ -83,6 +83,12 @@ fn columns(names: &[String], model: &Model) -> Markup {
                             &format!("Speed of joint {number}"),
                             joint.velocity.as_ref().map(Picked::of),
                             Dimension::Speed.on(model.joints[index].axis()), false))
+                        @if model.joints[index].slide.is_none() {
+                            @let sensor = joint.rate_sensor.key();
+                            (column(names, &format!("joint{number}.{sensor}"),
+                                &format!("Own {sensor} of joint {number}"),
+                                joint.rate.as_ref().map(Picked::of), Dimension::Speed, false))
+                        }
                     }
                     (column(names, "supply", "Supply voltage", log.supply.as_ref().map(Picked::One),
                         Dimension::Voltage, false))

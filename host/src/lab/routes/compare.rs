@@ -156,13 +156,14 @@ pub(super) fn draw(
         .map(|(_, window)| motion.time_s[window.samples.start] - first)
         .collect();
     let window_s = run.data.motion_windows(run.horizon)[index].window_s;
+    let signals = run.data.signals.iter().take(run.data.joints());
     Ok(json!({
         "motion": motion.name,
         "held_out": evaluation.is_held_out(index),
         "joints": run.model.link_count(),
         "inputs": inputs,
-        "units": run.data.signals.iter().map(|signal| signal.unit()).collect::<Vec<_>>(),
-        "floor": run.data.sigma,
+        "units": signals.map(|signal| signal.unit()).collect::<Vec<_>>(),
+        "floor": run.data.sigma[..run.data.joints()],
         "rms": evaluation.rms(),
         "unit": evaluation.quantity().unit(),
         "joint_rms": run.joint_rms(),
@@ -226,7 +227,7 @@ pub(super) async fn scatter(
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         let run = &evaluation.run;
         let mut residuals = run.residuals();
-        if asked.joint >= residuals.len() {
+        if asked.joint >= run.data.joints() {
             return Err(LabError::NotFound("joint"));
         }
         let mut arrays = Arrays::default();

@@ -11,6 +11,7 @@ use crate::model::LogColumns;
 struct Known {
     position: bool,
     velocity: bool,
+    rate: bool,
     input: bool,
     /// An energised row of the motion came before its first input.
     input_lacks: bool,
@@ -41,6 +42,8 @@ impl<'a> EmptyColumns<'a> {
         for (joint, known) in self.joints.iter_mut().enumerate() {
             known.position |= row.position_rad[joint].is_finite();
             known.velocity |= finite(row.velocity_rad_s[joint]);
+            // A log of a format that has no rates lacks no column.
+            known.rate |= row.rate_rad_s[joint].is_none_or(f64::is_finite);
             known.input |= finite(row.input[joint]);
             known.input_lacks |= !known.input && row.torque_on != Some(false);
         }
@@ -59,7 +62,8 @@ impl<'a> EmptyColumns<'a> {
                 (None, velocity) => velocity.as_ref().filter(|_| !known.velocity),
             };
             let input = columns.input.as_ref().filter(|_| known.input_lacks);
-            let empty = measured.into_iter().chain(input);
+            let rate = columns.rate.as_ref().filter(|_| !known.rate);
+            let empty = measured.into_iter().chain(rate).chain(input);
             empty.for_each(|column| refuse(column.name()));
         }
         if let Some(supply) = self.columns.supply.as_ref().filter(|_| !self.supply) {

@@ -28,6 +28,10 @@ pub(super) struct Relations {
     follow: Vec<[LineFit; LAGS.len()]>,
     /// Per joint: logged speed against the angle's.
     speed: Vec<LineFit>,
+    /// Per joint: what its own rate sensor reads against the angles' speeds.
+    rate: Vec<LineFit>,
+    /// Per joint: the hinges whose speeds that sensor feels, if there is one.
+    turning: Vec<Option<Vec<usize>>>,
     /// Per joint: acceleration on inputs, gravity, speed and the direction of motion.
     push: Vec<Regression>,
     stretches: Stretches,
@@ -63,6 +67,8 @@ impl Relations {
             recent: VecDeque::new(),
             follow: vec![[LineFit::default(); LAGS.len()]; n],
             speed: vec![LineFit::default(); n],
+            rate: vec![LineFit::default(); n],
+            turning: (0..n).map(|joint| turning(model, joint)).collect(),
             push: (0..n).map(|_| Regression::new(5 * n + 1)).collect(),
             stretches: Stretches::default(),
             supply_v: Extremes::NONE,
@@ -130,6 +136,13 @@ impl Relations {
         }
         x.push(1.0);
         for i in 0..n {
+            if let Some(turning) = &self.turning[i]
+                && row.rate_rad_s[i].is_some()
+                && stretch.rate_rad_s[i].is_finite()
+            {
+                let felt = turning.iter().map(|j| relative(&stretch.speed_rad_s, *j));
+                self.rate[i].add(felt.sum(), stretch.rate_rad_s[i]);
+            }
             if row.velocity_rad_s[i].is_some() && stretch.logged_speed_rad_s[i].is_finite() {
                 self.speed[i].add(stretch.speed_rad_s[i], stretch.logged_speed_rad_s[i]);
             }
@@ -138,6 +151,13 @@ impl Relations {
             }
         }
     }
+}
+
+/// The hinges whose speeds add up to what a joint's own rate sensor reads, if it has one.
+fn turning(model: &Model, joint: usize) -> Option<Vec<usize>> {
+    let columns = model.log.joints.get(joint)?;
+    columns.rate.as_ref()?;
+    Some(model.turning(columns.rate_sensor, joint))
 }
 
 /// Whether a row says all that a stretch needs: every angle and every input.

@@ -16,6 +16,8 @@ pub(super) struct Stretch {
     pub acceleration_rad_s2: Vec<f64>,
     /// Mean of the logged speed per joint, rad/s; 0 where not logged.
     pub logged_speed_rad_s: Vec<f64>,
+    /// Mean reading of each joint's own rate sensor, 0 where it has none.
+    pub rate_rad_s: Vec<f64>,
     /// Mean input per joint, SI; 0 where there is none.
     pub input: Vec<f64>,
 }
@@ -78,6 +80,7 @@ impl Stretches {
         for sum in [
             &mut sums.position_rad,
             &mut sums.logged_speed_rad_s,
+            &mut sums.rate_rad_s,
             &mut sums.input,
         ] {
             sum.resize(joints, 0.0);
@@ -88,6 +91,8 @@ impl Stretches {
             sums.position_rad[i] += dt * 0.5 * (previous.position_rad[i] + row.position_rad[i]);
             let speeds = [previous.velocity_rad_s[i], row.velocity_rad_s[i]];
             sums.logged_speed_rad_s[i] += dt * 0.5 * speeds.iter().flatten().sum::<f64>();
+            let rates = [previous.rate_rad_s[i], row.rate_rad_s[i]];
+            sums.rate_rad_s[i] += dt * 0.5 * rates.iter().flatten().sum::<f64>();
             sums.input[i] += dt * previous.input[i].unwrap_or(0.0);
         }
         previous.clone_from(row);
@@ -101,6 +106,7 @@ impl Stretches {
         for sum in [
             &mut stretch.position_rad,
             &mut stretch.logged_speed_rad_s,
+            &mut stretch.rate_rad_s,
             &mut stretch.input,
         ] {
             sum.iter_mut().for_each(|value| *value /= self.weight);

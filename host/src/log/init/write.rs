@@ -1,7 +1,9 @@
 //! A guessed model as a file that says what was guessed.
 
+use super::log_guess::JointGuess;
 use super::{ColumnGuess, Draft};
 use crate::error::Result;
+use crate::model::RateSensor;
 use crate::model::new_model::model_toml;
 use std::fmt::Write as _;
 
@@ -56,7 +58,7 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
     if let Some(torque_on) = &columns.torque_on {
         let _ = writeln!(text, "torque_on = {}", quoted(torque_on));
     }
-    for (joint, drive) in columns.joints.iter().zip(drives) {
+    for (index, (joint, drive)) in columns.joints.iter().zip(drives).enumerate() {
         let _ = writeln!(
             text,
             "\n[[log.joint]] # {}",
@@ -65,7 +67,7 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
         let input = joint.input.as_ref().filter(|_| *drive != "passive");
         let own: [(&str, Option<&ColumnGuess>); 3] = [
             ("position", joint.position.as_ref()),
-            ("velocity", joint.velocity.as_ref()),
+            (speed_key(index, joint), joint.velocity.as_ref()),
             ("input", input),
         ];
         for (key, column) in own {
@@ -75,6 +77,16 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
         }
     }
     text.replace("[[log.joint]] # \n", "[[log.joint]]\n")
+}
+
+/// What a joint's speed is called: evidence only where its name says that it is no derivative of
+/// the angle. A gyro of a link farther out reads another rate than its joint's.
+fn speed_key(index: usize, joint: &JointGuess) -> &'static str {
+    let is_gyro = |column: &ColumnGuess| column.name.to_lowercase().contains("gyro");
+    match joint.velocity.as_ref().is_some_and(is_gyro) {
+        true if index == 0 && joint.position.is_some() => RateSensor::Gyro.key(),
+        _ => "velocity",
+    }
 }
 
 /// What logs of such a rig determine: a free chain's masses only in proportion to each other.

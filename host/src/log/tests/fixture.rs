@@ -34,6 +34,7 @@ pub fn columns() -> LogColumns {
             position: Some(column("q", "rad").into()),
             velocity: None,
             input: Some(column("u", "rad").into()),
+            ..JointColumns::default()
         }],
         arm: None,
         split_at_gap_s: None,
@@ -53,6 +54,7 @@ pub fn motion(name: &str, samples: usize) -> Motion {
         },
         position_rad: vec![time_s.iter().map(swing).collect()],
         velocity_rad_s: vec![None],
+        rate_rad_s: vec![None],
         input: vec![Some(time_s.iter().map(|t| swing(&(t + 0.02))).collect())],
         supply_v: None,
         torque_on: None,

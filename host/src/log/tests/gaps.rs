@@ -131,3 +131,32 @@ fn a_rate_stands_where_there_is_no_angle() {
     let (_, _, what) = refused(&twenty(|_| ",,0.2,,".into()), &columns);
     assert!(what.contains("q1 holds no value"), "{what}");
 }
+
+#[test]
+fn a_gyro_stands_beside_the_angle_and_is_written_again() {
+    let mut columns = columns();
+    columns.joints[0].position = Some(column("q1", "rad").into());
+    columns.joints[0].rate = Some(column("q2", "deg/s").into());
+    columns.joints[0].input = Some(column("u1", "rad").into());
+    let text = twenty(|k| match k {
+        7 => "0.5,,0.2,,".into(),
+        _ => format!("0.5,{},0.2,,", 9 * k),
+    });
+    let motion = &read_text(&text, &columns).unwrap()[0];
+    let rate = motion.rate(0).unwrap();
+    assert!(rate[7].is_nan() && (rate[3] - 27_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(motion.measured(0, columns.joints[0].signal())[3], 0.5);
+    let again = &read_text(&to_csv(motion, &columns, &[]), &columns).unwrap()[0];
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12 || a.is_nan() && b.is_nan();
+    assert!(rate.iter().zip(again.rate(0).unwrap()).all(same));
+    let late = Column {
+        shift_s: 0.01,
+        ..column("q2", "deg/s")
+    };
+    columns.joints[0].rate = Some(late.into());
+    let moved = &read_text(&text, &columns).unwrap()[0];
+    assert!((moved.rate(0).unwrap()[0] - rate[0]).abs() < 1e-12);
+    assert_eq!(moved.time_s[0], motion.time_s[1]);
+    let (_, _, what) = refused(&twenty(|_| "0.5,,0.2,,".into()), &columns);
+    assert!(what.contains("q2 holds no value"), "{what}");
+}

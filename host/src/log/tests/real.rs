@@ -27,6 +27,7 @@ fn free(time: &str, joints: &[JointNames]) -> LogColumns {
             position: Some(column(position, "rad").into()),
             velocity: speed.map(|name| column(name, "rad/s").into()),
             input: input.map(|(name, unit)| column(name, unit).into()),
+            ..JointColumns::default()
         };
     LogColumns {
         time: column(time, "s"),

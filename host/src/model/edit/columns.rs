@@ -17,7 +17,8 @@ pub struct ColumnChoice {
 /// The column of a quantity.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ChosenColumn {
-    /// `time`, `supply`, `joint1.position`, `joint1.velocity`, `joint1.input`.
+    /// `time`, `supply`, `joint1.position`, `joint1.velocity`, `joint1.gyro`,
+    /// `joint1.tachometer`, `joint1.input`.
     pub quantity: String,
     /// The header's name; empty where the log has no such column.
     pub column: String,
@@ -77,6 +78,8 @@ fn place(model: &Model, quantity: &str) -> Option<QuantityPlace> {
             match name {
                 "position" => ("position", Dimension::Angle.on(own.axis())),
                 "velocity" => ("velocity", Dimension::Speed.on(own.axis())),
+                "gyro" => ("gyro", Dimension::Speed),
+                "tachometer" => ("tachometer", Dimension::Speed),
                 "input" => ("input", Dimension::of_input(own.drive.name(), own.axis())?),
                 _ => return None,
             }

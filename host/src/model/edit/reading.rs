@@ -93,6 +93,7 @@ fn set_columns(document: &mut DocumentMut, old: &Model, new: &Model) -> Option<(
         let pairs = [
             ("position", &old.position, &new.position),
             ("velocity", &old.velocity, &new.velocity),
+            (old.rate_sensor.key(), &old.rate, &new.rate),
             ("input", &old.input, &new.input),
         ];
         for (key, old, new) in pairs {

@@ -4,7 +4,8 @@ use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
 use super::super::{
-    ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, Unit,
+    ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, RateSensor,
+    Unit,
 };
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::effects::Axis;
@@ -18,7 +19,7 @@ const TICKS_PER_M: Limits = Limits::within(1.0, 1e12);
 const MOTOR_CONSTANT: Limits = Limits::within(1e-6, 1e4);
 
 /// Columns whose samples may have been taken at another time than the row's.
-const MOVABLE: [&str; 3] = ["position", "velocity", "input"];
+const MOVABLE: [&str; 5] = ["position", "velocity", "gyro", "tachometer", "input"];
 /// Further apart, two columns are no one row.
 const SHIFT_S: Limits = Limits::within(-10.0, 10.0);
 
@@ -81,13 +82,14 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
 }
 
 fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
-    table.only(&["position", "velocity", "input"])?;
+    table.only(&["position", "velocity", "gyro", "tachometer", "input"])?;
     let axis = joint.axis();
     let position = mean(table, "position", Dimension::Angle.on(axis))?;
     let velocity = mean(table, "velocity", Dimension::Speed.on(axis))?;
     if axis == Axis::Slide && position.is_none() {
         return Err(table.bad_table(ModelReason::SlideUnmeasured));
     }
+    let (rate_sensor, rate) = rate(table, axis, position.is_some())?;
     let wanted = Dimension::of_input(joint.drive.name(), axis);
     let input = match (wanted, table.has("input")) {
         (None, false) => None,
@@ -106,8 +108,32 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     Ok(JointColumns {
         position,
         velocity,
+        rate,
+        rate_sensor,
         input,
     })
+}
+
+/// The rate sensor that a joint has beside the one of its angle, if it has one.
+fn rate(table: &Table, axis: Axis, has_position: bool) -> Result<(RateSensor, Option<ColumnMean>)> {
+    let mut found = (RateSensor::default(), None);
+    for sensor in RateSensor::ALL {
+        let key = sensor.key();
+        let Some(rate) = mean(table, key, Dimension::Speed)? else {
+            continue;
+        };
+        if axis == Axis::Slide {
+            return Err(table.bad_key(key, ModelReason::RateOfSlide { key }));
+        }
+        if !has_position {
+            return Err(table.bad_key(key, ModelReason::RateWithoutAngle { key }));
+        }
+        if found.1.is_some() {
+            return Err(table.bad_key(key, ModelReason::TwoRates));
+        }
+        found = (sensor, Some(rate));
+    }
+    Ok(found)
 }
 
 /// The columns under `key`, if there are any: a table, or a list of tables whose mean counts.

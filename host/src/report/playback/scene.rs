@@ -114,9 +114,9 @@ impl Scene {
                 .traces
                 .iter()
                 .filter(|trace| trace.motion == motion.name);
-            let traces: Vec<_> = own.collect();
-            let angles = traces.iter().all(|t| t.quantity == MeasuredSignal::Angle);
-            if traces.len() != model.link_count() || !angles {
+            let angles = own.filter(|trace| trace.quantity == MeasuredSignal::Angle);
+            let traces: Vec<_> = angles.collect();
+            if traces.len() != model.link_count() {
                 continue;
             }
             let joint_rad: Vec<_> = traces.iter().map(|t| t.predicted.as_slice()).collect();

@@ -86,6 +86,7 @@ fn signal(error_mrad: f64) -> SignalError {
     SignalError {
         joint: 1,
         quantity: MeasuredSignal::Angle,
+        beside_angle: false,
         rms: 1e-3 * error_mrad,
         largest: 3e-3 * error_mrad,
         fit_percent: 100.0 - error_mrad / 3.0,

@@ -33,7 +33,16 @@ impl Plant {
             true => speed_rad_s[..=joint].iter().sum::<f64>(),
             false => speed_rad_s[joint],
         };
-        self.joints[joint].reading_slope() * true_speed + self.rate_bias_rad_s(joint)
+        let read_rad_s = self.joints[joint].reading_slope() * true_speed;
+        self.rate_scale(joint) * read_rad_s + self.rate_bias_rad_s(joint)
+    }
+
+    /// What is read per rate of a joint whose rate alone is logged.
+    fn rate_scale(&self, joint: usize) -> f64 {
+        match self.rates[joint] {
+            true => self.joints[joint].rate_scale,
+            false => 1.0,
+        }
     }
 
     /// What is read at rest as the rate of a joint whose rate alone is logged, rad/s.
@@ -83,14 +92,22 @@ impl Plant {
         self.joints[joint].sense.iter().filter_map(trail).sum()
     }
 
-    /// How fast what the log holds of each joint changes, from how fast its readings change and how
-    /// fast that does.
+    /// How fast what the log holds of each signal changes, from how fast the joints' readings
+    /// change and how fast that does.
     pub fn reading_slopes(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
         let slope = |joint: usize| match self.rates[joint] {
             true => acceleration_rad_s2[joint],
             false => speed_rad_s[joint],
         };
-        (0..self.len()).map(slope).collect()
+        let of_joints = (0..self.len()).map(slope);
+        if self.rate_readings.is_empty() {
+            return of_joints.collect();
+        }
+        let relative_rad_s2 = self.turned_rad(&self.unscaled(acceleration_rad_s2, |_| 0.0));
+        let rates = self.rate_readings.iter();
+        of_joints
+            .chain(rates.map(|rate| rate.slope(&relative_rad_s2)))
+            .collect()
     }
 
     /// What the log holds of a joint at a state, before any effect with memory: rad, or rad/s where
@@ -109,9 +126,14 @@ impl Plant {
 
     /// Relative joint speeds, rad/s, at which the encoders' readings change by `rate_rad_s`.
     pub fn decode_rad_s(&self, rate_rad_s: &[f64]) -> Vec<f64> {
-        let rates = rate_rad_s.iter().enumerate();
-        let unbiased = rates.map(|(joint, rate)| rate - self.rate_bias_rad_s(joint));
-        self.turned_rad(&unbiased.collect::<Vec<_>>())
+        self.turned_rad(&self.unscaled(rate_rad_s, |joint| self.rate_bias_rad_s(joint)))
+    }
+
+    /// Per joint, what is read without a bias and without the scale of a sensor of rates.
+    fn unscaled(&self, read: &[f64], bias: impl Fn(usize) -> f64) -> Vec<f64> {
+        let read = read.iter().enumerate();
+        read.map(|(joint, read)| (read - bias(joint)) / self.rate_scale(joint))
+            .collect()
     }
 
     /// By how much the joints turn, rad, where the encoders' readings change by `read_rad`.

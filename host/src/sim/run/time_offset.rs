@@ -20,20 +20,20 @@ impl<R: Rows> Run<'_, R> {
         readings: &mut [f64],
     ) -> Start {
         let (plant, motion, samples) = (self.plant, self.motion, stretch.len());
-        let due_s = |joint: usize, next: usize| {
-            motion.time_s[stretch.start + next] - plant.joints[joint].offset_s
+        let due_s = |signal: usize, next: usize| {
+            motion.time_s[stretch.start + next] - plant.offset_s(signal)
         };
         let mut now_s = self.begin_s(stretch.start);
         let end_s = self.begin_s(stretch.end - 1);
-        let mut next = vec![0; plant.len()];
+        let mut next = vec![0; plant.signals()];
         let mut end = None;
         loop {
-            let left = (0..plant.len()).filter(|joint| next[*joint] < samples);
+            let left = (0..plant.signals()).filter(|signal| next[*signal] < samples);
             let first = left.min_by(|a, b| due_s(*a, next[*a]).total_cmp(&due_s(*b, next[*b])));
-            let Some(joint) = first else {
+            let Some(signal) = first else {
                 return end.unwrap_or_else(|| self.state());
             };
-            let taken_s = due_s(joint, next[joint]);
+            let taken_s = due_s(signal, next[signal]);
             self.go(now_s..taken_s);
             now_s = taken_s;
             if self.has_diverged() {
@@ -43,8 +43,8 @@ impl<R: Rows> Run<'_, R> {
                 *memory = Memory::default();
                 return self.state();
             }
-            readings[joint * samples + next[joint]] = self.sensors.reading[joint];
-            next[joint] += 1;
+            readings[signal * samples + next[signal]] = self.sensors.reading[signal];
+            next[signal] += 1;
             // Here the simulation of a stretch that follows begins.
             if end.is_none() && taken_s >= end_s {
                 let state = self.state();

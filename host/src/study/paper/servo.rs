@@ -89,6 +89,7 @@ pub(super) fn empty_motion(command: Vec<f64>) -> Motion {
         time_s: (0..samples).map(|k| k as f64 * PAPER_TS_S).collect(),
         position_rad: vec![vec![0.0; samples]],
         velocity_rad_s: vec![None],
+        rate_rad_s: Vec::new(),
         input: vec![Some(command)],
         supply_v: None,
         torque_on: None,

@@ -28,6 +28,14 @@ impl Relations {
             if columns.velocity.is_some() && columns.position.is_some() {
                 judge_speed(&self.speed[joint], (&speed, &angle), place, findings);
             }
+            if columns.rate.is_some() {
+                judge_speed(
+                    &self.rate[joint],
+                    (&name(&columns.rate), &angle),
+                    place,
+                    findings,
+                );
+            }
             let nominal = model.joints[joint]
                 .drive
                 .motor()

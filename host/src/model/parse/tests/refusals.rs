@@ -104,6 +104,11 @@ const REFUSED: &[(&str, &str, &str, &str, &str)] = &[
      "unit = \"rad\""),
     ("velocity = {", "input = { column = \"u\", unit = \"1\" }\nvelocity = {", "57:1",
      "a passive joint has no input", "remove `input`"),
+    ("velocity = {", "gyro = { column = \"g\", unit = \"deg\" }\nvelocity = {", "57:31",
+     "and `gyro` is an angular speed", "rad/s, deg/s"),
+    ("velocity = {", "gyro = { column = \"g\", unit = \"rpm\" }\n\
+      tachometer = { column = \"w\", unit = \"rpm\" }\nvelocity = {", "58:1",
+     "a joint has one rate sensor", "keep the one"),
     ("ticks_per_turn = 4096", "ticks_per_turn = 0", "56:64", "impossible", "from 1"),
     ("unit = \"ticks\"", "unit = \"rad\"", "56:45", "unknown key `ticks_per_turn`", "known here"),
     ("[[log.joint]]\nposition = { column = \"pos2\"", "[rig.x]\nposition = { column = \"pos2\"",

@@ -16,6 +16,7 @@ fn motion() -> Motion {
         time_s: vec![7.0, 7.01],
         position_rad: vec![vec![PI / 2.0, 1.5], vec![0.0, 0.2], vec![0.0, -0.1]],
         velocity_rad_s: vec![None, None, None],
+        rate_rad_s: Vec::new(),
         input: vec![None, Some(vec![0.0, 1.0]), Some(vec![0.0, -2.0])],
         supply_v: None,
         torque_on: None,
