@@ -34,6 +34,8 @@ mod position_friction;
 mod pre_sliding;
 mod probe;
 mod rate_bias;
+mod rate_lag;
+mod rate_scale;
 mod sensor_lag;
 mod slew_limit;
 mod speed_limit;
@@ -104,7 +106,9 @@ pub const EFFECTS: &[&dyn Effect] = &[
     &backlash::Backlash,
     &sensor_lag::SensorLag,
     &time_offset::TimeOffset,
+    &rate_scale::RateScale,
     &rate_bias::RateBias,
+    &rate_lag::RateLag,
 ];
 
 /// Not physics: what diagnosis runs along to learn what chance gains.

@@ -190,7 +190,7 @@ mod tests {
             .filter(|effect| on_axis(**effect, Axis::Slide).is_none())
             .map(|effect| effect.info().id)
             .collect();
-        let known = ["bearing_friction", "cogging"];
+        let known = ["bearing_friction", "cogging", "rate_scale", "rate_lag"];
         assert_eq!(refused, known);
     }
 

@@ -59,16 +59,26 @@ impl Effect for SensorLag {
         encoded: Encoded,
         step_s: f64,
     ) -> f64 {
-        let angle_rad = encoded.angle_rad;
-        let reading_rad = match *memory {
-            Some([from_rad, reading_rad, ..]) if values[0] > 0.0 => {
-                follow(reading_rad, from_rad, angle_rad, step_s, values[0])
-            }
-            _ => angle_rad,
-        };
-        *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
-        reading_rad
+        filtered(values[0], memory, encoded.angle_rad, step_s)
     }
+}
+
+/// What a filter of this time constant, s, reads `step_s` after what `memory` holds, where its
+/// input has come to be `angle_rad`, or a rate, rad/s.
+pub(super) fn filtered(
+    constant_s: f64,
+    memory: &mut Option<SenseMemory>,
+    angle_rad: f64,
+    step_s: f64,
+) -> f64 {
+    let reading_rad = match *memory {
+        Some([from_rad, reading_rad, ..]) if constant_s > 0.0 => {
+            follow(reading_rad, from_rad, angle_rad, step_s, constant_s)
+        }
+        _ => angle_rad,
+    };
+    *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
+    reading_rad
 }
 
 /// Output of the filter after a step over which its input goes straight `from_rad` -> `to_rad`.

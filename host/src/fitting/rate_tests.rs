@@ -36,6 +36,23 @@ fn refitted(model: &Model, path: &str, motion: Motion) -> Refitted {
 }
 
 #[test]
+fn a_gyro_beside_the_angle_tells_its_bias_scale_and_lag() {
+    for (id, key, hidden, given) in [
+        ("rate_bias", "bias_rad_s", 0.05, 0.0),
+        ("rate_scale", "factor", 0.95, 1.0),
+        ("rate_lag", "time_constant_s", 0.02, 0.002),
+    ] {
+        let motion = swing(&with(&both(), id, vec![hidden]), &[1.0], even(1000, 100.0));
+        let path = format!("{id}@1.{key}");
+        let found = refitted(&with(&both(), id, vec![given]), &path, motion);
+        let value = &found.values[0];
+        assert!((value.value / hidden - 1.0).abs() < 0.02, "{id}: {value:?}");
+        let (low, high) = (value.low, value.high);
+        assert!(high - low < 0.1 * hidden, "{id}: {value:?}");
+    }
+}
+
+#[test]
 fn a_gyro_narrows_what_a_coarse_angle_tells_of_friction() {
     let motion = swing(&pendulum(&both(), 0.006), &[1.0], even(600, 100.0));
     let width = |columns: &str| {
@@ -102,10 +119,10 @@ fn a_late_angle_of_a_free_pendulum_shows_beside_its_gyro_alone() {
             &[],
         );
         let own = |id: &str| found.iter().any(|c| c.to_string() == format!("{id}@1"));
-        ["time_offset", "rate_bias"].map(own)
+        ["time_offset", "rate_bias", "rate_scale", "rate_lag"].map(own)
     };
-    assert_eq!(proposed(&both()), [true; 2]);
-    assert_eq!(proposed(COARSE), [false; 2]);
+    assert_eq!(proposed(&both()), [true; 4]);
+    assert_eq!(proposed(COARSE), [false; 4]);
 }
 
 /// Two links that swing freely; the second has a rate sensor.

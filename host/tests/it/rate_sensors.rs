@@ -157,6 +157,24 @@ fn a_bias_of_the_gyro_is_named() {
 }
 
 #[test]
+fn a_scale_of_the_gyro_is_named() {
+    let gyro = Gyro {
+        scale: 0.96,
+        ..GOOD
+    };
+    is_named(gyro, "rate_scale", "factor", 0.96);
+}
+
+#[test]
+fn a_lag_of_the_gyro_is_named() {
+    let gyro = Gyro {
+        lag_s: 0.015,
+        ..GOOD
+    };
+    is_named(gyro, "rate_lag", "time_constant_s", 0.015);
+}
+
+#[test]
 fn a_good_gyro_is_nothing_wrong_and_a_velocity_no_evidence() {
     let found = diagnosed(&bench(GYRO, GOOD));
     assert_eq!(found["verdict"], "nominal", "{found:#}");

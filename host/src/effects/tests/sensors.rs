@@ -111,3 +111,35 @@ fn a_lag_of_a_sine_is_second_order_accurate() {
         "half the step leaves 1/{ratio} of the error"
     );
 }
+
+#[test]
+fn a_rate_sensor_reads_scale_times_rate_plus_bias() {
+    let (scale, bias) = (effect("rate_scale"), effect("rate_bias"));
+    near(scale.rate_scale(&[0.95]), 0.95);
+    near(bias.rate_bias_rad_s(&[0.03]), 0.03);
+    for other in EFFECTS.iter().filter(|e| e.info().site != Site::Rate) {
+        let values: Vec<f64> = other
+            .info()
+            .parameters
+            .iter()
+            .map(|p| p.typical.1)
+            .collect();
+        assert_eq!(other.rate_scale(&values), 1.0, "{}", other.info().id);
+        assert_eq!(other.rate_bias_rad_s(&values), 0.0, "{}", other.info().id);
+    }
+    near(scale.rate_scale(&off_values(scale)), 1.0);
+    near(bias.rate_bias_rad_s(&off_values(bias)), 0.0);
+}
+
+#[test]
+fn a_rate_lags_as_an_angle_does() {
+    let step_s = 0.01;
+    let (mut of_rate, mut of_angle) = (None, None);
+    for step in 0..100 {
+        let encoded = Encoded::still((0.07 * f64::from(step)).sin());
+        let rate = effect("rate_lag").sense(&[0.03], &mut of_rate, encoded, step_s);
+        let angle = effect("sensor_lag").sense(&[0.03], &mut of_angle, encoded, step_s);
+        assert_eq!(rate, angle);
+    }
+    assert_eq!(effect("rate_lag").trail_rad(&[0.03], 2.0), Some(0.06));
+}
