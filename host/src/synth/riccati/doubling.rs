@@ -4,38 +4,44 @@
 //! Chu, Fan, Lin, Wang, International Journal of Control 77 (2004) 767 (discrete); Chu, Fan, Lin,
 //! Linear Algebra and its Applications 396 (2005) 55 (continuous, by Cayley's transform).
 
-use super::dense::{product, solve_both};
+use super::square::{Fixed, Square, by_size};
 use nalgebra::DMatrix;
 
 /// Most doublings: each squares the slowest closed-loop pole. One within 1e-6 of the unit circle
 /// takes 24; one on it, 27 and a wrong answer.
 const MOST_DOUBLINGS: usize = 25;
 
-/// Where Newton's iteration takes over.
-const SETTLED: f64 = 1e-8;
+/// Where Newton's iteration takes over: the next change would be about the square of this one.
+const SETTLED: f64 = 1e-6;
 
 /// X = A'X (I + G X)^-1 A + Q with G = B R^-1 B', stabilising; `None` where doubling finds none.
-pub(super) fn doubling(
-    mut a: DMatrix<f64>,
-    mut g: DMatrix<f64>,
-    mut h: DMatrix<f64>,
-) -> Option<DMatrix<f64>> {
+pub(super) fn doubling(a: DMatrix<f64>, g: DMatrix<f64>, h: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let n = a.nrows();
+    by_size!(
+        n,
+        N => in_registers([&a, &g, &h].map(Fixed::<N>::padded)).map(|x| x.first(n)),
+        doubled([a, g, h])
+    )
+}
+
+/// Wider registers give the same bits: no product is fused with a sum.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn in_registers<const N: usize>(matrices: [Fixed<N>; 3]) -> Option<Fixed<N>> {
+    doubled(matrices)
+}
+
+#[inline(always)]
+fn doubled<M: Square>([mut a, mut g, mut h]: [M; 3]) -> Option<M> {
     let mut before = f64::INFINITY;
     for _ in 0..MOST_DOUBLINGS {
-        let mut w = product(&g, &h);
-        for i in 0..n {
-            w[(i, i)] += 1.0;
-        }
-        let (wa, wg) = solve_both(w, &a, &g)?;
-        let at = a.transpose();
-        let more = product(&at, &product(&h, &wa));
-        g += product(&product(&a, &wg), &at);
-        symmetrise(&mut g);
-        a = product(&a, &wa);
-        h += &more;
-        symmetrise(&mut h);
-        let change = more.amax() / h.amax().max(f64::MIN_POSITIVE);
+        let mut w = g.times(&h);
+        w.add_identity();
+        let (wa, wg) = w.solve_both(&a, &g)?;
+        let at = a.transposed();
+        let more = at.times(&h.times(&wa));
+        h.add(&more);
+        h.symmetrise();
+        let change = more.largest() / h.largest().max(f64::MIN_POSITIVE);
         if !change.is_finite() {
             return None;
         }
@@ -44,6 +50,9 @@ pub(super) fn doubling(
             return Some(h);
         }
         before = change;
+        g.add(&a.times(&wg).times(&at));
+        g.symmetrise();
+        a = a.times(&wa);
     }
     None
 }

@@ -9,6 +9,7 @@ mod dense;
 mod doubling;
 mod newton;
 mod problem;
+mod square;
 mod stein;
 mod twofold;
 

@@ -1,8 +1,7 @@
 //! E = M'E M + F by doubling (Smith, SIAM Journal on Applied Mathematics 16 (1968) 198), and
 //! Lyapunov's equation.
 
-use super::dense::{product, transposed_product};
-use super::doubling::symmetrise;
+use super::square::{Fixed, Square, by_size};
 use nalgebra::DMatrix;
 
 /// Each doubling squares M: after 60, a pole within 1e-16 of the circle has been seen to decay or
@@ -11,25 +10,40 @@ const MOST_DOUBLINGS: usize = 60;
 
 /// E, the sum of M'^k F M^k over all k, to about `accuracy`; `None` if M does not decay.
 pub(in crate::synth) fn stein(
-    mut m: DMatrix<f64>,
+    m: DMatrix<f64>,
     f: DMatrix<f64>,
     accuracy: f64,
 ) -> Option<DMatrix<f64>> {
-    let mut e = f;
+    let n = m.nrows();
+    by_size!(
+        n,
+        N => in_registers([&m, &f].map(Fixed::<N>::padded), accuracy).map(|e| e.first(n)),
+        summed([m, f], accuracy)
+    )
+}
+
+/// Wider registers give the same bits: no product is fused with a sum.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn in_registers<const N: usize>(matrices: [Fixed<N>; 2], accuracy: f64) -> Option<Fixed<N>> {
+    summed(matrices, accuracy)
+}
+
+#[inline(always)]
+fn summed<M: Square>([mut m, mut e]: [M; 2], accuracy: f64) -> Option<M> {
     for _ in 0..MOST_DOUBLINGS {
-        let more = transposed_product(&m, &product(&e, &m));
-        e += &more;
-        let change = more.amax();
+        let more = m.transposed().times(&e.times(&m));
+        e.add(&more);
+        let change = more.largest();
         if !change.is_finite() {
             return None;
         }
         // Where there is little to add up, M itself must be seen to decay.
-        if change <= accuracy * e.amax() && m.norm() < 0.9 {
-            symmetrise(&mut e);
+        if change <= accuracy * e.largest() && m.length() < 0.9 {
+            e.symmetrise();
             return Some(e);
         }
-        m = product(&m, &m);
-        if !m.amax().is_finite() {
+        m = m.times(&m);
+        if !m.largest().is_finite() {
             return None;
         }
     }
