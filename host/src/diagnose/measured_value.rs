@@ -1,6 +1,6 @@
 //! Values of the file whose measurement says that an effect is not missing.
 
-use crate::effects::{Axis, Effect};
+use crate::effects::{Axis, Effect, ValueBehind};
 use crate::fitting::Candidate;
 use crate::model::{JointField, LinkField, Model, ParameterPath};
 
@@ -18,14 +18,13 @@ pub fn values_behind(candidate: &Candidate, model: &Model) -> Vec<ParameterPath>
 
 fn value_behind(effect: &dyn Effect, index: usize, model: &Model) -> Option<ParameterPath> {
     let joint = |field| ParameterPath::Joint { index, field };
-    let path = match (effect.info().id, model.joints.get(index)?.axis()) {
-        ("torque_scale", Axis::Hinge) => joint(JointField::StallTorque),
-        ("torque_scale", Axis::Slide) => joint(JointField::StallForce),
-        ("mass", _) => ParameterPath::Link {
+    let path = match (effect.value_behind()?, model.joints.get(index)?.axis()) {
+        (ValueBehind::StallTorque, Axis::Hinge) => joint(JointField::StallTorque),
+        (ValueBehind::StallTorque, Axis::Slide) => joint(JointField::StallForce),
+        (ValueBehind::LinkMass, _) => ParameterPath::Link {
             index,
             field: LinkField::Mass,
         },
-        _ => return None,
     };
     path.get(model).map(|_| path)
 }

@@ -51,6 +51,15 @@ pub enum Scope {
     WholeRig,
 }
 
+/// A value of the model that an effect may change and do nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ValueBehind {
+    /// The drive's torque (force of a slide) at standstill.
+    StallTorque,
+    /// The mass of the joint's link.
+    LinkMass,
+}
+
 /// What must be logged or known for an effect to be a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {

@@ -1,6 +1,6 @@
 //! Mass: the link is heavier or lighter than in the model.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site, ValueBehind};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
@@ -51,6 +51,10 @@ impl Effect for Mass {
 
     fn slide_info(&self) -> Option<&'static EffectInfo> {
         Some(&INFO)
+    }
+
+    fn value_behind(&self) -> Option<ValueBehind> {
+        Some(ValueBehind::LinkMass)
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

@@ -57,7 +57,7 @@ mod tests;
 
 pub use base_compliance::BaseSpring;
 pub use gear::{Coupling, Gear};
-pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site};
+pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site, ValueBehind};
 pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
@@ -181,6 +181,12 @@ pub trait Effect: Sync + fmt::Debug {
             self.info().site,
             Site::Timing | Site::Command | Site::Drive | Site::Gear | Site::Friction | Site::Sensor
         )
+    }
+
+    /// The value of the model that it changes where that is all it does: measured on the rig, such
+    /// a value leaves nothing for the effect.
+    fn value_behind(&self) -> Option<ValueBehind> {
+        None
     }
 
     /// Body: changes the rig's constants before a motion is simulated.

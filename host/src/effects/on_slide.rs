@@ -2,7 +2,7 @@
 
 use super::{
     AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Encoded, Gear, JointState, MemoryCell,
-    Rig, Scope, SenseMemory, Slide, Slope, StepState,
+    Rig, Scope, SenseMemory, Slide, Slope, StepState, ValueBehind,
 };
 use std::sync::LazyLock;
 
@@ -61,6 +61,10 @@ impl Effect for OnSlide {
 
     fn is_of_servo(&self) -> bool {
         self.effect.is_of_servo()
+    }
+
+    fn value_behind(&self) -> Option<ValueBehind> {
+        self.effect.value_behind()
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

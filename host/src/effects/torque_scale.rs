@@ -1,6 +1,8 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope, ValueBehind,
+};
 
 /// s tau.
 #[derive(Debug)]
@@ -45,6 +47,10 @@ impl Effect for TorqueScale {
 
     fn slide_info(&self) -> Option<&'static EffectInfo> {
         Some(&INFO)
+    }
+
+    fn value_behind(&self) -> Option<ValueBehind> {
+        Some(ValueBehind::StallTorque)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
