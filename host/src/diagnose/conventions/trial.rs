@@ -145,9 +145,8 @@ impl RemedyTrial {
             None => ModelReading::new(model, motions),
         };
         let before = shortened.as_ref().unwrap_or(reading);
-        let windows = before.common_windows(&after);
-        let rated = |reading: &ModelReading| reading.cut_as(&windows).rated(effort);
-        Trial::new(remedy, &rated(before), &rated(&after))
+        let [before, after] = rated_alike([before, &after], effort);
+        Trial::new(remedy, &before, &after)
     }
 
     /// Error with one value of the file, or the torques of a joint, off by what explains the
@@ -175,12 +174,8 @@ impl RemedyTrial {
         let mut scaled = self.model.clone();
         scaled.effects.push(torque_scale(joint).instance(&[factor]));
         let after = ModelReading::new(scaled, self.motions.clone());
-        let windows = reading.common_windows(&after);
-        let share = |reading: &ModelReading| {
-            let rating = reading.cut_as(&windows).rated(Effort::Values);
-            rating.share()
-        };
-        Some(share(&after)? / share(reading)?.max(1e-12))
+        let [before, after] = rated_alike([reading, &after], Effort::Values);
+        Some(after.share()? / before.share()?.max(1e-12))
     }
 
     /// The motions without the ends that others lack.
@@ -208,6 +203,12 @@ impl RemedyTrial {
         let varies = |values: Vec<f64>| values.windows(2).any(|pair| pair[0] != pair[1]);
         self.motions.iter().filter_map(values).any(varies)
     }
+}
+
+/// Both on the windows in which start errors grow in neither.
+fn rated_alike(readings: [&ModelReading; 2], effort: Effort) -> [Rating; 2] {
+    let windows = readings[0].common_windows(readings[1]);
+    readings.map(|reading| reading.cut_as(&windows).rated(effort))
 }
 
 fn torque_scale(joint: usize) -> Candidate {
