@@ -181,6 +181,18 @@ impl Gains {
         self.verification.region_rad
     }
 
+    /// Whether the region may be larger still: the search ends there.
+    #[getter]
+    fn region_open(&self) -> bool {
+        self.verification.region_open
+    }
+
+    /// Whether the robot stays up with all gains at zero too: `stabilised` says nothing of them then.
+    #[getter]
+    fn stays_uncontrolled(&self) -> bool {
+        self.verification.stays_uncontrolled
+    }
+
     /// The header of the fixed-point law for C.
     fn c_header(&self) -> PyResult<String> {
         let fixed = self.fixed()?;

@@ -21,6 +21,10 @@ def test_continuous_gains_are_those_of_python_control() -> None:
 def test_sampled_gains_stabilise_the_simulated_loop() -> None:
     found = hs.gains(hs.Model.load(HANDSTAND))
     assert found.stabilised and found.region_rad > 0.0
+    assert not found.region_open and not found.stays_uncontrolled
+    said = found.to_dict()["verification"]
+    assert said["region_open"] == found.region_open
+    assert said["stays_uncontrolled"] == found.stays_uncontrolled
     assert "#include" in found.c_header()
     assert found.k.shape[1] == len(found.states) == len(found.x0)
 
