@@ -1,0 +1,171 @@
+//! What an effect may change: a hook for each site.
+
+use super::{
+    AtRest, Axis, DriveState, EffectInfo, Encoded, Gear, JointState, MemoryCell, Rig, SenseMemory,
+    Site, Slide, Slope, StepState, ValueBehind,
+};
+use std::fmt;
+
+/// Relative step of a finite difference in the values of a smooth law.
+pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
+
+/// A departure from the rigid chain with ideal drives and sensors.
+///
+/// Every hook's default is identity; an effect overrides that of its site. `values` are in its
+/// parameters' order.
+pub trait Effect: Sync + fmt::Debug {
+    /// What people and tools need to know of it.
+    fn info(&self) -> &'static EffectInfo;
+
+    /// What people and tools need to know of it at a joint that slides, in m and N: `info()` itself
+    /// where no unit is one of angles; none where it cannot act there.
+    fn slide_info(&self) -> Option<&'static EffectInfo> {
+        None
+    }
+
+    /// The joints whose units its values have; see [`super::on_axis`].
+    fn axis(&self) -> Axis {
+        Axis::Hinge
+    }
+
+    /// Whether a model file defines it: see [`expression`].
+    fn is_users(&self) -> bool {
+        false
+    }
+
+    /// Relative step of a finite difference in its values: large where the law jumps, so that a
+    /// difference sees the jumps pass.
+    fn difference(&self) -> f64 {
+        SMOOTH_DIFFERENCE
+    }
+
+    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
+    /// it with the same values; else with the link, the bearing or the calibration of one joint.
+    fn is_of_servo(&self) -> bool {
+        matches!(
+            self.info().site,
+            Site::Timing | Site::Command | Site::Drive | Site::Gear | Site::Friction | Site::Sensor
+        )
+    }
+
+    /// The value of the model that it changes where that is all it does: measured on the rig, such
+    /// a value leaves nothing for the effect.
+    fn value_behind(&self) -> Option<ValueBehind> {
+        None
+    }
+
+    /// Body: changes the rig's constants before a motion is simulated.
+    fn body(&self, _values: &[f64], _joint: usize, _rig: &mut Rig) {}
+
+    /// Timing: seconds by which the drive's input arrives late.
+    fn delay_s(&self, _values: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Command: the duty (share of full range, -1 to 1) the drive really applies.
+    fn command(&self, _values: &[f64], duty: f64) -> f64 {
+        duty
+    }
+
+    /// Drive: the torque that arrives at the joint, N m, while the drive is energised.
+    fn drive(&self, _values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
+        torque_nm
+    }
+
+    /// Gear: changes what lies between a motor and its joint.
+    fn gear(&self, _values: &[f64], _gear: &mut Gear) {}
+
+    /// Joint: a torque on the joint, N m, smooth in angle and speed.
+    fn torque(&self, _values: &[f64], _at: &JointState) -> f64 {
+        0.0
+    }
+
+    /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it
+    /// is the breakaway torque: a joint at rest is held until pushed harder than that.
+    fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
+        0.0
+    }
+
+    /// Friction: whether it is the same at every speed and load until the joint turns back, which
+    /// is simulated faster.
+    fn friction_is_constant(&self) -> bool {
+        false
+    }
+
+    /// Command, drive or joint, with memory: whether what it does depends on what was before. It
+    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// What it remembers where a motion begins in this state and nothing earlier is known.
+    fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
+        [0.0; 2]
+    }
+
+    /// What it remembers after a step of `step_s` that ended in this state.
+    fn remember(&self, _values: &[f64], _memory: &mut MemoryCell, _at: &StepState, _step_s: f64) {}
+
+    /// Command, with memory: the mean input followed during a step in which `input` arrives.
+    fn obey(&self, _values: &[f64], _memory: MemoryCell, input: f64, _step_s: f64) -> f64 {
+        input
+    }
+
+    /// Encoder: what it reads at this joint angle, rad.
+    fn encode(&self, _values: &[f64], angle_rad: f64) -> f64 {
+        angle_rad
+    }
+
+    /// Rate: what a sensor of rates reads at rest, rad/s.
+    fn rate_bias_rad_s(&self, _values: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Rate: what a sensor of rates reads per rate.
+    fn rate_scale(&self, _values: &[f64]) -> f64 {
+        1.0
+    }
+
+    /// Sensor or rate, with memory: how far the reading trails, rad, while the encoded angle has
+    /// long changed by `speed_rad_s`; of a rate rad/s and rad/s^2. `None` where the past decides.
+    fn trail_rad(&self, _values: &[f64], _speed_rad_s: f64) -> Option<f64> {
+        None
+    }
+
+    /// Sensor, of the log: by how much later than the encoder read it a row holds a reading, s;
+    /// `None` where the rows' times are right. It moves what is logged and acts in no loop.
+    fn reading_offset_s(&self, _values: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Derivative of the law with the rig at rest, for linear models; `None` where the law has
+    /// none. Bodies and delays need none: they are taken as they are.
+    fn slope(&self, _values: &[f64], _at: &AtRest) -> Option<Slope> {
+        None
+    }
+
+    /// Sensor or rate, with memory: the reading after `step_s` at whose end the shaft is `encoded`.
+    /// `memory` is the effect's own, of the call before; `None` before the first call of a motion,
+    /// which reads the angle itself.
+    fn sense(
+        &self,
+        _values: &[f64],
+        _memory: &mut Option<SenseMemory>,
+        encoded: Encoded,
+        _step_s: f64,
+    ) -> f64 {
+        encoded.angle_rad
+    }
+
+    /// Sensor, with memory: by how much the encoded angle has come to be ahead of the reading by
+    /// what was before, rad, and how fast it draws away, rad/s.
+    fn slipped(&self, _memory: SenseMemory) -> [f64; 2] {
+        [0.0; 2]
+    }
+}
+
+impl PartialEq for dyn Effect {
+    fn eq(&self, other: &dyn Effect) -> bool {
+        self.info().id == other.info().id
+    }
+}
