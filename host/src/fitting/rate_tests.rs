@@ -166,3 +166,18 @@ fn a_gyro_reads_the_rate_of_its_link_and_a_tachometer_that_of_its_joint() {
         }
     }
 }
+
+#[test]
+fn other_readings_take_the_place_of_what_is_measured() {
+    const RATE: &str = "velocity = { column = \"w\", unit = \"rad/s\" }";
+    for columns in [COARSE, RATE, &both()] {
+        let model = pendulum(columns, 0.006);
+        let motion = swing(&model, &[1.0], even(100, 100.0));
+        let data = FitData::new(&model, vec![motion], Horizon::Whole);
+        let length = data.signals.len() * data.windows[0].samples.len();
+        let other = data.clone().measuring(&[vec![vec![0.25; length]]]);
+        for signal in 0..data.signals.len() {
+            assert_eq!(other.measured(0, signal), [0.25; 100], "{columns}");
+        }
+    }
+}

@@ -81,8 +81,8 @@ impl FitData {
         self.windows.iter().map(of_window).sum()
     }
 
-    /// The same windows with other readings in place of the measured ones, rad: per motion and
-    /// window, signal after signal. What was not measured stays so.
+    /// The same windows with other readings in place of the measured ones, rad or rad/s: per
+    /// motion and window, signal after signal. What was not measured stays so.
     pub fn measuring(mut self, readings: &[Vec<Vec<f64>>]) -> FitData {
         for (motion, readings) in readings.iter().enumerate() {
             let windows: Vec<Range<usize>> = self
@@ -93,6 +93,9 @@ impl FitData {
             for (samples, readings) in windows.into_iter().zip(readings) {
                 for (signal, readings) in readings.chunks(samples.len()).enumerate() {
                     let place = match signal.checked_sub(motion.position_rad.len()) {
+                        None if self.signals[signal] == MeasuredSignal::Rate => {
+                            motion.velocity_rad_s[signal].as_mut()
+                        }
                         None => Some(&mut motion.position_rad[signal]),
                         Some(rate) => motion.rate_rad_s[rates[rate]].as_mut(),
                     };
