@@ -28,7 +28,7 @@ pub trait Effect: Sync + fmt::Debug {
         Axis::Hinge
     }
 
-    /// Whether a model file defines it: see [`expression`].
+    /// Whether a model file defines it: see [`super::expression`].
     fn is_users(&self) -> bool {
         false
     }
