@@ -92,7 +92,7 @@ impl FamilyRow {
         }
         let count = |answer| answers.get(&answer).copied().unwrap_or(0);
         let reached = count(Answer::Right) + count(Answer::Equivalent);
-        let values = || outcomes.iter().flat_map(|outcome| &outcome.values);
+        let values = || outcomes.iter().flat_map(|outcome| outcome.fitted());
         let covered = values().filter(|value| value.covered).count();
         FamilyRow {
             family,
@@ -243,6 +243,15 @@ mod tests {
             }],
             seconds: 2.0,
         }
+    }
+
+    #[test]
+    fn a_value_without_an_interval_covers_nothing_and_misses_nothing() {
+        let mut outcomes = vec![outcome("delay", Answer::Right, 1.0, true); 2];
+        outcomes[1].values[0].interval = None;
+        outcomes[1].values[0].covered = false;
+        let coverage = Tally::of(&outcomes).families[0].coverage;
+        assert_eq!((coverage.met, coverage.of), (1, 1));
     }
 
     #[test]

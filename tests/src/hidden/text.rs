@@ -147,9 +147,10 @@ pub fn line(outcome: &Outcome) -> String {
         errors(outcome),
         outcome.seconds
     );
-    if !outcome.values.is_empty() {
-        let held = outcome.values.iter().filter(|value| value.covered).count();
-        line += &format!("; intervals {held} of {}", outcome.values.len());
+    let fitted = outcome.fitted().count();
+    if fitted > 0 {
+        let held = outcome.fitted().filter(|value| value.covered).count();
+        line += &format!("; intervals {held} of {fitted}");
     }
     if miss(outcome).is_some() {
         line += "  <- short";
@@ -213,11 +214,9 @@ fn miss(outcome: &Outcome) -> Option<String> {
     if outcome.ratio().is_some_and(|ratio| ratio > MOST_RATIO) {
         notes.push(errors(outcome));
     }
-    for value in outcome.values.iter().filter(|value| !value.covered) {
-        let interval = value.interval.map_or_else(
-            || "no interval".to_string(),
-            |(low, high)| format!("{low:.5} to {high:.5}"),
-        );
+    for value in outcome.fitted().filter(|value| !value.covered) {
+        let (low, high) = value.interval.unwrap_or_default();
+        let interval = format!("{low:.5} to {high:.5}");
         notes.push(format!(
             "{} is {}, not {interval}",
             value.path, value.true_value

@@ -91,6 +91,12 @@ impl Outcome {
         self.answer == Answer::Right
     }
 
+    /// The hidden values that were fitted; one that was named as a value of the file, as a stall
+    /// torque for the scale of torques, has no interval here.
+    pub fn fitted(&self) -> impl Iterator<Item = &Value> {
+        self.values.iter().filter(|value| value.interval.is_some())
+    }
+
     /// Held-out error against the true model's.
     pub fn ratio(&self) -> Option<f64> {
         Some(self.after_rad? / self.true_rad?)
