@@ -187,7 +187,7 @@ impl Gains {
         self.verification.region_open
     }
 
-    /// Whether the robot stays up with all gains at zero too: `stabilised` says nothing of them then.
+    /// Whether the robot stays up with all gains at zero too: `stabilised` then says nothing.
     #[getter]
     fn stays_uncontrolled(&self) -> bool {
         self.verification.stays_uncontrolled
