@@ -46,7 +46,7 @@ impl Plant {
         let reading = |joint: &usize| RateReading::of(model, &self, *joint);
         self.rate_readings = self.rate_joints.iter().map(reading).collect();
         if !self.rate_readings.is_empty() {
-            // Their rows are right.
+            // Their column is on time, so no run may begin after a sample's own time.
             self.late_s = self.late_s.max(0.0);
         }
         self.senses |= self.rate_readings.iter().any(|rate| !rate.sense.is_empty());

@@ -1,7 +1,7 @@
 //! Square matrices that iterations run on: of any size in memory, small ones in registers.
 //!
 //! A DLQR of 6 states spent more time on memory, bounds and loops of unknown length than on its
-//! sums; in registers it takes three fifths of the time.
+//! sums; in registers, and with fused products in `twofold`, it takes half the time.
 
 use super::dense;
 use nalgebra::DMatrix;
