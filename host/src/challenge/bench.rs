@@ -6,7 +6,7 @@ use super::robot::{LINKS, Laws};
 use super::robot_motion::{SUPPLY_V, balance, hang};
 use super::rounding::rounded;
 use super::text::{self, EffectLine};
-use super::{arm_logs, stage, stream};
+use super::{SHOWN_BY_MOTIONS, arm_logs, drawn, stage, stream};
 use rand::Rng;
 
 /// Which rig moves how; every motion lasts 20 s.
@@ -62,6 +62,23 @@ pub fn bench(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<Benc
     match motions {
         Motions::Arm => Some(arm(seed, kinds)),
         Motions::Hanging | Motions::Balancing => robot(motions, seed, kinds),
+    }
+}
+
+/// The true model of a bench, by the same arguments: as [`bench`] has it, and without the logs
+/// where these do not decide what is hidden.
+pub fn true_model_toml(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<String> {
+    match motions {
+        Motions::Arm if !kinds.contains(&SHOWN_BY_MOTIONS) => {
+            let (rig, secrets) = drawn(seed, kinds);
+            Some(text::model_toml(&rig, rig.friction, &secrets))
+        }
+        Motions::Hanging => {
+            let hidden: Vec<Placed> = kinds.iter().map(|kind| placed(seed, kind)).collect();
+            let (friction, _) = friction(seed, &hidden);
+            Some(toml(&[&friction[..], &hidden[..]].concat()))
+        }
+        _ => bench(motions, seed, kinds).map(|bench| bench.true_model_toml),
     }
 }
 

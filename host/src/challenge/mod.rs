@@ -28,7 +28,7 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench};
+pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml};
 pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
@@ -88,10 +88,15 @@ fn arm_logs(recordings: &[ArmRecording; 3]) -> Vec<(String, String)> {
     names.map(log).collect()
 }
 
+/// The arm, and what it hides before motions have shown how much.
+fn drawn(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>) {
+    let secrets: Vec<HiddenEffect> = kinds.iter().map(|kind| secret(seed, kind)).collect();
+    (BenchArm::random(&mut stream(seed, 1), &secrets), secrets)
+}
+
 /// The arm, what it hides, and its three motions.
 fn stage(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>, [ArmRecording; 3]) {
-    let mut secrets: Vec<HiddenEffect> = kinds.iter().map(|kind| secret(seed, kind)).collect();
-    let rig = BenchArm::random(&mut stream(seed, 1), &secrets);
+    let (rig, mut secrets) = drawn(seed, kinds);
     let mut payload = stream(seed, 2);
     let mounts = [
         (0.0, false),
@@ -104,7 +109,7 @@ fn stage(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>, [Ar
         let recordings = motions(seed, &truth, &rig, mounts);
         let saturation = secrets
             .iter_mut()
-            .find(|secret| secret.kind == "torque_saturation");
+            .find(|secret| secret.kind == SHOWN_BY_MOTIONS);
         match saturation {
             Some(HiddenEffect { parameters, .. }) if spared(&recordings, parameters[0].1) => {
                 parameters[0].1 = rounded(0.9 * parameters[0].1, 6);
@@ -120,6 +125,9 @@ fn secret(seed: u64, kind: &'static str) -> HiddenEffect {
     let place = KINDS.iter().position(|known| *known == kind).unwrap_or(0);
     HiddenEffect::random(&mut stream(seed, SECRETS + place as u64), kind)
 }
+
+/// The kind whose value is lowered until the motions show it.
+const SHOWN_BY_MOTIONS: &str = "torque_saturation";
 
 /// First of the streams from which the values of hidden effects are drawn; those of the rig lie
 /// below.

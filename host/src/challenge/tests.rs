@@ -284,3 +284,18 @@ fn a_bench_hides_what_it_is_told_and_its_owner_does_not_know() {
         if joint == 1 { 3 } else { 2 }
     );
 }
+
+#[test]
+fn a_true_model_is_the_bench_s() {
+    for (motions, kinds) in [
+        (Motions::Arm, ["delay", "viscous"]),
+        (Motions::Arm, ["torque_saturation", "coulomb"]),
+        (Motions::Hanging, ["mass", "dead_zone"]),
+    ] {
+        let bench = bench(motions, 6, &kinds).unwrap();
+        assert_eq!(
+            true_model_toml(motions, 6, &kinds),
+            Some(bench.true_model_toml)
+        );
+    }
+}

@@ -117,8 +117,8 @@ fn a_second_ctrl_c_leaves_torque_off_too() {
     }
 }
 
-/// One such try; false where the program found the servos silent before the keys came, as it
-/// does on a busy machine.
+/// One such try; false where the program found the servos silent or late before the keys came, as
+/// it does on a busy machine.
 fn second_ctrl_c(words: &[&str], options: &[&str], baud: u32) -> bool {
     let bench = Bench::new();
     bench.put("motion.csv", super::motion(0.4));
@@ -136,8 +136,11 @@ fn second_ctrl_c(words: &[&str], options: &[&str], baud: u32) -> bool {
     ];
     let mut replay = spawn(&bench, &[&follow, options].concat());
     while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
-        let ended = replay.try_wait().unwrap();
-        assert!(ended.is_none(), "{words:?}: it ended early, {ended:?}");
+        if replay.try_wait().unwrap().is_some() {
+            robot.kill().unwrap();
+            robot.wait().unwrap();
+            return false;
+        }
         std::thread::sleep(Duration::from_millis(20));
     }
     signal("-STOP", &robot);
