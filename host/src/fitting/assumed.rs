@@ -70,7 +70,7 @@ pub(super) fn assumed(
         run_free(model, sigma, motion, &whole, &mut states);
     }
     for joint in (0..signals.len()).filter(|j| signals[*j] == MeasuredSignal::Rate) {
-        let cost = |states: &AssumedStates| cost(model, signals, sigma, motion, states);
+        let cost = |states: &AssumedStates, most| cost(model, signals, sigma, motion, states, most);
         states = anchored(&states, motion, joint, &cost);
     }
     states
@@ -82,15 +82,22 @@ fn anchored(
     states: &AssumedStates,
     motion: &Motion,
     joint: usize,
-    cost: &dyn Fn(&AssumedStates) -> f64,
+    cost: &dyn Fn(&AssumedStates, f64) -> f64,
 ) -> AssumedStates {
     let moved = |[begin_rad, drift_rad_s]: [f64; 2]| {
         let turned = turned(states, joint, begin_rad);
         straightened(turned, motion, joint, drift_rad_s)
     };
     let best = |tried: &mut dyn Iterator<Item = [f64; 2]>| {
-        let judged = tried.map(|at| (cost(&moved(at)), at));
-        judged.min_by(|a, b| a.0.total_cmp(&b.0))
+        let mut best: Option<(f64, [f64; 2])> = None;
+        for at in tried {
+            let least = best.map_or(f64::INFINITY, |(least, _)| least);
+            let own = cost(&moved(at), least);
+            if best.is_none() || own < least {
+                best = Some((own, at));
+            }
+        }
+        best
     };
     let turns = |drift_rad_s: f64| {
         (0..TRIED).map(move |turn| [turn as f64 / TRIED as f64 * TAU, drift_rad_s])
@@ -184,13 +191,15 @@ fn turned(states: &AssumedStates, joint: usize, by_rad: f64) -> AssumedStates {
     states
 }
 
-/// Squared weighted errors of the model in short windows that begin at these states.
+/// Squared weighted errors of the model in short windows that begin at these states; of those that
+/// leave more than `most`, no more than that they do.
 fn cost(
     model: &Model,
     signals: &[MeasuredSignal],
     sigma: &[f64],
     motion: &Motion,
     states: &AssumedStates,
+    most: f64,
 ) -> f64 {
     let plant = Plant::new(model, motion);
     let pieces = (motion.duration_s() / WINDOW_S).round().max(1.0) as usize;
@@ -198,6 +207,9 @@ fn cost(
     let edge = |piece: usize| piece * motion.len() / pieces;
     let mut sum = 0.0;
     for piece in 0..pieces {
+        if sum > most {
+            break;
+        }
         let window = Window {
             motion: 0,
             samples: edge(piece)..edge(piece + 1),
