@@ -1,14 +1,14 @@
-//! What must hold of the sources, whatever they do: format, lints, documentation, packages, the
-//! oldest compiler.
+//! What must hold of the sources before anything is run: format, lints, documentation, packages,
+//! the oldest compiler.
 
 use handstand_xtask::{cargo, program, root};
 use serde_json::Value;
 
 /// A check: its name, and whether it holds. Each says what it finds.
-type Check = (&'static str, fn() -> bool);
+pub type Check = (&'static str, fn() -> bool);
 
 /// Every check, the quick ones first; a new one is one line.
-const CHECKS: &[Check] = &[
+pub const CHECKS: &[Check] = &[
     ("cargo fmt", || runs(&["fmt", "--all", "--check"])),
     ("rust-version", oldest_compiler),
     ("cargo package", packages),
@@ -25,25 +25,8 @@ const CHECKS: &[Check] = &[
     ("cargo doc", || runs(&["doc", "--workspace", "--no-deps"])),
 ];
 
-/// Goes on after a failure; whether all hold.
-pub fn run() -> bool {
-    let failed: Vec<&str> = CHECKS
-        .iter()
-        .filter(|(_, holds)| !holds())
-        .map(|(name, _)| *name)
-        .collect();
-    if !failed.is_empty() {
-        println!("\nWhat does not hold: {}", failed.join(", "));
-    }
-    failed.is_empty()
-}
-
-/// What they build lies in a folder of its own, so that they need not wait for a build beside them.
 fn runs(words: &[&str]) -> bool {
-    let mut cargo = cargo(words);
-    cargo.env("RUSTDOCFLAGS", "-D warnings");
-    cargo.env("CARGO_TARGET_DIR", root().join("target/checks"));
-    program::run(&mut cargo)
+    program::run(cargo(words).env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 /// Whether no dependency needs a newer compiler than the workspace promises to build with. Clippy's

@@ -29,8 +29,6 @@ struct Chores {
 enum Chore {
     /// Install what the tests need, then run all of them
     Test(test::Args),
-    /// Check the sources without running them: format, lints, documentation, packages
-    Check,
     /// Install what the builds and the tests need, without running them
     Install(install::Args),
     /// Fuzz the parsers with libFuzzer
@@ -82,7 +80,6 @@ fn main() -> ExitCode {
             install::run(&args);
             return ExitCode::SUCCESS;
         }
-        Chore::Check => return code(checks::run()),
         Chore::Fuzz(args) => return code(fuzz::run(&args)),
         Chore::Mutants(args) => return code(mutants::run(&args)),
         Chore::Python => return code(python_package::run()),

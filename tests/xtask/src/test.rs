@@ -1,11 +1,12 @@
 //! `cargo xtask test`: everything that must hold; at its end what failed, by name, and `N passed, N
 //! failed`.
 //!
-//! First says and installs what the builds need; `--no-install` leaves that out. The checks of the
-//! sources count as one test, as does the firmware's build, and every test of the workspace as one.
-//! The sources are checked, the firmware built, and what only the tests need installed, beside the
-//! build of the tests: either alone keeps one core waiting.
+//! First says and installs what the builds need; `--no-install` leaves that out. Then each check of
+//! the sources counts as one test, as does the firmware's build, and every test of the workspace as
+//! one. The firmware is built, and what only the tests need installed, beside the checks: either
+//! alone keeps one core waiting.
 
+use super::checks::CHECKS;
 use super::install;
 use super::lane::Lane;
 use super::python_package;
@@ -38,8 +39,11 @@ pub fn run(args: &Args) -> bool {
     }
     let install = (!args.no_install).then(|| Lane::start(&["install", "--only-tests"]));
     let firmware = firmware();
-    let check = Lane::start(&["check"]);
     let mut tally = Tally::default();
+    for (name, holds) in CHECKS {
+        tally.count(holds(), name);
+        clock.lap(name);
+    }
     program::run(&mut cargo(&["test", "--workspace", "--no-run"]));
     clock.lap("building the tests");
     // The tests that follow find the firmware's ELF, and what was installed.
@@ -49,8 +53,7 @@ pub fn run(args: &Args) -> bool {
     if let Some(install) = install {
         install.end();
     }
-    tally.count(check.end(), "cargo xtask check");
-    clock.lap("waiting for the firmware, the installation and the checks");
+    clock.lap("waiting for the firmware and the installation");
     let python = python_package();
     tests(&mut tally);
     clock.lap("running the tests");
