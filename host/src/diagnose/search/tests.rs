@@ -38,19 +38,39 @@ fn a_plainer_effect_takes_the_place_of_one_on_its_bound() {
     assert_eq!(named, ["coulomb", "viscous"]);
 }
 
+fn candidate(evaluator: &Evaluator, id: &str) -> Candidate {
+    let mut known = evaluator.candidates.iter();
+    *known.find(|c| c.effect.info().id == id).unwrap()
+}
+
+/// An arm that lacks viscous friction: a placebo gains next to nothing beside it, and as much as
+/// an effect that it does not have.
+#[test]
+fn a_placebo_is_evaluated_beside_what_gains_as_little() {
+    let (model, training, held_out) = arm(1, &["viscous"]);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
+    let alone = |id, values: &[f64]| {
+        let candidate = candidate(&evaluator, id);
+        evaluator.base.with(candidate, values, search, finish)
+    };
+    assert_eq!(evaluator.try_placebos(&alone("viscous", &[0.02])).len(), 0);
+    let placebos = evaluator.try_placebos(&alone("cogging", &[0.001, 10.0, 0.0]));
+    assert_eq!(placebos.len(), 1);
+    assert!(placebos[0].evaluation.is_some());
+}
+
 /// An arm that lacks viscous friction, and a pair that was found without ever trying it alone.
 #[test]
 fn an_effect_that_is_not_needed_leaves_the_set() {
     let (model, training, held_out) = arm(1, &["viscous"]);
     let options = DiagnoseOptions::default();
     let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
-    let candidate = |id: &str| {
-        let mut known = evaluator.candidates.iter();
-        *known.find(|c| c.effect.info().id == id).unwrap()
-    };
     let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
-    let needed = (evaluator.base).with(candidate("viscous"), &[0.02], search, finish);
-    let idle = candidate("cogging");
+    let viscous = candidate(&evaluator, "viscous");
+    let needed = evaluator.base.with(viscous, &[0.02], search, finish);
+    let idle = candidate(&evaluator, "cogging");
     let mut pair = needed.with(idle, &[0.001, 10.0, 0.0], search, finish);
     evaluator.evaluate(&mut pair);
 
