@@ -65,7 +65,7 @@ pub fn bench(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<Benc
     }
 }
 
-/// The true model of a bench, by the same arguments: as [`bench`] has it, and without the logs
+/// The true model of a bench, by the same arguments: as [`bench()`] has it, and without the logs
 /// where these do not decide what is hidden.
 pub fn true_model_toml(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<String> {
     match motions {
