@@ -78,11 +78,9 @@ impl HiddenEffect {
 }
 
 /// Laws that another's holds as a special case (with two of its values equal, while the drive is
-/// on, while friction is larger than the offset, while the contact is stiff): that one explains
-/// them rightly.
-const GENERAL: [(&str, &str); 7] = [
+/// on, while friction is larger than the offset): that one explains them rightly.
+const GENERAL: [(&str, &str); 6] = [
     ("load_friction", "drive_asymmetry"),
-    ("coulomb", "pre_sliding"),
     // With a torque offset of half the difference it resists both ways alike.
     ("coulomb", "direction_asymmetry"),
     ("direction_asymmetry", "torque_offset"),
