@@ -136,7 +136,9 @@ fn second_ctrl_c(words: &[&str], options: &[&str], baud: u32) -> bool {
     ];
     let mut replay = spawn(&bench, &[&follow, options].concat());
     while !bench.path("out.csv").exists() || bench.get("out.csv").lines().count() < 20 {
-        if replay.try_wait().unwrap().is_some() {
+        if let Some(ended) = replay.try_wait().unwrap() {
+            let busy = [Some(4), Some(5)].contains(&ended.code());
+            assert!(busy, "{words:?}: it ended early, {ended:?}");
             robot.kill().unwrap();
             robot.wait().unwrap();
             return false;
