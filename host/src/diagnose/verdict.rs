@@ -46,9 +46,11 @@ const UNEXPLAINED_SHARE: f64 = 0.35;
 /// An explanation that leaves more than this share of the squared error above the noise is not the
 /// whole of it.
 const MOST_LEFT: f64 = 0.125;
-/// So does one that leaves more than so many times the noise: what is true leaves hardly more than
-/// the noise, and what only resembles it leaves most.
-const MOST_FLOORS: f64 = 5.0;
+/// So does one that leaves more than so many times the noise on motions held out: what is true
+/// leaves hardly more than the noise, and what only resembles it leaves most.
+const MOST_FLOORS: f64 = 2.0;
+/// The same where nothing is held out, which proves less and claims less.
+const MOST_FLOORS_FITTED: f64 = 5.0;
 /// Where more than this share of what is left goes as every motion gets values of its own, they are
 /// no constants.
 const MOST_VARYING: f64 = 0.5;
@@ -88,20 +90,20 @@ impl Signs {
         }
     }
 
-    /// Whether what is left has a structure. Far above the noise, structure needs less proof.
+    /// Whether what is left has a structure.
     fn is_structured(&self) -> bool {
-        let least = match self.left.sqrt() > FAR_OFF * FAR_OFF {
-            true => 0.0,
-            false => UNEXPLAINED_LOW,
-        };
-        self.free_form_low > least && self.free_form_share > UNEXPLAINED_SHARE
+        self.free_form_low > UNEXPLAINED_LOW && self.free_form_share > UNEXPLAINED_SHARE
     }
 
     /// Whether the explanation leaves a good part of the squared error above the noise, or an error
     /// far above it.
     fn leaves_much(&self) -> bool {
         let share = (self.left - 1.0) / (self.before - 1.0);
-        self.left > FAR_OFF && (share > MOST_LEFT || self.left.sqrt() > MOST_FLOORS)
+        let most_floors = match self.held_out {
+            true => MOST_FLOORS,
+            false => MOST_FLOORS_FITTED,
+        };
+        self.left > FAR_OFF && (share > MOST_LEFT || self.left.sqrt() > most_floors)
     }
 }
 
