@@ -81,6 +81,7 @@ impl Effect for GripSlip {
         let Encoded {
             angle_rad,
             speed_rad_s,
+            ..
         } = encoded;
         let unslipped = [angle_rad, angle_rad, f64::NAN, 0.0];
         let [before_rad, reading_rad, shaft_rad_s, slip_rad_s] = memory.unwrap_or(unslipped);

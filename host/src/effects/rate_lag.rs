@@ -49,6 +49,6 @@ impl Effect for RateLag {
         encoded: Encoded,
         step_s: f64,
     ) -> f64 {
-        filtered(values[0], memory, encoded.angle_rad, step_s)
+        filtered(values[0], memory, encoded, step_s)
     }
 }

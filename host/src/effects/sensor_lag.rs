@@ -3,7 +3,7 @@
 use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
-/// straight line over the step.
+/// straight line over the step, or a rate along a parabola.
 #[derive(Debug)]
 pub struct SensorLag;
 
@@ -59,34 +59,38 @@ impl Effect for SensorLag {
         encoded: Encoded,
         step_s: f64,
     ) -> f64 {
-        filtered(values[0], memory, encoded.angle_rad, step_s)
+        filtered(values[0], memory, encoded, step_s)
     }
 }
 
 /// What a filter of this time constant, s, reads `step_s` after what `memory` holds, where its
-/// input has come to be `angle_rad`, or a rate, rad/s.
+/// input, an angle or a rate, has come to be `encoded`.
 pub(super) fn filtered(
     constant_s: f64,
     memory: &mut Option<SenseMemory>,
-    angle_rad: f64,
+    encoded: Encoded,
     step_s: f64,
 ) -> f64 {
-    let reading_rad = match *memory {
-        Some([from_rad, reading_rad, ..]) if constant_s > 0.0 => {
-            follow(reading_rad, from_rad, angle_rad, step_s, constant_s)
+    let to = encoded.angle_rad;
+    let reading = match *memory {
+        Some([from, reading, ..]) if constant_s > 0.0 && step_s > 0.0 => {
+            let mean = encoded.mean.unwrap_or(0.5 * (from + to));
+            follow(reading, [from, to, mean], step_s, constant_s)
         }
-        _ => angle_rad,
+        Some([_, reading, ..]) if constant_s > 0.0 => reading,
+        _ => to,
     };
-    *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
-    reading_rad
+    *memory = Some([to, reading, 0.0, 0.0]);
+    reading
 }
 
-/// Output of the filter after a step over which its input goes straight `from_rad` -> `to_rad`.
-fn follow(reading_rad: f64, from_rad: f64, to_rad: f64, step_s: f64, constant_s: f64) -> f64 {
-    if step_s <= 0.0 {
-        return reading_rad;
-    }
-    let trail_rad = constant_s * (to_rad - from_rad) / step_s;
-    let start_rad = reading_rad - (from_rad - trail_rad);
-    to_rad - trail_rad + start_rad * (-step_s / constant_s).exp()
+/// Output of the filter after a step over which its input is the parabola of this start, end and
+/// mean.
+fn follow(reading: f64, [from, to, mean]: [f64; 3], step_s: f64, constant_s: f64) -> f64 {
+    let bend = 6.0 * mean - 3.0 * (from + to);
+    // What it trails by in the long run: T u' - T^2 u''.
+    let curved = 2.0 * bend * (constant_s / step_s).powi(2);
+    let trail = |slope: f64| constant_s * slope / step_s + curved;
+    let start = reading - (from - trail(to - from + bend));
+    to - trail(to - from - bend) + start * (-step_s / constant_s).exp()
 }

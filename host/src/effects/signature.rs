@@ -259,6 +259,7 @@ fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
         let encoded = Encoded {
             angle_rad: effect.encode(values, angle_rad),
             speed_rad_s: (angle_rad - before_rad) / step_s,
+            mean: None,
         };
         let reading_rad = effect.sense(values, &mut memory, encoded, step_s);
         (triangle(index as f64), reading_rad)

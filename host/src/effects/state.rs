@@ -100,13 +100,16 @@ impl JointState {
 /// are.
 pub type MemoryCell = [f64; 2];
 
-/// The shaft of an encoder at an instant, zero and scale of the encoder included.
+/// The shaft of an encoder at an instant, zero and scale of the encoder included; or, of a sensor of
+/// rates, the rate.
 #[derive(Debug, Clone, Copy)]
 pub struct Encoded {
     /// rad.
     pub angle_rad: f64,
     /// rad/s.
     pub speed_rad_s: f64,
+    /// Mean over the step that ends here; unknown of an angle, whose course is nearly straight.
+    pub mean: Option<f64>,
 }
 
 impl Encoded {
@@ -115,6 +118,7 @@ impl Encoded {
         Encoded {
             angle_rad,
             speed_rad_s: 0.0,
+            mean: None,
         }
     }
 }

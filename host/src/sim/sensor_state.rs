@@ -13,6 +13,8 @@ pub struct SensorState {
     /// Per joint, rad in the log's convention; rad/s where the rate is read. Then what the rate
     /// sensors read that joints have beside those of their angles, rad/s.
     pub(super) reading: Vec<f64>,
+    /// Per signal that is a rate, the angle that it is the rate of, rad, at the last step.
+    turned: Vec<f64>,
 }
 
 impl SensorState {
@@ -26,6 +28,10 @@ impl SensorState {
             self.cells = vec![None; cells];
         }
         self.reading.resize(plant.signals(), 0.0);
+        self.turned.resize(plant.signals(), 0.0);
+        for (signal, turned) in self.turned.iter_mut().enumerate() {
+            *turned = plant.turned_of(signal, &start.angle_rad).unwrap_or(0.0);
+        }
         let mut cells = self.cells.iter_mut();
         for (joint, plan) in plant.joints.iter().enumerate() {
             let reading = plant.encoded(joint, &start.angle_rad, &start.speed_rad_s);
@@ -84,18 +90,17 @@ impl SensorState {
             let mut encoded = Encoded::still(plant.encoded(joint, angle_rad, speed_rad_s));
             if !plan.sense.is_empty() {
                 encoded.speed_rad_s = plant.encoded_rad_s(joint, speed_rad_s);
+                encoded.mean = mean(&mut self.turned, plant, (joint, angle_rad), step_s);
             }
-            for (active, cell) in plan.sense.iter().zip(&mut cells) {
-                encoded.angle_rad = active.effect.sense(active.values(), cell, encoded, step_s);
-            }
-            self.reading[joint] = encoded.angle_rad;
+            self.reading[joint] = sensed(&plan.sense, &mut cells, encoded, step_s);
         }
         for (index, rate) in plant.rate_readings.iter().enumerate() {
+            let signal = plant.len() + index;
             let mut encoded = Encoded::still(rate.encoded_rad_s(speed_rad_s));
-            for (active, cell) in rate.sense.iter().zip(&mut cells) {
-                encoded.angle_rad = active.effect.sense(active.values(), cell, encoded, step_s);
+            if !rate.sense.is_empty() {
+                encoded.mean = mean(&mut self.turned, plant, (signal, angle_rad), step_s);
             }
-            self.reading[plant.len() + index] = encoded.angle_rad;
+            self.reading[signal] = sensed(&rate.sense, &mut cells, encoded, step_s);
         }
     }
 
@@ -105,6 +110,33 @@ impl SensorState {
             readings[joint * samples + k] = *reading;
         }
     }
+}
+
+/// What is read through these effects of what has come to be `encoded`.
+fn sensed<'a>(
+    sense: &[ActiveEffect],
+    cells: &mut impl Iterator<Item = &'a mut Option<SenseMemory>>,
+    mut encoded: Encoded,
+    step_s: f64,
+) -> f64 {
+    for (active, cell) in sense.iter().zip(cells) {
+        encoded.angle_rad = active.effect.sense(active.values(), cell, encoded, step_s);
+        encoded.mean = None;
+    }
+    encoded.angle_rad
+}
+
+/// Mean of a signal over a step that ends at these angles, where the signal is a rate: what has
+/// turned meanwhile over the time.
+fn mean(
+    turned: &mut [f64],
+    plant: &Plant,
+    (signal, angle_rad): (usize, &[f64]),
+    step_s: f64,
+) -> Option<f64> {
+    let now = plant.turned_of(signal, angle_rad)?;
+    let before = std::mem::replace(&mut turned[signal], now);
+    Some((now - before) / step_s + plant.rate_bias_of(signal)).filter(|mean| mean.is_finite())
 }
 
 /// Lets sensors begin as far behind a `reading` as they come to be while it changes by `slope` a

@@ -34,6 +34,7 @@ fn a_grip_that_slips_loses_the_way_it_slips_and_no_more() {
         Encoded {
             angle_rad: 50.0 * speeding_s * speeding_s + 10.0 * (time_s - speeding_s),
             speed_rad_s: 100.0 * speeding_s,
+            mean: None,
         }
     };
     let slipped_at = |values: &[f64], end_s: f64| {
@@ -97,6 +98,25 @@ fn a_lag_of_a_ramp_is_exact_at_any_step() {
     let exact = 0.3 - 0.1 + 0.1 * (-3.0_f64).exp();
     for rate_hz in [10, 100, 1000] {
         near(lagged(0.1, rate_hz, 0.3, |time_s| time_s), exact);
+    }
+}
+
+/// A rate that grows as the square of time: T^2 y'' = 2 T^2 where it has long been so.
+#[test]
+fn a_lag_of_a_rate_s_parabola_is_exact_at_any_step() {
+    let exact = 0.09 - 0.06 + 0.02 * (1.0 - (-3.0_f64).exp());
+    for steps in [3, 30, 300] {
+        let step_s = 0.3 / f64::from(steps);
+        let mut memory = None;
+        let read = |step: i32| {
+            let (end_s, begin_s) = (step_s * f64::from(step), step_s * f64::from(step - 1));
+            let encoded = Encoded {
+                mean: Some((end_s.powi(3) - begin_s.powi(3)) / (3.0 * step_s)),
+                ..Encoded::still(end_s * end_s)
+            };
+            effect("rate_lag").sense(&[0.1], &mut memory, encoded, step_s)
+        };
+        near((0..=steps).map(read).last().unwrap(), exact);
     }
 }
 

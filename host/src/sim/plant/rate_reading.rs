@@ -32,9 +32,10 @@ impl RateReading {
         self.slope(speed_rad_s) + self.bias_rad_s
     }
 
-    /// How fast that changes, rad/s^2, at these relative accelerations.
-    pub fn slope(&self, acceleration_rad_s2: &[f64]) -> f64 {
-        let felt = self.turning.iter().map(|hinge| acceleration_rad_s2[*hinge]);
+    /// How fast that changes, rad/s^2, at these relative accelerations; of which angle it is the
+    /// rate, rad, at these relative angles.
+    pub fn slope(&self, change: &[f64]) -> f64 {
+        let felt = self.turning.iter().map(|hinge| change[*hinge]);
         self.scale * felt.sum::<f64>()
     }
 }
@@ -51,6 +52,26 @@ impl Plant {
         }
         self.senses |= self.rate_readings.iter().any(|rate| !rate.sense.is_empty());
         self
+    }
+
+    /// Angle of which a signal is the rate, rad, its scale included, at these relative angles; none
+    /// of a signal that is an angle.
+    pub(in crate::sim) fn turned_of(&self, signal: usize, angle_rad: &[f64]) -> Option<f64> {
+        match signal.checked_sub(self.len()) {
+            Some(sensor) => Some(self.rate_readings[sensor].slope(angle_rad)),
+            None if self.rates[signal] => {
+                Some(self.rate_scale(signal) * self.encoded_rad(signal, angle_rad))
+            }
+            None => None,
+        }
+    }
+
+    /// What a signal that is a rate reads at rest, rad/s.
+    pub(in crate::sim) fn rate_bias_of(&self, signal: usize) -> f64 {
+        match signal.checked_sub(self.len()) {
+            Some(sensor) => self.rate_readings[sensor].bias_rad_s,
+            None => self.rate_bias_rad_s(signal),
+        }
     }
 
     /// By how much later than it was read the log holds a signal, s.

@@ -38,7 +38,7 @@ impl Plant {
     }
 
     /// What is read per rate of a joint whose rate alone is logged.
-    fn rate_scale(&self, joint: usize) -> f64 {
+    pub(super) fn rate_scale(&self, joint: usize) -> f64 {
         match self.rates[joint] {
             true => self.joints[joint].rate_scale,
             false => 1.0,
@@ -46,7 +46,7 @@ impl Plant {
     }
 
     /// What is read at rest as the rate of a joint whose rate alone is logged, rad/s.
-    fn rate_bias_rad_s(&self, joint: usize) -> f64 {
+    pub(super) fn rate_bias_rad_s(&self, joint: usize) -> f64 {
         match self.rates[joint] {
             true => self.joints[joint].rate_bias_rad_s,
             false => 0.0,
