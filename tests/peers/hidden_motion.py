@@ -103,14 +103,18 @@ class Supply:
 class Recording:
     """Rows of a log."""
 
-    def __init__(self, mount):
-        self.mount = mount
+    def __init__(self, rig, rng):
+        self.rng = rng
+        self.mount = (rig.payload_kg, rig.turned)
         self.time_s, self.readings, self.duty = [], [], []
         self.torque_on, self.supply_v = [], []
+        # Of links with a gyro, from the base outwards.
+        self.gyros, self.rates = rig.gyros, []
 
     def add(self, time_s, readings, duty, torque_on, supply_v):
         self.time_s.append(time_s)
         self.readings.append(readings)
+        self.rates.append([gyro.read(self.rng) for gyro in self.gyros])
         self.duty.append(duty)
         self.torque_on.append(torque_on)
         self.supply_v.append(supply_v)
@@ -128,12 +132,15 @@ class Recording:
     def csv(self, driven):
         joints = len(self.readings[0])
         names = [f"q{j + 1}_rad" for j in range(joints)] + [f"duty{j + 1}" for j in driven]
-        lines = [",".join(["time_s", *names, "supply_v", "torque_on", "payload_kg", "turned"])]
+        names += ["supply_v", "torque_on", "payload_kg", "turned"]
+        names += [f"gyro{gyro.joint + 1}_rad_s" for gyro in self.gyros]
+        lines = [",".join(["time_s", *names])]
         for k, time_s in enumerate(self.time_s):
             cells = [f"{time_s:.6f}"] + [f"{q:.7f}" for q in self.readings[k]]
             cells += [f"{u:.6f}" for u in self.duty[k]]
             cells += [f"{self.supply_v[k]:.1f}", str(int(self.torque_on[k]))]
             cells += [f"{self.mount[0]:.3f}", str(int(self.mount[1]))]
+            cells += [f"{rate:.2f}" for rate in self.rates[k]]
             lines.append(",".join(cells))
         return "\n".join(lines) + "\n"
 
@@ -154,7 +161,7 @@ def hang(rig, gains, rng, seconds):
     start = settled(rig)
     gentle = 1.0
     while gentle > 0.05:
-        recording = _hang_once(rig, start, gains, reference, supply, seconds, gentle)
+        recording = _hang_once(rig, start, gains, reference, supply, seconds, gentle, rng)
         if recording is not None:
             return recording
         gentle *= 0.8
@@ -172,11 +179,11 @@ def settled(rig):
     return rig.angles()
 
 
-def _hang_once(rig, start, gains, reference, supply, seconds, gentle):
+def _hang_once(rig, start, gains, reference, supply, seconds, gentle, rng):
     widest = 2.5 if rig.n == 1 else 2.0
     most = MOST_DUTY[rig.n > 1]
     rig.start(start)
-    recording = Recording((rig.payload_kg, rig.turned))
+    recording = Recording(rig, rng)
     before, speed = None, np.zeros(len(rig.driven))
     samples = round(seconds / SAMPLE_S) + 1
     clipped = 0
@@ -300,7 +307,7 @@ def balance(rig, rng, seconds):
         for _ in rig.driven
     ]
     rig.start(pose + rng.uniform(-0.003, 0.003, rig.n))
-    recording = Recording((rig.payload_kg, rig.turned))
+    recording = Recording(rig, rng)
     samples = round(seconds / SAMPLE_S) + 1
     sent = [np.zeros(len(rig.driven)) for _ in range(past)]
     for k in range(samples):

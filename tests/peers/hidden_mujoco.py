@@ -26,7 +26,7 @@ import sys
 import numpy as np
 
 from hidden_motion import balance, hang
-from hidden_rig import ENCODER_RAD, GRAVITY_M_S2, PAYLOAD_AT_M, Rig
+from hidden_rig import ENCODER_RAD, GRAVITY_M_S2, GYRO_RAD_S, OF_GYRO, PAYLOAD_AT_M, Rig
 
 SUPPLY_V = 9.8
 ARM_STALL_NM = 1.5
@@ -166,6 +166,9 @@ EFFECTS = {
     ),
     "grip_slip": (ANY, {"acceleration_rad_s2": (within(40.0, 100.0), within(40.0, 100.0))}),
     "time_offset": (ANY, {"offset_s": (signed(0.01, 0.03), signed(0.01, 0.03))}),
+    "rate_bias": (ANY, {"bias_rad_s": (signed(0.01, 0.05), signed(0.01, 0.05))}),
+    "rate_scale": (ANY, {"factor": (factor(0.02, 0.06), factor(0.02, 0.06))}),
+    "rate_lag": (ANY, {"time_constant_s": (within(0.005, 0.03), within(0.005, 0.03))}),
 }
 
 OUTSIDE = {
@@ -343,6 +346,9 @@ class Bench:
             lines.append(f'position = {{ column = "q{joint}_rad", unit = "rad", {step} }}')
             if stall is not None:
                 lines.append(f'input = {{ column = "duty{joint}", unit = "1" }}')
+            if any((e["kind"] in OF_GYRO, e["joint"]) == (True, joint) for e in self.effects):
+                step = f"resolution_rad_s = {GYRO_RAD_S}"
+                lines.append(f'gyro = {{ column = "gyro{joint}_rad_s", unit = "rad/s", {step} }}')
         return "\n".join(lines) + "\n"
 
     def gains(self, mount):

@@ -23,6 +23,10 @@ STEPS = round(SAMPLE_S / STEP_S)
 GRAVITY_M_S2 = 9.81
 ENCODER_RAD = math.radians(300.0) / 1024
 PAYLOAD_AT_M = 0.15
+# Steps of a gyro, and the standard deviation of its white noise, rad/s.
+GYRO_RAD_S = 0.01
+# Kinds that are hidden in a gyro: a link has one where one of them is hidden.
+OF_GYRO = ("rate_bias", "rate_scale", "rate_lag")
 # Length of a hidden pendulum, m, and its damping, N m s/rad.
 PENDULUM = (0.05, 2e-5)
 # In what time the flanks of a gear with play bring motor and joint to one speed, s.
@@ -73,11 +77,16 @@ class Rig:
         }
         self.sent = []
         self.encoders = [Encoder(self, j) for j in range(self.n)]
+        self.gyros = [
+            Gyro(self, j) for j in range(self.n) if any(self.has(j, kind) for kind in OF_GYRO)
+        ]
         self.drivers = [Driver(self, drive, j) for drive, j in enumerate(self.driven)]
         self.bristles = [Bristles(self, j) for j in range(self.n) if self.has(j, "pre_sliding")]
         self.hooks += [d.step for d in self.drivers if d.remembers]
         self.hooks += [bristles.step for bristles in self.bristles]
-        self.dense = bool(self.hooks) or any(e.remembers for e in self.encoders)
+        self.dense = bool(self.hooks) or any(
+            sensor.remembers for sensor in (*self.encoders, *self.gyros)
+        )
         # For how long a row's reading may have to be waited for, s.
         self.wait_s = max(0.0, *(-e.late_s for e in self.encoders))
 
@@ -290,7 +299,7 @@ class Rig:
                 self.data.qpos[at.qposadr] = self.data.qpos[of.qposadr]
                 self.data.qvel[at.dofadr] = self.data.qvel[of.dofadr]
         self.sent = []
-        for part in (*self.encoders, *self.drivers, *self.bristles):
+        for part in (*self.encoders, *self.gyros, *self.drivers, *self.bristles):
             part.start()
 
     def advance(self, duty, supply_v, torque_on):
@@ -308,8 +317,8 @@ class Rig:
                     for hook in self.hooks:
                         hook()
                     mujoco.mj_step(self.model, self.data)
-                    for encoder in self.encoders:
-                        encoder.follow()
+                    for sensor in (*self.encoders, *self.gyros):
+                        sensor.follow()
         finally:
             mujoco.set_mjcb_passive(None)
 
@@ -471,6 +480,35 @@ class Encoder:
 
     def sensed(self):
         return self.lagged if self.remembers else self.encoded()
+
+
+class Gyro:
+    """Scale, bias and lag of the gyro on one link, which reads its rate against the world."""
+
+    def __init__(self, rig, joint):
+        self.rig, self.joint = rig, joint
+        self.bias = rig.value(joint, "rate_bias", "bias_rad_s", 0.0)
+        self.factor = rig.value(joint, "rate_scale", "factor", 1.0)
+        self.lag_s = rig.value(joint, "rate_lag", "time_constant_s", 0.0)
+        self.remembers = self.lag_s > 0.0
+        self.start()
+
+    def rate(self):
+        return float(self.rig.speeds()[: self.joint + 1].sum())
+
+    def start(self):
+        self.before = self.lagged = self.rate()
+
+    def follow(self):
+        now = self.rate()
+        middle = 0.5 * (self.before + now)
+        self.lagged += (middle - self.lagged) * STEP_S / (self.lag_s + 0.5 * STEP_S)
+        self.before = now
+
+    def read(self, rng):
+        """A noisy reading in steps; never a negative zero."""
+        rate = self.factor * (self.lagged if self.remembers else self.rate()) + self.bias
+        return round(rate / GYRO_RAD_S + rng.standard_normal()) * GYRO_RAD_S + 0.0
 
 
 def inertial(place, mass, inertia):

@@ -1,5 +1,6 @@
 //! Rigs for measuring how good a diagnosis is: an arm or the robot, with any set of hidden effects.
 
+use super::gyro;
 use super::hidden_effect::{HiddenEffect, of_whole_rig};
 use super::physics::Physics;
 use super::robot::{LINKS, Laws};
@@ -76,7 +77,7 @@ pub fn true_model_toml(motions: Motions, seed: u64, kinds: &[&'static str]) -> O
         Motions::Hanging => {
             let hidden: Vec<Placed> = kinds.iter().map(|kind| placed(seed, kind)).collect();
             let (friction, _) = friction(seed, &hidden);
-            Some(toml(&[&friction[..], &hidden[..]].concat()))
+            Some(toml(&[&friction[..], &hidden[..]].concat(), &hidden))
         }
         _ => bench(motions, seed, kinds).map(|bench| bench.true_model_toml),
     }
@@ -162,8 +163,8 @@ fn robot(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<Bench> {
     for _ in 0..TRIES {
         if let Some(logs) = record(motions, seed, &friction, &hidden) {
             return Some(Bench {
-                model_toml: toml(&believed),
-                true_model_toml: toml(&[&friction[..], &hidden[..]].concat()),
+                model_toml: toml(&believed, &hidden),
+                true_model_toml: toml(&[&friction[..], &hidden[..]].concat(), &hidden),
                 logs,
                 effects: hidden
                     .into_iter()
@@ -276,8 +277,12 @@ fn laws(effects: &[Placed], turned: bool) -> Laws {
     }
 }
 
-/// The robot as a model file with these effects.
-fn toml(effects: &[Placed]) -> String {
+/// The robot as a model file with these effects, and the gyros that show what is hidden.
+fn toml(effects: &[Placed], hidden: &[Placed]) -> String {
+    let gyros = hidden
+        .iter()
+        .filter(|(effect, _)| gyro::KINDS.contains(&effect.kind));
+    let gyros: Vec<usize> = gyros.map(|(_, joint)| *joint).collect();
     let lines: Vec<EffectLine> = effects
         .iter()
         .map(|(effect, joint)| EffectLine {
@@ -286,5 +291,5 @@ fn toml(effects: &[Placed]) -> String {
             parameters: &effect.parameters,
         })
         .collect();
-    text::robot_toml(&LINK, &STALL_NM, SUPPLY_V, &lines)
+    text::robot_toml(&LINK, &STALL_NM, SUPPLY_V, &lines, &gyros)
 }

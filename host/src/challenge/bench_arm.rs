@@ -1,5 +1,6 @@
 //! A random bench arm, and what its owner believes of it.
 
+use super::gyro;
 use super::hidden_effect::HiddenEffect;
 use super::physics::Physics;
 use super::rounding::rounded;
@@ -33,6 +34,8 @@ pub struct BenchArm {
     pub friction: Friction,
     /// As its owner believes: up to 30 % off.
     pub believed: Friction,
+    /// Whether a gyro sits on the link.
+    pub has_gyro: bool,
 }
 
 impl BenchArm {
@@ -56,6 +59,7 @@ impl BenchArm {
             inertia_kg_m2,
             friction: friction([viscous, coulomb]),
             believed: friction(believed),
+            has_gyro: gyro::KINDS.into_iter().any(hides),
         }
     }
 

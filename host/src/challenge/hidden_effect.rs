@@ -2,6 +2,7 @@
 
 mod draws;
 
+use super::gyro;
 use super::rounding::rounded;
 use draws::{Draw, EFFECTS, Parameters, ROBOT_EFFECTS};
 use rand::Rng;
@@ -10,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 /// What a challenge hides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hidden {
-    /// Any effect, or once in twelve nothing.
+    /// Any effect but those of a gyro, or once in twelve nothing.
     Random,
     /// Nothing: the model is complete but for its friction values.
     Nothing,
@@ -96,7 +97,12 @@ impl HiddenEffect {
             Hidden::Nothing => None,
             Hidden::Effect(kind) => kind_named(kind),
             Hidden::Random if rng.random_range(0..12) == 0 => None,
-            Hidden::Random => Some(KINDS[rng.random_range(0..KINDS.len())]),
+            Hidden::Random => {
+                // A gyro in the log would tell that something is hidden in it.
+                let others = KINDS.into_iter().filter(|kind| !gyro::KINDS.contains(kind));
+                let others: Vec<&'static str> = others.collect();
+                Some(others[rng.random_range(0..others.len())])
+            }
         }
     }
 

@@ -7,6 +7,7 @@ mod bench;
 mod bench_arm;
 mod encoder;
 mod error;
+mod gyro;
 mod hidden_effect;
 mod history;
 mod motion;

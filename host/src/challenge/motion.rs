@@ -36,6 +36,8 @@ pub struct ArmRecording {
     pub commands: ArmCommands,
     /// Rounded readings, rad.
     pub position: Vec<f64>,
+    /// Readings of the gyro, rad/s; empty without one.
+    pub rate_rad_s: Vec<f64>,
     /// Conditions.
     pub mount: Mount,
 }
@@ -77,11 +79,13 @@ fn attempt(
     let mut arm = Arm::settled(truth, mount);
     let mut commands = ArmCommands::default();
     let mut position = Vec::with_capacity(times.len());
+    let mut rate_rad_s = Vec::new();
     let mut noise = NOISE.0 * normal(rng);
     let mut noises = Vec::with_capacity(times.len());
     for (k, &time_s) in times.iter().enumerate() {
         let reading = quantised(arm.sensed() + noise);
         noises.push(noise);
+        rate_rad_s.extend(arm.rate(rng));
         let asked = goal.at(time_s);
         let duty = controller.duty(&asked, reading, span_before(&times, k));
         position.push(reading);
@@ -102,6 +106,7 @@ fn attempt(
     ArmRecording {
         commands,
         position,
+        rate_rad_s,
         mount,
     }
 }
@@ -163,11 +168,15 @@ impl ArmRecording {
              # Time is when the sample was taken and its duty sent; duty is the share of full \
              range.\n\
              # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
-             time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned\n"
+             time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned"
         );
+        text += match self.rate_rad_s.is_empty() {
+            true => "\n",
+            false => ",gyro_rad_s\n",
+        };
         let commands = &self.commands;
         for k in 0..self.position.len() {
-            let _ = writeln!(
+            let _ = write!(
                 text,
                 "{:.6},{:.7},{:.6},{:.1},{},{:.3},{}",
                 commands.time_s[k],
@@ -178,6 +187,10 @@ impl ArmRecording {
                 self.mount.payload_kg,
                 u8::from(self.mount.turned),
             );
+            if let Some(rate) = self.rate_rad_s.get(k) {
+                let _ = write!(text, ",{rate:.2}");
+            }
+            text.push('\n');
         }
         text
     }

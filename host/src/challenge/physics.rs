@@ -3,6 +3,7 @@
 
 mod switched_on;
 
+use super::gyro::GyroLaw;
 use super::moving_base::{Base, BaseState, LinksOnBase};
 
 /// Gravity, m/s^2.
@@ -85,6 +86,8 @@ pub struct Physics {
     pub base: Option<Base>,
     /// Largest acceleration that the encoder's shaft follows, rad/s^2.
     pub grip_rad_s2: f64,
+    /// The gyro on the link, where there is one.
+    pub gyro: Option<GyroLaw>,
     constant_nm: f64,
     side_friction: [f64; 2],
     side_span: f64,

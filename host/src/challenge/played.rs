@@ -47,12 +47,14 @@ pub fn play(seed: u64, kinds: &[&'static str], inputs: &ArmInputs) -> String {
         supply_v: supply_v.collect(),
     };
     let mut arm = Arm::settled(&truth, mount);
+    let mut rate_rad_s = Vec::new();
     let mut sensed = Vec::with_capacity(commands.time_s.len());
     let mut noises = Vec::with_capacity(commands.time_s.len());
     let mut noise = NOISE.0 * normal(&mut rng);
     for k in 0..commands.time_s.len() {
         sensed.push(arm.sensed());
         noises.push(noise);
+        rate_rad_s.extend(arm.rate(&mut rng));
         if let Some(next_s) = commands.time_s.get(k + 1) {
             let span_s = next_s - commands.time_s[k];
             commands.carry(&mut arm, k, span_s);
@@ -64,6 +66,7 @@ pub fn play(seed: u64, kinds: &[&'static str], inputs: &ArmInputs) -> String {
     let recording = ArmRecording {
         commands,
         position: noisy(&sensed, &noises),
+        rate_rad_s,
         mount,
     };
     recording.csv("Bench arm, an experiment.")

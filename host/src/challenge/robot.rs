@@ -8,10 +8,12 @@
 mod laws;
 
 use super::encoder::Encoder;
+use super::gyro::Gyro;
 use super::history::History;
 use super::moving_base::BaseState;
 use super::physics::DriveCommand;
 use laws::ChainForces;
+use rand_chacha::ChaCha8Rng;
 
 pub use laws::Laws;
 
@@ -45,6 +47,7 @@ pub struct Robot<'a> {
     /// Joint speeds, rad/s.
     pub speed: Joints,
     encoders: [Encoder; LINKS],
+    gyros: [Gyro; LINKS],
     histories: [History; LINKS],
     /// Torques of dry friction in the last kick, N m: where the next one begins to settle.
     dry: Joints,
@@ -60,6 +63,7 @@ impl<'a> Robot<'a> {
             angle,
             speed,
             encoders: std::array::from_fn(encoder),
+            gyros: laws::summed(&speed).map(Gyro::turning),
             histories: Default::default(),
             dry: [0.0; LINKS],
             base: laws.sagged(),
@@ -91,6 +95,12 @@ impl<'a> Robot<'a> {
                 halfway[k],
                 h,
             );
+        }
+        let rates = [laws::summed(&self.speed), laws::summed(&speed)];
+        for (k, gyro) in self.gyros.iter_mut().enumerate() {
+            if let Some(law) = joints[k].gyro {
+                gyro.follow(law, rates.map(|rate| rate[k]), h);
+            }
         }
         (self.speed, self.dry, self.base) = (speed, dry, base);
         self.drift(0.5 * h);
@@ -201,6 +211,14 @@ impl<'a> Robot<'a> {
     /// The encoders' values before noise and rounding, rad.
     pub fn sensed(&self) -> Joints {
         std::array::from_fn(|k| self.encoders[k].sensed())
+    }
+
+    /// What a log holds of the links' gyros, rad/s, from the bar outwards.
+    pub fn rates(&self, rng: &mut ChaCha8Rng) -> Vec<f64> {
+        let gyros = self.gyros.iter().zip(&self.laws.joints);
+        gyros
+            .filter_map(|(gyro, joint)| Some(gyro.read(joint.gyro?, rng)))
+            .collect()
     }
 
     /// Those that columns whose times are off hold in a row of so many seconds since the beginning,

@@ -34,6 +34,8 @@ pub struct RobotRecording {
     pub time_s: Vec<f64>,
     /// Rounded readings, rad.
     pub position: Vec<Joints>,
+    /// Readings of the gyros, rad/s, of the links that have one, from the bar outwards.
+    pub rates: Vec<Vec<f64>>,
     /// Duties that are sent at that time.
     pub duty: Vec<Duties>,
     /// Whether the motors are energised.
@@ -41,6 +43,8 @@ pub struct RobotRecording {
     /// Supply, V.
     pub supply_v: Vec<f64>,
     turned: bool,
+    /// Links with a gyro, counted from 0.
+    gyros: Vec<usize>,
 }
 
 /// Longest delay of a drive, s.
@@ -50,6 +54,14 @@ pub fn late(laws: &Laws) -> f64 {
 }
 
 impl RobotRecording {
+    fn of(laws: &Laws) -> Self {
+        RobotRecording {
+            turned: laws.turned,
+            gyros: laws.gyros(),
+            ..RobotRecording::default()
+        }
+    }
+
     /// Duty of a drive that arrives at `time_s`; 0 before the first.
     fn arriving(&self, drive: usize, time_s: f64) -> f64 {
         let index = self.time_s.iter().rposition(|&sent_s| sent_s <= time_s);
@@ -107,8 +119,12 @@ impl RobotRecording {
              # Time is when the sample was taken and its duties sent.\n\
              # Duty is the share of full range.\n\
              # Angles from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
-             time_s,q1_rad,q2_rad,q3_rad,duty2,duty3,supply_v,torque_on,payload_kg,turned\n"
+             time_s,q1_rad,q2_rad,q3_rad,duty2,duty3,supply_v,torque_on,payload_kg,turned"
         );
+        for k in &self.gyros {
+            let _ = write!(text, ",gyro{}_rad_s", k + 1);
+        }
+        text.push('\n');
         for k in 0..self.time_s.len() {
             let _ = write!(text, "{:.6}", self.time_s[k]);
             for angle in self.position[k] {
@@ -118,7 +134,11 @@ impl RobotRecording {
                 let _ = write!(text, ",{duty:.6}");
             }
             let (on, turned) = (u8::from(self.torque_on[k]), u8::from(self.turned));
-            let _ = writeln!(text, ",{:.1},{on},0.000,{turned}", self.supply_v[k]);
+            let _ = write!(text, ",{:.1},{on},0.000,{turned}", self.supply_v[k]);
+            for rate in &self.rates[k] {
+                let _ = write!(text, ",{rate:.2}");
+            }
+            text.push('\n');
         }
         text
     }
@@ -187,10 +207,7 @@ fn hang_once(
     rng: &mut ChaCha8Rng,
 ) -> (RobotRecording, bool) {
     let goals: Vec<Reference> = goals.iter().map(|goal| goal.scaled(gentleness)).collect();
-    let mut recording = RobotRecording {
-        turned: laws.turned,
-        ..RobotRecording::default()
-    };
+    let mut recording = RobotRecording::of(laws);
     let times = sample_times(rng);
     let mut robot = Robot::new(laws, start, [0.0; LINKS]);
     let (mut noise, mut noises) = (Noise::new(rng), Vec::with_capacity(times.len()));
@@ -198,6 +215,7 @@ fn hang_once(
     for (k, &time_s) in times.iter().enumerate() {
         let readings = noise.readings(robot.sensed());
         noises.push(noise);
+        recording.rates.push(robot.rates(rng));
         // One goal tells when the motors rest.
         let on = goals[0].at(time_s).torque_on;
         let duty = std::array::from_fn(|drive| {
@@ -247,10 +265,7 @@ pub fn balance(laws: &Laws, smooth: &Laws, rng: &mut ChaCha8Rng) -> Option<Robot
         })
     });
     let start = regulator.pose.map(|q| q + rng.random_range(-0.003..0.003));
-    let mut recording = RobotRecording {
-        turned: laws.turned,
-        ..RobotRecording::default()
-    };
+    let mut recording = RobotRecording::of(laws);
     let times = sample_times(rng);
     let mut robot = Robot::new(laws, start, [0.0; LINKS]);
     let (mut noise, mut noises) = (Noise::new(rng), Vec::with_capacity(times.len()));
@@ -261,6 +276,7 @@ pub fn balance(laws: &Laws, smooth: &Laws, rng: &mut ChaCha8Rng) -> Option<Robot
         });
         let readings = noise.readings(robot.sensed());
         noises.push(noise);
+        recording.rates.push(robot.rates(rng));
         let duty = regulator.duty(&robot.angle, &robot.speed, &probe);
         let duty = duty.map(|duty| rounded(duty, 6));
         recording.add(time_s, readings, duty, true, supply.at(time_s));

@@ -1,3 +1,4 @@
+use super::gyro::GyroLaw;
 use super::physics::{DriveCommand, Mount, Physics};
 use super::regulator::RobotRegulator;
 use super::robot::{Laws, Robot};
@@ -62,26 +63,31 @@ fn a_stuck_arm_stays_put() {
     assert!(arm.angle < held);
 }
 
+/// Root-mean-square difference; 0 of nothing.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+    (squares / a.len().max(1) as f64).sqrt()
+}
+
 #[test]
 fn every_effect_changes_the_motion() {
     for kind in KINDS {
         let (rig, secrets, recordings) = stage(3, &[kind]);
-        let (with, without) = (rig.physics(&secrets), rig.physics(&[]));
+        let (with, mut without) = (rig.physics(&secrets), rig.physics(&[]));
+        without.gyro = with.gyro.map(|_| GyroLaw::default());
         let mut worst = 0.0_f64;
         for recording in &recordings {
             let replay = |physics| recording.commands.replay(physics, recording.mount);
-            let (with, without) = (replay(&with), replay(&without));
-            let squares: f64 = with
-                .iter()
-                .zip(&without)
-                .map(|(a, b)| (a - b).powi(2))
-                .sum();
-            worst = worst.max((squares / with.len() as f64).sqrt());
+            let ((with, with_rates), (without, rates)) = (replay(&with), replay(&without));
+            let steps = handstand_shared::raw::Position::LSB_RAD;
+            worst = worst.max(apart(&with, &without) / steps);
+            // Both gyros meet the same noise.
+            worst = worst.max(apart(&with_rates, &rates) / gyro::STEP_RAD_S);
         }
-        println!("{kind:20} {worst:.4} rad rms");
+        println!("{kind:20} {worst:.2} steps rms");
         assert!(
-            worst > 2.0 * handstand_shared::raw::Position::LSB_RAD,
-            "{kind}: {worst} rad"
+            worst > if rig.has_gyro { 0.9 } else { 2.0 },
+            "{kind}: {worst} steps"
         );
     }
 }
@@ -91,7 +97,7 @@ fn the_replay_of_the_truth_is_the_log() {
     let (rig, secrets, recordings) = stage(5, &["delay"]);
     let truth = rig.physics(&secrets);
     for recording in &recordings {
-        let sensed = recording.commands.replay(&truth, recording.mount);
+        let (sensed, _) = recording.commands.replay(&truth, recording.mount);
         for (sensed, read) in sensed.iter().zip(&recording.position) {
             assert!((sensed - read).abs() < 0.5 * handstand_shared::raw::Position::LSB_RAD + 4e-3);
         }

@@ -1,6 +1,7 @@
 //! The files of a challenge that are written in words.
 
 use super::bench_arm::{BenchArm, Friction, NOMINAL_SUPPLY_V, STALL_NM};
+use super::gyro::STEP_RAD_S;
 use super::hidden_effect::{HiddenEffect, of_whole_rig};
 use super::physics::{GRAVITY_M_S2, PAYLOAD_AT_M};
 use handstand_shared::raw::Position;
@@ -52,7 +53,18 @@ input = {{ column = "duty", unit = "1" }}
 "#,
         Position::LSB_RAD
     );
+    if rig.has_gyro {
+        gyro(&mut text, "gyro_rad_s");
+    }
     text
+}
+
+/// The line of a gyro's column.
+fn gyro(text: &mut String, column: &str) {
+    let _ = writeln!(
+        text,
+        "gyro = {{ column = \"{column}\", unit = \"rad/s\", resolution_rad_s = {STEP_RAD_S} }}"
+    );
 }
 
 /// An effect as a model file has it.
@@ -66,12 +78,14 @@ pub struct EffectLine<'a> {
 }
 
 /// The robot of three links as a model file with these effects. Links are length, joint to centre
-/// of mass, mass and inertia; a stall torque of 0 is a passive joint.
+/// of mass, mass and inertia; a stall torque of 0 is a passive joint; links with a gyro are counted
+/// from 0.
 pub fn robot_toml(
     links: &[(f64, f64, f64, f64)],
     stall_nm: &[f64],
     supply_v: f64,
     effects: &[EffectLine],
+    gyros: &[usize],
 ) -> String {
     let mut text = format!(
         r#"[rig]
@@ -121,6 +135,9 @@ turned = "turned"
         );
         if *stall_nm > 0.0 {
             let _ = writeln!(text, "input = {{ column = \"duty{joint}\", unit = \"1\" }}");
+        }
+        if gyros.contains(&k) {
+            gyro(&mut text, &format!("gyro{joint}_rad_s"));
         }
     }
     text

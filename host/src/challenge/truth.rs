@@ -6,9 +6,11 @@
 //! than the breakaway torque.
 
 use super::encoder::Encoder;
+use super::gyro::Gyro;
 use super::history::History;
 use super::moving_base::BaseState;
 use super::physics::{DriveCommand, Mount, Physics};
+use rand_chacha::ChaCha8Rng;
 
 /// Longest integration step, s.
 const STEP_S: f64 = 1.0 / 20_000.0;
@@ -24,6 +26,7 @@ pub struct Arm<'a> {
     /// Speed, rad/s.
     pub speed: f64,
     encoder: Encoder,
+    gyro: Gyro,
     history: History,
     base: BaseState,
 }
@@ -38,6 +41,7 @@ impl<'a> Arm<'a> {
             angle,
             speed: 0.0,
             encoder: Encoder::at_rest(physics.encoded(angle)),
+            gyro: Gyro::default(),
             history: History::default(),
             base: physics.sagged(mount),
         }
@@ -74,6 +78,9 @@ impl<'a> Arm<'a> {
         let physics = self.physics;
         let drive = |speed| physics.drive(push, speed);
         self.history.kick(physics, drive, halfway, h);
+        if let Some(law) = physics.gyro {
+            self.gyro.follow(law, [self.speed, after], h);
+        }
         (self.speed, self.base) = (after, base);
         self.drift(0.5 * h);
         self.history.pass(physics, push, self.angle - before, h);
@@ -121,6 +128,11 @@ impl<'a> Arm<'a> {
     /// The encoder's value before noise and rounding, rad.
     pub fn sensed(&self) -> f64 {
         self.encoder.sensed()
+    }
+
+    /// What a log holds of its gyro, rad/s, if it has one.
+    pub fn rate(&self, rng: &mut ChaCha8Rng) -> Option<f64> {
+        Some(self.gyro.read(self.physics.gyro?, rng))
     }
 
     /// The same that a log whose times are off holds in a row of so many seconds since the
@@ -198,17 +210,21 @@ impl ArmCommands {
     }
 
     /// Encoder values before noise and rounding, rad, at every command, when these commands drive
-    /// the settled arm.
+    /// the settled arm, and readings of a gyro.
     #[cfg(test)]
-    pub fn replay(&self, physics: &Physics, mount: Mount) -> Vec<f64> {
+    pub fn replay(&self, physics: &Physics, mount: Mount) -> (Vec<f64>, Vec<f64>) {
+        use rand::SeedableRng;
+        let mut rng = ChaCha8Rng::seed_from_u64(0);
         let mut arm = Arm::settled(physics, mount);
         let mut sensed = Vec::with_capacity(self.time_s.len());
+        let mut rates = Vec::new();
         for k in 0..self.time_s.len() {
             sensed.push(arm.sensed());
+            rates.extend(arm.rate(&mut rng));
             if let Some(next_s) = self.time_s.get(k + 1) {
                 self.carry(&mut arm, k, next_s - self.time_s[k]);
             }
         }
-        self.logged(&mut arm).unwrap_or(sensed)
+        (self.logged(&mut arm).unwrap_or(sensed), rates)
     }
 }

@@ -21,7 +21,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 pub(super) type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-pub(super) const EFFECTS: [(&str, Parameters); 35] = [
+pub(super) const EFFECTS: [(&str, Parameters); 38] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -137,6 +137,9 @@ pub(super) const EFFECTS: [(&str, Parameters); 35] = [
     ),
     ("grip_slip", &[("acceleration_rad_s2", Within(40.0, 100.0))]),
     ("time_offset", &[("offset_s", Signed(0.01, 0.03))]),
+    ("rate_bias", &[("bias_rad_s", Signed(0.01, 0.05))]),
+    ("rate_scale", &[("factor", Factor(0.02, 0.06))]),
+    ("rate_lag", &[("time_constant_s", Within(0.005, 0.03))]),
 ];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.

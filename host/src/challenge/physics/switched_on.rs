@@ -44,6 +44,9 @@ impl Physics {
             ("backlash", &[gap]) => self.gap = gap,
             ("sensor_lag", &[constant]) => self.lag_s = constant,
             ("time_offset", &[offset]) => self.logged_late_s = offset,
+            ("rate_bias", &[bias]) => self.gyro.get_or_insert_default().bias_rad_s = bias,
+            ("rate_scale", &[factor]) => self.gyro.get_or_insert_default().scale = factor,
+            ("rate_lag", &[constant]) => self.gyro.get_or_insert_default().lag_s = constant,
             ("slew_limit", &[rate]) => self.duty_per_s = rate,
             ("thermal_drift", &[rise, time]) => (self.warming, self.warming_s) = (rise, time),
             ("fold_back", &[share, level, after]) => {

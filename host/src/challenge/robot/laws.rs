@@ -26,6 +26,13 @@ pub(super) struct ChainForces {
 }
 
 impl Laws {
+    /// Links with a gyro, counted from 0.
+    pub fn gyros(&self) -> Vec<usize> {
+        (0..LINKS)
+            .filter(|k| self.joints[*k].gyro.is_some())
+            .collect()
+    }
+
     /// Angle from the vertical by which gravity is turned, rad.
     pub(super) fn tilt(&self) -> f64 {
         let tilt: f64 = self.joints.iter().map(|joint| joint.tilt).sum();
