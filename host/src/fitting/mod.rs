@@ -36,6 +36,8 @@ mod projector;
 mod rate_tests;
 mod refit;
 mod residual;
+#[cfg(test)]
+mod sensor_tests;
 mod solve;
 mod staged;
 mod step;

@@ -148,6 +148,18 @@ impl JointPlan {
         effects.fold(angle_rad, |angle, e| e.effect.encode(e.values(), angle))
     }
 
+    /// Adds an effect of the sensor where it is: a shaft may slip or have play, and what comes of it
+    /// is filtered, whatever order a model names them in.
+    fn add_sensor(&mut self, active: ActiveEffect) {
+        let filters = |e: &ActiveEffect| e.effect.trail_rad(e.values(), 1.0).is_some();
+        let before = match filters(&active) {
+            true => None,
+            false => self.sense.iter().position(filters),
+        };
+        self.sense
+            .insert(before.unwrap_or(self.sense.len()), active);
+    }
+
     pub fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {
         let mut active = ActiveEffect {
             effect,
@@ -167,7 +179,7 @@ impl JointPlan {
             Site::Encoder => self.encode.push(active),
             Site::Sensor => match effect.reading_offset_s(values) {
                 Some(offset_s) => self.offset_s += offset_s,
-                None => self.sense.push(active),
+                None => self.add_sensor(active),
             },
             Site::Rate => {
                 self.rate_bias_rad_s += effect.rate_bias_rad_s(values);

@@ -140,7 +140,7 @@ fn mean(
 }
 
 /// Lets sensors begin as far behind a `reading` as they come to be while it changes by `slope` a
-/// second.
+/// second; what slips before them stays as far behind as it is.
 fn trail_behind<'a>(
     sense: &[ActiveEffect],
     cells: &mut impl Iterator<Item = &'a mut Option<SenseMemory>>,
@@ -151,6 +151,9 @@ fn trail_behind<'a>(
         if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
             *cell = Some([reading, reading - trail, 0.0, 0.0]);
             reading -= trail;
+        } else if let Some(memory) = *cell {
+            let [slipped_rad, _] = active.effect.slipped(memory);
+            reading -= slipped_rad;
         }
     }
 }
