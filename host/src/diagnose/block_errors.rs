@@ -13,6 +13,8 @@ pub(super) struct BlockErrors {
     /// Per motion: sum of squared residuals, rad^2 (rad^2/s^2 where no angle is measured), and
     /// their number.
     pub motions: Vec<(f64, usize)>,
+    /// Per signal: sum of squared weighted residuals, and their number.
+    signals: Vec<(f64, usize)>,
 }
 
 /// A stretch of a motion.
@@ -29,7 +31,7 @@ struct Block {
 const BLOCK_S: f64 = 0.8;
 /// A motion gives at least this many blocks.
 const LEAST_BLOCKS: f64 = 8.0;
-/// A root-mean-square weighted residual up to this counts as nothing but noise.
+/// A signal's root-mean-square weighted residual up to this counts as nothing but noise.
 pub(super) const AT_NOISE_FLOOR: f64 = 1.2;
 const RESAMPLES: usize = 600;
 
@@ -38,6 +40,7 @@ impl BlockErrors {
     pub fn of(residuals: &Residuals, data: &FitData) -> BlockErrors {
         let mut errors = BlockErrors {
             motions: vec![(0.0, 0); data.motions.len()],
+            signals: vec![(0.0, 0); data.sigma.len()],
             ..BlockErrors::default()
         };
         for (window, residuals) in data.windows.iter().zip(&residuals.windows) {
@@ -60,9 +63,12 @@ impl BlockErrors {
                         .filter(|y| y.is_finite())
                         .count();
                     count += known;
+                    let of_signal = &mut errors.signals[signal];
+                    of_signal.1 += known;
                     total.1 += if data.counts(signal) { known } else { 0 };
                     for r in &residuals[signal * samples + begin..signal * samples + end] {
                         sum += r * r;
+                        of_signal.0 += r * r;
                         if data.counts(signal) {
                             total.0 += (r * sigma).powi(2);
                         }
@@ -88,6 +94,9 @@ impl BlockErrors {
                 ..*block
             }));
             self.motions.extend(&other.motions);
+            for (own, other) in self.signals.iter_mut().zip(&other.signals) {
+                *own = (own.0 + other.0, own.1 + other.1);
+            }
         }
     }
 
@@ -130,6 +139,15 @@ impl BlockErrors {
     /// Root-mean-square weighted residual; 1 is the noise.
     pub fn rms(&self) -> f64 {
         self.mean().sqrt()
+    }
+
+    /// Whether nothing but noise is left of any signal: what one joint or sensor shows must not
+    /// drown in the others.
+    pub fn is_noise(&self) -> bool {
+        let mean = |(sum, count): &(f64, usize)| sum / (*count).max(1) as f64;
+        self.signals
+            .iter()
+            .all(|signal| mean(signal).sqrt() < AT_NOISE_FLOOR)
     }
 }
 
@@ -272,6 +290,21 @@ mod tests {
         assert!(significantly_worse(&before, &after, 1));
         let alone = gain(&paired(&errors(&[&calm]), &errors(&[&calmer])));
         assert!((gain(&paired(&before, &after)) - alone).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_one_signal_shows_does_not_drown_in_the_others() {
+        let noise = |means: &[f64]| {
+            let signals = means.iter().map(|mean| (1000.0 * mean, 1000)).collect();
+            let errors = BlockErrors {
+                signals,
+                ..errors(&[&[10.0; 8]])
+            };
+            errors.is_noise()
+        };
+        assert!(noise(&[1.0, 1.4, 1.0]));
+        assert!(!noise(&[1.0, 1.5, 1.0]));
+        assert!(!noise(&[f64::NAN, 1.0]));
     }
 
     #[test]

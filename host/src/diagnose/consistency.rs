@@ -9,7 +9,6 @@
 //! that suit them all, and one to a single motion find them. So values that one motion found are
 //! tried on all before they count as its own.
 
-use super::block_errors::AT_NOISE_FLOOR;
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
 use crate::fitting::{Fit, FitData, FitOptions, fit, fit_start_states};
@@ -26,7 +25,7 @@ impl OwnFits {
     /// left above the noise.
     pub fn of(hypothesis: &Hypothesis, training: &FitData) -> Option<OwnFits> {
         let evaluation = hypothesis.evaluation.as_ref()?;
-        if training.motions.len() < 2 || evaluation.training.rms() < AT_NOISE_FLOOR {
+        if training.motions.len() < 2 || evaluation.training.is_noise() {
             return None;
         }
         let joint = &evaluation.fit;

@@ -43,8 +43,7 @@ impl Evaluation {
 
     /// Whether it leaves nothing but noise, on the motions fitted and on those held out.
     pub fn is_noise(&self) -> bool {
-        let is_noise = |errors: &BlockErrors| errors.rms() < AT_NOISE_FLOOR;
-        is_noise(&self.training) && self.held_out.as_ref().is_none_or(is_noise)
+        self.training.is_noise() && self.held_out.as_ref().is_none_or(BlockErrors::is_noise)
     }
 }
 

@@ -6,7 +6,7 @@
 //! on the linearised simulation, and judged on the held-out ones. What it gains there is structure,
 //! not noise.
 
-use super::block_errors::{AT_NOISE_FLOOR, BlockErrors, PairedSums, bootstrap, paired};
+use super::block_errors::{BlockErrors, PairedSums, bootstrap, paired};
 use super::findings::ResidualStructure;
 use super::initial_guess::change;
 use super::terms::{Term, terms};
@@ -54,7 +54,7 @@ pub(super) fn residual_structure(
 ) -> Option<ResidualStructure> {
     let settled = fit_start_states(&fit.model, held_out);
     let before = BlockErrors::of(&settled.residuals, held_out);
-    if before.rms() < AT_NOISE_FLOOR {
+    if before.is_noise() {
         return None;
     }
     // The fitted values on other motions, with the derivatives there.
