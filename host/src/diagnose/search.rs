@@ -140,6 +140,11 @@ impl Evaluator<'_> {
             sizes.push(larger);
             let before = best.as_ref().map(|best| best.set.len());
             best = self.pruned(&mut sizes, &mut taken_apart);
+            let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
+            if let Some(stuck) = stuck.filter(|stuck| !self.at_noise_floor(stuck)) {
+                self.grow_afresh(&stuck, &mut sizes[stuck.set.len()]);
+                best = self.pruned(&mut sizes, &mut taken_apart);
+            }
             let now = best.as_ref().map(|best| best.set.len());
             // Nothing gained by one more: two more may still, but only from a start without any.
             if now == before && (before.is_some() || size > 2) {
@@ -189,13 +194,17 @@ impl Evaluator<'_> {
             self.evaluate(&mut rest);
             rest
         });
-        for rest in rests.collect::<Vec<_>>() {
-            match fewer.iter_mut().find(|known| known.adds(&rest.set)) {
-                Some(known) if known.deciding_mean() <= rest.deciding_mean() => {}
-                Some(known) => *known = rest,
-                None => fewer.push(rest),
-            }
-        }
+        put_among(fewer, rests.collect());
+    }
+
+    /// Looks for a partner of a set by what every candidate changes in that set's own prediction,
+    /// and puts what it finds among the sets that are `larger` by one: where the base model is far
+    /// off, its prediction says little of what is missing beside the set.
+    fn grow_afresh(&mut self, set: &Hypothesis, larger: &mut Vec<Hypothesis>) {
+        let afresh = every_change(set, &self.candidates, &self.search);
+        let of_base = std::mem::replace(&mut self.changes, afresh);
+        put_among(larger, self.grow(std::slice::from_ref(set)));
+        self.changes = of_base;
     }
 
     fn singles(&mut self) -> Vec<Hypothesis> {
@@ -261,6 +270,18 @@ impl Evaluator<'_> {
         }
         let finals = self.evaluated(self.successive_halving(tried));
         self.swapped(finals)
+    }
+}
+
+/// Puts sets among those of their size that were tried, and in the place of the same ones that
+/// leave more.
+fn put_among(tried: &mut Vec<Hypothesis>, found: Vec<Hypothesis>) {
+    for new in found {
+        match tried.iter_mut().find(|known| known.adds(&new.set)) {
+            Some(known) if known.deciding_mean() <= new.deciding_mean() => {}
+            Some(known) => *known = new,
+            None => tried.push(new),
+        }
     }
 }
 

@@ -81,3 +81,25 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
     let alone: Vec<_> = sizes[0].iter().map(Hypothesis::names).collect();
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
 }
+
+/// An arm that lacks an offset of its torque and cogging: without the offset it moves so differently
+/// that cogging changes another motion.
+#[test]
+fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
+    let (model, training, held_out) = arm(12, &["cogging", "torque_offset"]);
+    let options = DiagnoseOptions::default();
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let offset = candidate(&evaluator, "torque_offset");
+    let finish = FitOptions::iterations(FINISH);
+    let alone = (evaluator.base).with(offset, &[-0.04], &evaluator.search, finish);
+    let leaves_rad = |sets: &[Hypothesis]| {
+        let with = sets.iter().filter(|set| set.names()[1] == "cogging@1");
+        with.map(Hypothesis::deciding_rms_rad)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let by_base = evaluator.grow(std::slice::from_ref(&alone));
+    let mut afresh = Vec::new();
+    evaluator.grow_afresh(&alone, &mut afresh);
+    assert!(leaves_rad(&by_base) > 0.005);
+    assert!(leaves_rad(&afresh) < 0.002);
+}
