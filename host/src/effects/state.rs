@@ -100,8 +100,8 @@ impl JointState {
 /// are.
 pub type MemoryCell = [f64; 2];
 
-/// The shaft of an encoder at an instant, zero and scale of the encoder included; or, of a sensor of
-/// rates, the rate.
+/// The shaft of an encoder at an instant, zero and scale of the encoder included; or, of a sensor
+/// of rates, the rate.
 #[derive(Debug, Clone, Copy)]
 pub struct Encoded {
     /// rad.

@@ -148,8 +148,8 @@ impl JointPlan {
         effects.fold(angle_rad, |angle, e| e.effect.encode(e.values(), angle))
     }
 
-    /// Adds an effect of the sensor where it is: a shaft may slip or have play, and what comes of it
-    /// is filtered, whatever order a model names them in.
+    /// Adds an effect of the sensor where it is: a shaft may slip or have play, and what comes of
+    /// it is filtered, whatever order a model names them in.
     fn add_sensor(&mut self, active: ActiveEffect) {
         let filters = |e: &ActiveEffect| e.effect.trail_rad(e.values(), 1.0).is_some();
         let before = match filters(&active) {

@@ -82,8 +82,8 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
 }
 
-/// An arm that lacks an offset of its torque and cogging: without the offset it moves so differently
-/// that cogging changes another motion.
+/// An arm that lacks an offset of its torque and cogging: without the offset it moves so
+/// differently that cogging changes another motion.
 #[test]
 fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     let (model, training, held_out) = arm(12, &["cogging", "torque_offset"]);
