@@ -96,6 +96,8 @@ pub struct App {
     tick_us: u16,
     longest_tick_us: u16,
     longest_law_us: u16,
+    /// The gyro's code as it is reported: when the tick began, or what the law took.
+    gyro: u16,
     /// Whether it has looked for a plan.
     has_looked: bool,
 }
@@ -142,6 +144,7 @@ impl App {
             tick_us: 0,
             longest_tick_us: 0,
             longest_law_us: 0,
+            gyro: 0,
             has_looked: false,
         }
     }

@@ -1,8 +1,8 @@
 //! Every timing and limit of the firmware, with its arithmetic, whatever board it runs on. What
 //! follows from a board's crystal is the board's: `atmega128/clock.rs`.
 
-/// Period of the tick, us: 100 Hz, as the paper samples.
-pub const TICK_US: u16 = 10_000;
+/// Period of the tick, us; the host counts with it.
+pub use handstand_shared::message::TICK_US;
 
 /// Counts of [`crate::board::Board::clock`] per microsecond, on every board.
 pub const CLOCK_PER_US: u16 = 2;

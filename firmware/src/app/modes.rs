@@ -15,10 +15,11 @@ impl App {
         self.report(board);
     }
 
-    /// Reads the servos. The estimate goes on while they are waited for: after the commands it
-    /// would lengthen the tick.
+    /// Reads the gyro, before the servos: their answers take another time in every tick. The
+    /// estimate goes on while they are waited for: after the commands it would lengthen the tick.
     #[inline(never)]
     fn read<B: Board>(&mut self, board: &mut B, started: u16) {
+        self.gyro = board.gyro();
         let balance = &mut self.balance;
         let meanwhile = || balance.step_update();
         self.servos
@@ -69,8 +70,8 @@ impl App {
     #[inline(always)]
     fn command<B: Board>(&mut self, board: &mut B) {
         let law_started = board.clock();
-        let gyro = board.gyro();
-        self.balance.sense(self.attitude, gyro);
+        self.gyro = board.gyro();
+        self.balance.sense(self.attitude, self.gyro);
         let readings = match self.balance.readings(&self.servos) {
             Ok(readings) => readings,
             Err(Stop::Fallen) => return self.give_up(board, Cause::Fallen),
@@ -119,7 +120,7 @@ impl App {
             missing: [m0, m1, m2],
             housekeeping_from: self.servos.housekeeping_from,
             housekeeping: self.servos.housekeeping,
-            gyro: board.gyro(),
+            gyro: self.gyro,
         };
         self.link.send(board, &Report::Stream(report));
     }

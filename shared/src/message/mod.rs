@@ -25,6 +25,9 @@ use serde::{Deserialize, Serialize};
 /// Version of the messages; host and firmware must have the same.
 pub const VERSION: u8 = 5;
 
+/// Period of the ticks that the firmware reports, us: 100 Hz, as the paper samples.
+pub const TICK_US: u16 = 10_000;
+
 /// A message for one direction of the line.
 pub trait Message: Serialize + for<'de> Deserialize<'de> {
     /// A byte that its frames do not hold.

@@ -23,7 +23,8 @@ pub struct StreamReport {
     pub housekeeping_from: u8,
     /// Slower channels of two servos in turn.
     pub housekeeping: [Housekeeping; 2],
-    /// The gyro's voltage, ADC code 0..=1023.
+    /// The gyro's voltage, ADC code 0..=1023: before the servos were read, while balancing when the
+    /// law took it.
     #[serde(with = "postcard::fixint::le")]
     pub gyro: u16,
 }

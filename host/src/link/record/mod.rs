@@ -21,6 +21,7 @@ mod servo_watch;
 mod source;
 mod stream;
 mod tally;
+mod tick_clock;
 
 pub use adapter::Adapter;
 pub use follow::{FollowedMotion, MotionStop, follow};

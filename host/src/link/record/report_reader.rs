@@ -1,6 +1,7 @@
 //! Samples from a CM-5's stream reports.
 
 use super::sample::{GyroSample, RobotSample, ServoSample};
+use super::tick_clock::TickClock;
 use handstand_shared::message::{Attitude, StreamReport, Telemetry};
 use handstand_shared::raw::Position;
 use std::time::Duration;
@@ -9,6 +10,7 @@ use std::time::Duration;
 #[derive(Debug)]
 pub struct ReportReader {
     begun: Duration,
+    clock: TickClock,
     housekeeping: Vec<ServoSample>,
     /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
     gyro: Option<(u16, f64)>,
@@ -22,13 +24,15 @@ impl ReportReader {
         let scale = f64::from(account.gyro_scale) / 16.0 * Attitude::RATE_LSB_RAD_S;
         ReportReader {
             begun,
+            clock: TickClock::default(),
             housekeeping: vec![ServoSample::default(); count],
             gyro: (scale != 0.0).then_some((account.gyro_zero, scale)),
             last: None,
         }
     }
 
-    /// The sample of a report that arrived at `time`; `goal_rad` tells each servo's goal.
+    /// The sample of a report that arrived at `time`; `goal_rad` tells each servo's goal. Its time is
+    /// the tick's: when its report would have come had nothing made it late.
     pub fn sample(
         &mut self,
         time: Duration,
@@ -61,8 +65,9 @@ impl ReportReader {
         let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
         let torque_on = report.torque_was_on(self.last.as_ref());
         self.last = Some(*report);
+        let arrival_s = time.saturating_sub(self.begun).as_secs_f64();
         RobotSample {
-            time_s: (time.saturating_sub(self.begun)).as_secs_f64(),
+            time_s: self.clock.time_s(report.tick, arrival_s),
             joints,
             gyro: Some(GyroSample {
                 code: f64::from(report.gyro),

@@ -12,7 +12,7 @@ pub struct ServoSample {
     pub speed_rad_s: Option<f64>,
     /// Load as the servo infers it, a share of full output, -1 to 1.
     pub load: Option<f64>,
-    /// Goal it was last sent, rad.
+    /// Goal it has, rad: what it was told in this tick, or the one before that still counts.
     pub goal_rad: Option<f64>,
     /// Supply, V.
     pub supply_v: Option<f64>,

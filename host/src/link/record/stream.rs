@@ -10,7 +10,12 @@ use handstand_shared::message::{
 };
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::Position;
+use std::collections::VecDeque;
 use std::time::Duration;
+
+/// Goals that are kept until a report says that they are obeyed: those of a sixth of a second, far
+/// fewer than frames have numbers.
+const MOST_SENT: usize = 16;
 
 const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
 
@@ -19,6 +24,9 @@ pub struct Stream<L: SerialLink> {
     session: Session<L>,
     count: usize,
     reader: ReportReader,
+    /// Goals that were sent and not yet obeyed, each with the number of its frame.
+    sent: VecDeque<(u8, Vec<Position>)>,
+    /// The goals that the servos have.
     goals: Option<Vec<Position>>,
     /// Where all stood in the newest report that has them all.
     stood: Option<Vec<Position>>,
@@ -65,6 +73,7 @@ impl<L: SerialLink> Stream<L> {
             reader: ReportReader::new(ids.len(), begun, &telemetry),
             session,
             count: ids.len(),
+            sent: VecDeque::new(),
             goals: None,
             stood: None,
             armed: false,
@@ -86,6 +95,17 @@ impl<L: SerialLink> Stream<L> {
         self.account = told.ok();
     }
 
+    /// Goals that were sent count from the tick on whose report says that they are obeyed.
+    fn take_obeyed(&mut self, obeyed: u8) {
+        let known = self
+            .sent
+            .iter()
+            .position(|(sequence, _)| *sequence == obeyed);
+        if let Some((_, goals)) = known.and_then(|at| self.sent.drain(..=at).next_back()) {
+            self.goals = Some(goals);
+        }
+    }
+
     /// The talk with the firmware.
     pub fn session(&mut self) -> &mut Session<L> {
         &mut self.session
@@ -96,10 +116,12 @@ impl<L: SerialLink> SampleSource for Stream<L> {
     fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<RobotSample>> {
         if let Some(goals) = goals_rad.filter(|_| self.armed) {
             let goals: Vec<Position> = goals.iter().map(|goal| Position::from_rad(*goal)).collect();
-            self.session.send(&Command::Goals(Positions::pack(
-                goals.iter().map(|goal| goal.0),
-            )))?;
-            self.goals = Some(goals);
+            let packed = Positions::pack(goals.iter().map(|goal| goal.0));
+            let sequence = self.session.send(&Command::Goals(packed))?;
+            self.sent.push_back((sequence, goals));
+            if self.sent.len() > MOST_SENT {
+                self.sent.pop_front();
+            }
         } else {
             self.session.send(&Command::KeepAlive)?;
         }
@@ -116,6 +138,7 @@ impl<L: SerialLink> SampleSource for Stream<L> {
             self.ask_why();
             let stood = (0..self.count).map(|place| report.position(place).map(Position));
             self.stood = stood.collect::<Option<_>>().or(self.stood.take());
+            self.take_obeyed(report.obeyed);
             let goals = self.goals.as_deref();
             let goal_rad = |place: usize| Some(goals?.get(place)?.to_rad());
             return Ok(Some(self.reader.sample(time, &report, goal_rad)));
@@ -135,6 +158,7 @@ impl<L: SerialLink> SampleSource for Stream<L> {
         self.armed = true;
         // The firmware's first goals: where they stand.
         self.goals = self.stood.clone();
+        self.sent.clear();
         Ok(())
     }
 
