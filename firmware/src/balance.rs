@@ -1,6 +1,6 @@
 //! Balancing on board: one tick of reading, law and command.
 
-use crate::servos::Servos;
+use crate::servos::{Servo, Servos};
 use handstand_shared::crc::extend32;
 use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
@@ -134,7 +134,7 @@ impl Balance {
                 return Err(Stop::JointRange);
             }
             let (last, ago) = *before;
-            if !servo.present {
+            if !servo.is_present() {
                 if ago != NEVER_HEARD {
                     *before = (last, ago.saturating_add(1));
                 }
@@ -146,7 +146,7 @@ impl Balance {
             *before = (*q, 1);
         }
         let [q2, q3] = joints;
-        self.is_heard = [true, first.present, second.present, true];
+        self.is_heard = [true, first.is_present(), second.is_present(), true];
         Ok([angle, q2, q3, self.rate])
     }
 
@@ -258,7 +258,7 @@ impl Balance {
 
     /// Whether all servos it commands answered.
     pub fn has_servos(&self, servos: &Servos) -> bool {
-        let there = |id: u8| id >= 254 || servos.with_id(id).is_some_and(|servo| servo.present);
+        let there = |id: u8| id >= 254 || servos.with_id(id).is_some_and(Servo::is_present);
         self.plan
             .joints
             .iter()

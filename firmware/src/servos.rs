@@ -25,12 +25,27 @@ pub struct Servo {
     is_wheel: Option<bool>,
     /// Where it was when it last answered.
     pub position: Position,
-    /// Whether it answered in this tick.
-    pub present: bool,
+    /// Requests in a row that it did not answer: two in the first tick in which it is silent, then
+    /// one a tick.
+    unanswered: u8,
     /// Whether it is commanded.
     pub armed: bool,
     /// The goal it was last sent.
     pub goal: Position,
+}
+
+impl Servo {
+    /// Whether it answered in this tick.
+    pub fn is_present(&self) -> bool {
+        self.unanswered == 0
+    }
+
+    fn hear(&mut self, has_answered: bool) {
+        self.unanswered = match has_answered {
+            true => 0,
+            false => self.unanswered.saturating_add(1),
+        };
+    }
 }
 
 /// All of them, in the servo list's order.
@@ -69,7 +84,7 @@ impl Servos {
             delay: ReturnDelay::FACTORY,
             is_wheel: None,
             position: Position::CENTRE,
-            present: false,
+            unanswered: u8::MAX,
             armed: false,
             goal: Position::CENTRE,
         };
@@ -188,7 +203,7 @@ impl Servos {
         // A bit that moves on: shifting by a variable costs the AVR a loop.
         let (mut missing, mut bit) = (0u32, 1u32);
         for servo in self.all() {
-            missing |= if servo.present { 0 } else { bit };
+            missing |= if servo.is_present() { 0 } else { bit };
             bit <<= 1;
         }
         missing

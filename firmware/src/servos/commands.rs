@@ -13,6 +13,10 @@ use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
 
+/// Requests in a row that a servo may leave unanswered and is commanded all the same: an answer that
+/// is lost as torque comes on would leave a joint to one of its two servos. Three ticks.
+const MOST_UNANSWERED: u8 = 4;
+
 /// Ids that no servo has.
 const NO_SERVO: [u8; 4] = [BROADCAST; 4];
 
@@ -37,14 +41,14 @@ enum Sent {
 }
 
 impl Servos {
-    /// Those that answered are commanded from now on, within these limits, and their goal is where
+    /// Those that answered lately are commanded from now on, within these limits, and their goal is where
     /// they stand. What limits the speed of a servo with a goal is the speed of one that turns
     /// without end: that gets 0, and so does one whose mode is not known. Torque stays as it is.
     pub fn choose<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.tripped = None;
         self.has_torque = false;
         for servo in self.all_mut() {
-            servo.armed = servo.present;
+            servo.armed = servo.unanswered <= MOST_UNANSWERED;
             servo.goal = servo.position;
         }
         bus::write_all(board, TORQUE_LIMIT, limits.torque.0);
@@ -54,7 +58,7 @@ impl Servos {
         });
     }
 
-    /// Torque on where a servo answered, within these limits, and the goal where it stands.
+    /// Torque on where a servo answered lately, within these limits, and the goal where it stood.
     pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.choose(board, limits);
         self.hold(board);

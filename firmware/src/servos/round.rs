@@ -1,6 +1,6 @@
 //! Reading: every tick all positions, and the housekeeping of two servos in turn.
 
-use super::{GAVE_UP, PART_OF_A_ROUND, Servos};
+use super::{GAVE_UP, PART_OF_A_ROUND, Servo, Servos};
 use crate::board::{Board, since_us};
 use crate::bus::{self, Answer, ReadPacket, look};
 use crate::design::{LAST_RETRY_US, ROUND_US};
@@ -102,7 +102,7 @@ impl Servos {
     #[cold]
     fn leave_out(&mut self, place: u8, statistics: &mut Statistics) {
         if let Some(servo) = self.servos.get_mut(usize::from(place)) {
-            servo.present = false;
+            servo.hear(false);
         }
         if let Some(slot) = self
             .turn_of(place)
@@ -116,7 +116,7 @@ impl Servos {
     fn is_present(&self, place: u8) -> bool {
         self.all()
             .get(usize::from(place))
-            .is_some_and(|servo| servo.present)
+            .is_some_and(Servo::is_present)
     }
 
     /// Whether its housekeeping are read in this tick, and as which of the two.
@@ -202,7 +202,7 @@ impl Servos {
             }
         };
         bus::count(statistics, &reading);
-        servo.present = reading.is_ok();
+        servo.hear(reading.is_ok());
         if let Ok((position, error)) = reading {
             let code = u16::from_le_bytes(position) & Position::MAX.0;
             servo.position = Position(code);
@@ -213,7 +213,7 @@ impl Servos {
                 self.tripped = self.tripped.or(Some(TrippedServo { id, error }));
             }
         }
-        servo.present
+        servo.is_present()
     }
 
     /// Moves on to the next two servos; at the end of a round the lowest supply of it is known.

@@ -35,6 +35,26 @@ fn after_a_disarm_the_same_frame_arms_nothing() {
     assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Version)));
 }
 
+/// A joint of two servos would hang on one of them, and nobody would be told.
+#[test]
+fn a_servo_whose_answer_is_lost_as_torque_comes_on_has_it_too() {
+    for (silent_ms, has_torque) in [(12.0, true), (60.0, false)] {
+        let mut cm5 = VirtualCm5::new();
+        let token = greet(&mut cm5).token;
+        assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+        say(&mut cm5, &Command::KeepAlive, 300);
+        cm5.bus().servo(4).unwrap().faults.drop = 1.0;
+        cm5.run_ms(silent_ms);
+        assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+        let servo = cm5.bus().servo(4).unwrap();
+        assert_eq!(
+            servo.torque_is_on(),
+            has_torque,
+            "silent for {silent_ms} ms"
+        );
+    }
+}
+
 #[test]
 fn nothing_is_armed_while_a_plan_is_written() {
     let mut cm5 = with_wheels();
