@@ -151,9 +151,12 @@ fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
 const MOST_OF_ANOTHER_DRIVE: f64 = 0.42;
 const LITTLE: f64 = 0.08;
 
+const BEATS: f64 = 0.999;
+
 /// Whether a remedy that only changes how strong an input is leaves less than one wrong value of
 /// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one
-/// value leaves for the joints that were asked for.
+/// value leaves for the joints that were asked for. What does the same but for rounding does not
+/// beat it.
 fn beats_a_wrong_value(
     bench: &RemedyTrial,
     trial: &Trial,
@@ -175,7 +178,7 @@ fn beats_a_wrong_value(
         .and_then(|factor| bench.with_torques_scaled(joint, factor));
     let off = fitted.iter().copied().chain(scaled);
     let least = off.fold(f64::INFINITY, f64::min);
-    trial.ratio() < least
+    trial.ratio() < BEATS * least
 }
 
 /// What a remedy must do to be believed.
