@@ -38,8 +38,42 @@ struct Event {
     joint: usize,
     /// Share of the step after which it comes.
     share: f64,
+    /// What crosses zero then, at the beginning and at the end of the step: the joint's speed, or
+    /// by how much it is pushed beyond its breakaway torque.
+    ends: [f64; 2],
     /// What the contact is from then on.
     contact: Contact,
+}
+
+impl Event {
+    /// By a straight line between the ends.
+    fn between(joint: usize, ends: [f64; 2], contact: Contact) -> Event {
+        let [before, after] = ends;
+        Event {
+            joint,
+            share: (before / (before - after)).clamp(0.0, 1.0),
+            ends,
+            contact,
+        }
+    }
+
+    /// By the parabola through the ends and what was found at the share so far.
+    fn bent(self, found: f64) -> Event {
+        let [before, after] = self.ends;
+        let share = self.share;
+        // before + slope s + bend s^2
+        let bend = ((found - before) / share - (after - before)) / (share - 1.0);
+        let slope = after - before - bend;
+        let root = (slope * slope - 4.0 * bend * before).sqrt();
+        let better = -2.0 * before / (slope + root.copysign(slope));
+        match (0.0..=1.0).contains(&better) {
+            true => Event {
+                share: better,
+                ..self
+            },
+            false => self,
+        }
+    }
 }
 
 /// State of a simulation; `R` says how its rows of one number per joint are kept.
@@ -167,12 +201,9 @@ impl<R: Rows> Stepper<R> {
             let Some(event) = self.first_event(plant, inputs) else {
                 return;
             };
-            // What is known is of the step's end.
-            self.slope_is_known = false;
-            self.angle.clone_from(&self.start_angle);
-            self.speed.clone_from(&self.start_speed);
-            self.forces.auxiliary.copy_motion(&self.start_auxiliary);
-            self.step(plant, inputs, event.share * left);
+            self.step_again(plant, inputs, event.share * left);
+            let event = event.bent(self.crossing(plant, inputs, event));
+            self.step_again(plant, inputs, event.share * left);
             if event.contact == Contact::Held {
                 self.speed[event.joint] = 0.0;
             }
@@ -191,6 +222,27 @@ impl<R: Rows> Stepper<R> {
             }
         }
         self.slope_is_known = false;
+    }
+
+    /// Takes another step from where the last one began.
+    fn step_again(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
+        // What is known is of the step's end.
+        self.slope_is_known = false;
+        self.angle.clone_from(&self.start_angle);
+        self.speed.clone_from(&self.start_speed);
+        self.forces.auxiliary.copy_motion(&self.start_auxiliary);
+        self.step(plant, inputs, step_s);
+    }
+
+    /// What an event's zero is of, at the present state.
+    fn crossing(&mut self, plant: &Plant, inputs: &[DriveInput], event: Event) -> f64 {
+        match event.contact {
+            Contact::Held => self.speed[event.joint],
+            Contact::Free | Contact::Sliding(_) => {
+                self.find_excess(plant, inputs);
+                self.excess[event.joint]
+            }
+        }
     }
 
     /// Takes what follows from the inputs alone; the same inputs leave all as it is.
@@ -233,12 +285,8 @@ impl<R: Rows> Stepper<R> {
         (0..self.len())
             .filter(|&joint| self.stopped(joint))
             .map(|joint| {
-                let before = self.start_speed[joint];
-                Event {
-                    joint,
-                    share: before / (before - self.speed[joint]),
-                    contact: Contact::Held,
-                }
+                let ends = [self.start_speed[joint], self.speed[joint]];
+                Event::between(joint, ends, Contact::Held)
             })
             .min_by(|a, b| a.share.total_cmp(&b.share))
     }
@@ -255,10 +303,9 @@ impl<R: Rows> Stepper<R> {
         self.find_excess(plant, inputs);
         (0..self.len())
             .filter(|&joint| is_held(&self.contact[joint]) && self.excess[joint] > 0.0)
-            .map(|joint| Event {
-                joint,
-                share: (before[joint] / (before[joint] - self.excess[joint])).clamp(0.0, 1.0),
-                contact: Contact::Sliding(self.push_direction(joint)),
+            .map(|joint| {
+                let ends = [before[joint], self.excess[joint]];
+                Event::between(joint, ends, Contact::Sliding(self.push_direction(joint)))
             })
             .min_by(|a, b| a.share.total_cmp(&b.share))
     }
