@@ -36,10 +36,12 @@ impl Page {
         name: &str,
         title: &str,
     ) -> bool {
-        match json {
-            Some(json) => println!("{json}"),
-            None => println!("{}", measured.text().trim_end()),
-        }
+        print(json, measured);
+        self.keep(measured, name, title)
+    }
+
+    /// Writes the tables to docs/measured/NAME.md if asked; whether that could be done.
+    pub(super) fn keep(&self, measured: &Measured, name: &str, title: &str) -> bool {
         if !self.write {
             return true;
         }
@@ -54,5 +56,13 @@ impl Page {
                 false
             }
         }
+    }
+}
+
+/// Prints the tables, or the JSON where that is asked for.
+pub(super) fn print(json: Option<Value>, measured: &Measured) {
+    match json {
+        Some(json) => println!("{json}"),
+        None => println!("{}", measured.text().trim_end()),
     }
 }
