@@ -130,8 +130,9 @@ impl RoundTrip {
         while tally.samples < rounds && goes_on() {
             let sample = source.sample(None)?.ok_or_else(no_response)?;
             tally.count(&sample);
-            let before_s = before_s.replace(sample.time_s);
-            times_us.extend(before_s.map(|before_s: f64| (sample.time_s - before_s) * 1e6));
+            let arrival_s = source.arrival_s(&sample);
+            let before_s = before_s.replace(arrival_s);
+            times_us.extend(before_s.map(|before_s: f64| (arrival_s - before_s) * 1e6));
         }
         let round_us = Quantiles::of(times_us).ok_or_else(no_response)?;
         Ok(LatencyBudget {

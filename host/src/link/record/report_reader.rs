@@ -11,6 +11,8 @@ use std::time::Duration;
 pub struct ReportReader {
     begun: Duration,
     clock: TickClock,
+    /// When the last report arrived, s.
+    pub(super) arrival_s: f64,
     housekeeping: Vec<ServoSample>,
     /// Zero of the gyro, and rad/s per code, if a plan on the CM-5 has them.
     gyro: Option<(u16, f64)>,
@@ -25,6 +27,7 @@ impl ReportReader {
         ReportReader {
             begun,
             clock: TickClock::default(),
+            arrival_s: 0.0,
             housekeeping: vec![ServoSample::default(); count],
             gyro: (scale != 0.0).then_some((account.gyro_zero, scale)),
             last: None,
@@ -65,9 +68,9 @@ impl ReportReader {
         let rate = |(zero, scale)| (f64::from(report.gyro) - f64::from(zero)) * scale;
         let torque_on = report.torque_was_on(self.last.as_ref());
         self.last = Some(*report);
-        let arrival_s = time.saturating_sub(self.begun).as_secs_f64();
+        self.arrival_s = time.saturating_sub(self.begun).as_secs_f64();
         RobotSample {
-            time_s: self.clock.time_s(report.tick, arrival_s),
+            time_s: self.clock.time_s(report.tick, self.arrival_s),
             joints,
             gyro: Some(GyroSample {
                 code: f64::from(report.gyro),

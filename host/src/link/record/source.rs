@@ -30,6 +30,12 @@ pub trait SampleSource {
     /// The device failed.
     fn sample(&mut self, goals_rad: Option<&[f64]>) -> Result<Option<RobotSample>>;
 
+    /// When the newest sample arrived, s, on the clock of its `time_s`: other than that where a
+    /// controller keeps the time.
+    fn arrival_s(&self, newest: &RobotSample) -> f64 {
+        newest.time_s
+    }
+
     /// Torque on, every servo's goal where it stands.
     ///
     /// # Errors

@@ -145,6 +145,10 @@ impl<L: SerialLink> SampleSource for Stream<L> {
         }
     }
 
+    fn arrival_s(&self, _newest: &RobotSample) -> f64 {
+        self.reader.arrival_s
+    }
+
     fn arm(&mut self) -> Result<()> {
         // The first round of supply readings must be over, or it refuses.
         for _ in 0..40 {
