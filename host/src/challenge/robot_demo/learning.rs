@@ -13,11 +13,6 @@ use crate::synth::controllers::BoardTiming;
 use handstand_shared::plan::Plan;
 use std::path::Path;
 
-/// Age of a goal when it acts in a recording, s, without any of the servos' own: a tick until the
-/// firmware sends it, less what passes until the sample is taken. Of a recorded delay the rest is the
-/// drive's. `cargo xtask robot-demo` prints both of each robot.
-pub const PATH_DELAY_S: f64 = 0.0095;
-
 /// Largest delay of a drive that a plan can take, s: with the attitude's age it is within the three
 /// inputs that the CM-5 keeps. What is beyond is left out.
 const MOST_DELAY_S: f64 = 0.020;
@@ -125,7 +120,7 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     let dead_zone = largest("dead_zone", &|values| (-values[1]).max(0.0));
     let friction_nm = largest("coulomb", &|values| values[0]);
     let mut timing = BoardTiming::HOST_ATTITUDE;
-    timing.effect_s += (delay_s - PATH_DELAY_S).clamp(0.0, MOST_DELAY_S);
+    timing.effect_s += delay_s.clamp(0.0, MOST_DELAY_S);
     let board = Board {
         dead_zone: dead_zone + friction_nm / Board::BIOLOID.full_nm,
         joint_range_rad: 1.5,

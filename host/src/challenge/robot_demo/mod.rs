@@ -17,7 +17,7 @@ mod run;
 
 pub use attempt::{AttemptSample, BalanceAttempt};
 pub use hidden::{HiddenRobot, RobotAnswer, RobotEffect};
-pub use learning::{Learned, PATH_DELAY_S, plan_for};
+pub use learning::{Learned, plan_for};
 pub use page::html;
 pub use recording::{MOTIONS, RecordedMotion};
 pub use run::{DemoStep, RobotDemo, ScoredEffect, run};

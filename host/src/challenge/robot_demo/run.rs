@@ -2,7 +2,7 @@
 
 use super::attempt::BalanceAttempt;
 use super::hidden::{HiddenRobot, NOMINAL, RobotEffect};
-use super::learning::{Learned, PATH_DELAY_S, plan_for};
+use super::learning::{Learned, plan_for};
 use super::{page, recording};
 use crate::challenge::seal;
 use crate::diagnose::{Diagnosis, Progress, Verdict};
@@ -124,12 +124,11 @@ impl ScoredEffect {
         let found = effects.find(|effect| Candidate::from(*effect).to_string() == hidden.address);
         let estimate = found.and_then(|effect| effect.values.first().copied());
         let (key, true_value) = hidden.parameters.first().cloned().unwrap_or_default();
-        let path_s = if key == "delay_s" { PATH_DELAY_S } else { 0.0 };
         ScoredEffect {
             address: hidden.address.clone(),
             key,
             true_value,
-            estimate: estimate.map(|value| value - path_s),
+            estimate,
         }
     }
 }
