@@ -7,6 +7,10 @@ use crate::model::Model;
 /// Change of a prediction, in standard deviations of a reading, that no verdict hangs on.
 const NEGLIGIBLE: f64 = 0.03;
 
+/// Longest step that this model may take because its own laws allow it, s: those that are tried on
+/// it, a grip that slips for one, remember from step to step.
+const LONGEST_S: f64 = 0.0051;
+
 /// The model with the largest step, a whole fraction of the sampling period, whose predictions over
 /// these windows differ from those at the model's own step by next to nothing against the noise.
 pub(super) fn coarsened(model: &Model, data: &FitData) -> Model {
@@ -22,7 +26,8 @@ pub(super) fn coarsened(model: &Model, data: &FitData) -> Model {
         .map(period_s)
         .fold(f64::INFINITY, f64::min);
     let steps = (1..=8).map(|parts| period_s / f64::from(parts));
-    for step_s in steps.take_while(|step_s| *step_s > 1.5 * model.step_s) {
+    let steps = steps.take_while(|step_s| *step_s > 1.5 * model.step_s);
+    for step_s in steps.filter(|step_s| *step_s < LONGEST_S) {
         let coarse = Model {
             step_s,
             ..model.clone()
