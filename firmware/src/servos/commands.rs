@@ -13,8 +13,8 @@ use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
 
-/// Requests in a row that a servo may leave unanswered and is commanded all the same: an answer that
-/// is lost as torque comes on would leave a joint to one of its two servos. Three ticks.
+/// Requests in a row that a servo may leave unanswered and is commanded all the same: an answer
+/// that is lost as torque comes on would leave a joint to one of its two servos. Three ticks.
 const MOST_UNANSWERED: u8 = 4;
 
 /// Ids that no servo has.
@@ -41,8 +41,8 @@ enum Sent {
 }
 
 impl Servos {
-    /// Those that answered lately are commanded from now on, within these limits, and their goal is where
-    /// they stand. What limits the speed of a servo with a goal is the speed of one that turns
+    /// Those that answered lately are commanded from now on, within these limits, and their goal is
+    /// where they stand. What limits the speed of a servo with a goal is the speed of one that turns
     /// without end: that gets 0, and so does one whose mode is not known. Torque stays as it is.
     pub fn choose<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.tripped = None;

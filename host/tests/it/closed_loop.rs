@@ -101,7 +101,7 @@ fn cycle_ratio(closed_loop: &Value) -> f64 {
 
 #[test]
 fn the_limit_cycle_tells_the_right_model_from_the_wrong_one() {
-    // The cycle wanders: a few seconds do not tell how large it is, but many tell nothing of errors.
+    // The cycle wanders: a few seconds do not tell how large it is, many tell nothing of errors.
     let of_seconds = |seconds| bench(HANDSTAND, 2, 0.05, 0.01, seconds);
     let (brief, bench) = (of_seconds(2.0), of_seconds(20.0));
     let line =

@@ -34,8 +34,8 @@ impl ReportReader {
         }
     }
 
-    /// The sample of a report that arrived at `time`; `goal_rad` tells each servo's goal. Its time is
-    /// the tick's: when its report would have come had nothing made it late.
+    /// The sample of a report that arrived at `time`; `goal_rad` tells each servo's goal. Its time
+    /// is the tick's: when its report would have come had nothing made it late.
     pub fn sample(
         &mut self,
         time: Duration,

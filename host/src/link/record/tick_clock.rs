@@ -1,7 +1,7 @@
 //! When the CM-5's ticks were, from the numbers of its reports and from when these came.
 //!
-//! The CM-5's crystal sets the ticks. A report comes after its tick by what the servos' answers, the
-//! line and the PC's driver take, which is another time in every tick, but never less than a
+//! The CM-5's crystal sets the ticks. A report comes after its tick by what the servos' answers,
+//! the line and the PC's driver take, which is another time in every tick, but never less than a
 //! certain one: so the reports that were the least late tell when all of their neighbours were
 //! read. Where ticks last longer than their period (many servos with the factory's return delay)
 //! there is no such grid, and the arrivals are taken as they are.
