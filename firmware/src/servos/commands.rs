@@ -42,8 +42,9 @@ enum Sent {
 
 impl Servos {
     /// Those that answered lately are commanded from now on, within these limits, and their goal is
-    /// where they stand. What limits the speed of a servo with a goal is the speed of one that turns
-    /// without end: that gets 0, and so does one whose mode is not known. Torque stays as it is.
+    /// where they stand. What limits the speed of a servo with a goal is the speed of one that
+    /// turns without end: that gets 0, and so does one whose mode is not known. Torque stays as it
+    /// is.
     pub fn choose<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
         self.tripped = None;
         self.has_torque = false;
