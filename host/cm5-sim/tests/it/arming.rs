@@ -35,7 +35,7 @@ fn after_a_disarm_the_same_frame_arms_nothing() {
     assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Err(Refusal::Version)));
 }
 
-/// A joint of two servos would hang on one of them, and nobody would be told.
+/// A joint of two servos would hang on one of them, and no report would say so.
 #[test]
 fn a_servo_whose_answer_is_lost_as_torque_comes_on_has_it_too() {
     for (silent_ms, has_torque) in [(12.0, true), (60.0, false)] {
