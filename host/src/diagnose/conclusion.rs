@@ -21,6 +21,7 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
     let rivals = evidence.rivals();
     let (chosen, evaluator) = (evidence.chosen(), evidence.evaluator);
     let (values, correlation) = fitted_values(chosen.fit(), &evaluator.training);
+    let step_s = chosen.fit().model.step_s;
     let (base, added) = values.split_at(values.len() - chosen.added_values());
     let mut collinear = Vec::new();
     for (a, value) in values.iter().enumerate().filter(|_| correlation.is_some()) {
@@ -48,6 +49,7 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         next: Vec::new(),
         warnings: warnings(evidence, correlation.is_some()),
         horizon_s: evaluator.horizon.seconds(),
+        shorter_step_s: (step_s < evaluator.file_step_s).then_some(step_s),
         windows: windows(evaluator),
     };
     words::complete(&mut diagnosis);

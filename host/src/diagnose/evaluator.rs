@@ -12,9 +12,8 @@ use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
-use super::step_size::coarsened;
 use super::values::as_given;
-use crate::fitting::{Candidate, FitData, FitOptions, Horizon};
+use crate::fitting::{Candidate, FitData, FitOptions, Horizon, coarsened};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -39,8 +38,10 @@ pub(super) struct Evaluator<'a> {
     pub candidates: Vec<Candidate>,
     /// What each start of each candidate changes in the base model's prediction.
     pub changes: Vec<Vec<PredictionChange>>,
-    /// The model as it came.
+    /// The model as it came, in the steps that it is searched with.
     pub start: Model,
+    /// Integration step of its file, s.
+    pub file_step_s: f64,
     /// Values of it that are right.
     pub known: Vec<ParameterPath>,
     pub seed: u64,
@@ -73,6 +74,7 @@ impl<'a> Evaluator<'a> {
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let search_horizon = search_horizon(&whole, longest, few);
         let search = whole.recut(search_horizon);
+        let file_step_s = model.step_s;
         let model = &coarsened(model, &search);
         let fitted = base_fit(model, &search, few, options.seed);
         let mut base = Hypothesis::new(Vec::new(), fitted);
@@ -106,6 +108,7 @@ impl<'a> Evaluator<'a> {
             candidates,
             changes,
             start: model.clone(),
+            file_step_s,
             known: options.known.clone(),
             seed: options.seed,
             most_effects,

@@ -182,6 +182,8 @@ pub struct Diagnosis {
     pub warnings: Vec<String>,
     /// Seconds of the longest windows on which the judgement may rest; absent for whole motions.
     pub horizon_s: Option<f64>,
+    /// The integration step of the explanation, s, where it needs a shorter one than the file has.
+    pub shorter_step_s: Option<f64>,
     /// How long the windows of each motion are.
     pub windows: Vec<MotionWindow>,
 }
@@ -222,6 +224,7 @@ impl Diagnosis {
         });
         let found: Vec<_> = found.collect();
         model.effects.extend(found);
+        model.step_s = self.shorter_step_s.unwrap_or(model.step_s);
         model
     }
 
@@ -275,6 +278,7 @@ impl Diagnosis {
             next,
             warnings: Vec::new(),
             horizon_s: None,
+            shorter_step_s: None,
             windows: Vec::new(),
         }
     }

@@ -1,8 +1,11 @@
 //! A set of effects added to the base model, everything refitted and evaluated on held-out motions.
 
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
-use crate::fitting::{Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals};
-use crate::model::ParameterPath;
+use super::budget::FINISH;
+use crate::fitting::{
+    Candidate, Fit, FitData, FitOptions, fit, fit_start_states, in_fine_steps, intervals,
+};
+use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
 
 /// A fitted set of effects.
@@ -169,8 +172,28 @@ impl Hypothesis {
         }
         let search = &self.search;
         let nodes = training.nodes_from(short, &search.nodes);
-        let fit = fit(&search.model, &search.free, training, Some(&nodes), options);
+        let mut fit = fit(&search.model, &search.free, training, Some(&nodes), options);
+        // What is only compared may do so in steps that are too long.
+        if !options.rough {
+            fit = in_fine_steps(fit, training, options);
+            self.search_in_steps(fit.model.step_s, short);
+        }
         self.judge(fit, training, held_out);
+    }
+
+    /// Takes steps of this length on the short windows too: what goes on from there should not
+    /// explain what longer steps get wrong.
+    fn search_in_steps(&mut self, step_s: f64, short: &FitData) {
+        if self.search.model.step_s == step_s {
+            return;
+        }
+        let model = Model {
+            step_s,
+            ..self.search.model.clone()
+        };
+        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(FINISH));
+        self.search = fit(&model, &self.search.free, short, Some(nodes), options);
+        self.search_mean = self.search.residuals.mean_square();
     }
 
     /// Takes a fit over the evaluation horizon, and predicts the held-out motions with it.

@@ -31,7 +31,6 @@ mod restarts;
 mod search;
 mod selection;
 mod stability;
-mod step_size;
 mod terms;
 mod values;
 mod verdict;

@@ -6,7 +6,7 @@
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::{inseparable, same_in_other_words};
 use super::names::{effect_name, joined, listed};
-use super::warnings::{on_bound, pairs};
+use super::warnings::{on_bound, pairs, shorter_steps};
 
 use crate::output::number::{measured, short};
 
@@ -24,7 +24,10 @@ pub(crate) const SHOWN: usize = 4;
 pub(super) fn complete(diagnosis: &mut Diagnosis) {
     diagnosis.summary = summary(diagnosis);
     diagnosis.next = next(diagnosis);
-    let warnings: Vec<String> = on_bound(diagnosis).chain(pairs(diagnosis)).collect();
+    let warnings: Vec<String> = on_bound(diagnosis)
+        .chain(pairs(diagnosis))
+        .chain(shorter_steps(diagnosis))
+        .collect();
     if !diagnosis.error.held_out {
         diagnosis.warnings.push(
             "no motion was held out: the figures are of the motions that were fitted".to_string(),

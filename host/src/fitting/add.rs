@@ -62,7 +62,7 @@ pub fn add_effects(
     if refitted.error.after_rad >= refitted.error.before_rad {
         return Ok(Addition::NotReduced(refitted));
     }
-    let mut text = edit::set_values(text, path, &refitted.values_of(&model))?;
+    let mut text = with_values(text, path, &model, &refitted)?;
     let logs = files(&split.training);
     let old = refitted.record(logs.clone());
     let old = old.about(|path| path.get(&model).is_some());
@@ -86,8 +86,17 @@ pub fn with_refitted(
     refitted: &Refitted,
     split: &Split,
 ) -> Result<String> {
-    let text = edit::set_values(text, path, &refitted.values_of(model))?;
+    let text = with_values(text, path, model, refitted)?;
     edit::renew_provenance(&text, path, &refitted.record(files(&split.training)))
+}
+
+/// The text with the values of a fit, and the integration step that they need.
+fn with_values(text: &str, path: &Path, model: &Model, refitted: &Refitted) -> Result<String> {
+    let text = edit::set_values(text, path, &refitted.values_of(model))?;
+    match refitted.shorter_step_s {
+        Some(step_s) => edit::set_step(&text, path, step_s),
+        None => Ok(text),
+    }
 }
 
 /// Why effects whose error is not reduced are not added.

@@ -41,6 +41,7 @@ mod sensor_tests;
 mod solve;
 mod staged;
 mod step;
+mod step_size;
 mod student;
 mod windows;
 
@@ -63,5 +64,6 @@ pub use refit::{Refitted, Undetermined, refit, refit_with};
 pub use residual::{Residuals, predicted, residuals};
 pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};
 pub use staged::{fit_staged, fit_through_stages};
+pub(crate) use step_size::{coarsened, in_fine_steps};
 pub(crate) use student::quantile_975;
 pub use windows::{MotionWindow, in_windows};

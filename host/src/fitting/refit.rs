@@ -13,6 +13,7 @@ use super::mixture::untold_mixture;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
+use super::step_size::in_fine_steps;
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
@@ -41,6 +42,8 @@ pub struct Refitted {
     pub values: Vec<FittedValue>,
     /// Error before and after.
     pub error: ErrorReduction,
+    /// The integration step, s, where the logs ask for a shorter one than the model's own.
+    pub shorter_step_s: Option<f64>,
     /// How long the model ran without correction at most.
     pub horizon: Horizon,
     /// How long the windows of each motion are, those held out last.
@@ -128,6 +131,7 @@ pub fn refit(
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
+    let found = in_fine_steps(found, &data, FitOptions::default());
     told_apart(&found)?;
     finish(model, found, &data, split, horizon)
 }
@@ -183,6 +187,7 @@ pub fn refit_with(
     // Whoever goes on with this model refits the new values too.
     with.free.clone_from(&free);
     let found = fit_staged(&with, &free, &data);
+    let found = in_fine_steps(found, &data, FitOptions::default());
     finish(&base.model, found, &data, split, horizon)
 }
 
@@ -224,6 +229,7 @@ fn finish(
         windows,
         unobserved: before.log.notes(),
         converged: found.converged,
+        shorter_step_s: (found.model.step_s < before.step_s).then_some(found.model.step_s),
         model: found.model,
         horizon,
     })

@@ -89,6 +89,18 @@ pub fn set_values(text: &str, path: &Path, values: &[(ParameterPath, f64)]) -> R
     checked(document, path)
 }
 
+/// The text with this integration step, s.
+///
+/// # Errors
+/// The text is no model, or the step is impossible.
+pub fn set_step(text: &str, path: &Path, step_s: f64) -> Result<String> {
+    let mut document = document(text, path)?;
+    let rig = document.get_mut("rig").and_then(Item::as_table_like_mut);
+    let rig = rig.ok_or_else(|| misfit(path, "there is no `rig`"))?;
+    put(rig, "step_s", number(step_s));
+    checked(document, path)
+}
+
 /// A moment about the joint as that about the centre of mass, which is what a fit changes or keeps.
 fn about_centre_of_mass(table: &mut dyn TableLike, inertia_kg_m2: f64) {
     if table.remove(JOINT_INERTIA).is_some() {

@@ -1,7 +1,7 @@
 //! A refitted model, for people and programs.
 
 use crate::fitting::{FittedValue, Refitted, in_windows};
-use crate::output::number::exact;
+use crate::output::number::{exact, given};
 use crate::output::table::{TableColumn, table_of, within_width};
 use serde_json::{Value, json};
 
@@ -33,6 +33,12 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
         ),
     ];
     lines.push(format!("The model ran {}.", in_windows(&refitted.windows)));
+    if let Some(step_s) = refitted.shorter_step_s {
+        lines.push(format!(
+            "It needs shorter integration steps than it had: `step_s = {}` is written with it.",
+            given(step_s)
+        ));
+    }
     let warnings = warnings(refitted).into_iter();
     lines.extend(warnings.map(|line| format!("warning: {line}")));
     lines.join("\n")
@@ -58,6 +64,7 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
         "error": refitted.error,
         "horizon_s": refitted.horizon.seconds(),
         "windows": refitted.windows,
+        "shorter_step_s": refitted.shorter_step_s,
         "converged": refitted.converged,
         "warnings": warnings(refitted),
     })

@@ -36,6 +36,8 @@ pub(super) struct Said {
     pub values: Vec<(String, f64)>,
     /// Seconds run without correction, where the result has one such number.
     pub horizon_s: Option<f64>,
+    /// The integration step of the best explanation, where it is shorter than the file's.
+    pub shorter_step_s: Option<f64>,
 }
 
 impl SaidEffect {
@@ -135,6 +137,7 @@ pub(super) fn said(json: &Json) -> Said {
         sets: std::iter::once(json).chain(alternatives).map(set).collect(),
         values: fitted.into_iter().flat_map(values).collect(),
         horizon_s: json["horizon_s"].as_f64(),
+        shorter_step_s: json["shorter_step_s"].as_f64(),
     }
 }
 

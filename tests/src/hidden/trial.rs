@@ -216,7 +216,8 @@ fn errors(
     held_out: &[Motion],
 ) -> handstand::Result<Errors> {
     let truth = files.truth.as_deref().map(Model::load).transpose()?;
-    let found = found(files, said)?;
+    let truth = truth.map(|truth| in_fine_steps(truth, said));
+    let found = in_fine_steps(found(files, said)?, said);
     let mut horizon = said.horizon_s.map(Horizon::Seconds);
     let mut error = |model: &Model| {
         let compared = compare(model, "model", held_out, horizon);
@@ -231,6 +232,14 @@ fn errors(
         after_rad: error(&found),
         before_rad: error(model),
     })
+}
+
+/// The model in the shorter steps that the result asks for.
+fn in_fine_steps(mut model: Model, said: &Said) -> Model {
+    model.step_s = model
+        .step_s
+        .min(said.shorter_step_s.unwrap_or(f64::INFINITY));
+    model
 }
 
 /// The model with what the result gives it.

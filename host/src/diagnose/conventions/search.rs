@@ -7,7 +7,7 @@ use super::leave_out::without_stalled;
 use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Effort, RemedyTrial, Trial, scales_torque_by};
-use crate::diagnose::step_size::coarsened;
+use crate::fitting::coarsened;
 use crate::log::Motion;
 use crate::model::{Model, Unit};
 use rayon::prelude::*;

@@ -56,6 +56,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
         next: Vec::new(),
         warnings: Vec::new(),
         horizon_s: None,
+        shorter_step_s: None,
         windows: Vec::new(),
     };
     complete(&mut diagnosis);

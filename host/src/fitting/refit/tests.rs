@@ -145,3 +145,28 @@ fn a_refit_finds_a_mass_moved_outwards() {
     assert!((refitted.values[0].value - 0.12).abs() < 1e-4);
     assert!(refitted.error.after_rad < 0.1 * refitted.error.before_rad);
 }
+
+/// Teeth that pass within a few steps of 10 ms: in such steps the pendulum is another one.
+#[test]
+fn steps_that_are_too_long_for_what_is_found_are_shortened() {
+    let mut nominal = pendulum();
+    let teeth = candidate("cogging").instance(&[0.03, 60.0, 0.3]);
+    nominal.effects.push(teeth);
+    let in_steps = |step_s| Model {
+        step_s,
+        ..nominal.clone()
+    };
+    let mut truth = in_steps(0.0005);
+    truth.effects.push(candidate("viscous").instance(&[0.0003]));
+    let split = swings(&truth);
+    let added = |model: &Model| {
+        let viscous = [candidate("viscous")];
+        refit_with(model, &viscous, &split, None, &|_, _| {}).unwrap()
+    };
+    let refitted = added(&in_steps(0.01));
+    assert_eq!(refitted.shorter_step_s, Some(refitted.model.step_s));
+    assert!(refitted.error.after_rad < 1.5 * refitted.error.floor_rad);
+    let fine = added(&in_steps(0.0005));
+    assert_eq!(fine.shorter_step_s, None);
+    assert_eq!(fine.model.step_s, 0.0005);
+}

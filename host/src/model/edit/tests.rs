@@ -214,3 +214,14 @@ fn an_inertia_about_the_joint_becomes_one_about_the_centre_of_mass() {
     let said = Model::parse(&little, path).unwrap_err().to_string();
     assert!(said.starts_with("m.toml:8"), "{said}");
 }
+
+#[test]
+fn a_step_is_written_over_the_old_one_or_beside_the_rig_s_other_keys() {
+    let text = set_step(MODEL, path(), 0.000_25).unwrap();
+    assert_eq!(Model::parse(&text, path()).unwrap().step_s, 0.000_25);
+    assert_eq!(text.lines().count(), MODEL.lines().count());
+    let without = MODEL.replace("step_s = 0.001\n", "");
+    let text = set_step(&without, path(), 0.0025).unwrap();
+    assert_eq!(Model::parse(&text, path()).unwrap().step_s, 0.0025);
+    assert!(set_step(MODEL, path(), 0.5).is_err());
+}

@@ -1,0 +1,94 @@
+//! The integration step, chosen from the data: as coarse as the measurement allows to search with,
+//! as fine as a found explanation needs to be judged by.
+
+use super::data::FitData;
+use super::fit::{Fit, FitOptions};
+use super::node::Node;
+use super::residual::{Residuals, residuals};
+use super::solve::fit;
+use crate::log::Motion;
+use crate::model::Model;
+
+/// Change of a prediction, in standard deviations of a reading, that no verdict hangs on.
+const NEGLIGIBLE: f64 = 0.03;
+
+/// Longest step that this model may take because its own laws allow it, s: those that are tried on
+/// it, a grip that slips for one, remember from step to step.
+const LONGEST_S: f64 = 0.0051;
+
+/// Share of what a fit leaves that its steps may account for: 2 % of the error.
+const SHARE: f64 = 0.2;
+
+/// Most halvings: an eighth of the step.
+const HALVINGS: usize = 3;
+
+/// The model with the largest step, a whole fraction of the sampling period, whose predictions over
+/// these windows differ from those at the model's own step by next to nothing against the noise.
+pub(crate) fn coarsened(model: &Model, data: &FitData) -> Model {
+    let nodes: Vec<Node> = data
+        .windows
+        .iter()
+        .map(|window| data.guessed(window))
+        .collect();
+    let fine = residuals(model, data, &nodes);
+    let period_s = data
+        .motions
+        .iter()
+        .map(period_s)
+        .fold(f64::INFINITY, f64::min);
+    let steps = (1..=8).map(|parts| period_s / f64::from(parts));
+    let steps = steps.take_while(|step_s| *step_s > 1.5 * model.step_s);
+    for step_s in steps.filter(|step_s| *step_s < LONGEST_S) {
+        let coarse = with_step(model, step_s);
+        if difference(&fine, &residuals(&coarse, data, &nodes)) < NEGLIGIBLE {
+            return coarse;
+        }
+    }
+    model.clone()
+}
+
+/// The fit, or one in shorter steps where its own are too long: where half of them change the
+/// predictions by a share of what it leaves that counts, and what is left falls by half of that once
+/// everything is refitted. A model that is wrong, or lost in a motion that no start state
+/// determines, changes too, and leaves no less.
+///
+/// A law with corners needs shorter steps than the model it was added to: a dead zone, a limit, a
+/// grip that slips.
+pub(crate) fn in_fine_steps(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    for _ in 0..HALVINGS {
+        let left = found.residuals.mean_square();
+        let fine = with_step(&found.model, 0.5 * found.model.step_s);
+        let halved = residuals(&fine, data, &found.nodes);
+        let changed = difference(&found.residuals, &halved).powi(2);
+        if changed < SHARE * SHARE * left {
+            break;
+        }
+        let refitted = fit(&fine, &found.free, data, Some(&found.nodes), options);
+        if refitted.residuals.mean_square() > left - 0.5 * changed.min(left) {
+            break;
+        }
+        found = Fit {
+            simulations: found.simulations + refitted.simulations + 1,
+            ..refitted
+        };
+    }
+    found
+}
+
+fn with_step(model: &Model, step_s: f64) -> Model {
+    Model {
+        step_s,
+        ..model.clone()
+    }
+}
+
+/// Root-mean-square difference of two predictions, in standard deviations of a reading.
+fn difference(one: &Residuals, other: &Residuals) -> f64 {
+    let squares = one.less(other).into_iter().flatten().map(|d| d * d);
+    (squares.sum::<f64>() / one.count().max(1) as f64).sqrt()
+}
+
+/// Usual time between samples, s.
+fn period_s(motion: &Motion) -> f64 {
+    motion.duration_s() / motion.len().saturating_sub(1).max(1) as f64
+}
