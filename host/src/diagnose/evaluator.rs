@@ -173,6 +173,19 @@ impl<'a> Evaluator<'a> {
         });
     }
 
+    /// Evaluates all that were evaluated over the horizon that counts now, from the values found in
+    /// the windows of `before`.
+    pub fn evaluate_again(&self, before: &FitData, sizes: &mut [Vec<Hypothesis>]) {
+        let evaluated = sizes
+            .iter_mut()
+            .flatten()
+            .filter(|h| h.evaluation.is_some());
+        let evaluated: Vec<&mut Hypothesis> = evaluated.collect();
+        evaluated.into_par_iter().for_each(|hypothesis| {
+            hypothesis.run_longer(before, &self.training, self.held_out.as_ref());
+        });
+    }
+
     /// The squared error above which a hypothesis is hopeless beside the best of these, or beside
     /// the least squared error of others; infinite where simulations are cheap.
     pub fn limit<'h>(

@@ -43,10 +43,7 @@ impl Evaluator<'_> {
     /// something else is missing or an arm sticks a sample sooner or later, a long run shows
     /// nothing. The gain of log-likelihood on the motions that decide weighs one against the other.
     pub fn choose_horizon(&mut self, leaders: &[Hypothesis]) {
-        let longest = self.training.longest_window_s();
-        let ladder = LADDER_S.into_iter().filter(|seconds| *seconds < longest);
-        let mut horizons = vec![Horizon::Whole];
-        horizons.extend(ladder.map(Horizon::Seconds));
+        let horizons = self.horizons();
         if self.horizon_given || horizons.len() == 1 || self.at_noise_floor(&self.base) {
             return;
         }
@@ -72,10 +69,61 @@ impl Evaluator<'_> {
         }
     }
 
+    /// Chooses the longest horizon over which a leading set leaves nothing but noise, where none does
+    /// over the shorter one that was chosen for single effects. All that were evaluated are
+    /// evaluated again over it, from the values they had.
+    ///
+    /// Single effects that lose a long run say nothing of sets that follow it; and the more windows
+    /// there are, the more begin where the samples around them tell the start state badly: in a
+    /// play, or where a joint just breaks away.
+    pub fn lengthen_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
+        let mut leaders: Vec<Hypothesis> = sizes.iter().flatten().cloned().collect();
+        leaders.retain(|leader| leader.evaluation.is_some());
+        leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));
+        leaders.truncate(LEADERS);
+        let settled = leaders.iter().any(|leader| self.at_noise_floor(leader));
+        if self.horizon_given || settled {
+            return;
+        }
+        let horizons = self.horizons();
+        let now = horizons.iter().position(|h| *h == self.horizon);
+        let mut followed = None;
+        let mut before = self.training.clone();
+        for &horizon in horizons[..now.unwrap_or(0)].iter().rev() {
+            let (training, held_out) = self.cut(horizon);
+            leaders.par_iter_mut().for_each(|leader| {
+                leader.run_longer(&before, &training, held_out.as_ref());
+            });
+            if leaders.iter().any(|leader| self.at_noise_floor(leader)) {
+                followed = Some(horizon);
+            }
+            before = training;
+        }
+        if let Some(horizon) = followed {
+            let before = self.training.clone();
+            self.recut(horizon);
+            self.evaluate_again(&before, sizes);
+        }
+    }
+
+    /// The horizons to choose from, the longest first.
+    fn horizons(&self) -> Vec<Horizon> {
+        let longest = self.training.recut(Horizon::Whole).longest_window_s();
+        let ladder = LADDER_S.into_iter().filter(|seconds| *seconds < longest);
+        std::iter::once(Horizon::Whole)
+            .chain(ladder.map(Horizon::Seconds))
+            .collect()
+    }
+
+    /// The motions to learn from and those held out, cut to a horizon.
+    fn cut(&self, horizon: Horizon) -> (FitData, Option<FitData>) {
+        let held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
+        (self.training.recut(horizon), held_out)
+    }
+
     /// What the best of the leaders gains over the base model at a horizon.
     fn most_gained(&self, leaders: &[Hypothesis], horizon: Horizon) -> MostGained {
-        let training = self.training.recut(horizon);
-        let held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
+        let (training, held_out) = self.cut(horizon);
         let evaluated = |hypothesis: &Hypothesis| {
             let mut hypothesis = hypothesis.clone();
             hypothesis.evaluation = None;
@@ -97,10 +145,9 @@ impl Evaluator<'_> {
     }
 
     /// Judges over another horizon.
-    fn recut(&mut self, horizon: Horizon) {
+    pub(super) fn recut(&mut self, horizon: Horizon) {
         self.horizon = horizon;
-        self.training = self.training.recut(horizon);
-        self.held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
+        (self.training, self.held_out) = self.cut(horizon);
         for hypothesis in [&mut self.base, &mut self.given] {
             hypothesis.evaluation = None;
             hypothesis.evaluate(

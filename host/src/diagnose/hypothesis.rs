@@ -1,7 +1,7 @@
 //! A set of effects added to the base model, everything refitted and evaluated on held-out motions.
 
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
-use super::budget::FINISH;
+use super::budget::{EVALUATE, FINISH};
 use crate::fitting::{
     Candidate, Fit, FitData, FitOptions, fit, fit_start_states, in_fine_steps, intervals,
 };
@@ -179,6 +179,19 @@ impl Hypothesis {
             self.search_in_steps(fit.model.step_s, short);
         }
         self.judge(fit, training, held_out);
+    }
+
+    /// Evaluates it over longer windows, from the values and start states found in those `before`;
+    /// nothing where it was not evaluated.
+    pub fn run_longer(&mut self, before: &FitData, training: &FitData, held_out: Option<&FitData>) {
+        let Some(evaluation) = &self.evaluation else {
+            return;
+        };
+        let found = &evaluation.fit;
+        let nodes = training.nodes_from(before, &found.nodes);
+        let options = FitOptions::iterations(EVALUATE);
+        let fit = fit(&found.model, &found.free, training, Some(&nodes), options);
+        self.judge(in_fine_steps(fit, training, options), training, held_out);
     }
 
     /// Takes steps of this length on the short windows too: what goes on from there should not

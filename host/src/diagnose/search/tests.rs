@@ -1,6 +1,7 @@
 use super::*;
 use crate::challenge::{Motions, bench};
 use crate::diagnose::Verdict;
+use crate::fitting::Horizon;
 use crate::log::{LogRequest, read};
 use std::path::Path;
 
@@ -102,4 +103,39 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     evaluator.grow_afresh(&alone, &mut afresh);
     assert!(leaves_rad(&by_base) > 0.005);
     assert!(leaves_rad(&afresh) < 0.002);
+}
+
+/// An arm whose gap is open where most short windows begin: what its readings say there is not
+/// where its joint is, which costs every set as much. Over whole motions the right set is told.
+#[test]
+fn a_set_that_follows_longer_runs_is_judged_over_them() {
+    let kinds = ["backlash", "encoder_scale", "encoder_zero"];
+    let (model, training, held_out) = arm(7, &kinds);
+    let options = DiagnoseOptions::default();
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    evaluator.recut(Horizon::Seconds(0.25));
+    let starts: [&[f64]; 3] = [&[0.08], &[0.96], &[-0.03]];
+    let mut set = evaluator.base.clone();
+    for (kind, values) in kinds.iter().zip(starts) {
+        let finish = FitOptions::iterations(FINISH);
+        set = set.with(
+            candidate(&evaluator, kind),
+            values,
+            &evaluator.search,
+            finish,
+        );
+    }
+    evaluator.evaluate(&mut set);
+    assert!(!evaluator.at_noise_floor(&set));
+    let mut sizes = [vec![set]];
+    evaluator.lengthen_horizon(&mut sizes);
+    assert_eq!(evaluator.horizon, Horizon::Whole);
+    assert!(evaluator.at_noise_floor(&sizes[0][0]));
+
+    evaluator.recut(Horizon::Seconds(0.25));
+    evaluator.horizon_given = true;
+    sizes[0][0].evaluation = None;
+    evaluator.evaluate(&mut sizes[0][0]);
+    evaluator.lengthen_horizon(&mut sizes);
+    assert_eq!(evaluator.horizon, Horizon::Seconds(0.25));
 }
