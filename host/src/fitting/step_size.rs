@@ -7,7 +7,7 @@ use super::node::Node;
 use super::residual::{Residuals, residuals};
 use super::solve::fit;
 use crate::log::Motion;
-use crate::model::Model;
+use crate::model::{Model, STEP_S};
 
 /// Change of a prediction, in standard deviations of a reading, that no verdict hangs on.
 const NEGLIGIBLE: f64 = 0.03;
@@ -31,11 +31,7 @@ pub(crate) fn coarsened(model: &Model, data: &FitData) -> Model {
         .map(|window| data.guessed(window))
         .collect();
     let fine = residuals(model, data, &nodes);
-    let period_s = data
-        .motions
-        .iter()
-        .map(period_s)
-        .fold(f64::INFINITY, f64::min);
+    let period_s = shortest_period_s(data);
     let steps = (1..=8).map(|parts| period_s / f64::from(parts));
     let steps = steps.take_while(|step_s| *step_s > 1.5 * model.step_s);
     for step_s in steps.filter(|step_s| *step_s < LONGEST_S) {
@@ -57,7 +53,12 @@ pub(crate) fn coarsened(model: &Model, data: &FitData) -> Model {
 pub(crate) fn in_fine_steps(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
     for _ in 0..HALVINGS {
         let left = found.residuals.mean_square();
-        let fine = with_step(&found.model, 0.5 * found.model.step_s);
+        // No step is longer than what lies between two samples.
+        let half_s = 0.5 * found.model.step_s.min(shortest_period_s(data));
+        if !STEP_S.allow(half_s) {
+            break;
+        }
+        let fine = with_step(&found.model, half_s);
         let halved = residuals(&fine, data, &found.nodes);
         let changed = difference(&found.residuals, &halved).powi(2);
         if changed < SHARE * SHARE * left {
@@ -86,6 +87,12 @@ fn with_step(model: &Model, step_s: f64) -> Model {
 fn difference(one: &Residuals, other: &Residuals) -> f64 {
     let squares = one.less(other).into_iter().flatten().map(|d| d * d);
     (squares.sum::<f64>() / one.count().max(1) as f64).sqrt()
+}
+
+/// Usual time between samples, s, of the motion with most of them a second.
+fn shortest_period_s(data: &FitData) -> f64 {
+    let periods = data.motions.iter().map(period_s);
+    periods.fold(f64::INFINITY, f64::min)
 }
 
 /// Usual time between samples, s.

@@ -28,6 +28,7 @@ pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, Meas
 pub use field::{JointField, LinkField};
 pub use joint::{Drive, Joint, Motor, effect_on};
 pub use limits::Limits;
+pub(crate) use parse::STEP_S;
 pub use path::ParameterPath;
 pub use pose::{hanging, upright};
 pub use rate_sensor::RateSensor;

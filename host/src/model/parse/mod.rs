@@ -29,7 +29,8 @@ const GRAVITY: Limits = Limits::within(0.0, 100.0);
 /// Beyond a turn, a direction is a slip of the unit.
 const ONE_TURN: Limits = Limits::within(-TAU, TAU);
 /// A step beyond 0.1 s resolves no servo; one below 10 us only takes time.
-const STEP: Limits = Limits::within(1e-5, 0.1);
+/// What an integration step may be, s.
+pub(crate) const STEP_S: Limits = Limits::within(1e-5, 0.1);
 
 /// Reads a whole model; `file` only names it in errors.
 ///
@@ -53,7 +54,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         angle_zero: rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,
         angles: rig.choice("angles", &ANGLES)?.unwrap_or(Angles::Relative),
         gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(9.81),
-        step_s: rig.number("step_s", STEP)?.unwrap_or(0.005),
+        step_s: rig.number("step_s", STEP_S)?.unwrap_or(0.005),
         links,
         joints,
         effects,
