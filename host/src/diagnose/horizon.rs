@@ -69,8 +69,8 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Chooses the longest horizon over which a leading set leaves nothing but noise, where none does
-    /// over the shorter one that was chosen for single effects. All that were evaluated are
+    /// Chooses the longest horizon over which a leading set leaves nothing but noise, where none
+    /// does over the shorter one that was chosen for single effects. All that were evaluated are
     /// evaluated again over it, from the values they had.
     ///
     /// Single effects that lose a long run say nothing of sets that follow it; and the more windows

@@ -44,8 +44,8 @@ pub(crate) fn coarsened(model: &Model, data: &FitData) -> Model {
 }
 
 /// The fit, or one in shorter steps where its own are too long: where half of them change the
-/// predictions by a share of what it leaves that counts, and what is left falls by half of that once
-/// everything is refitted. A model that is wrong, or lost in a motion that no start state
+/// predictions by a share of what it leaves that counts, and what is left falls by half of that
+/// once everything is refitted. A model that is wrong, or lost in a motion that no start state
 /// determines, changes too, and leaves no less.
 ///
 /// A law with corners needs shorter steps than the model it was added to: a dead zone, a limit, a
