@@ -17,11 +17,6 @@ use std::path::Path;
 /// inputs that the CM-5 keeps. What is beyond is left out.
 const MOST_DELAY_S: f64 = 0.020;
 
-/// Share of what a dead zone takes away that is jumped over. Jumping over all of it drives a limit
-/// cycle: of the robots of seeds 1, 4 and 7, which have a dead zone, none stood so for 10 s, and
-/// two with this share.
-const JUMPED: f64 = 0.6;
-
 /// Kinds of effects that are tried: those of servos and links that a designer can do something about.
 /// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
 /// same files.
@@ -126,12 +121,17 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     let delay_s = largest("delay", &|values| values[0]);
     // What a command loses on its way is jumped over, not the width below which it does nothing: of
     // a width below the loss a command shows nothing. Dry friction costs it as much again.
-    let dead_zone = JUMPED * largest("dead_zone", &|values| (-values[1]).max(0.0));
-    let friction_nm = largest("coulomb", &|values| values[0]);
+    let lost = largest("dead_zone", &|values| (-values[1]).max(0.0))
+        + largest("coulomb", &|values| values[0]) / Board::BIOLOID.full_nm;
     let mut timing = BoardTiming::HOST_ATTITUDE;
     timing.effect_s += delay_s.clamp(0.0, MOST_DELAY_S);
+    // What is lost is lost of the whole command too: less than the full torque is ever left. The
+    // board spreads what is left over the commands beyond the dead zone.
+    let full_nm = Board::BIOLOID.full_nm * (1.0 - lost).max(0.0);
     let board = Board {
-        dead_zone: dead_zone + friction_nm / Board::BIOLOID.full_nm,
+        dead_zone: lost,
+        full_nm,
+        most_nm: full_nm,
         joint_range_rad: 1.5,
         joint_speed_rad_s: 12.0,
         ..Board::BIOLOID
@@ -144,4 +144,27 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     }
     let machine = deploy::observer_design(model, &board, &timing)?;
     deploy::plan(model, BoardLaw::Observer(&machine), &board)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::robot_demo::HiddenRobot;
+    use handstand_shared::raw::Signed;
+
+    #[test]
+    fn a_drive_with_a_dead_zone_makes_the_torque_that_the_law_asks_for() {
+        let robot = HiddenRobot::draw(1).unwrap();
+        assert!(robot.answer.effects[1].address.starts_with("dead_zone"));
+        let model = robot.model().unwrap();
+        let plan = plan_for(&model).unwrap();
+        let punch = robot.answer.effects[1].parameters[1].1;
+        let friction_nm = 0.05;
+        for (asked_nm, input) in [(0.25, 2048), (0.5, 4096), (-1.0, -8192)] {
+            let duty = f64::from(plan.joints[0].command(input)) * Signed::OUTPUT_LSB;
+            let lost_nm = f64::copysign(friction_nm, asked_nm);
+            let made_nm = Board::BIOLOID.full_nm * (duty - punch.abs().copysign(duty)) - lost_nm;
+            assert!((made_nm - asked_nm).abs() < 4e-3, "{asked_nm} {made_nm}");
+        }
+    }
 }
