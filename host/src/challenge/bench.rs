@@ -1,13 +1,15 @@
 //! Rigs for measuring how good a diagnosis is: an arm or the robot, with any set of hidden effects.
 
+use super::bench_arm::BenchArm;
 use super::gyro;
 use super::hidden_effect::{HiddenEffect, of_whole_rig};
+use super::motion::ArmRecording;
 use super::physics::Physics;
 use super::robot::{LINKS, Laws};
 use super::robot_motion::{SUPPLY_V, balance, hang};
 use super::rounding::rounded;
 use super::text::{self, EffectLine};
-use super::{SHOWN_BY_MOTIONS, arm_logs, drawn, stage, stream};
+use super::{SHOWN_BY_MOTIONS, arm_logs, drawn, motions, mounts, stage, stream};
 use rand::Rng;
 
 /// Which rig moves how; every motion lasts 20 s.
@@ -83,12 +85,26 @@ pub fn true_model_toml(motions: Motions, seed: u64, kinds: &[&'static str]) -> O
     }
 }
 
+/// The arm of this seed with effects of these kinds at this share of the strength that [`bench()`]
+/// hides them with; the same arm moves under the same commands, whatever the share.
+pub fn weakened_arm(seed: u64, kinds: &[&'static str], share: f64) -> Bench {
+    let (rig, secrets, _) = stage(seed, kinds);
+    let weakened = secrets.iter().map(|secret| secret.weakened(share));
+    let secrets: Vec<HiddenEffect> = weakened.collect();
+    let recordings = motions(seed, &rig.physics(&secrets), &rig, mounts(seed));
+    arm_bench(&rig, secrets, &recordings)
+}
+
 fn arm(seed: u64, kinds: &[&'static str]) -> Bench {
     let (rig, secrets, recordings) = stage(seed, kinds);
-    let logs = arm_logs(&recordings).into_iter().enumerate();
+    arm_bench(&rig, secrets, &recordings)
+}
+
+fn arm_bench(rig: &BenchArm, secrets: Vec<HiddenEffect>, recordings: &[ArmRecording; 3]) -> Bench {
+    let logs = arm_logs(recordings).into_iter().enumerate();
     Bench {
-        model_toml: text::model_toml(&rig, rig.believed, &[]),
-        true_model_toml: text::model_toml(&rig, rig.friction, &secrets),
+        model_toml: text::model_toml(rig, rig.believed, &[]),
+        true_model_toml: text::model_toml(rig, rig.friction, &secrets),
         logs: logs
             .map(|(k, (name, csv))| BenchLog {
                 name,
@@ -151,8 +167,9 @@ const SMOOTH: [&str; 9] = [
     "torque_scale",
     "speed_limit",
 ];
-/// How often effects are made weaker until the robot can be balanced.
+/// How often effects are made weaker until the robot can be balanced, and what is left each time.
 const TRIES: usize = 15;
+const WEAKENED: f64 = 0.8;
 
 /// An effect at a joint, counted from 0.
 type Placed = (HiddenEffect, usize);
@@ -177,7 +194,7 @@ fn robot(motions: Motions, seed: u64, kinds: &[&'static str]) -> Option<Bench> {
             });
         }
         for (effect, _) in &mut hidden {
-            *effect = effect.weaker();
+            *effect = effect.weakened(WEAKENED);
         }
     }
     None

@@ -50,8 +50,8 @@ pub fn kind_named(name: &str) -> Option<&'static str> {
 }
 
 impl HiddenEffect {
-    /// The same effect at four fifths of its strength.
-    pub fn weaker(&self) -> HiddenEffect {
+    /// The same effect at this share of its strength, above 0; values to six places.
+    pub fn weakened(&self, share: f64) -> HiddenEffect {
         let parameters = self.parameters.iter().map(|&(key, value)| {
             let value = match (self.kind, key) {
                 (
@@ -62,9 +62,9 @@ impl HiddenEffect {
                     | "level"
                     | "acceleration_rad_s2",
                 )
-                | ("base_compliance", "stiffness_n_m") => 1.25 * value,
-                (_, "remaining_share") => 1.0 - 0.8 * (1.0 - value),
-                (_, "factor") if self.kind != "load_friction" => 1.0 + 0.8 * (value - 1.0),
+                | ("base_compliance", "stiffness_n_m") => value / share,
+                (_, "remaining_share") => 1.0 - share * (1.0 - value),
+                (_, "factor") if self.kind != "load_friction" => 1.0 + share * (value - 1.0),
                 (
                     _,
                     "rest_angle_rad" | "periods_per_turn" | "phase_rad" | "speed_rad_s" | "after_s"
@@ -75,7 +75,7 @@ impl HiddenEffect {
                 | ("base_compliance", "mass_kg")
                 | ("gear_backlash", "gap_rad")
                 | ("thermal_drift", "time_constant_s") => value,
-                _ => 0.8 * value,
+                _ => share * value,
             };
             (key, rounded(value, 6))
         });

@@ -29,7 +29,7 @@ mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml};
+pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml, weakened_arm};
 pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
@@ -98,13 +98,7 @@ fn drawn(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>) {
 /// The arm, what it hides, and its three motions.
 fn stage(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>, [ArmRecording; 3]) {
     let (rig, mut secrets) = drawn(seed, kinds);
-    let mut payload = stream(seed, 2);
-    let mounts = [
-        (0.0, false),
-        (rounded(payload.random_range(0.08..0.12), 3), true),
-        (0.05, false),
-    ]
-    .map(|(payload_kg, turned)| Mount { payload_kg, turned });
+    let mounts = mounts(seed);
     loop {
         let truth = rig.physics(&secrets);
         let recordings = motions(seed, &truth, &rig, mounts);
@@ -118,6 +112,17 @@ fn stage(seed: u64, kinds: &[&'static str]) -> (BenchArm, Vec<HiddenEffect>, [Ar
             _ => return (rig, secrets, recordings),
         }
     }
+}
+
+/// How the arm is mounted in each motion.
+fn mounts(seed: u64) -> [Mount; 3] {
+    let mut payload = stream(seed, 2);
+    [
+        (0.0, false),
+        (rounded(payload.random_range(0.08..0.12), 3), true),
+        (0.05, false),
+    ]
+    .map(|(payload_kg, turned)| Mount { payload_kg, turned })
 }
 
 /// What is hidden of this kind at this seed. Each kind draws its values from a stream of its own:

@@ -2,7 +2,7 @@
 
 use super::family::Family;
 use super::{mujoco, robot};
-use handstand::challenge::{Bench, BenchEffect, Motions, bench};
+use handstand::challenge::{Bench, BenchEffect, Motions, bench, weakened_arm};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -137,6 +137,14 @@ impl Case {
             Truth::Mujoco => mujoco::write(self, dir),
             Truth::Robot => robot::write(self, dir),
         }
+    }
+
+    /// Writes the bench arm with what it hides at this share of its strength into an empty folder.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write_weakened(&self, share: f64, dir: &Path) -> Result<Files, String> {
+        written(&weakened_arm(self.seed, &self.hidden, share), dir)
     }
 }
 

@@ -5,6 +5,7 @@
 //! robot's own recordings tell.
 
 mod case;
+mod detection;
 mod family;
 mod mujoco;
 mod robot;
@@ -14,6 +15,7 @@ mod text;
 mod trial;
 
 pub use case::{Case, Truth};
+pub use detection::{DetectionLimit, Faintest, detection_limit, limits_table};
 pub use family::{FAMILIES, Family, OUTSIDE, Plan, kinds};
 pub use mujoco::install as install_mujoco;
 pub use robot::ROBOT_KINDS;

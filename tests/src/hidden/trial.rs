@@ -124,6 +124,17 @@ pub fn try_case(case: &Case, rigs: Option<&Path>) -> Result<Outcome, String> {
     diagnosed(case, &files).map_err(|error| error.to_string())
 }
 
+/// The same of the bench arm whose effect has this share of its strength.
+///
+/// # Errors
+/// As [`try_case`].
+pub fn try_weakened(case: &Case, share: f64) -> Result<(Outcome, Vec<HiddenEffect>), String> {
+    let passing = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let files = case.write_weakened(share, passing.path())?;
+    let outcome = diagnosed(case, &files).map_err(|error| error.to_string())?;
+    Ok((outcome, files.effects))
+}
+
 fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
     let model = Model::load(&files.nominal)?;
     let (training, held_out) = (

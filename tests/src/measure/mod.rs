@@ -5,6 +5,7 @@ mod bench_lab;
 mod bench_read;
 #[cfg(unix)]
 mod bench_record;
+mod detection;
 mod hidden;
 mod next;
 mod page;
@@ -34,6 +35,8 @@ enum Chore {
     Peers(peers::Args),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(hidden::Args),
+    /// Measure how weak an effect may be and still be named
+    Detection(detection::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(next::Args),
     /// Diagnose public logs of real rigs
@@ -62,6 +65,7 @@ impl Chores {
         let well = match &self.chore {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
+            Chore::Detection(args) => detection::run(args),
             Chore::Next(args) => next::run(args),
             Chore::Real(args) => real::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
