@@ -1,9 +1,11 @@
 //! Detection limits: how weak a hidden effect may be and still be noticed, and named.
 
-use super::case::{Case, HiddenEffect, Truth};
+use super::case::{Case, Truth};
 use super::family::Family;
-use super::trial::{Answer, Outcome, try_weakened};
-use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use super::text::table;
+use super::trial::{Answer, try_weakened};
+use comfy_table::Table;
+use handstand::effects;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -20,10 +22,6 @@ pub struct Faintest {
     pub share: f64,
     /// Its first value, in the unit of its key.
     pub value: f64,
-    /// What the model as given leaves of the held-out motion, rad; none where it diverges.
-    pub as_given_rad: Option<f64>,
-    /// What the true model leaves, rad: noise and resolution.
-    pub true_rad: Option<f64>,
 }
 
 /// Where an effect at one bench arm ceases to be found.
@@ -33,8 +31,8 @@ pub struct DetectionLimit {
     pub kind: &'static str,
     /// Seed of the arm.
     pub seed: u64,
-    /// Its first value: `coulomb@1.torque_nm`.
-    pub path: String,
+    /// The value that is given: the effect's first in the library.
+    pub key: &'static str,
     /// The weakest that is named, or in a set of explanations that cannot be told apart; none if
     /// not even the benchmark's own is.
     pub named: Option<Faintest>,
@@ -53,14 +51,22 @@ pub fn detection_limit(kind: &'static str, seed: u64) -> Result<DetectionLimit, 
         hidden: vec![kind],
         seed,
     };
-    let mut tried: BTreeMap<u32, (Outcome, Vec<HiddenEffect>)> = BTreeMap::new();
+    let Some(known) = effects::named(kind) else {
+        return Err(format!("the library has no `{kind}`"));
+    };
+    // The library names first what an effect ceases with.
+    let key = known.info().parameters[0].key;
+    let mut tried: BTreeMap<u32, (Answer, f64)> = BTreeMap::new();
     let mut answer = |steps: u32| -> Result<Answer, String> {
-        if let Some((outcome, _)) = tried.get(&steps) {
-            return Ok(outcome.answer);
+        if let Some((answer, _)) = tried.get(&steps) {
+            return Ok(*answer);
         }
-        let found = try_weakened(&case, share(steps))?;
-        let answer = found.0.answer;
-        tried.insert(steps, found);
+        let (answer, hidden) = try_weakened(&case, share(steps))?;
+        let value = hidden
+            .first()
+            .and_then(|it| it.parameters.get(key)?.as_f64());
+        let value = value.ok_or_else(|| format!("`{kind}` has no `{key}`"))?;
+        tried.insert(steps, (answer, value));
         Ok(answer)
     };
     let is_named = |answer| matches!(answer, Answer::Right | Answer::Equivalent);
@@ -69,30 +75,16 @@ pub fn detection_limit(kind: &'static str, seed: u64) -> Result<DetectionLimit, 
     let noticed = last(named.unwrap_or(0), &mut |steps| {
         answer(steps).map(is_noticed)
     })?;
-    let first = |(_, effects): &(Outcome, Vec<HiddenEffect>)| {
-        let (key, value) = effects.first()?.parameters.iter().next()?;
-        Some((
-            format!("{}.{key}", effects.first()?.address()),
-            value.as_f64()?,
-        ))
-    };
     let faintest = |steps: u32| {
-        let found = tried.get(&steps)?;
-        Some(Faintest {
-            share: share(steps),
-            value: first(found)?.1,
-            as_given_rad: found.0.before_rad,
-            true_rad: found.0.true_rad,
-        })
+        let share = share(steps);
+        tried
+            .get(&steps)
+            .map(|&(_, value)| Faintest { share, value })
     };
     Ok(DetectionLimit {
         kind,
         seed,
-        path: tried
-            .values()
-            .next()
-            .and_then(first)
-            .map_or_else(String::new, |(path, _)| path),
+        key,
         named: named.and_then(faintest),
         noticed: noticed.and_then(faintest),
     })
@@ -113,10 +105,10 @@ fn last(
     }
     let mut good = from;
     let mut bad = loop {
-        let next = good + STRIDE;
-        if next > STEPS {
+        if good == STEPS {
             return Ok(Some(good));
         }
+        let next = (good + STRIDE).min(STEPS);
         match holds(next)? {
             true => good = next,
             false => break next,
@@ -134,43 +126,28 @@ fn last(
 
 /// A row for each effect: medians over its arms.
 pub fn limits_table(limits: &[DetectionLimit]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header([
-        "effect",
-        "value",
-        "named from",
-        "each arm",
-        "as given leaves, x noise",
-        "noticed from",
-        "as given leaves, x noise",
-    ]);
+    let mut rows = table(["effect", "value", "named from", "each arm", "noticed from"]);
     let mut kinds: Vec<&str> = limits.iter().map(|limit| limit.kind).collect();
     kinds.dedup();
     for kind in kinds {
         let own: Vec<&DetectionLimit> = limits.iter().filter(|limit| limit.kind == kind).collect();
-        table.add_row(cells(kind, &own));
+        rows.add_row(cells(kind, &own));
     }
-    table
+    rows
 }
 
 fn cells(kind: &str, limits: &[&DetectionLimit]) -> Vec<String> {
-    let key = limits.first().and_then(|limit| limit.path.split_once('.'));
+    let key = limits.first().map_or("", |limit| limit.key);
     let named: Vec<Option<Faintest>> = limits.iter().map(|limit| limit.named).collect();
     let noticed: Vec<Option<Faintest>> = limits.iter().map(|limit| limit.noticed).collect();
-    let each = named.iter().map(|found| said(*found, |it| Some(it.value)));
+    let each: Vec<String> = named.iter().map(|found| said(*found)).collect();
     vec![
         kind.to_string(),
-        key.map_or_else(String::new, |(_, key)| key.to_string()),
-        said(middle(&named), |it| Some(it.value)),
-        each.collect::<Vec<_>>().join(", "),
-        said(middle(&named), times_noise),
-        said(middle(&noticed), |it| Some(it.value)),
-        said(middle(&noticed), times_noise),
+        key.to_string(),
+        said(middle(&named)),
+        each.join(", "),
+        said(middle(&noticed)),
     ]
-}
-
-fn times_noise(found: Faintest) -> Option<f64> {
-    Some(found.as_given_rad? / found.true_rad?)
 }
 
 /// The median by share; an effect that is not found is stronger than any that is.
@@ -182,8 +159,8 @@ fn middle(found: &[Option<Faintest>]) -> Option<Faintest> {
 }
 
 /// Three digits that count; a dash where there is nothing to say.
-fn said(found: Option<Faintest>, of: impl Fn(Faintest) -> Option<f64>) -> String {
-    let Some(value) = found.and_then(of).filter(|value| value.is_finite()) else {
+fn said(found: Option<Faintest>) -> String {
+    let Some(Faintest { value, .. }) = found else {
         return "-".to_string();
     };
     let places = match value.abs() {
@@ -205,9 +182,12 @@ mod tests {
                 tried.push(steps);
                 Ok(steps <= limit)
             };
-            let most = STEPS - STEPS % STRIDE;
-            assert_eq!(last(0, &mut holds), Ok(Some(limit.min(most))));
+            assert_eq!(last(0, &mut holds), Ok(Some(limit)));
             assert!(tried.len() <= 10, "{tried:?}");
+            assert_eq!(
+                last(limit, &mut |steps| Ok(steps <= STEPS)),
+                Ok(Some(STEPS))
+            );
         }
         assert_eq!(last(0, &mut |_| Ok(false)), Ok(None));
         assert!(last(0, &mut |_| Err("why".to_string())).is_err());
@@ -219,14 +199,11 @@ mod tests {
             Some(Faintest {
                 share,
                 value: 2.0 * share,
-                as_given_rad: Some(3e-3),
-                true_rad: Some(1.5e-3),
             })
         };
         assert_eq!(middle(&[found(0.5), None, found(0.1)]), found(0.5));
         assert_eq!(middle(&[None, found(0.5), None]), None);
-        assert_eq!(said(found(0.0123), |it| Some(it.value)), "0.0246");
-        assert_eq!(said(found(0.5), times_noise), "2.00");
-        assert_eq!(said(None, times_noise), "-");
+        assert_eq!(said(found(0.0123)), "0.0246");
+        assert_eq!(said(None), "-");
     }
 }

@@ -55,7 +55,8 @@ pub fn tables(tally: &Tally) -> Measured {
         .lines(notes)
 }
 
-fn table<const N: usize>(header: [&str; N]) -> Table {
+/// An empty table of the benchmark's style.
+pub(super) fn table<const N: usize>(header: [&str; N]) -> Table {
     let mut table = Table::new();
     table.load_preset(UTF8_HORIZONTAL_ONLY);
     table.set_header(header);

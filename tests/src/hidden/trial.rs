@@ -124,15 +124,15 @@ pub fn try_case(case: &Case, rigs: Option<&Path>) -> Result<Outcome, String> {
     diagnosed(case, &files).map_err(|error| error.to_string())
 }
 
-/// The same of the bench arm whose effect has this share of its strength.
+/// What is said of the bench arm whose effect has this share of its strength, and what that is.
 ///
 /// # Errors
 /// As [`try_case`].
-pub fn try_weakened(case: &Case, share: f64) -> Result<(Outcome, Vec<HiddenEffect>), String> {
+pub fn try_weakened(case: &Case, share: f64) -> Result<(Answer, Vec<HiddenEffect>), String> {
     let passing = tempfile::tempdir().map_err(|error| error.to_string())?;
     let files = case.write_weakened(share, passing.path())?;
     let outcome = diagnosed(case, &files).map_err(|error| error.to_string())?;
-    Ok((outcome, files.effects))
+    Ok((outcome.answer, files.effects))
 }
 
 fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {

@@ -53,7 +53,7 @@ pub fn run(args: &Args) -> bool {
     let measured = Measured::default().table(limits_table(&limits)).line(
         "Named: exactly, or in a set of explanations that cannot be told apart. Noticed: something \
          is said to be missing. Medians over the arms; a dash: not even as strong as the benchmark \
-         hides it, or the model as given diverges. Noise: what the true model leaves.",
+         hides it. A limit, a stiffness or a share that remains is the largest that is found.",
     );
     let json = args.json.then(|| json!(limits));
     let title = "Detection limits: how weak an effect is still named";

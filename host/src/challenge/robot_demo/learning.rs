@@ -123,11 +123,17 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
     // a width below the loss a command shows nothing. Dry friction costs it as much again.
     let lost = largest("dead_zone", &|values| (-values[1]).max(0.0))
         + largest("coulomb", &|values| values[0]) / Board::BIOLOID.full_nm;
+    if Board::BIOLOID.slew_nm <= lost * Board::BIOLOID.full_nm {
+        return Err(Error::design(
+            format!("a dead zone of {:.0} %", 100.0 * lost),
+            "the slew limit must exceed it: record more, or look at the diagnosis",
+        ));
+    }
     let mut timing = BoardTiming::HOST_ATTITUDE;
     timing.effect_s += delay_s.clamp(0.0, MOST_DELAY_S);
     // What is lost is lost of the whole command too: less than the full torque is ever left. The
     // board spreads what is left over the commands beyond the dead zone.
-    let full_nm = Board::BIOLOID.full_nm * (1.0 - lost).max(0.0);
+    let full_nm = Board::BIOLOID.full_nm * (1.0 - lost);
     let board = Board {
         dead_zone: lost,
         full_nm,
@@ -136,12 +142,6 @@ pub fn plan_for(model: &Model) -> Result<Plan> {
         joint_speed_rad_s: 12.0,
         ..Board::BIOLOID
     };
-    if board.slew_nm <= board.dead_zone * board.full_nm {
-        return Err(Error::design(
-            format!("a dead zone of {:.0} %", 100.0 * board.dead_zone),
-            "the slew limit must exceed it: record more, or look at the diagnosis",
-        ));
-    }
     let machine = deploy::observer_design(model, &board, &timing)?;
     deploy::plan(model, BoardLaw::Observer(&machine), &board)
 }
@@ -166,5 +166,15 @@ mod tests {
             let made_nm = Board::BIOLOID.full_nm * (duty - punch.abs().copysign(duty)) - lost_nm;
             assert!((made_nm - asked_nm).abs() < 4e-3, "{asked_nm} {made_nm}");
         }
+    }
+
+    #[test]
+    fn a_drive_that_loses_more_than_the_slew_limit_gets_no_plan() {
+        let text = HiddenRobot::draw(1).unwrap().answer.true_model_toml;
+        let stuck = text.replace("torque_nm = 0.05", "torque_nm = 1.0");
+        assert_ne!(stuck, text);
+        let model = Model::parse(&stuck, Path::new("stuck.toml")).unwrap();
+        let refused = plan_for(&model).unwrap_err().to_string();
+        assert!(refused.contains("a dead zone of 56 %"), "{refused}");
     }
 }
