@@ -5,7 +5,8 @@
 //! change, all less what free values and start states can imitate; the share they can make of it is
 //! the squared cosine of the principal angle between them. The nearest are confirmed by simulation:
 //! the explanation predicts the motions, the other is fitted to that prediction, and what it leaves
-//! is weighed against the noise.
+//! beyond what the explanation itself leaves, fitted to it likewise, is weighed against the noise:
+//! the start states that the samples suggest keep either from it where windows are many.
 
 use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
@@ -31,6 +32,8 @@ struct Predicted {
     nodes: Vec<Node>,
     /// Samples that count as independent, as a share of all.
     effective_share: f64,
+    /// Squared weighted residuals that the explanation leaves of its own prediction.
+    own_cost: f64,
 }
 
 impl Evaluator<'_> {
@@ -114,11 +117,14 @@ impl Evaluator<'_> {
         let windows = (0..data.motions.len()).into_par_iter();
         let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
-        Some(Predicted {
+        let mut predicted = Predicted {
             data: data.measuring(&readings),
             nodes,
             effective_share: effective_share(&evaluation.training, found),
-        })
+            own_cost: 0.0,
+        };
+        predicted.own_cost = predicted.cost(&found.model, &found.free);
+        Some(predicted)
     }
 
     /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
@@ -143,14 +149,19 @@ impl Evaluator<'_> {
 }
 
 impl Predicted {
-    /// Whether another explanation, fitted to these predictions, leaves less than the noise can
-    /// show.
+    /// Whether another explanation, fitted to these predictions, leaves no more of them than the
+    /// noise can show.
     fn fits(&self, other: &Other) -> bool {
+        let left = self.cost(&other.model, &other.free) - self.own_cost;
+        is_below_noise(left.max(0.0), self.effective_share)
+    }
+
+    /// What a model leaves of these predictions once it is fitted to them.
+    fn cost(&self, model: &Model, free: &[ParameterPath]) -> f64 {
         // A first small step must not end it: what is left decides.
         let options = FitOptions::iterations(FINISH);
-        let nodes = Some(&self.nodes[..]);
-        let found = fit(&other.model, &other.free, &self.data, nodes, options);
-        is_below_noise(found.residuals.cost(), self.effective_share)
+        let found = fit(model, free, &self.data, Some(&self.nodes), options);
+        found.residuals.cost()
     }
 }
 
