@@ -67,8 +67,18 @@ impl Effect for Backlash {
         Some(&ON_SLIDE)
     }
 
-    fn slipped(&self, [encoded_rad, reading_rad, ..]: SenseMemory) -> [f64; 2] {
-        [encoded_rad - reading_rad, 0.0]
+    fn slipped(&self, [encoded_rad, reading_rad, draws_away_rad_s, _]: SenseMemory) -> [f64; 2] {
+        [encoded_rad - reading_rad, draws_away_rad_s]
+    }
+
+    fn hidden_scale(&self, values: &[f64]) -> Option<f64> {
+        Some(values[0] / 2.0)
+    }
+
+    fn slip(&self, values: &[f64], [ahead_rad, draws_away_rad_s]: [f64; 2]) -> SenseMemory {
+        let play = Play::at(values[0], ahead_rad);
+        let draws_away_rad_s = play.free_rad_s(draws_away_rad_s);
+        [0.0, -play.ahead_rad, draws_away_rad_s, 0.0]
     }
 
     fn sense(
@@ -76,19 +86,46 @@ impl Effect for Backlash {
         values: &[f64],
         memory: &mut Option<SenseMemory>,
         encoded: Encoded,
-        _step_s: f64,
+        step_s: f64,
     ) -> f64 {
         let angle_rad = encoded.angle_rad;
-        let half_rad = values[0] / 2.0;
-        let before_rad = memory.map_or(angle_rad, |[_, reading_rad, ..]| reading_rad);
-        // Not by `clamp`, which panics where a simulation has diverged to no number.
-        let reading_rad = match (angle_rad - half_rad, angle_rad + half_rad) {
-            _ if angle_rad.is_nan() => angle_rad,
-            (low_rad, _) if before_rad < low_rad => low_rad,
-            (_, high_rad) if before_rad > high_rad => high_rad,
-            _ => before_rad,
-        };
-        *memory = Some([angle_rad, reading_rad, 0.0, 0.0]);
+        let [before_rad, read_rad, ..] = memory.unwrap_or([angle_rad, angle_rad, 0.0, 0.0]);
+        // Between two stretches of a motion no time passes: the reading is put where the next one
+        // begins, and the joint is as far ahead of it as it was.
+        let reached_rad = if step_s > 0.0 { angle_rad } else { before_rad };
+        let play = Play::at(values[0], reached_rad - read_rad);
+        let reading_rad = angle_rad - play.ahead_rad;
+        let draws_away_rad_s = play.free_rad_s(encoded.speed_rad_s);
+        *memory = Some([angle_rad, reading_rad, draws_away_rad_s, 0.0]);
         reading_rad
+    }
+}
+
+/// Where a joint is in its play.
+struct Play {
+    /// How far ahead of the reading.
+    ahead_rad: f64,
+    /// Whether it touches neither flank.
+    is_free: bool,
+}
+
+impl Play {
+    /// Nearer to a flank than by this share of the gap it touches it, for rounding's sake.
+    const TOUCHES: f64 = 1e-9;
+
+    /// Ahead of the reading by this much, which the flanks keep within half the gap.
+    fn at(gap_rad: f64, ahead_rad: f64) -> Play {
+        let half_rad = gap_rad / 2.0;
+        Play {
+            // Not by `clamp`, which panics where a simulation has diverged to no number.
+            ahead_rad: ahead_rad.max(-half_rad).min(half_rad),
+            is_free: ahead_rad.abs() < half_rad - Play::TOUCHES * gap_rad,
+        }
+    }
+
+    /// How fast the joint draws away from the reading where it turns at this speed: in its play it
+    /// does and the reading stands still; no reading tells how fast.
+    fn free_rad_s(&self, joint_rad_s: f64) -> f64 {
+        if self.is_free { joint_rad_s } else { 0.0 }
     }
 }

@@ -103,6 +103,18 @@ pub trait Effect: Sync + fmt::Debug {
         [0.0; 2]
     }
 
+    /// With memory: how far it may displace something that no reading tells of where a window
+    /// begins, rad (m), which is then an unknown of each window; a sensor's rate is one, too.
+    fn hidden_scale(&self, _values: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Command, drive or joint, with a hidden displacement: what it remembers where that is so much
+    /// in this state.
+    fn displaced(&self, _values: &[f64], displacement: f64, _at: &StepState) -> MemoryCell {
+        [displacement, 0.0]
+    }
+
     /// What it remembers after a step of `step_s` that ended in this state.
     fn remember(&self, _values: &[f64], _memory: &mut MemoryCell, _at: &StepState, _step_s: f64) {}
 
@@ -161,6 +173,12 @@ pub trait Effect: Sync + fmt::Debug {
     /// what was before, rad, and how fast it draws away, rad/s.
     fn slipped(&self, _memory: SenseMemory) -> [f64; 2] {
         [0.0; 2]
+    }
+
+    /// Sensor whose displacement is hidden: what it remembers where it has [slipped](Self::slipped)
+    /// by as much, as far as it goes.
+    fn slip(&self, _values: &[f64], _slipped: [f64; 2]) -> SenseMemory {
+        SenseMemory::default()
     }
 }
 

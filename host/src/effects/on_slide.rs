@@ -119,6 +119,18 @@ impl Effect for OnSlide {
         self.effect.remember(values, memory, at, step_s);
     }
 
+    fn hidden_scale(&self, values: &[f64]) -> Option<f64> {
+        self.effect.hidden_scale(values)
+    }
+
+    fn displaced(&self, values: &[f64], displacement: f64, at: &StepState) -> MemoryCell {
+        self.effect.displaced(values, displacement, at)
+    }
+
+    fn slip(&self, values: &[f64], slipped: [f64; 2]) -> SenseMemory {
+        self.effect.slip(values, slipped)
+    }
+
     fn obey(&self, values: &[f64], memory: MemoryCell, input: f64, step_s: f64) -> f64 {
         self.effect.obey(values, memory, input, step_s)
     }

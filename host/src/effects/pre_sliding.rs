@@ -106,6 +106,14 @@ impl Effect for PreSliding {
         ]
     }
 
+    fn hidden_scale(&self, values: &[f64]) -> Option<f64> {
+        Some(slid(values))
+    }
+
+    fn displaced(&self, _values: &[f64], displacement: f64, at: &StepState) -> MemoryCell {
+        [displacement, at.angle_rad]
+    }
+
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, _step_s: f64) {
         *memory = [deflection(values, *memory, at.angle_rad), at.angle_rad];
     }

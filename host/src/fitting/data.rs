@@ -10,6 +10,7 @@ use super::node::{Node, StartGuess};
 use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
+use crate::sim::{HiddenUnknown, Plant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -174,6 +175,12 @@ impl FitData {
     /// Whether a signal counts in an error over all joints together.
     pub fn counts(&self, signal: usize) -> bool {
         self.signals[signal].counts_in(self.quantity())
+    }
+
+    /// What no reading tells of where a window of this model begins.
+    pub(super) fn hidden(&self, model: &Model) -> Vec<HiddenUnknown> {
+        let plant = self.motions.first().map(|motion| Plant::new(model, motion));
+        plant.map_or(Vec::new(), |plant| plant.hidden().to_vec())
     }
 
     /// The start state that the samples around a window's start suggest.

@@ -5,15 +5,21 @@ use super::levenberg_marquardt::LevenbergMarquardt;
 use super::normal::WindowJacobian;
 use super::residual::motion_residuals;
 use crate::model::ParameterPath;
+use crate::sim::HiddenQuantity;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// What moves an unknown in every window: the step of each motion, and its residuals after it,
-/// window by window.
+/// What moves an unknown in every window: its steps in the windows of each motion, and their
+/// residuals after them.
 struct Differences {
     motions: usize,
-    columns: Vec<(f64, Vec<Vec<f64>>)>,
+    /// Per unknown: the place of its columns, if it was moved.
+    places: Vec<Option<usize>>,
+    columns: Vec<Column>,
 }
+
+/// Of one unknown and one motion: window by window the step and the residuals after it.
+type Column = (Vec<f64>, Vec<Vec<f64>>);
 
 impl LevenbergMarquardt<'_> {
     /// Derivatives at the present values, window by window.
@@ -23,7 +29,10 @@ impl LevenbergMarquardt<'_> {
         let unknowns = node.map_or(0, |node| node.unknowns.len());
         // Without a sensor that trails, a start's acceleration changes nothing.
         let orders = if self.fit.model.trails() { 3 } else { 2 };
-        let differences = self.differences(0..parameters + orders * self.data.joints());
+        let joints = self.data.joints();
+        let moved = (0..orders * joints).chain(3 * joints..unknowns);
+        let moved = moved.map(|unknown| parameters + unknown);
+        let differences = self.differences((0..parameters).chain(moved));
         let windows = self.places().map(|(w, motion, at)| {
             let base = &self.fit.residuals.windows[w];
             let of = |row: usize, column: usize| differences.of(base, motion, at, row, column);
@@ -47,9 +56,10 @@ impl LevenbergMarquardt<'_> {
         let windows = self.places().map(|(w, motion, at)| {
             let (base, known) = (&self.fit.residuals.windows[w], &known[w]);
             let parameters = DMatrix::from_fn(base.len(), parameters, |row, column| {
-                match column.checked_sub(had) {
-                    None => known.parameters[(row, column)],
-                    Some(added) => differences.of(base, motion, at, row, added),
+                if column < had {
+                    known.parameters[(row, column)]
+                } else {
+                    differences.of(base, motion, at, row, column)
                 }
             });
             self.window(w, parameters, known.node.clone())
@@ -57,18 +67,32 @@ impl LevenbergMarquardt<'_> {
         windows.collect()
     }
 
-    /// Simulates with each of the unknowns moved: parameters first, then those of the start states.
-    fn differences(&mut self, columns: std::ops::Range<usize>) -> Differences {
+    /// Simulates with each of these unknowns moved: parameters come first, then those of the start
+    /// states.
+    fn differences(&mut self, unknowns: impl Iterator<Item = usize>) -> Differences {
         let motions = self.data.motions.len();
-        let tasks: Vec<(usize, usize)> = columns
-            .flat_map(|column| (0..motions).map(move |motion| (column, motion)))
+        let unknowns: Vec<usize> = unknowns.collect();
+        let mut places = vec![None; unknowns.last().map_or(0, |last| last + 1)];
+        for (place, unknown) in unknowns.iter().enumerate() {
+            places[*unknown] = Some(place);
+        }
+        let tasks: Vec<(usize, usize)> = unknowns
+            .iter()
+            .flat_map(|unknown| (0..motions).map(move |motion| (*unknown, motion)))
             .collect();
-        let columns: Vec<(f64, Vec<Vec<f64>>)> = tasks
+        let columns: Vec<Column> = tasks
             .par_iter()
-            .map(|&(column, motion)| self.column(column, motion))
+            .map(|&(unknown, motion)| match unknown < self.fit.free.len() {
+                true => self.parameter_column(unknown, motion),
+                false => self.node_column(unknown - self.fit.free.len(), motion),
+            })
             .collect();
-        self.fit.simulations += columns.len() / motions.max(1);
-        Differences { motions, columns }
+        self.fit.simulations += unknowns.len();
+        Differences {
+            motions,
+            places,
+            columns,
+        }
     }
 
     /// Every window, its motion, and its index among the windows of that motion.
@@ -96,46 +120,62 @@ impl LevenbergMarquardt<'_> {
         window
     }
 
-    /// Residuals of one motion with one unknown moved by a small amount.
-    fn column(&self, column: usize, motion: usize) -> (f64, Vec<Vec<f64>>) {
-        let fit = &self.fit;
-        if let Some(path) = fit.free.get(column) {
-            let value = path.get(&fit.model).unwrap_or(0.0);
-            let (_, high) = path.bounds(&fit.model);
-            let size = difference(path) * value.abs().max(scale(path));
-            let delta = if value + size > high { -size } else { size };
-            let mut model = fit.model.clone();
-            let known = path.set(&mut model, value + delta);
-            debug_assert!(known, "a free parameter is one of the model's");
-            let shifted = motion_residuals(&model, self.data, &fit.nodes, motion);
-            return (delta, shifted);
-        }
-        let unknown = column - fit.free.len();
-        let joints = self.data.joints();
-        let delta = self.data.sigma[unknown % joints] * DIFFERENCES[unknown / joints];
+    /// Residuals of one motion with a parameter moved by a small amount.
+    fn parameter_column(&self, parameter: usize, motion: usize) -> Column {
+        let (fit, path) = (&self.fit, &self.fit.free[parameter]);
+        let value = path.get(&fit.model).unwrap_or(0.0);
+        let (_, high) = path.bounds(&fit.model);
+        let size = difference(path) * value.abs().max(scale(path));
+        let delta = if value + size > high { -size } else { size };
+        let mut model = fit.model.clone();
+        let known = path.set(&mut model, value + delta);
+        debug_assert!(known, "a free parameter is one of the model's");
+        let shifted = motion_residuals(&model, self.data, &fit.nodes, motion);
+        (vec![delta; shifted.len()], shifted)
+    }
+
+    /// Residuals of one motion with an unknown of all its windows' start states moved by a small
+    /// amount.
+    fn node_column(&self, unknown: usize, motion: usize) -> Column {
+        let (fit, joints) = (&self.fit, self.data.joints());
+        let step = |order: usize, joint: usize| self.data.sigma[joint] * DIFFERENCES[order];
+        let hidden = unknown.checked_sub(3 * joints).map(|i| self.hidden[i]);
+        let delta = |value: f64| match hidden.map(|hidden| (hidden.quantity, hidden.joint)) {
+            None => step(unknown / joints, unknown % joints),
+            // Towards the middle: beyond a flank is nothing.
+            Some((HiddenQuantity::Share { .. }, _)) => -SHARE_DIFFERENCE.copysign(value),
+            Some((HiddenQuantity::Rate, joint)) => step(1, joint),
+        };
         let mut nodes = fit.nodes.clone();
-        for node in &mut nodes {
-            node.unknowns[unknown] += delta;
+        let mut deltas = Vec::new();
+        for (index, _) in self.data.windows_of(motion) {
+            let value = &mut nodes[index].unknowns[unknown];
+            deltas.push(delta(*value));
+            *value += delta(*value);
         }
         let shifted = motion_residuals(&fit.model, self.data, &nodes, motion);
-        (delta, shifted)
+        (deltas, shifted)
     }
 }
 
 impl Differences {
     /// Derivative of a row of a window, the `at`th of its motion; zero of unknowns not moved.
     fn of(&self, base: &[f64], motion: usize, at: usize, row: usize, column: usize) -> f64 {
-        let Some((delta, shifted)) = self.columns.get(column * self.motions + motion) else {
+        let Some(place) = self.places.get(column).copied().flatten() else {
             return 0.0;
         };
+        let (deltas, shifted) = &self.columns[place * self.motions + motion];
         // Residual is measured minus predicted, so the prediction's derivative has the other sign.
-        (base[row] - shifted[at][row]) / delta
+        (base[row] - shifted[at][row]) / deltas[at]
     }
 }
 
 /// Steps of the differences in a start's angle, speed and acceleration, in standard deviations of a
 /// reading (per second, per second squared).
 const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
+
+/// Step of the difference in a share of what something hidden can be displaced by.
+const SHARE_DIFFERENCE: f64 = 0.02;
 
 /// A value's natural size, for the step of a finite difference where the value itself is zero.
 fn scale(path: &ParameterPath) -> f64 {

@@ -5,7 +5,8 @@ use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::node::{Node, StartGuess};
 use super::normal::NormalEquations;
-use super::residual::residuals;
+use super::residual::{left_hidden, residuals};
+use crate::sim::HiddenUnknown;
 use nalgebra::DVector;
 
 /// A fit under way.
@@ -13,6 +14,8 @@ pub(super) struct LevenbergMarquardt<'a> {
     pub fit: Fit,
     pub data: &'a FitData,
     pub guesses: Vec<StartGuess>,
+    /// What no reading tells of where a window begins.
+    pub hidden: Vec<HiddenUnknown>,
 }
 
 /// A step that lowers the cost.
@@ -38,8 +41,29 @@ const DAMPING: f64 = 1e-3;
 
 impl<'a> LevenbergMarquardt<'a> {
     /// Goes on from where `fit` stands.
-    pub fn new(fit: Fit, data: &'a FitData, guesses: Vec<StartGuess>) -> Self {
-        LevenbergMarquardt { fit, data, guesses }
+    pub fn new(mut fit: Fit, data: &'a FitData, mut guesses: Vec<StartGuess>) -> Self {
+        let hidden = data.hidden(&fit.model);
+        let unknowns = 3 * data.joints() + hidden.len();
+        if fit.nodes.iter().any(|node| node.unknowns.len() != unknowns) {
+            // Of another model, or a motor has lost its inertia and turns with its joint.
+            (fit.nodes.iter_mut()).for_each(|node| node.forget_hidden(data.joints()));
+            fit.jacobian.clear();
+        }
+        if !hidden.is_empty() {
+            let left = left_hidden(&fit.model, data, &fit.nodes);
+            for ((node, guess), left) in fit.nodes.iter_mut().zip(&mut guesses).zip(&left) {
+                guess.hide(&hidden, left);
+                node.hide_as(guess);
+            }
+            fit.residuals = residuals(&fit.model, data, &fit.nodes);
+            fit.simulations += 2;
+        }
+        LevenbergMarquardt {
+            fit,
+            data,
+            guesses,
+            hidden,
+        }
     }
 
     pub fn run(mut self, options: FitOptions) -> Fit {

@@ -4,17 +4,18 @@
 use super::assumed::{AssumedJoint, AssumedStates};
 use super::horizon::Window;
 use crate::log::Motion;
-use crate::sim::{Plant, Start};
+use crate::sim::{HiddenQuantity, HiddenUnknown, Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};
 
-/// Start state of a window with n joints: 3 n unknowns. Where a sensor trails, the angle follows
-/// from the readings' speed and the joint's speed from their acceleration; so where columns are off
-/// in time by different times.
+/// Start state of a window with n joints: 3 n unknowns, and those that no reading tells. Where a
+/// sensor trails, the angle follows from the readings' speed and the joint's speed from their
+/// acceleration; so where columns are off in time by different times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// What the n encoders read, rad in the log's convention; then how the log's angles change,
     /// rad/s; then how these speeds change, rad/s^2, which says nothing where no sensor trails and
-    /// all columns are off by the same time.
+    /// all columns are off by the same time. Behind these, what is hidden, in the order of
+    /// [`Plant::hidden`]; as the window before leaves it, where they are missing.
     pub unknowns: DVector<f64>,
 }
 
@@ -24,6 +25,9 @@ pub(super) struct StartGuess {
     pub node: Node,
     /// Standard deviations of the node's unknowns.
     pub deviation: DVector<f64>,
+    /// The least and the most that they may be: so many deviations off, but for shares.
+    low: DVector<f64>,
+    high: DVector<f64>,
 }
 
 /// How many standard deviations a start state may lie from the guess.
@@ -32,6 +36,10 @@ const REACH_DEVIATIONS: f64 = 6.0;
 /// slide, no displacement in m, and so on: 0.2 mm are less than its rail bends), however
 /// smooth the log: smoothing and rounding leave slow errors that neighbouring samples share.
 const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
+/// By how many times the doubt of its joint's start what is hidden there may differ from what the
+/// window before left, in whose course errors have grown; and by which share of all it can be.
+const HIDDEN_DEVIATIONS: f64 = 6.0;
+const SHARE_DEVIATION: f64 = 0.5;
 /// Half the span of the samples that determine a window's start.
 pub(super) const REACH_S: f64 = 0.06;
 /// Standard deviation of a speed of which nothing is known, rad/s.
@@ -77,28 +85,58 @@ impl StartGuess {
                 unknowns[speed] = logged;
             }
         }
+        let reach = REACH_DEVIATIONS * &deviation;
         StartGuess {
+            low: &unknowns - &reach,
+            high: &unknowns + &reach,
             node: Node { unknowns },
             deviation,
+        }
+    }
+
+    /// Has what is hidden as unknowns, too: expected as it is `left` by the window before, the less
+    /// surely the less the samples say of its joint.
+    pub fn hide(&mut self, hidden: &[HiddenUnknown], left: &[f64]) {
+        let joints = self.node.unknowns.len() / 3;
+        for (unknown, left) in hidden.iter().zip(left) {
+            let doubt =
+                |order: usize| HIDDEN_DEVIATIONS * self.deviation[order * joints + unknown.joint];
+            let (middle, deviation, (low, high)) = match unknown.quantity {
+                HiddenQuantity::Share { scale } => {
+                    let deviation = (doubt(0) / scale).min(SHARE_DEVIATION);
+                    (left.clamp(-1.0, 1.0), deviation, (-1.0, 1.0))
+                }
+                HiddenQuantity::Rate => {
+                    let reach = REACH_DEVIATIONS * doubt(1);
+                    let middle = left.clamp(-reach, reach);
+                    (middle, doubt(1), (-reach, reach))
+                }
+            };
+            push(&mut self.node.unknowns, middle);
+            push(&mut self.deviation, deviation);
+            push(&mut self.low, low);
+            push(&mut self.high, high);
         }
     }
 
     /// Which unknowns lie on the edge of what the samples allow, and on which side: -1, +1, or 0
     /// inside.
     pub fn edges(&self, node: &Node) -> Vec<f64> {
-        let off = &node.unknowns - &self.node.unknowns;
-        let edge = |(off, deviation): (&f64, &f64)| {
-            let on_edge = off.abs() >= REACH_DEVIATIONS * deviation * (1.0 - 1e-9);
-            if on_edge { off.signum() } else { 0.0 }
+        let edge = |i: usize| {
+            let (value, near) = (node.unknowns[i], 1e-9 * self.deviation[i]);
+            match () {
+                () if value <= self.low[i] + near => -1.0,
+                () if value >= self.high[i] - near => 1.0,
+                () => 0.0,
+            }
         };
-        off.iter().zip(&self.deviation).map(edge).collect()
+        (0..node.unknowns.len()).map(edge).collect()
     }
 
-    /// Keeps a node within six standard deviations: what a start state can't be, it may not absorb.
+    /// Keeps a node within what the samples allow: what a start state can't be, it may not absorb.
     pub fn clamp(&self, node: &mut Node) {
         for (i, value) in node.unknowns.iter_mut().enumerate() {
-            let (middle, reach) = (self.node.unknowns[i], REACH_DEVIATIONS * self.deviation[i]);
-            *value = value.clamp(middle - reach, middle + reach);
+            *value = value.clamp(self.low[i], self.high[i]);
         }
     }
 
@@ -120,11 +158,31 @@ impl Node {
         StartGuess::of(motion, sigma, assumed, window).node
     }
 
+    /// Has what is hidden as unknowns, too: what of it is not known as it is expected.
+    pub(super) fn hide_as(&mut self, guess: &StartGuess) {
+        let expected = &guess.node.unknowns;
+        for i in self.unknowns.len()..expected.len() {
+            push(&mut self.unknowns, expected[i]);
+        }
+        guess.clamp(self);
+    }
+
+    /// The same without what is hidden.
+    pub(super) fn forget_hidden(&mut self, joints: usize) {
+        self.unknowns.resize_vertically_mut(3 * joints, 0.0);
+    }
+
+    /// What is hidden, if that is told.
+    pub(super) fn hidden(&self, plant: &Plant) -> &[f64] {
+        &self.unknowns.as_slice()[3 * plant.len()..]
+    }
+
     /// The simulator's start state.
     pub fn start(&self, plant: &Plant) -> Start {
-        let joints = self.unknowns.len() / 3;
+        let joints = plant.len();
         let (reading, rates) = self.unknowns.as_slice().split_at(joints);
-        let (speed, acceleration) = rates.split_at(joints);
+        let (speed, rates) = rates.split_at(joints);
+        let acceleration = &rates[..joints];
         let [reading, speed] = plant.at_begin([reading, speed, acceleration]);
         Start {
             angle_rad: plant.decode_rad(&plant.ahead_rad(&reading, &speed)),
@@ -164,6 +222,10 @@ impl StartDoubt {
         }
         found
     }
+}
+
+fn push(values: &mut DVector<f64>, value: f64) {
+    values.resize_vertically_mut(values.len() + 1, value);
 }
 
 /// Angle, speed and acceleration of a joint whose angle is not measured, each with its standard

@@ -80,6 +80,18 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
 /// and rates, rad/s, of joints whose rate alone is logged and of rate sensors beside an angle's.
 /// Every window starts from its node, and the memory runs on from window to window.
 pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
+    predicted_seen(model, data, nodes, motion, |_| {})
+}
+
+/// The same, which shows what each window takes over from the one before; the first one that of
+/// its first samples.
+fn predicted_seen(
+    model: &Model,
+    data: &FitData,
+    nodes: &[Node],
+    motion: usize,
+    mut sees: impl FnMut(&Memory),
+) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
     let mut memory = Memory::default();
@@ -89,10 +101,44 @@ pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -
             let samples = window.samples.clone();
             let mut readings = vec![0.0; samples.len() * plant.signals()];
             let start = nodes[index].start(&plant);
+            sees(&memory);
+            memory.begin_with(nodes[index].hidden(&plant));
             predict(&plant, log, samples, &start, &mut memory, &mut readings);
             readings
         })
         .collect()
+}
+
+/// What is hidden where each window begins, in the order of [`Plant::hidden`], as the window before
+/// leaves it; where a motion begins, as it is a sample later.
+pub(super) fn left_hidden(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Vec<f64>> {
+    let motions = (0..data.motions.len()).into_par_iter();
+    let of_motion = |motion: usize| {
+        let plant = Plant::new(model, &data.motions[motion]);
+        let mut left = Vec::new();
+        predicted_seen(model, data, nodes, motion, |memory| {
+            left.push(memory.hidden(&plant))
+        });
+        if let (Some((index, window)), Some(first)) =
+            (data.windows_of(motion).next(), left.first_mut())
+        {
+            let (start, mut memory) = (nodes[index].start(&plant), Memory::default());
+            let samples = window.samples.start..window.samples.end.min(window.samples.start + 2);
+            let mut readings = vec![0.0; samples.len() * plant.signals()];
+            predict(
+                &plant,
+                &data.motions[motion],
+                samples,
+                &start,
+                &mut memory,
+                &mut readings,
+            );
+            *first = memory.hidden(&plant);
+        }
+        left
+    };
+    let left: Vec<Vec<Vec<f64>>> = motions.map(of_motion).collect();
+    left.into_iter().flatten().collect()
 }
 
 /// Residuals of one motion's windows, in order.

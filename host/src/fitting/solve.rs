@@ -36,19 +36,28 @@ impl Fit {
         data: &FitData,
         options: FitOptions,
     ) -> Fit {
+        let [had, hidden] = [&self.model, model].map(|model| data.hidden(model));
+        let hides_alike =
+            had.len() == hidden.len() && had.iter().zip(&hidden).all(|(a, b)| a.is_alike(b));
+        let mut nodes = self.nodes.clone();
+        if !hides_alike {
+            (nodes.iter_mut()).for_each(|node| node.forget_hidden(data.joints()));
+        }
         let start = Fit {
             model: model.clone(),
             free: [&self.free, added].concat(),
-            residuals: residuals(model, data, &self.nodes),
-            nodes: self.nodes.clone(),
+            residuals: residuals(model, data, &nodes),
+            nodes,
             converged: false,
             simulations: 1,
             jacobian: Vec::new(),
             fresh: false,
         };
         let mut run = LevenbergMarquardt::new(start, data, guesses(data));
-        // A sensor that trails makes the start's acceleration matter.
-        if self.model.trails() == model.trails() && !self.jacobian.is_empty() {
+        // A sensor that trails makes the start's acceleration matter, and some effects have unknowns
+        // of their own.
+        let alike = hides_alike && self.model.trails() == model.trails();
+        if alike && !self.jacobian.is_empty() {
             run.fit.jacobian = run.extended(&self.jacobian);
         }
         run.run(options)

@@ -17,6 +17,9 @@ pub struct Memory {
     /// Sample at which the stretch before ended, and in which state; none where nothing is
     /// remembered.
     pub(super) ended: Option<(usize, Start)>,
+    /// What is hidden where the next stretch begins, in the order of [`Plant::hidden`]; as
+    /// remembered where empty.
+    pub(super) begins: Vec<f64>,
 }
 
 /// One cell per effect that remembers and joint at which it acts; its place is that of

@@ -9,6 +9,7 @@ mod auxiliary;
 pub mod closed_loop;
 mod drive;
 mod forces;
+mod hidden;
 mod input;
 mod joint_plan;
 mod live;
@@ -19,6 +20,7 @@ mod run;
 mod sensor_state;
 mod stepper;
 
+pub use hidden::{HiddenQuantity, HiddenUnknown};
 pub use live::{Live, bare_motors};
 pub use memory::Memory;
 pub use plant::Plant;

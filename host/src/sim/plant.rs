@@ -3,6 +3,7 @@
 mod rate_reading;
 mod readings;
 
+use super::hidden::HiddenUnknown;
 use super::joint_plan::JointPlan;
 use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
 use crate::log::Motion;
@@ -38,6 +39,8 @@ pub struct Plant {
     pub(super) late_s: f64,
     /// How many cells its effects remember things in.
     pub(super) remembers: usize,
+    /// What no reading tells of where a stretch begins.
+    pub(super) hidden: Vec<HiddenUnknown>,
     /// A base that gives way, and the place of the first of its two cells.
     pub(super) base: Option<(BaseSpring, usize)>,
     /// Longest step that follows motors which turn apart from their joints, and a base that gives
@@ -117,6 +120,7 @@ impl Plant {
             has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
             late_s: offsets_s().reduce(f64::max).unwrap_or(0.0),
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
+            hidden: HiddenUnknown::all(&joints),
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
             base,
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),

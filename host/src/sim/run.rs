@@ -68,9 +68,13 @@ fn predicted<R: Rows>(
     readings: &mut [f64],
 ) -> Start {
     let samples = stretch.len();
+    let hidden = std::mem::take(&mut memory.begins);
     cross_gap::<R>(plant, motion, stretch.start, memory);
+    memory.sensors.put_hidden(plant, &hidden);
     let start = &memory.sensors.beside_slips(plant, start);
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
+    let effects = run.stepper.memory();
+    effects.put_hidden(plant, &start.angle_rad, &hidden);
     if plant.has_offsets && samples > 0 {
         return run.record_offset(stretch, memory, readings);
     }
@@ -211,6 +215,7 @@ impl<'a, R: Rows> Run<'a, R> {
             effects: std::mem::take(self.stepper.memory()),
             sensors: self.sensors,
             ended: Some((k, state)),
+            begins: Vec::new(),
         }
     }
 }

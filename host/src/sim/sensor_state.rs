@@ -9,7 +9,7 @@ use crate::effects::{Encoded, SenseMemory};
 #[derive(Debug, Clone, Default)]
 pub struct SensorState {
     /// Per sensor effect, what it remembers of the step before.
-    cells: Vec<Option<SenseMemory>>,
+    pub(super) cells: Vec<Option<SenseMemory>>,
     /// Per joint, rad in the log's convention; rad/s where the rate is read. Then what the rate
     /// sensors read that joints have beside those of their angles, rad/s.
     pub(super) reading: Vec<f64>,
@@ -21,12 +21,7 @@ impl SensorState {
     /// Prepares for a stretch that begins at `start`: sensors that trail begin as far behind as the
     /// speed of their readings says, for a stretch may begin at speed.
     pub(super) fn begin(&mut self, plant: &Plant, start: &Start) {
-        let of_joints = plant.joints.iter().map(|j| j.sense.len());
-        let of_rates = plant.rate_readings.iter().map(|rate| rate.sense.len());
-        let cells = of_joints.chain(of_rates).sum();
-        if self.cells.len() != cells {
-            self.cells = vec![None; cells];
-        }
+        self.fit_to(plant);
         self.reading.resize(plant.signals(), 0.0);
         self.turned.resize(plant.signals(), 0.0);
         for (signal, turned) in self.turned.iter_mut().enumerate() {
@@ -52,6 +47,16 @@ impl SensorState {
                 reading,
                 slope.copied().unwrap_or(0.0),
             );
+        }
+    }
+
+    /// Has a cell for each sensor effect of the plant.
+    pub(super) fn fit_to(&mut self, plant: &Plant) {
+        let of_joints = plant.joints.iter().map(|j| j.sense.len());
+        let of_rates = plant.rate_readings.iter().map(|rate| rate.sense.len());
+        let cells = of_joints.chain(of_rates).sum();
+        if self.cells.len() != cells {
+            self.cells = vec![None; cells];
         }
     }
 

@@ -1,0 +1,174 @@
+//! Unknowns of a stretch's beginning that no reading tells: where in its play a joint is and how
+//! fast it crosses it, how far dry friction is bent before it slides.
+//!
+//! A stretch takes over what the one before came to remember. That is as wrong at its end as the
+//! errors of its start have grown by then, and in an unstable motion they grow fast. How far a gear
+//! is wound up is taken over: its motor swings in, and knocks of its flanks leave a fit no slope.
+
+use super::joint_plan::{ActiveEffect, JointPlan};
+use super::memory::{EffectMemory, Memory};
+use super::plant::Plant;
+use super::sensor_state::SensorState;
+use crate::effects::StepState;
+
+/// One such unknown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HiddenUnknown {
+    /// The joint at which it is.
+    pub joint: usize,
+    /// What of it is unknown.
+    pub quantity: HiddenQuantity,
+    place: Place,
+}
+
+/// What is unknown of something hidden.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HiddenQuantity {
+    /// A displacement as a share, -1 to 1, of its scale: so it stays what it is, at a flank for one,
+    /// when a fit moves the scale.
+    Share {
+        /// rad (m) per 1.
+        scale: f64,
+    },
+    /// How fast that changes, rad/s (m/s).
+    Rate,
+}
+
+/// Where it is remembered, by the cell there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Sensor(usize),
+    Effect(usize),
+}
+
+impl HiddenUnknown {
+    /// Those of a plant's joints.
+    pub(super) fn all(joints: &[JointPlan]) -> Vec<HiddenUnknown> {
+        let mut all = Vec::new();
+        let mut sensors = 0;
+        for (joint, plan) in joints.iter().enumerate() {
+            let mut add = |place, quantity| {
+                all.push(HiddenUnknown {
+                    joint,
+                    quantity,
+                    place,
+                });
+            };
+            let share = |scale| HiddenQuantity::Share { scale };
+            for e in &plan.sense {
+                if let Some(scale) = e.effect.hidden_scale(e.values()) {
+                    add(Place::Sensor(sensors), share(scale));
+                    add(Place::Sensor(sensors), HiddenQuantity::Rate);
+                }
+                sensors += 1;
+            }
+            for (e, cell) in plan.remembering() {
+                if let Some(scale) = e.effect.hidden_scale(e.values()) {
+                    add(Place::Effect(cell), share(scale));
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether it is of the same kind at the same place.
+    pub fn is_alike(&self, other: &HiddenUnknown) -> bool {
+        let kind = |unknown: &HiddenUnknown| std::mem::discriminant(&unknown.quantity);
+        (self.joint, self.place, kind(self)) == (other.joint, other.place, kind(other))
+    }
+
+    /// Its value where this is the displacement and its rate.
+    fn of(&self, [displacement, rate]: [f64; 2]) -> f64 {
+        match self.quantity {
+            HiddenQuantity::Share { scale } if scale > 0.0 => displacement / scale,
+            HiddenQuantity::Share { .. } => 0.0,
+            HiddenQuantity::Rate => rate,
+        }
+    }
+
+    /// Displacement and rate with this value.
+    fn put(&self, at: &mut [f64; 2], value: f64) {
+        match self.quantity {
+            HiddenQuantity::Share { scale } => at[0] = scale * value,
+            HiddenQuantity::Rate => at[1] = value,
+        }
+    }
+}
+
+impl Plant {
+    /// What no reading tells of where a stretch begins.
+    pub fn hidden(&self) -> &[HiddenUnknown] {
+        &self.hidden
+    }
+
+    fn sensor(&self, cell: usize) -> Option<&ActiveEffect> {
+        self.joints.iter().flat_map(|plan| &plan.sense).nth(cell)
+    }
+}
+
+impl Memory {
+    /// Has the next stretch begin with these values of what is hidden, in the order of
+    /// [`Plant::hidden`]; with none, as remembered.
+    pub fn begin_with(&mut self, hidden: &[f64]) {
+        self.begins.clear();
+        self.begins.extend_from_slice(hidden);
+    }
+
+    /// What is hidden as it is remembered, in the order of [`Plant::hidden`]; 0 where nothing is.
+    pub fn hidden(&self, plant: &Plant) -> Vec<f64> {
+        let value = |unknown: &HiddenUnknown| {
+            let at = match unknown.place {
+                Place::Sensor(cell) => {
+                    let memory = self.sensors.cells.get(cell).copied().flatten();
+                    memory
+                        .zip(plant.sensor(cell))
+                        .map(|(m, e)| e.effect.slipped(m))
+                }
+                Place::Effect(cell) => self.effects.0.get(cell).copied(),
+            };
+            at.map(|at| unknown.of(at))
+                .filter(|value| value.is_finite())
+        };
+        plant
+            .hidden
+            .iter()
+            .map(|unknown| value(unknown).unwrap_or(0.0))
+            .collect()
+    }
+}
+
+impl SensorState {
+    /// Puts what is hidden at the sensors, in the order of [`Plant::hidden`].
+    pub(super) fn put_hidden(&mut self, plant: &Plant, values: &[f64]) {
+        self.fit_to(plant);
+        for (unknown, value) in plant.hidden.iter().zip(values) {
+            if let Place::Sensor(cell) = unknown.place
+                && let Some(e) = plant.sensor(cell)
+            {
+                let memory = self.cells[cell].unwrap_or_default();
+                let mut slipped = e.effect.slipped(memory);
+                unknown.put(&mut slipped, *value);
+                self.cells[cell] = Some(e.effect.slip(e.values(), slipped));
+            }
+        }
+    }
+}
+
+impl EffectMemory {
+    /// Puts what is hidden in friction where the joints are at these angles, rad, in the
+    /// order of [`Plant::hidden`].
+    pub(super) fn put_hidden(&mut self, plant: &Plant, angle: &[f64], values: &[f64]) {
+        for (unknown, value) in plant.hidden.iter().zip(values) {
+            if let Place::Effect(cell) = unknown.place {
+                let joint = unknown.joint;
+                let mut remembering = plant.joints[joint].remembering();
+                if let Some((e, _)) = remembering.find(|(_, own)| *own == cell) {
+                    let mut at = [0.0; 2];
+                    unknown.put(&mut at, *value);
+                    let state = StepState::at_rest(angle[joint] - plant.zeros_rad[joint]);
+                    self.0[cell] = e.effect.displaced(e.values(), at[0], &state);
+                }
+            }
+        }
+    }
+}
