@@ -17,8 +17,8 @@ import math
 import mujoco
 import numpy as np
 
-# Of this step's error nothing is left in what a diagnosis finds: at 0.25 ms it moved a gyro's scale,
-# a lag and a grip by two to eight standard deviations of their estimates.
+# At 0.25 ms the step's error moved a gyro's scale, a lag and a grip by two to eight standard
+# deviations of their estimates; of the nine worst the largest is 2.7 now.
 STEP_S = 0.05e-3
 SAMPLE_S = 0.01
 STEPS = round(SAMPLE_S / STEP_S)

@@ -45,7 +45,7 @@ impl<'a> LevenbergMarquardt<'a> {
         let hidden = data.hidden(&fit.model);
         let unknowns = 3 * data.joints() + hidden.len();
         if fit.nodes.iter().any(|node| node.unknowns.len() != unknowns) {
-            // Of another model, or a motor has lost its inertia and turns with its joint.
+            // Of a model that hides something else.
             (fit.nodes.iter_mut()).for_each(|node| node.forget_hidden(data.joints()));
             fit.jacobian.clear();
         }

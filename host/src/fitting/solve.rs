@@ -54,8 +54,8 @@ impl Fit {
             fresh: false,
         };
         let mut run = LevenbergMarquardt::new(start, data, guesses(data));
-        // A sensor that trails makes the start's acceleration matter, and some effects have unknowns
-        // of their own.
+        // A sensor that trails makes the start's acceleration matter; some effects have unknowns of
+        // their own.
         let alike = hides_alike && self.model.trails() == model.trails();
         if alike && !self.jacobian.is_empty() {
             run.fit.jacobian = run.extended(&self.jacobian);

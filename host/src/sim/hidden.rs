@@ -24,8 +24,8 @@ pub struct HiddenUnknown {
 /// What is unknown of something hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HiddenQuantity {
-    /// A displacement as a share, -1 to 1, of its scale: so it stays what it is, at a flank for one,
-    /// when a fit moves the scale.
+    /// A displacement as a share, -1 to 1, of its scale: so it stays what it is, at a flank for
+    /// one, when a fit moves the scale.
     Share {
         /// rad (m) per 1.
         scale: f64,
