@@ -4,6 +4,7 @@ use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
 use super::budget::{EVALUATE, FINISH};
 use crate::fitting::{
     Candidate, Fit, FitData, FitOptions, fit, fit_start_states, in_fine_steps, intervals,
+    intervals_of,
 };
 use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
@@ -287,22 +288,30 @@ fn determined(effect: &Candidate, fit: &Fit, data: &FitData) -> bool {
 }
 
 /// Whether every effect of the set, the last ones freed, has a value whose interval leaves out
-/// where it vanishes.
+/// where it vanishes. The values that only shape the effect are held: where it vanishes they say
+/// nothing, and where motions do not reach as far as they tell, all values of the effect may grow
+/// together.
 fn significant(set: &[Candidate], fit: &Fit, data: &FitData) -> bool {
-    let Some((intervals, _)) = intervals(fit, data) else {
-        return set.is_empty();
-    };
     let added: usize = set.iter().map(|c| c.parameters().len()).sum();
-    let mut own = intervals[intervals.len() - added..].iter();
-    let mut all = true;
-    for candidate in set {
-        let present = candidate.parameters().iter().zip(&mut own);
-        let present = present.filter(|(parameter, interval)| {
-            parameter.off.is_some_and(|off| {
-                interval.low > off || interval.high < off.min(parameter.bounds.1)
+    let mut first = fit.free.len() - added;
+    set.iter().all(|candidate| {
+        let parameters = candidate.parameters();
+        let shapes = |place: &usize| {
+            let own = place.checked_sub(first).and_then(|own| parameters.get(own));
+            own.is_some_and(|parameter| parameter.off.is_none())
+        };
+        let places: Vec<usize> = (0..fit.free.len()).filter(|place| !shapes(place)).collect();
+        let intervals = intervals_of(&places, fit, data).map(|(intervals, _)| intervals);
+        let mut switches = places.iter().zip(intervals.unwrap_or_default());
+        let present = switches.any(|(place, interval)| {
+            let own = place.checked_sub(first).and_then(|own| parameters.get(own));
+            own.is_some_and(|parameter| {
+                parameter.off.is_some_and(|off| {
+                    interval.low > off || interval.high < off.min(parameter.bounds.1)
+                })
             })
         });
-        all &= present.count() > 0;
-    }
-    all
+        first += parameters.len();
+        present
+    })
 }

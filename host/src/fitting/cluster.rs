@@ -19,6 +19,16 @@ pub(super) struct Cluster {
     pub information: DMatrix<f64>,
 }
 
+impl Cluster {
+    /// What it says of the values at these places.
+    pub fn of(&self, places: &[usize]) -> Cluster {
+        Cluster {
+            score: self.score.select_rows(places),
+            information: self.information.select_rows(places).select_columns(places),
+        }
+    }
+}
+
 /// The clusters of a fit, in order of motions and time; windows shorter than a cluster share it.
 pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
     let total_s: f64 = data.motions.iter().map(|m| m.duration_s()).sum();

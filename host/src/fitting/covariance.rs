@@ -31,8 +31,19 @@ const TAKEN_OUT: f64 = 0.95;
 /// as many degrees of freedom as clusters really carry it (Bell & McCaffrey 2002). Start states
 /// count as unknowns. `None` where the data do not determine the values at all.
 pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f64>)> {
-    let count = fit.free.len();
-    let clusters = clusters(fit, data);
+    let free: Vec<usize> = (0..fit.free.len()).collect();
+    intervals_of(&free, fit, data)
+}
+
+/// The same of these of the fit's values, by their place, where the others are what they are.
+pub fn intervals_of(
+    places: &[usize],
+    fit: &Fit,
+    data: &FitData,
+) -> Option<(Vec<Interval>, DMatrix<f64>)> {
+    let count = places.len();
+    let clusters = clusters(fit, data).into_iter();
+    let clusters: Vec<Cluster> = clusters.map(|cluster| cluster.of(places)).collect();
     let normal: DMatrix<f64> = clusters
         .iter()
         .fold(DMatrix::zeros(count, count), |sum, cluster| {
@@ -47,11 +58,12 @@ pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f6
             let variance = jackknife[i].max(residual * inverse[(i, i)]).max(0.0);
             let freedom = freedom(&clusters, &inverse, i);
             let reach = quantile_975(freedom) * variance.sqrt();
-            let (low, high) = fit.free[i].bounds(&fit.model);
+            let (low, high) = fit.free[places[i]].bounds(&fit.model);
+            let value = values[places[i]];
             Interval {
                 standard_error: variance.sqrt(),
-                low: (values[i] - reach).max(low),
-                high: (values[i] + reach).min(high),
+                low: (value - reach).max(low),
+                high: (value + reach).min(high),
             }
         })
         .collect();

@@ -47,7 +47,7 @@ mod windows;
 
 pub use add::{Addition, add_effects, candidates_named, not_reduced, with_refitted};
 pub use candidate::{Candidate, CandidateError, effect_named};
-pub use covariance::{Interval, intervals};
+pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitData;
 pub use drift::{Drift, DriftReport, DriftSession, OneValue, drift};
 pub use error_reduction::ErrorReduction;
