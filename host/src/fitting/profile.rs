@@ -9,8 +9,10 @@ use super::cluster::clusters;
 use super::covariance::{Interval, inverse};
 use super::data::FitData;
 use super::fit::Fit;
+use super::node::Node;
 use super::normal::NormalEquations;
 use super::residual::residuals;
+use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -57,18 +59,29 @@ pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> V
 }
 
 /// Squared weighted residuals with the values moved; infinite where one leaves its bounds.
-fn cost(fit: &Fit, data: &FitData, steps: &NormalEquations, moved: &DVector<f64>) -> f64 {
+fn cost(fit: &Fit, data: &FitData, steps: &NormalEquations, by: &DVector<f64>) -> f64 {
+    moved(fit, steps, by).map_or(f64::INFINITY, |(model, nodes)| {
+        residuals(&model, data, &nodes).cost()
+    })
+}
+
+/// The model with its values moved and the start states that go along; none where a value leaves
+/// its bounds.
+pub(super) fn moved(
+    fit: &Fit,
+    steps: &NormalEquations,
+    by: &DVector<f64>,
+) -> Option<(Model, Vec<Node>)> {
     let mut model = fit.model.clone();
-    for (path, moved) in fit.free.iter().zip(moved.iter()) {
-        let value = path.get(&fit.model).unwrap_or(f64::NAN) + moved;
+    for (path, by) in fit.free.iter().zip(by.iter()) {
+        let value = path.get(&fit.model)? + by;
         let (low, high) = path.bounds(&fit.model);
-        if !(low..=high).contains(&value) || !path.set(&mut model, value) {
-            return f64::INFINITY;
-        }
+        let is_possible = (low..=high).contains(&value) && path.set(&mut model, value);
+        is_possible.then_some(())?;
     }
     let mut nodes = fit.nodes.clone();
     for (window, node) in nodes.iter_mut().enumerate() {
-        node.unknowns += steps.node_step(window, moved);
+        node.unknowns += steps.node_step(window, by);
     }
-    residuals(&model, data, &nodes).cost()
+    Some((model, nodes))
 }
