@@ -173,17 +173,15 @@ impl<'a> Evaluator<'a> {
         });
     }
 
-    /// Evaluates all that were evaluated over the horizon that counts now, from the values found in
-    /// the windows of `before`.
-    pub fn evaluate_again(&self, before: &FitData, sizes: &mut [Vec<Hypothesis>]) {
-        let evaluated = sizes
-            .iter_mut()
-            .flatten()
-            .filter(|h| h.evaluation.is_some());
-        let evaluated: Vec<&mut Hypothesis> = evaluated.collect();
-        evaluated.into_par_iter().for_each(|hypothesis| {
-            hypothesis.run_longer(before, &self.training, self.held_out.as_ref());
-        });
+    /// Evaluates all that were evaluated before the horizon was another `again`.
+    pub fn evaluate_again(
+        &self,
+        sizes: &mut [Vec<Hypothesis>],
+        again: impl Fn(&mut Hypothesis) + Send + Sync,
+    ) {
+        let all = sizes.iter_mut().flatten();
+        let evaluated: Vec<&mut Hypothesis> = all.filter(|h| h.evaluation.is_some()).collect();
+        evaluated.into_par_iter().for_each(again);
     }
 
     /// The squared error above which a hypothesis is hopeless beside the best of these, or beside

@@ -70,21 +70,35 @@ impl Evaluator<'_> {
     }
 
     /// Chooses the longest horizon over which a leading set leaves nothing but noise, where none
-    /// does over the shorter one that was chosen for single effects. All that were evaluated are
-    /// evaluated again over it, from the values they had.
+    /// does over the one that was chosen for single effects. All that were evaluated are evaluated
+    /// again over it.
     ///
     /// Single effects that lose a long run say nothing of sets that follow it; and the more windows
     /// there are, the more begin where the samples around them tell the start state badly: in a
-    /// play, or where a joint just breaks away.
-    pub fn lengthen_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
-        let mut leaders: Vec<Hypothesis> = sizes.iter().flatten().cloned().collect();
-        leaders.retain(|leader| leader.evaluation.is_some());
+    /// play, or where a joint just breaks away. A run that a whole set loses although it follows
+    /// the windows of the search is lost to such a start, too.
+    pub fn settle_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
+        let all = sizes.iter().flatten();
+        let mut leaders: Vec<Hypothesis> =
+            all.filter(|h| h.evaluation.is_some()).cloned().collect();
         leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));
         leaders.truncate(LEADERS);
         let settled = leaders.iter().any(|leader| self.at_noise_floor(leader));
         if self.horizon_given || settled {
             return;
         }
+        if !self.lengthen_horizon(leaders, sizes) {
+            self.shorten_horizon(sizes);
+        }
+    }
+
+    /// Goes over to the longest of the longer horizons that one of the leaders follows, from the
+    /// values it had.
+    fn lengthen_horizon(
+        &mut self,
+        mut leaders: Vec<Hypothesis>,
+        sizes: &mut [Vec<Hypothesis>],
+    ) -> bool {
         let horizons = self.horizons();
         let now = horizons.iter().position(|h| *h == self.horizon);
         let mut followed = None;
@@ -102,7 +116,42 @@ impl Evaluator<'_> {
         if let Some(horizon) = followed {
             let before = self.training.clone();
             self.recut(horizon);
-            self.evaluate_again(&before, sizes);
+            self.evaluate_again(sizes, |hypothesis| {
+                hypothesis.run_longer(&before, &self.training, self.held_out.as_ref());
+            });
+        }
+        followed.is_some()
+    }
+
+    /// Goes over to the longest of the shorter horizons over which one of those that follow the
+    /// windows of the search leaves nothing but noise.
+    fn shorten_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
+        let mut leaders: Vec<Hypothesis> = sizes.iter().flatten().cloned().collect();
+        leaders.retain(Hypothesis::follows_windows);
+        leaders.sort_by(Hypothesis::by_error);
+        leaders.truncate(LEADERS);
+        if leaders.is_empty() {
+            return;
+        }
+        let horizons = self.horizons().into_iter();
+        let shorter = horizons
+            .skip_while(|horizon| *horizon != self.horizon)
+            .skip(1);
+        for horizon in shorter.collect::<Vec<_>>() {
+            let (training, held_out) = self.cut(horizon);
+            leaders.par_iter_mut().for_each(|leader| {
+                leader.evaluation = None;
+                let options = FitOptions::iterations(EVALUATE);
+                leader.evaluate(&self.search, &training, held_out.as_ref(), options);
+            });
+            if leaders.iter().any(|leader| self.at_noise_floor(leader)) {
+                self.recut(horizon);
+                self.evaluate_again(sizes, |hypothesis| {
+                    hypothesis.evaluation = None;
+                    self.evaluate(hypothesis);
+                });
+                return;
+            }
         }
     }
 

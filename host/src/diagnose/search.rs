@@ -138,7 +138,7 @@ impl Evaluator<'_> {
                 break;
             }
             sizes.push(larger);
-            self.lengthen_horizon(&mut sizes);
+            self.settle_horizon(&mut sizes);
             let before = best.as_ref().map(|best| best.set.len());
             best = self.pruned(&mut sizes, &mut taken_apart);
             let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
