@@ -1,5 +1,5 @@
 //! The search: every candidate alone, then pairs and swaps around the best, then larger sets while
-//! they pay.
+//! more than noise is left.
 //!
 //! A forward-greedy search stops where no single effect helps although two together would; so sets
 //! grow from a beam of several, not from one, and members of the best set are swapped. Within a
@@ -126,8 +126,8 @@ impl Evaluator<'_> {
         let mut sizes = vec![self.singles()];
         let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
+        // Where one more effect gains nothing two more may still: only noise ends it early.
         for size in 2..=self.most_effects {
-            // Where nothing but noise is left, there is nothing for more effects to explain.
             if self.at_noise_floor(best.as_ref().unwrap_or(&self.base)) {
                 break;
             }
@@ -143,13 +143,15 @@ impl Evaluator<'_> {
             best = self.pruned(&mut sizes, &mut taken_apart);
             let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
             if let Some(stuck) = stuck.filter(|stuck| !self.at_noise_floor(stuck)) {
-                self.grow_afresh(&stuck, &mut sizes[stuck.set.len()]);
+                // Where the smaller sets do not pay either, from the one that leaves least.
+                let smaller = match stuck.set.len() + 1 == size {
+                    true => Some(stuck),
+                    false => sizes[size - 2].first().cloned(),
+                };
+                if let Some(smaller) = smaller {
+                    self.grow_afresh(&smaller, &mut sizes[size - 1]);
+                }
                 best = self.pruned(&mut sizes, &mut taken_apart);
-            }
-            let now = best.as_ref().map(|best| best.set.len());
-            // Nothing gained by one more: two more may still, but only from a start without any.
-            if now == before && (before.is_some() || size > 2) {
-                break;
             }
         }
         (best, sizes.into_iter().flatten().collect())

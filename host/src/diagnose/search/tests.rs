@@ -44,6 +44,32 @@ fn candidate(evaluator: &Evaluator, id: &str) -> Candidate {
     *known.find(|c| c.effect.info().id == id).unwrap()
 }
 
+/// These effects on top of the model, from these values, fitted on the windows of the search.
+fn fitted<const N: usize>(
+    evaluator: &Evaluator,
+    kinds: &[&str; N],
+    values: [&[f64]; N],
+) -> Hypothesis {
+    let finish = FitOptions::iterations(FINISH);
+    let pairs = kinds.iter().zip(values);
+    pairs.fold(evaluator.base.clone(), |set, (kind, values)| {
+        set.with(
+            candidate(evaluator, kind),
+            values,
+            &evaluator.search,
+            finish,
+        )
+    })
+}
+
+/// All effects of the library but these.
+fn all_but(kinds: &[&str]) -> Vec<String> {
+    let ids = crate::effects::EFFECTS.iter().map(|e| e.info().id);
+    ids.filter(|id| !kinds.contains(id))
+        .map(String::from)
+        .collect()
+}
+
 /// An arm that lacks viscous friction: a placebo gains next to nothing beside it, and as much as
 /// an effect that it does not have.
 #[test]
@@ -114,21 +140,11 @@ fn a_set_that_follows_longer_runs_is_judged_over_them() {
     let options = DiagnoseOptions::default();
     let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
     evaluator.recut(Horizon::Seconds(0.25));
-    let starts: [&[f64]; 3] = [&[0.08], &[0.96], &[-0.03]];
-    let mut set = evaluator.base.clone();
-    for (kind, values) in kinds.iter().zip(starts) {
-        let finish = FitOptions::iterations(FINISH);
-        set = set.with(
-            candidate(&evaluator, kind),
-            values,
-            &evaluator.search,
-            finish,
-        );
-    }
+    let mut set = fitted(&evaluator, &kinds, [&[0.08], &[0.96], &[-0.03]]);
     evaluator.evaluate(&mut set);
     assert!(!evaluator.at_noise_floor(&set));
     let mut sizes = [vec![set]];
-    evaluator.lengthen_horizon(&mut sizes);
+    evaluator.settle_horizon(&mut sizes);
     assert_eq!(evaluator.horizon, Horizon::Whole);
     assert!(evaluator.at_noise_floor(&sizes[0][0]));
 
@@ -136,6 +152,90 @@ fn a_set_that_follows_longer_runs_is_judged_over_them() {
     evaluator.horizon_given = true;
     sizes[0][0].evaluation = None;
     evaluator.evaluate(&mut sizes[0][0]);
-    evaluator.lengthen_horizon(&mut sizes);
+    evaluator.settle_horizon(&mut sizes);
     assert_eq!(evaluator.horizon, Horizon::Seconds(0.25));
+}
+
+/// An arm on a soft, tilted base, its centre of mass beside the link: two of the three follow the
+/// motion held out no better than one.
+#[test]
+fn a_third_effect_is_sought_where_the_second_gains_nothing() {
+    let kinds = ["base_compliance", "base_tilt", "com_angle"];
+    let (model, training, held_out) = arm(13, &kinds);
+    let options = DiagnoseOptions {
+        without: all_but(&kinds),
+        ..DiagnoseOptions::default()
+    };
+    let diagnosis = diagnose(&model, training, held_out, &options, &|_| ());
+    let named = diagnosis.effects.iter().map(|effect| effect.kind.as_str());
+    let mut named: Vec<&str> = named.collect();
+    named.sort_unstable();
+    assert_eq!(diagnosis.verdict, Verdict::Named);
+    assert_eq!(named, kinds);
+}
+
+/// An arm that saturates long before it reaches the angle from which friction grows no more: span
+/// and ends of that friction are known together only, and yet it is there.
+#[test]
+fn an_effect_whose_shape_nothing_tells_counts() {
+    let kinds = ["torque_saturation", "position_friction", "encoder_scale"];
+    let (model, training, held_out) = arm(10, &kinds);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let mut set = fitted(&evaluator, &kinds, [&[0.36], &[0.1, 0.003, 2.0], &[1.05]]);
+    evaluator.evaluate(&mut set);
+    let fit = &set.evaluation.as_ref().unwrap().fit;
+    let (intervals, _) = crate::fitting::intervals(fit, &evaluator.training).unwrap();
+    let below = &intervals[fit.free.len() - 4];
+    assert!((below.low..below.high).contains(&0.0), "{below:?}");
+    assert!(evaluator.improves(&evaluator.base, &set));
+    // The same friction in vain: the arm has nothing of the kind.
+    let idle = evaluator.base.with(
+        candidate(&evaluator, "torque_saturation"),
+        &[0.36],
+        &evaluator.search,
+        FitOptions::iterations(FINISH),
+    );
+    assert!(!evaluator.improves(&set, &idle));
+}
+
+/// An arm that sticks: over four seconds a hair's breadth of its friction loses the motion held
+/// out, in less than a second the right set leaves but noise.
+#[test]
+fn a_set_that_only_shorter_runs_follow_is_judged_over_them() {
+    let kinds = ["coulomb", "dead_zone", "stribeck"];
+    let (model, training, held_out) = arm(6, &kinds);
+    let options = DiagnoseOptions::default();
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    evaluator.recut(Horizon::Seconds(4.0));
+    let mut set = fitted(
+        &evaluator,
+        &kinds,
+        [&[0.0576], &[0.053, 0.0], &[0.048, 0.43]],
+    );
+    evaluator.evaluate(&mut set);
+    assert!(!evaluator.at_noise_floor(&set));
+    let mut sizes = [vec![set]];
+    evaluator.settle_horizon(&mut sizes);
+    assert!(evaluator.horizon.seconds().unwrap() < 1.0);
+    assert!(evaluator.at_noise_floor(&sizes[0][0]));
+}
+
+/// An arm with a dead zone, fitted from a width at which a few commands too many are swallowed: what
+/// follows the slope of the error stays there.
+#[test]
+fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
+    let kinds = ["coulomb", "dead_zone", "stribeck"];
+    let (model, training, held_out) = arm(6, &kinds);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let set = fitted(
+        &evaluator,
+        &kinds,
+        [&[0.0576], &[0.0545, 0.0], &[0.048, 0.43]],
+    );
+    let (stuck, data) = (&set.search, &evaluator.search);
+    let (finish, width) = (FitOptions::iterations(FINISH), stuck.free.len() - 4);
+    let lower = crate::fitting::down_the_stairs(stuck.clone(), &[width], data, finish);
+    assert!(lower.residuals.cost() < 0.95 * stuck.residuals.cost());
 }
