@@ -179,3 +179,27 @@ fn known(effect: &BenchEffect) -> HiddenEffect {
         parameters: effect.parameters.iter().map(value).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_library_lacks_what_holds_the_hidden_effect_too() {
+        let without = |family, kind| {
+            let case = Case {
+                truth: Truth::Own,
+                family,
+                hidden: vec![kind],
+                seed: 1,
+            };
+            case.without()
+        };
+        assert_eq!(without(Family::Outside, "mass"), ["mass"]);
+        assert_eq!(
+            without(Family::Outside, "load_friction"),
+            ["load_friction", "drive_asymmetry"]
+        );
+        assert!(without(Family::Single, "mass").is_empty());
+    }
+}

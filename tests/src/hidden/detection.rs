@@ -2,8 +2,9 @@
 
 use super::case::{Case, Truth};
 use super::family::Family;
+use super::outcome::Answer;
 use super::text::table;
-use super::trial::{Answer, try_weakened};
+use super::trial::try_weakened;
 use comfy_table::Table;
 use handstand::effects;
 use serde::Serialize;

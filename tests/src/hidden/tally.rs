@@ -1,7 +1,7 @@
 //! Many outcomes as rates with their intervals and targets.
 
 use super::family::{FAMILIES, Family};
-use super::trial::{Answer, Outcome};
+use super::outcome::{Answer, Outcome};
 use handstand::study::share_interval;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -218,7 +218,7 @@ fn effect_rows(family: Family, outcomes: &[&Outcome]) -> Vec<EffectRow> {
 #[cfg(test)]
 mod tests {
     use super::super::case::Truth;
-    use super::super::trial::Value;
+    use super::super::outcome::Value;
     use super::*;
 
     fn outcome(kind: &str, answer: Answer, ratio: f64, covered: bool) -> Outcome {

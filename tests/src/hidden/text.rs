@@ -1,7 +1,7 @@
 //! The benchmark's figures for people.
 
+use super::outcome::{Answer, Outcome};
 use super::tally::{COVERAGE, EffectRow, FamilyRow, MOST_RATIO, Share, Tally};
-use super::trial::{Answer, Outcome};
 use crate::measured::Measured;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 
