@@ -15,7 +15,9 @@ use super::hypothesis::Hypothesis;
 use super::replacement::{Other, ReplaceablePart};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
-use crate::fitting::{FitData, FitOptions, Node, fit, fit_start_states, predicted};
+use crate::fitting::{
+    Candidate, FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
+};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -117,14 +119,13 @@ impl Evaluator<'_> {
         let windows = (0..data.motions.len()).into_par_iter();
         let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
-        let mut predicted = Predicted {
-            data: data.measuring(&readings),
-            nodes,
+        let data = data.measuring(&readings);
+        Some(Predicted {
+            own_cost: left(&data, &nodes, &chosen.set, (&found.model, &found.free)),
             effective_share: effective_share(&evaluation.training, found),
-            own_cost: 0.0,
-        };
-        predicted.own_cost = predicted.cost(&found.model, &found.free);
-        Some(predicted)
+            data,
+            nodes,
+        })
     }
 
     /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
@@ -152,17 +153,28 @@ impl Predicted {
     /// Whether another explanation, fitted to these predictions, leaves no more of them than the
     /// noise can show.
     fn fits(&self, other: &Other) -> bool {
-        let left = self.cost(&other.model, &other.free) - self.own_cost;
-        is_below_noise(left.max(0.0), self.effective_share)
+        let others = left(
+            &self.data,
+            &self.nodes,
+            &other.set,
+            (&other.model, &other.free),
+        );
+        is_below_noise((others - self.own_cost).max(0.0), self.effective_share)
     }
+}
 
-    /// What a model leaves of these predictions once it is fitted to them.
-    fn cost(&self, model: &Model, free: &[ParameterPath]) -> f64 {
-        // A first small step must not end it: what is left decides.
-        let options = FitOptions::iterations(FINISH);
-        let found = fit(model, free, &self.data, Some(&self.nodes), options);
-        found.residuals.cost()
-    }
+/// Squared weighted residuals that a model with these effects added, their values the last of those
+/// free, leaves of these data once it is fitted to them.
+fn left(
+    data: &FitData,
+    nodes: &[Node],
+    set: &[Candidate],
+    (model, free): (&Model, &[ParameterPath]),
+) -> f64 {
+    // A first small step must not end it: what is left decides.
+    let options = FitOptions::iterations(FINISH);
+    let found = fit(model, free, data, Some(nodes), options);
+    down_the_stairs(found, set, data, options).residuals.cost()
 }
 
 /// Whether a difference of two predictions, its squares weighted by the noise and summed over all

@@ -176,7 +176,7 @@ impl Hypothesis {
         let mut fit = fit(&search.model, &search.free, training, Some(&nodes), options);
         // What is only compared may do so on a stair and in steps that are too long.
         if !options.rough {
-            fit = down_the_stairs(fit, &self.jumping(), training, options);
+            fit = down_the_stairs(fit, &self.set, training, options);
             fit = in_fine_steps(fit, training, options);
             self.search_in_steps(fit.model.step_s, short);
         }
@@ -193,22 +193,8 @@ impl Hypothesis {
         let nodes = training.nodes_from(before, &found.nodes);
         let options = FitOptions::iterations(EVALUATE);
         let fit = fit(&found.model, &found.free, training, Some(&nodes), options);
-        let fit = down_the_stairs(fit, &self.jumping(), training, options);
+        let fit = down_the_stairs(fit, &self.set, training, options);
         self.judge(in_fine_steps(fit, training, options), training, held_out);
-    }
-
-    /// Where the values of added effects whose law jumps are among those that are free.
-    fn jumping(&self) -> Vec<usize> {
-        let mut next = self.search.free.len() - self.added_values();
-        let mut jumping = Vec::new();
-        for candidate in &self.set {
-            let own = next..next + candidate.parameters().len();
-            next = own.end;
-            if candidate.jumps() {
-                jumping.extend(own);
-            }
-        }
-        jumping
     }
 
     /// Takes steps of this length on the short windows too: what goes on from there should not

@@ -4,6 +4,7 @@
 //! A dead zone swallows one command more or not, and every such command is a stair. A fit is
 //! resumed from the lowest of the places that lie along its values, as far as these are uncertain.
 
+use super::candidate::Candidate;
 use super::covariance::inverse;
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
@@ -22,16 +23,17 @@ const LOWER: f64 = 0.005;
 /// Most times that it goes down.
 const TIMES: usize = 4;
 
-/// The fit, or one that is lower down: from places along these of its values, by their index among
-/// those that are free. The fit must have its derivatives.
+/// The fit, or one that is lower down: from places along the values of those effects of the set
+/// whose law jumps. The set's values are the last ones freed; the fit must have its derivatives.
 pub(crate) fn down_the_stairs(
     mut found: Fit,
-    values: &[usize],
+    set: &[Candidate],
     data: &FitData,
     options: FitOptions,
 ) -> Fit {
+    let jumping = jumping(set, found.free.len());
     for _ in 0..TIMES {
-        let Some((model, nodes)) = lowest(&found, values, data) else {
+        let Some((model, nodes)) = lowest(&found, &jumping, data) else {
             break;
         };
         let lower = fit(&model, &found.free, data, Some(&nodes), options);
@@ -46,6 +48,22 @@ pub(crate) fn down_the_stairs(
     found
 }
 
+/// Places of the values of those effects of the set whose law jumps, among `free` values of which
+/// the set's are the last.
+fn jumping(set: &[Candidate], free: usize) -> Vec<usize> {
+    let added: usize = set.iter().map(|c| c.parameters().len()).sum();
+    let mut next = free - added;
+    let mut jumping = Vec::new();
+    for candidate in set {
+        let own = next..next + candidate.parameters().len();
+        next = own.end;
+        if candidate.jumps() {
+            jumping.extend(own);
+        }
+    }
+    jumping
+}
+
 fn is_lower(cost: f64, than: &Fit) -> bool {
     cost < (1.0 - LOWER) * than.residuals.cost()
 }
@@ -55,7 +73,8 @@ fn is_lower(cost: f64, than: &Fit) -> bool {
 fn lowest(found: &Fit, values: &[usize], data: &FitData) -> Option<(Model, Vec<Node>)> {
     let steps = NormalEquations::assemble(found.free.len(), &found.jacobian, 0.0);
     let inverse = inverse(&steps.matrix)?;
-    let variance = found.residuals.mean_square();
+    // Less than the noise is left of a prediction without any.
+    let variance = found.residuals.mean_square().max(1.0);
     let places = values.par_iter().flat_map_iter(|&value| {
         let error = (variance * inverse[(value, value)]).sqrt();
         let along = inverse.column(value) / inverse[(value, value)];

@@ -235,7 +235,7 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
         [&[0.0576], &[0.0545, 0.0], &[0.048, 0.43]],
     );
     let (stuck, data) = (&set.search, &evaluator.search);
-    let (finish, width) = (FitOptions::iterations(FINISH), stuck.free.len() - 4);
-    let lower = crate::fitting::down_the_stairs(stuck.clone(), &[width], data, finish);
+    let finish = FitOptions::iterations(FINISH);
+    let lower = crate::fitting::down_the_stairs(stuck.clone(), &set.set, data, finish);
     assert!(lower.residuals.cost() < 0.95 * stuck.residuals.cost());
 }
