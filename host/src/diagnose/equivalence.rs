@@ -16,7 +16,7 @@ use super::replacement::{Other, ReplaceablePart};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
 use crate::fitting::{
-    Candidate, FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
+    FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
 };
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -121,7 +121,7 @@ impl Evaluator<'_> {
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
         let data = data.measuring(&readings);
         Some(Predicted {
-            own_cost: left(&data, &nodes, &chosen.set, (&found.model, &found.free)),
+            own_cost: left(&data, &nodes, &found.model, &found.free),
             effective_share: effective_share(&evaluation.training, found),
             data,
             nodes,
@@ -153,28 +153,17 @@ impl Predicted {
     /// Whether another explanation, fitted to these predictions, leaves no more of them than the
     /// noise can show.
     fn fits(&self, other: &Other) -> bool {
-        let others = left(
-            &self.data,
-            &self.nodes,
-            &other.set,
-            (&other.model, &other.free),
-        );
+        let others = left(&self.data, &self.nodes, &other.model, &other.free);
         is_below_noise((others - self.own_cost).max(0.0), self.effective_share)
     }
 }
 
-/// Squared weighted residuals that a model with these effects added, their values the last of those
-/// free, leaves of these data once it is fitted to them.
-fn left(
-    data: &FitData,
-    nodes: &[Node],
-    set: &[Candidate],
-    (model, free): (&Model, &[ParameterPath]),
-) -> f64 {
+/// Squared weighted residuals that a model leaves of these data once it is fitted to them.
+fn left(data: &FitData, nodes: &[Node], model: &Model, free: &[ParameterPath]) -> f64 {
     // A first small step must not end it: what is left decides.
     let options = FitOptions::iterations(FINISH);
     let found = fit(model, free, data, Some(nodes), options);
-    down_the_stairs(found, set, data, options).residuals.cost()
+    down_the_stairs(found, data, options).residuals.cost()
 }
 
 /// Whether a difference of two predictions, its squares weighted by the noise and summed over all

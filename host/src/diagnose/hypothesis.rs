@@ -176,7 +176,7 @@ impl Hypothesis {
         let mut fit = fit(&search.model, &search.free, training, Some(&nodes), options);
         // What is only compared may do so on a stair and in steps that are too long.
         if !options.rough {
-            fit = down_the_stairs(fit, &self.set, training, options);
+            fit = down_the_stairs(fit, training, options);
             fit = in_fine_steps(fit, training, options);
             self.search_in_steps(fit.model.step_s, short);
         }
@@ -193,7 +193,7 @@ impl Hypothesis {
         let nodes = training.nodes_from(before, &found.nodes);
         let options = FitOptions::iterations(EVALUATE);
         let fit = fit(&found.model, &found.free, training, Some(&nodes), options);
-        let fit = down_the_stairs(fit, &self.set, training, options);
+        let fit = down_the_stairs(fit, training, options);
         self.judge(in_fine_steps(fit, training, options), training, held_out);
     }
 

@@ -4,7 +4,6 @@
 //! A dead zone swallows one command more or not, and every such command is a stair. A fit is
 //! resumed from the lowest of the places that lie along its values, as far as these are uncertain.
 
-use super::candidate::Candidate;
 use super::covariance::inverse;
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
@@ -13,7 +12,8 @@ use super::normal::NormalEquations;
 use super::profile::moved;
 use super::residual::residuals;
 use super::solve::fit;
-use crate::model::Model;
+use crate::effects::{SMOOTH_DIFFERENCE, named};
+use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
 /// Where the squared error is looked up, in standard errors.
@@ -23,17 +23,11 @@ const LOWER: f64 = 0.005;
 /// Most times that it goes down.
 const TIMES: usize = 4;
 
-/// The fit, or one that is lower down: from places along the values of those effects of the set
-/// whose law jumps. The set's values are the last ones freed; the fit must have its derivatives.
-pub(crate) fn down_the_stairs(
-    mut found: Fit,
-    set: &[Candidate],
-    data: &FitData,
-    options: FitOptions,
-) -> Fit {
-    let jumping = jumping(set, found.free.len());
+/// The fit, or one that is lower down: from places along those of its values that belong to laws
+/// that jump. The fit must have its derivatives.
+pub(crate) fn down_the_stairs(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
     for _ in 0..TIMES {
-        let Some((model, nodes)) = lowest(&found, &jumping, data) else {
+        let Some((model, nodes)) = lowest(&found, data) else {
             break;
         };
         let lower = fit(&model, &found.free, data, Some(&nodes), options);
@@ -48,34 +42,34 @@ pub(crate) fn down_the_stairs(
     found
 }
 
-/// Places of the values of those effects of the set whose law jumps, among `free` values of which
-/// the set's are the last.
-fn jumping(set: &[Candidate], free: usize) -> Vec<usize> {
-    let added: usize = set.iter().map(|c| c.parameters().len()).sum();
-    let mut next = free - added;
-    let mut jumping = Vec::new();
-    for candidate in set {
-        let own = next..next + candidate.parameters().len();
-        next = own.end;
-        if candidate.jumps() {
-            jumping.extend(own);
-        }
-    }
-    jumping
+/// Whether a value belongs to an effect whose law jumps.
+fn jumps(path: &ParameterPath) -> bool {
+    let ParameterPath::Effect { id, .. } = path else {
+        return false;
+    };
+    named(id).is_some_and(|effect| effect.difference() > SMOOTH_DIFFERENCE)
 }
 
 fn is_lower(cost: f64, than: &Fit) -> bool {
     cost < (1.0 - LOWER) * than.residuals.cost()
 }
 
-/// The lowest place along the values, if it is lower than the fit; the other values and the start
+/// The lowest place along those values, if it is lower than the fit; the other values and the start
 /// states go along as they would if all were straight.
-fn lowest(found: &Fit, values: &[usize], data: &FitData) -> Option<(Model, Vec<Node>)> {
+fn lowest(found: &Fit, data: &FitData) -> Option<(Model, Vec<Node>)> {
+    let free = found.free.iter().enumerate();
+    let jumping: Vec<usize> = free
+        .filter(|(_, path)| jumps(path))
+        .map(|(i, _)| i)
+        .collect();
+    if jumping.is_empty() {
+        return None;
+    }
     let steps = NormalEquations::assemble(found.free.len(), &found.jacobian, 0.0);
     let inverse = inverse(&steps.matrix)?;
     // Less than the noise is left of a prediction without any.
     let variance = found.residuals.mean_square().max(1.0);
-    let places = values.par_iter().flat_map_iter(|&value| {
+    let places = jumping.par_iter().flat_map_iter(|&value| {
         let error = (variance * inverse[(value, value)]).sqrt();
         let along = inverse.column(value) / inverse[(value, value)];
         let ways = ERRORS.iter().flat_map(|errors| [-*errors, *errors]);

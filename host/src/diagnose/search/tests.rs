@@ -236,6 +236,6 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
     );
     let (stuck, data) = (&set.search, &evaluator.search);
     let finish = FitOptions::iterations(FINISH);
-    let lower = crate::fitting::down_the_stairs(stuck.clone(), &set.set, data, finish);
+    let lower = crate::fitting::down_the_stairs(stuck.clone(), data, finish);
     assert!(lower.residuals.cost() < 0.95 * stuck.residuals.cost());
 }
