@@ -4,6 +4,7 @@ use super::block_errors::{gain, paired};
 use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
+use super::verdict::FAR_OFF;
 use crate::fitting::{FitData, FitOptions, Horizon};
 use crate::log::Motion;
 use rayon::prelude::*;
@@ -87,7 +88,11 @@ impl Evaluator<'_> {
         if self.horizon_given || settled {
             return;
         }
-        if !self.lengthen_horizon(leaders, sizes) {
+        // Where little more than noise is left, a shorter run only shows less.
+        let lost = leaders
+            .iter()
+            .all(|leader| leader.deciding_mean() > FAR_OFF);
+        if !self.lengthen_horizon(leaders, sizes) && lost {
             self.shorten_horizon(sizes);
         }
     }

@@ -1,5 +1,5 @@
 //! The search: every candidate alone, then pairs and swaps around the best, then larger sets while
-//! more than noise is left.
+//! more is left than noise excuses.
 //!
 //! A forward-greedy search stops where no single effect helps although two together would; so sets
 //! grow from a beam of several, not from one, and members of the best set are swapped. Within a
@@ -20,6 +20,7 @@ use super::initial_guess::InitialGuess;
 use super::options::DiagnoseOptions;
 use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
 use super::stability::folds;
+use super::verdict::FAR_OFF;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, FitOptions};
 use crate::log::Motion;
@@ -126,7 +127,6 @@ impl Evaluator<'_> {
         let mut sizes = vec![self.singles()];
         let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
-        // Where one more effect gains nothing two more may still: only noise ends it early.
         for size in 2..=self.most_effects {
             if self.at_noise_floor(best.as_ref().unwrap_or(&self.base)) {
                 break;
@@ -152,6 +152,12 @@ impl Evaluator<'_> {
                     self.grow_afresh(&smaller, &mut sizes[size - 1]);
                 }
                 best = self.pruned(&mut sizes, &mut taken_apart);
+            }
+            // Where one more gains nothing two more may still, if there is much to gain.
+            let now = best.as_ref().map(|best| best.set.len());
+            let excused = best.as_ref().is_some_and(|b| b.deciding_mean() < FAR_OFF);
+            if now == before && excused {
+                break;
             }
         }
         (best, sizes.into_iter().flatten().collect())
