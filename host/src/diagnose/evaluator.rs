@@ -173,7 +173,7 @@ impl<'a> Evaluator<'a> {
         });
     }
 
-    /// Evaluates all that were evaluated before the horizon was another `again`.
+    /// Has `again` evaluate all those that were evaluated over another horizon.
     pub fn evaluate_again(
         &self,
         sizes: &mut [Vec<Hypothesis>],

@@ -298,16 +298,14 @@ fn significant(set: &[Candidate], fit: &Fit, data: &FitData) -> bool {
     let mut first = fit.free.len() - added;
     set.iter().all(|candidate| {
         let parameters = candidate.parameters();
-        let shapes = |place: &usize| {
-            let own = place.checked_sub(first).and_then(|own| parameters.get(own));
-            own.is_some_and(|parameter| parameter.off.is_none())
-        };
-        let places: Vec<usize> = (0..fit.free.len()).filter(|place| !shapes(place)).collect();
+        let own = |place: usize| place.checked_sub(first).and_then(|own| parameters.get(own));
+        let is_shape = |place: usize| own(place).is_some_and(|parameter| parameter.off.is_none());
+        let all = 0..fit.free.len();
+        let places: Vec<usize> = all.filter(|place| !is_shape(*place)).collect();
         let intervals = intervals_of(&places, fit, data).map(|(intervals, _)| intervals);
-        let mut switches = places.iter().zip(intervals.unwrap_or_default());
-        let present = switches.any(|(place, interval)| {
-            let own = place.checked_sub(first).and_then(|own| parameters.get(own));
-            own.is_some_and(|parameter| {
+        let mut known = places.iter().zip(intervals.unwrap_or_default());
+        let present = known.any(|(place, interval)| {
+            own(*place).is_some_and(|parameter| {
                 parameter.off.is_some_and(|off| {
                     interval.low > off || interval.high < off.min(parameter.bounds.1)
                 })

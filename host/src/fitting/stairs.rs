@@ -1,5 +1,5 @@
-//! Fits of laws that jump: their squared error goes down in stairs, and what follows its slope stops
-//! on one.
+//! Fits of laws that jump: their squared error goes down in stairs, and what follows its slope
+//! stops on one.
 //!
 //! A dead zone swallows one command more or not, and every such command is a stair. A fit is
 //! resumed from the lowest of the places that lie along its values, as far as these are uncertain.
