@@ -3,8 +3,7 @@
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
 use super::budget::{EVALUATE, FINISH};
 use crate::fitting::{
-    Candidate, Fit, FitData, FitOptions, down_the_stairs, fit, fit_start_states, in_fine_steps,
-    intervals, intervals_of,
+    Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals, intervals_of, polish,
 };
 use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
@@ -176,8 +175,7 @@ impl Hypothesis {
         let mut fit = fit(&search.model, &search.free, training, Some(&nodes), options);
         // What is only compared may do so on a stair and in steps that are too long.
         if !options.rough {
-            fit = down_the_stairs(fit, training, options);
-            fit = in_fine_steps(fit, training, options);
+            fit = polish(fit, training, options);
             self.search_in_steps(fit.model.step_s, short);
         }
         self.judge(fit, training, held_out);
@@ -193,8 +191,7 @@ impl Hypothesis {
         let nodes = training.nodes_from(before, &found.nodes);
         let options = FitOptions::iterations(EVALUATE);
         let fit = fit(&found.model, &found.free, training, Some(&nodes), options);
-        let fit = down_the_stairs(fit, training, options);
-        self.judge(in_fine_steps(fit, training, options), training, held_out);
+        self.judge(polish(fit, training, options), training, held_out);
     }
 
     /// Takes steps of this length on the short windows too: what goes on from there should not

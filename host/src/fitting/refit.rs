@@ -10,11 +10,10 @@ use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
 use super::mixture::untold_mixture;
+use super::polish::polish;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
-use super::stairs::down_the_stairs;
-use super::step_size::in_fine_steps;
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
@@ -132,8 +131,7 @@ pub fn refit(
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
-    let found = down_the_stairs(found, &data, FitOptions::default());
-    let found = in_fine_steps(found, &data, FitOptions::default());
+    let found = polish(found, &data, FitOptions::default());
     told_apart(&found)?;
     finish(model, found, &data, split, horizon)
 }
@@ -189,8 +187,7 @@ pub fn refit_with(
     // Whoever goes on with this model refits the new values too.
     with.free.clone_from(&free);
     let found = fit_staged(&with, &free, &data);
-    let found = down_the_stairs(found, &data, FitOptions::default());
-    let found = in_fine_steps(found, &data, FitOptions::default());
+    let found = polish(found, &data, FitOptions::default());
     finish(&base.model, found, &data, split, horizon)
 }
 

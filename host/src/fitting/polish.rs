@@ -1,0 +1,12 @@
+//! The end of a fit that is judged: on no stair of a law that jumps, in steps that are not too long.
+
+use super::data::FitData;
+use super::fit::{Fit, FitOptions};
+use super::stairs::down_the_stairs;
+use super::step_size::in_fine_steps;
+
+/// The fit, or one that leaves less: lower down the stairs of its error, and in shorter integration
+/// steps. The fit must have its derivatives.
+pub(crate) fn polish(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    in_fine_steps(down_the_stairs(found, data, options), data, options)
+}
