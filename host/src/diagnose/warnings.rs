@@ -1,6 +1,9 @@
 //! What a diagnosis warns of.
 
 use super::findings::Diagnosis;
+use super::names::listed;
+use crate::effects::parameter;
+use crate::fitting::FittedValue;
 use crate::output::number::{percent, short, with_unit};
 
 /// Pairs of values warned of; the rest are counted.
@@ -22,6 +25,28 @@ pub(super) fn on_bound(diagnosis: &Diagnosis) -> impl Iterator<Item = String> {
             value.path,
             with_unit(&short(value.value), &value.unit)
         )
+    })
+}
+
+/// Values of an effect that only a mixture of which is known: their intervals are all that they may
+/// be, though the effect is there.
+pub(super) fn unidentified(diagnosis: &Diagnosis) -> impl Iterator<Item = String> {
+    diagnosis.effects.iter().filter_map(|effect| {
+        let may_be_anything = |value: &&FittedValue| {
+            let known = parameter(&effect.kind, &value.key);
+            known.is_some_and(|known| value.low <= known.bounds.0 && known.bounds.1 <= value.high)
+        };
+        let values = effect.parameters.iter().filter(may_be_anything);
+        let paths: Vec<String> = values.map(|value| value.path.clone()).collect();
+        let (not_known, known) = match paths.len() {
+            0 => return None,
+            1 => ("does not follow", "it is known only together with others"),
+            _ => ("do not follow", "they are known only together"),
+        };
+        Some(format!(
+            "{} {not_known} from these motions: {known}",
+            listed(paths)
+        ))
     })
 }
 

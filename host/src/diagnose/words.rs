@@ -6,7 +6,7 @@
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::{inseparable, same_in_other_words};
 use super::names::{effect_name, joined, listed};
-use super::warnings::{on_bound, pairs, shorter_steps};
+use super::warnings::{on_bound, pairs, shorter_steps, unidentified};
 
 use crate::output::number::{measured, short};
 
@@ -25,6 +25,7 @@ pub(super) fn complete(diagnosis: &mut Diagnosis) {
     diagnosis.summary = summary(diagnosis);
     diagnosis.next = next(diagnosis);
     let warnings: Vec<String> = on_bound(diagnosis)
+        .chain(unidentified(diagnosis))
         .chain(pairs(diagnosis))
         .chain(shorter_steps(diagnosis))
         .collect();

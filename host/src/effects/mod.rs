@@ -132,6 +132,15 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
         .or_else(|| expression::named(id))
 }
 
+/// A value of an effect by its key, which may be that of a joint that slides.
+pub fn parameter(id: &str, key: &str) -> Option<&'static Parameter> {
+    let effect = named(id)?;
+    let kinds = [Axis::Hinge, Axis::Slide].into_iter();
+    let kinds = kinds.filter_map(|axis| on_axis(effect, axis));
+    let mut parameters = kinds.flat_map(|effect| effect.info().parameters);
+    parameters.find(|parameter| parameter.key == key)
+}
+
 /// What follows the id of an effect that acts on no single joint, in addresses: nothing for one of
 /// the whole rig, `@all` for one of all driven joints.
 pub fn at_all(id: &str) -> &'static str {

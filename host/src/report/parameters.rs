@@ -4,7 +4,7 @@ use super::Report;
 use super::page::{Section, table};
 use crate::diagnose::Diagnosis;
 use crate::diagnose::names::effect_name;
-use crate::effects::{Axis, named, on_axis};
+use crate::effects::parameter;
 use crate::fitting::FittedValue;
 use crate::output::number::{interval, short, unit};
 use crate::output::plot;
@@ -42,20 +42,13 @@ fn values(diagnosis: &Diagnosis) -> Markup {
     let rows = html! {
         @for effect in &diagnosis.effects {
             @for fitted in &effect.parameters {
-                (row(&effect_name(effect), fitted, off(&effect.kind, &fitted.key)))
+                @let vanishes_at = parameter(&effect.kind, &fitted.key).and_then(|known| known.off);
+                (row(&effect_name(effect), fitted, vanishes_at))
             }
         }
         @for fitted in &diagnosis.base { (row("model, refitted", fitted, None)) }
     };
     table(&headings, &rows)
-}
-
-/// Value at which an effect vanishes.
-fn off(kind: &str, key: &str) -> Option<f64> {
-    let axes = [Axis::Hinge, Axis::Slide].into_iter();
-    let effects = axes.filter_map(|axis| on_axis(named(kind)?, axis));
-    let mut parameters = effects.flat_map(|effect| effect.info().parameters);
-    parameters.find(|parameter| parameter.key == key)?.off
 }
 
 fn row(owner: &str, fitted: &FittedValue, off: Option<f64>) -> Markup {

@@ -196,6 +196,33 @@ fn values_on_bounds_and_collinear_pairs_are_warned_of() {
 }
 
 #[test]
+fn values_known_only_together_are_warned_of() {
+    let mut friction = effect("position_friction", Some(1));
+    let parameter = |key: &str, low: f64, high: f64| FittedValue {
+        low,
+        high,
+        ..value(&format!("position_friction@1.{key}"), 1.0, false)
+    };
+    friction.parameters = vec![
+        parameter("below_nm", -5.0, 5.0),
+        parameter("above_nm", -5.0, 0.1),
+        parameter("span_rad", 0.05, 6.3),
+    ];
+    let together = said(Verdict::Named, vec![friction.clone()], vec![]);
+    let expected = "position_friction@1.below_nm and position_friction@1.span_rad do not follow \
+                    from these motions: they are known only together";
+    assert_eq!(together.warnings, [expected]);
+    friction.parameters.pop();
+    let alone = said(Verdict::Named, vec![friction.clone()], vec![]);
+    let expected = "position_friction@1.below_nm does not follow from these motions: it is known \
+                    only together with others";
+    assert_eq!(alone.warnings, [expected]);
+    friction.parameters.remove(0);
+    let known = said(Verdict::Named, vec![friction], vec![]);
+    assert!(known.warnings.is_empty(), "{:?}", known.warnings);
+}
+
+#[test]
 fn names_are_joined_as_in_a_sentence() {
     let names = |all: &[&str]| listed(all.iter().map(ToString::to_string).collect());
     assert_eq!(names(&[]), "nothing");
