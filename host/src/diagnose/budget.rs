@@ -16,7 +16,7 @@ pub(super) const HOPELESS: f64 = 36.0;
 pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.
 pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
-/// Sets from which larger ones grow.
+/// Sets from which larger ones grow, beside the one that leaves least where it counts.
 pub(super) const BEAM: usize = 5;
 /// Partners tried for each set of the beam.
 pub(super) const PARTNERS: usize = 5;
@@ -44,7 +44,7 @@ pub(super) const STRUCTURE_STEPS: usize = 15;
 
 /// Steps until sets of `size` are done.
 pub(super) fn steps_up_to(size: usize, candidates: usize) -> usize {
-    let larger = BEAM * PARTNERS + 2 * FINALS_STEPS;
+    let larger = (BEAM + 1) * PARTNERS + 2 * FINALS_STEPS;
     BASE_STEPS + FIRST_LOOK_STEPS * candidates + FINALS_STEPS + (size.max(1) - 1) * larger
 }
 

@@ -16,7 +16,7 @@ use super::replacement::{Other, ReplaceablePart};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
 use crate::fitting::{
-    FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
+    Candidate, FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
 };
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -36,6 +36,8 @@ struct Predicted {
     effective_share: f64,
     /// Squared weighted residuals that the explanation leaves of its own prediction.
     own_cost: f64,
+    /// The values of the effects in the explanation whose laws jump.
+    jumping: Vec<ParameterPath>,
 }
 
 impl Evaluator<'_> {
@@ -120,9 +122,11 @@ impl Evaluator<'_> {
         let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
         let data = data.measuring(&readings);
+        let jumping = chosen.set.iter().filter(|effect| effect.jumps());
         Some(Predicted {
             own_cost: left(&data, &nodes, &found.model, &found.free),
             effective_share: effective_share(&evaluation.training, found),
+            jumping: jumping.flat_map(Candidate::paths).collect(),
             data,
             nodes,
         })
@@ -153,8 +157,25 @@ impl Predicted {
     /// Whether another explanation, fitted to these predictions, leaves no more of them than the
     /// noise can show.
     fn fits(&self, other: &Other) -> bool {
-        let others = left(&self.data, &self.nodes, &other.model, &other.free);
-        is_below_noise((others - self.own_cost).max(0.0), self.effective_share)
+        let leaves_nothing = |model: &Model| {
+            let others = left(&self.data, &self.nodes, model, &other.free);
+            is_below_noise((others - self.own_cost).max(0.0), self.effective_share)
+        };
+        leaves_nothing(&other.model)
+            || self
+                .closer(other)
+                .is_some_and(|model| leaves_nothing(&model))
+    }
+
+    /// The other explanation, fitted with the values of the laws held that both have and that jump:
+    /// these should not leave their valley while all else finds its own. `None` where there is no
+    /// such law.
+    fn closer(&self, other: &Other) -> Option<Model> {
+        let moves = |path: &&ParameterPath| !self.jumping.contains(path);
+        let free: Vec<ParameterPath> = other.free.iter().filter(moves).copied().collect();
+        let options = FitOptions::iterations(FINISH);
+        let closer = || fit(&other.model, &free, &self.data, Some(&self.nodes), options).model;
+        (free.len() < other.free.len()).then(closer)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{PredictionChange, ProjectedResidual};
+use super::initial_guess::{ProjectedResidual, changes};
 use super::values::kinds_of_values;
-use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
+use crate::fitting::{Candidate, Fit, FitData, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -58,33 +58,33 @@ impl Evaluator<'_> {
         let all = (target.size() / little.size()).sqrt();
         let mut set = chosen.set.clone();
         set.retain(|effect| ReplaceablePart::Effect(*effect) != *part);
-        let fits = |change: &&Vec<PredictionChange>| {
-            change.first().is_some_and(|change| {
-                let candidate = change.candidate;
-                ReplaceablePart::Effect(candidate) != *part
-                    && candidate.parameters().len() <= part.count()
-                    && set
-                        .iter()
-                        .all(|kept| !kept.overlaps(candidate, &self.start))
-            })
+        let fits = |candidate: &&Candidate| {
+            ReplaceablePart::Effect(**candidate) != *part
+                && candidate.parameters().len() <= part.count()
+                && set
+                    .iter()
+                    .all(|kept| !kept.overlaps(**candidate, &self.start))
         };
-        let by_effects = self.changes.par_iter().filter(fits).filter_map(|changes| {
-            let guess = target.guesses(changes).into_iter().next()?;
+        let by_effect = |&candidate: &Candidate| {
+            // What it would change in the base model, which may be far off, says little of it.
+            let in_place = target.promise(rest, candidate, &self.search, 1.0)?;
+            let on_top = || little.promise(&local.fit, candidate, &self.search, all);
+            let (values, share) = match in_place.1 < LEAST_SHARE {
+                true => on_top()?,
+                false => in_place,
+            };
             let mut model = rest.model.clone();
-            model.effects.push(guess.candidate.instance(&guess.values));
+            model.effects.push(candidate.instance(&values));
             Some(Other {
-                set: [&set[..], &[guess.candidate]].concat(),
+                set: [&set[..], &[candidate]].concat(),
                 values: Vec::new(),
                 model,
-                free: rest
-                    .free
-                    .iter()
-                    .copied()
-                    .chain(guess.candidate.paths())
-                    .collect(),
-                share: guess.gain / target.size(),
+                free: rest.free.iter().copied().chain(candidate.paths()).collect(),
+                share,
             })
-        });
+        };
+        let candidates = self.candidates.par_iter().filter(fits);
+        let by_effects = candidates.filter_map(by_effect);
         let values = self.replacing_values(part, rest);
         let by_values = values.into_par_iter().filter_map(|paths| {
             let (moves, share) = self.moves(&paths, &local.fit, &little)?;
@@ -190,6 +190,30 @@ impl Evaluator<'_> {
         let (weights, share) = target.span(&[at.residuals.less(&moved)])?;
         let weight = weights[0];
         Some((steps.into_iter().map(|step| weight * step).collect(), share))
+    }
+}
+
+impl ProjectedResidual<'_> {
+    /// The values with which a candidate, on top of a fit, makes most of so many times this, and
+    /// the share of it that it makes, squared.
+    fn promise(
+        &self,
+        fit: &Fit,
+        candidate: Candidate,
+        data: &FitData,
+        times: f64,
+    ) -> Option<(Vec<f64>, f64)> {
+        let changes = changes(fit, candidate, data);
+        let guess = self.guesses(&changes).into_iter().next()?;
+        let values = guess.values.iter().zip(candidate.parameters());
+        let values = values.map(|(value, parameter)| match parameter.off {
+            Some(off) if off.is_finite() => {
+                let (low, high) = parameter.bounds;
+                (off + times * (value - off)).clamp(low, high)
+            }
+            _ => *value,
+        });
+        Some((values.collect(), guess.gain / self.size()))
     }
 }
 

@@ -266,9 +266,9 @@ impl Evaluator<'_> {
 
     /// Larger sets: partners for each set of the beam, chosen by what they would gain, then swaps
     /// in the best.
-    fn grow(&self, beam: &[Hypothesis]) -> Vec<Hypothesis> {
+    fn grow(&self, smaller: &[Hypothesis]) -> Vec<Hypothesis> {
         let mut tried: Vec<Hypothesis> = Vec::new();
-        for from in beam.iter().take(BEAM) {
+        for from in beam(smaller) {
             let partners = self.partners(from, &tried);
             let found = partners.par_iter().map(|guess| {
                 self.steps.step(1);
@@ -280,6 +280,18 @@ impl Evaluator<'_> {
         let finals = self.evaluated(self.successive_halving(tried));
         self.swapped(finals)
     }
+}
+
+/// The sets that larger ones grow from: the best of the short windows, and the one that leaves least
+/// where it counts, which may lie behind five of the first that are nearly the same.
+fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
+    let (first, behind) = sorted.split_at(BEAM.min(sorted.len()));
+    let mean = Hypothesis::deciding_mean;
+    let least = first.iter().map(mean).fold(f64::INFINITY, f64::min);
+    let best_behind = behind.iter().min_by(|a, b| mean(a).total_cmp(&mean(b)));
+    first
+        .iter()
+        .chain(best_behind.filter(|best| mean(best) < least))
 }
 
 /// Puts sets among those of their size that were tried, and in the place of the same ones that
