@@ -54,6 +54,10 @@ impl Trial {
     }
 }
 
+/// A remedy that leaves so many times the error, on the windows of the model as it is, is not rated
+/// on shorter ones: how errors grow in its reading takes most of a trial.
+const FAR_WORSE: f64 = 5.0;
+
 /// A value of the file may be wrong by this factor; a unit is wrong by more.
 const PLAUSIBLE: f64 = 3.0;
 
@@ -104,14 +108,23 @@ pub(super) enum Effort {
 pub(super) struct RemedyTrial {
     pub model: Model,
     pub motions: Vec<Motion>,
-    reading: Option<ModelReading>,
+    given: Option<Given>,
+}
+
+/// The model as it reads its motions.
+struct Given {
+    reading: ModelReading,
+    /// From the start states that the samples suggest.
+    rating: Rating,
 }
 
 impl RemedyTrial {
     pub fn new(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
+        let reading = ModelReading::new(model.clone(), motions.clone());
+        let rating = reading.rated(Effort::Guess);
         RemedyTrial {
             model: model.clone(),
-            reading: Some(ModelReading::new(model.clone(), motions.clone())),
+            given: Some(Given { reading, rating }),
             motions,
         }
     }
@@ -121,7 +134,7 @@ impl RemedyTrial {
     pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
         RemedyTrial {
             model: model.clone(),
-            reading: None,
+            given: None,
             motions,
         }
     }
@@ -130,22 +143,28 @@ impl RemedyTrial {
     pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
         let motions = remedy.reread(&self.model, &self.motions);
         let model = remedy.applied(&self.model);
-        let Some(reading) = &self.reading else {
+        let Some(Given { reading, rating }) = &self.given else {
             let after = ModelReading::new(model, motions);
             let before = after.read_as(&self.model, self.motions.clone());
             return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
         };
         // A shift shortens the motions and leaves how errors grow in them; nothing else does.
-        let shortened = match remedy {
-            Remedy::Shift(..) => Some(self.shortened_as(reading, &motions)),
-            _ => None,
-        };
-        let after = match shortened {
-            Some(_) => reading.growing_like(model, motions),
-            None => ModelReading::new(model, motions),
-        };
-        let before = shortened.as_ref().unwrap_or(reading);
-        let [before, after] = rated_alike([before, &after], effort);
+        if matches!(remedy, Remedy::Shift(..)) {
+            let shortened = self.shortened_as(reading, &motions);
+            let after = reading.growing_like(model, motions);
+            let [before, after] = rated_alike([&shortened, &after], effort);
+            return Trial::new(remedy, &before, &after);
+        }
+        if effort == Effort::Guess {
+            let cut_as_given = reading.growing_like(model.clone(), motions.clone());
+            let cut_as_given = cut_as_given.cut_as(&reading.data.windows).rated(effort);
+            let trial = Trial::new(remedy.clone(), rating, &cut_as_given);
+            if trial.as_ref().is_some_and(|t| t.ratio() > FAR_WORSE) {
+                return trial;
+            }
+        }
+        let after = ModelReading::new(model, motions);
+        let [before, after] = rated_alike([reading, &after], effort);
         Trial::new(remedy, &before, &after)
     }
 
@@ -153,7 +172,7 @@ impl RemedyTrial {
     /// motions best, at most [`PLAUSIBLE`] times, over the error without; none where no joint says
     /// anything, or times are in doubt.
     pub fn with_one_value_off(&self, joint: usize) -> Option<f64> {
-        let reading = self.reading.as_ref()?;
+        let reading = &self.given.as_ref()?.reading;
         let least = with_one_free(&self.model, joint).into_par_iter();
         let least = least.filter_map(|(model, path)| {
             let freed = reading.read_as(&model, self.motions.clone());
@@ -170,7 +189,7 @@ impl RemedyTrial {
     /// Error with a joint's torques multiplied by a factor over the error without, on windows as a
     /// remedy has them.
     pub fn with_torques_scaled(&self, joint: usize, factor: f64) -> Option<f64> {
-        let reading = self.reading.as_ref()?;
+        let reading = &self.given.as_ref()?.reading;
         let mut scaled = self.model.clone();
         scaled.effects.push(torque_scale(joint).instance(&[factor]));
         let after = ModelReading::new(scaled, self.motions.clone());
