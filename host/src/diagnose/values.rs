@@ -10,6 +10,11 @@ use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit, intervals};
 use crate::model::{JointField, LinkField, Model, ParameterPath};
 use rayon::prelude::*;
 
+/// Iterations after which the fit of a value that is hopeless must have brought its squared error
+/// below this share.
+const STAGE: usize = 9;
+const ON_ITS_WAY: f64 = 0.5;
+
 impl Evaluator<'_> {
     /// Every value of the given model fitted alone, free or not; the best are evaluated, unless
     /// `least`, the squared error that others leave, makes them hopeless.
@@ -34,6 +39,19 @@ impl Evaluator<'_> {
         let mut open = values_of(&self.start);
         open.retain(|path| !self.known.contains(path));
         open
+    }
+
+    /// Fits a value to the end, or until it is seen that it stays hopeless: above the limit, and no
+    /// longer on its way.
+    fn finish(&self, value: &mut Hypothesis, limit: f64) {
+        for _ in 0..FINISH.div_ceil(STAGE) {
+            let before = value.search_mean;
+            value.resume(&self.search, FitOptions::iterations(STAGE));
+            let stays = value.search_mean > limit && value.search_mean > ON_ITS_WAY * before;
+            if value.search.converged || stays {
+                break;
+            }
+        }
     }
 
     fn fit_values(
@@ -63,7 +81,10 @@ impl Evaluator<'_> {
         go_on(&mut values, looked_at, FitOptions::iterations(LOOK).rough());
         values.truncate(FINALISTS);
         let limit = self.limit(values.iter(), None);
-        go_on(&mut values, limit, FitOptions::iterations(FINISH));
+        let hopeless = self.limit([].iter(), least);
+        let promising = values.par_iter_mut().filter(|v| v.search_mean <= limit);
+        promising.for_each(|value| self.finish(value, hopeless));
+        values.sort_by(Hypothesis::by_error);
         let promising = self.promising(&values, least);
         self.evaluate_all(&mut values[..promising], least, || {});
         values

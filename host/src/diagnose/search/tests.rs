@@ -231,3 +231,24 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
     let lower = crate::fitting::down_the_stairs(stuck.clone(), data, finish);
     assert!(lower.residuals.cost() < 0.95 * stuck.residuals.cost());
 }
+
+/// What lies too far above others and comes no closer is not fitted to the end; a wrong value is.
+#[test]
+fn a_hopeless_value_is_given_up_and_a_wrong_one_is_not() {
+    let tried = |kinds: &[&'static str]| {
+        let (model, training, held_out) = arm(1, kinds);
+        let options = DiagnoseOptions::default();
+        let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+        let tried = |least: Option<f64>| {
+            let values = evaluator.try_values_refitted(least);
+            let simulations: usize = values.iter().map(|v| v.search.simulations).sum();
+            (simulations, values[0].search_mean)
+        };
+        [tried(None), tried(Some(1.0))]
+    };
+    let [to_the_end, given_up] = tried(&["viscous"]);
+    assert!(given_up.0 < to_the_end.0, "{given_up:?} {to_the_end:?}");
+    let [to_the_end, found] = tried(&["torque_scale"]);
+    assert!(found.1 < 2.0, "{found:?}");
+    assert!(found.1 < 1.01 * to_the_end.1, "{found:?} {to_the_end:?}");
+}
