@@ -21,16 +21,41 @@ pub(super) struct PredictionChange {
     windows: Vec<Vec<f64>>,
 }
 
-/// What each start of a candidate changes in the prediction of a fitted model: one simulation each.
-///
-/// Where an effect comes in many shapes, as a ripple does, each is tried at one amplitude.
+/// What each start of a candidate, as it is and small, changes in the prediction of a fitted model:
+/// one simulation each.
 pub(super) fn changes(from: &Fit, candidate: Candidate, data: &FitData) -> Vec<PredictionChange> {
-    let mut starts = candidate.starts();
+    simulated(from, candidate, &both(candidate, starts(candidate)), data)
+}
+
+/// The same of the starts as they are.
+pub(super) fn whole_changes(
+    from: &Fit,
+    candidate: Candidate,
+    data: &FitData,
+) -> Vec<PredictionChange> {
+    simulated(from, candidate, &starts(candidate), data)
+}
+
+/// The same of the small ones.
+pub(super) fn small_changes(
+    from: &Fit,
+    candidate: Candidate,
+    data: &FitData,
+) -> Vec<PredictionChange> {
+    let starts = starts(candidate);
+    let small: Vec<Vec<f64>> = starts.iter().map(|start| small(candidate, start)).collect();
+    simulated(from, candidate, &small, data)
+}
+
+/// The starts of a candidate. Where an effect comes in many shapes, as a ripple does, each is tried
+/// at one amplitude.
+fn starts(candidate: Candidate) -> Vec<Vec<f64>> {
+    let starts = candidate.starts();
     let firsts = first_of_each(starts.clone(), |start| shape(candidate, start));
-    if firsts.len() > FEW_SHAPES {
-        starts = firsts;
+    match firsts.len() > FEW_SHAPES {
+        true => firsts,
+        false => starts,
     }
-    simulated(from, candidate, starts, data)
 }
 
 /// Shapes an effect may have for each to be tried at every amplitude.
@@ -45,26 +70,32 @@ pub(super) fn changes_like(
     let wanted = shape(like.candidate, &like.start);
     let mut starts = like.candidate.starts();
     starts.retain(|start| shape(like.candidate, start) == wanted);
-    simulated(from, like.candidate, starts, data)
+    simulated(from, like.candidate, &both(like.candidate, starts), data)
+}
+
+/// Each start as it is, and small.
+fn both(candidate: Candidate, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let starts = starts.into_iter();
+    let both = starts.flat_map(|start| {
+        let small = small(candidate, &start);
+        [start, small]
+    });
+    both.collect()
 }
 
 fn simulated(
     from: &Fit,
     candidate: Candidate,
-    starts: Vec<Vec<f64>>,
+    starts: &[Vec<f64>],
     data: &FitData,
 ) -> Vec<PredictionChange> {
     let before = &from.residuals.windows;
-    let starts = starts
-        .into_iter()
-        .flat_map(|start| [start.clone(), small(candidate, &start)]);
-    starts
-        .map(|start| PredictionChange {
-            windows: change(&from.model, candidate, &start, data, &from.nodes, before),
-            candidate,
-            start,
-        })
-        .collect()
+    let changes = starts.iter().map(|start| PredictionChange {
+        windows: change(&from.model, candidate, start, data, &from.nodes, before),
+        candidate,
+        start: start.clone(),
+    });
+    changes.collect()
 }
 
 /// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have

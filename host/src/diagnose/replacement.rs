@@ -2,9 +2,9 @@
 
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{ProjectedResidual, changes};
+use super::initial_guess::{PredictionChange, ProjectedResidual, small_changes, whole_changes};
 use super::values::kinds_of_values;
-use crate::fitting::{Candidate, Fit, FitData, FitOptions, fit, residuals};
+use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -67,8 +67,11 @@ impl Evaluator<'_> {
         };
         let by_effect = |&candidate: &Candidate| {
             // What it would change in the base model, which may be far off, says little of it.
-            let in_place = target.promise(rest, candidate, &self.search, 1.0)?;
-            let on_top = || little.promise(&local.fit, candidate, &self.search, all);
+            let in_place = target.promise(&whole_changes(rest, candidate, &self.search), 1.0)?;
+            let on_top = || {
+                let changes = small_changes(&local.fit, candidate, &self.search);
+                little.promise(&changes, all)
+            };
             let (values, share) = match in_place.1 < LEAST_SHARE {
                 true => on_top()?,
                 false => in_place,
@@ -194,18 +197,11 @@ impl Evaluator<'_> {
 }
 
 impl ProjectedResidual<'_> {
-    /// The values with which a candidate, on top of a fit, makes most of so many times this, and
-    /// the share of it that it makes, squared.
-    fn promise(
-        &self,
-        fit: &Fit,
-        candidate: Candidate,
-        data: &FitData,
-        times: f64,
-    ) -> Option<(Vec<f64>, f64)> {
-        let changes = changes(fit, candidate, data);
-        let guess = self.guesses(&changes).into_iter().next()?;
-        let values = guess.values.iter().zip(candidate.parameters());
+    /// The values with which a candidate, of whose starts these are the changes, makes most of so
+    /// many times this, and the share of it that it makes, squared.
+    fn promise(&self, changes: &[PredictionChange], times: f64) -> Option<(Vec<f64>, f64)> {
+        let guess = self.guesses(changes).into_iter().next()?;
+        let values = guess.values.iter().zip(guess.candidate.parameters());
         let values = values.map(|(value, parameter)| match parameter.off {
             Some(off) if off.is_finite() => {
                 let (low, high) = parameter.bounds;
