@@ -4,6 +4,7 @@ use comfy_table::{Cell, Row, Table};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Tables and the lines between them, in order.
@@ -146,13 +147,19 @@ impl Provenance {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Provenance {
             command: format!("cargo xtask {}", words.collect::<Vec<_>>().join(" ")),
-            version: version(),
+            version: version().to_string(),
             date: date(since.map_or(0, |since| since.as_secs() / 86_400)),
         }
     }
 }
 
-fn version() -> String {
+/// Version of the project, with the commit where one is known.
+pub fn version() -> &'static str {
+    static VERSION: OnceLock<String> = OnceLock::new();
+    VERSION.get_or_init(described)
+}
+
+fn described() -> String {
     let mut git = Command::new("git");
     git.args(["describe", "--always", "--dirty"])
         .current_dir(env!("CARGO_MANIFEST_DIR"));

@@ -67,6 +67,8 @@ pub struct Outcome {
     pub values: Vec<Value>,
     /// How long the diagnosis took, s.
     pub seconds: f64,
+    /// Version of the project that was measured, as in [`crate::measured::Provenance`].
+    pub version: String,
 }
 
 impl Outcome {

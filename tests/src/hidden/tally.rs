@@ -4,7 +4,7 @@ use super::family::{FAMILIES, Family};
 use super::outcome::{Answer, Outcome};
 use handstand::study::share_interval;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// So many of so many, with the ends of the 95 % interval (Wilson).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -77,6 +77,8 @@ pub struct FamilyRow {
     pub coverage: Share,
     /// Seconds of a diagnosis.
     pub seconds: Option<Spread>,
+    /// Versions of the project that were measured.
+    pub versions: BTreeSet<String>,
 }
 
 /// Largest held-out error over the true model's, for nine of ten cases.
@@ -102,6 +104,10 @@ impl FamilyRow {
             ratio: Spread::of(outcomes.iter().filter_map(|outcome| outcome.ratio())),
             coverage: Share::of(covered, values().count()),
             seconds: Spread::of(outcomes.iter().map(|outcome| outcome.seconds)),
+            versions: outcomes
+                .iter()
+                .map(|outcome| outcome.version.clone())
+                .collect(),
             answers,
         }
     }
@@ -242,6 +248,7 @@ mod tests {
                 covered,
             }],
             seconds: 2.0,
+            version: "0.1.0 (abc)".to_string(),
         }
     }
 

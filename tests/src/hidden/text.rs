@@ -20,6 +20,7 @@ pub fn tables(tally: &Tally) -> Measured {
         "error / truth's: median, 90 %",
         "coverage (95 %)",
         "s: median, 90 %",
+        "version",
         "",
     ]);
     for row in &tally.families {
@@ -99,6 +100,8 @@ fn family_cells(row: &FamilyRow) -> Vec<String> {
     cells.push(row.seconds.map_or_else(String::new, |seconds| {
         format!("{:.1}, {:.1}", seconds.median, seconds.most_90)
     }));
+    let versions: Vec<&str> = row.versions.iter().map(String::as_str).collect();
+    cells.push(versions.join("\n"));
     let mut missed = Vec::new();
     for (is_met, what) in [
         (row.is_reached(), "rate"),

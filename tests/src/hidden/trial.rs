@@ -7,6 +7,7 @@ use super::family::Family;
 use super::outcome::{Answer, Outcome};
 use super::said::{Said, said};
 use super::score::{answer, values};
+use crate::measured::version;
 use handstand::compare::compare;
 use handstand::diagnose::{DiagnoseOptions, diagnose};
 use handstand::fitting::Horizon;
@@ -84,6 +85,7 @@ fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
         after_rad: errors.after_rad,
         true_rad: errors.true_rad,
         seconds,
+        version: version().to_string(),
     })
 }
 

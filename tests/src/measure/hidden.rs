@@ -19,9 +19,10 @@ use handstand_tests::hidden::{
     FAMILIES, Family, OUTSIDE, Outcome, Plan, Tally, Truth, install_mujoco, line, misses, tables,
     try_all,
 };
-use handstand_tests::measured::Measured;
+use handstand_tests::measured::{Measured, Provenance};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -146,13 +147,28 @@ fn tried(args: &Args) -> Result<bool, String> {
     print(json, &measured(&old));
     let written = PAGES.iter().all(|page| {
         let own: Vec<Outcome> = old.iter().filter(|o| page.holds(o)).cloned().collect();
-        own.is_empty() || args.page.keep(&measured(&own), page.name, page.title)
+        let keep = |page: &RigPage| {
+            let (from, measured) = (provenance(&own), measured(&own));
+            args.page.keep_from(&from, &measured, page.name, page.title)
+        };
+        own.is_empty() || keep(page)
     });
     Ok(tally.is_met() && failed.is_empty() && written)
 }
 
 fn measured(outcomes: &[Outcome]) -> Measured {
     tables(&Tally::of(outcomes)).lines(misses(outcomes))
+}
+
+/// This run, with the versions that the outcomes are of.
+fn provenance(outcomes: &[Outcome]) -> Provenance {
+    let versions = outcomes.iter().map(|outcome| outcome.version.as_str());
+    let versions: BTreeSet<&str> = versions.collect();
+    let versions: Vec<&str> = versions.into_iter().collect();
+    Provenance {
+        version: versions.join(", "),
+        ..Provenance::here()
+    }
 }
 
 /// A page of docs/measured: the outcomes of one truth at one rig.

@@ -42,11 +42,22 @@ impl Page {
 
     /// Writes the tables to docs/measured/NAME.md if asked; whether that could be done.
     pub(super) fn keep(&self, measured: &Measured, name: &str, title: &str) -> bool {
+        self.keep_from(&Provenance::here(), measured, name, title)
+    }
+
+    /// The same of what other versions measured.
+    pub(super) fn keep_from(
+        &self,
+        from: &Provenance,
+        measured: &Measured,
+        name: &str,
+        title: &str,
+    ) -> bool {
         if !self.write {
             return true;
         }
         let folder = root().join("docs/measured");
-        match measured.write(&folder, name, title, &Provenance::here()) {
+        match measured.write(&folder, name, title, from) {
             Ok(path) => {
                 eprintln!("Written: {}", path.display());
                 true
