@@ -24,7 +24,7 @@ static INFO: EffectInfo = EffectInfo {
             off: Some(f64::INFINITY),
             typical: (50.0, 20_000.0),
             bounds: (5.0, 1e7),
-            starts: &[300.0, 1500.0],
+            starts: &[100.0, 400.0, 1600.0],
         },
         Parameter {
             key: "mass_kg",
