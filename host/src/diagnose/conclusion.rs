@@ -8,6 +8,7 @@ use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOu
 use super::hypothesis::Hypothesis;
 use super::longer_runs::longer_runs;
 use super::values::{compared, contradicted};
+use super::verdict::MOST_RAISED;
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
 use crate::model::MeasuredSignal;
@@ -107,8 +108,13 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
     }
     let lost = evidence.folds.iter().filter(|fold| !fold.gains).count();
     if lost > 0 {
+        let raised = evidence.worst_fold();
+        let much = match raised > MOST_RAISED {
+            true => format!(", and raises the error up to {raised:.1} times"),
+            false => String::new(),
+        };
         warnings.push(format!(
-            "with other motions held out the explanation gains nothing in {lost} of {} cases",
+            "with other motions held out the explanation gains nothing in {lost} of {} cases{much}",
             evidence.folds.len()
         ));
     }

@@ -32,6 +32,9 @@ pub(super) struct Signs {
     pub free_form_low: f64,
     /// Share of what is left that goes when every motion has values of its own.
     pub per_motion_reduction: f64,
+    /// Largest factor by which it raises the error of motions held out in turn; 1 where it raises
+    /// none.
+    pub worst_fold: f64,
     /// Whether a placebo regressor gains about as much as the effects.
     pub placebo_ranks: bool,
     /// Whether other explanations do as well.
@@ -54,6 +57,8 @@ const MOST_FLOORS_FITTED: f64 = 5.0;
 /// Where more than this share of what is left goes as every motion gets values of its own, they are
 /// no constants.
 const MOST_VARYING: f64 = 0.5;
+/// What is true does not make motions that it was not fitted to so many times worse.
+pub(super) const MOST_RAISED: f64 = 1.5;
 /// A model that leaves more than so many floors is not nominal.
 const MOST_NOMINAL: f64 = 1.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
@@ -84,7 +89,12 @@ impl Signs {
         }
         match (self.kind, self.held_out) {
             (Kind::Given, _) => self.left.sqrt() > MOST_NOMINAL || self.is_structured(),
-            (_, true) => self.is_structured() || self.leaves_much() || self.values_vary(),
+            (_, true) => {
+                self.is_structured()
+                    || self.leaves_much()
+                    || self.values_vary()
+                    || self.worst_fold > MOST_RAISED
+            }
             // Motions that were fitted show too little of what is left; what they show is there.
             (_, false) => self.leaves_much(),
         }

@@ -11,6 +11,7 @@ const FOUND: Signs = Signs {
     free_form_share: 0.0,
     free_form_low: 0.0,
     per_motion_reduction: 0.0,
+    worst_fold: 1.0,
     placebo_ranks: false,
     rivals: false,
 };
@@ -49,6 +50,20 @@ fn with_rivals_nothing_is_named() {
         };
         assert_eq!(signs.verdict(), Verdict::Ambiguous);
     }
+}
+
+#[test]
+fn what_makes_other_held_out_motions_worse_is_not_named() {
+    let raised = |worst_fold, signs| {
+        Signs {
+            worst_fold,
+            ..signs
+        }
+        .verdict()
+    };
+    assert_eq!(raised(1.4, ABOVE), Verdict::Named);
+    assert_eq!(raised(1.6, ABOVE), Verdict::Unexplained);
+    assert_eq!(raised(1.6, FOUND), Verdict::Named);
 }
 
 #[test]
