@@ -3,8 +3,6 @@
 use comfy_table::{Cell, Row, Table};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Tables and the lines between them, in order.
@@ -153,22 +151,9 @@ impl Provenance {
     }
 }
 
-/// Version of the project, with the commit where one is known.
+/// Version of the project that this was built from, with the commit where one is known.
 pub fn version() -> &'static str {
-    static VERSION: OnceLock<String> = OnceLock::new();
-    VERSION.get_or_init(described)
-}
-
-fn described() -> String {
-    let mut git = Command::new("git");
-    git.args(["describe", "--always", "--dirty"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"));
-    let commit = git.output().ok().filter(|output| output.status.success());
-    let commit = commit.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
-    match commit {
-        Some(commit) => format!("{} ({commit})", env!("CARGO_PKG_VERSION")),
-        None => env!("CARGO_PKG_VERSION").into(),
-    }
+    env!("HANDSTAND_VERSION")
 }
 
 /// The day so many days after 1970-01-01 (Gregorian), as 1970-01-01.

@@ -149,7 +149,7 @@ fn tried(args: &Args) -> Result<bool, String> {
         let own: Vec<Outcome> = old.iter().filter(|o| page.holds(o)).cloned().collect();
         let keep = |page: &RigPage| {
             let (from, measured) = (provenance(&own), measured(&own));
-            args.page.keep_from(&from, &measured, page.name, page.title)
+            args.page.keep(&from, &measured, page.name, page.title)
         };
         own.is_empty() || keep(page)
     });

@@ -37,16 +37,11 @@ impl Page {
         title: &str,
     ) -> bool {
         print(json, measured);
-        self.keep(measured, name, title)
+        self.keep(&Provenance::here(), measured, name, title)
     }
 
     /// Writes the tables to docs/measured/NAME.md if asked; whether that could be done.
-    pub(super) fn keep(&self, measured: &Measured, name: &str, title: &str) -> bool {
-        self.keep_from(&Provenance::here(), measured, name, title)
-    }
-
-    /// The same of what other versions measured.
-    pub(super) fn keep_from(
+    pub(super) fn keep(
         &self,
         from: &Provenance,
         measured: &Measured,
