@@ -4,7 +4,7 @@
 use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
-use super::horizon::search_horizon;
+use super::horizon::{is_followed, search_horizons};
 use super::hypothesis::{Evaluation, Hypothesis};
 use super::initial_guess::{PredictionChange, changes};
 use super::measured_value::is_ruled_out;
@@ -13,7 +13,7 @@ use super::options::DiagnoseOptions;
 use super::progress::{Progress, StepCounter};
 use super::residual_structure::residual_structure;
 use super::values::as_given;
-use crate::fitting::{Candidate, FitData, FitOptions, Horizon, coarsened};
+use crate::fitting::{Candidate, Fit, FitData, FitOptions, Horizon, coarsened};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -72,12 +72,12 @@ impl<'a> Evaluator<'a> {
         let whole = FitData::new(model, training, Horizon::Whole);
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
-        let search_horizon = search_horizon(&whole, longest, few);
-        let search = whole.recut(search_horizon);
         let file_step_s = model.step_s;
-        let model = &coarsened(model, &search);
-        let fitted = base_fit(model, &search, few, options.seed);
-        let mut base = Hypothesis::new(Vec::new(), fitted);
+        let horizons = search_horizons(&whole, longest, few);
+        let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
+        let (search_horizon, search) = (start.horizon, start.data);
+        let model = &start.model;
+        let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
             .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
@@ -209,6 +209,40 @@ impl<'a> Evaluator<'a> {
     /// valleys.
     pub fn small(&self) -> bool {
         self.held_out.is_none() && self.search.samples() < FEW_SAMPLES
+    }
+}
+
+/// Where the search starts: the windows that the fitted base model follows.
+struct SearchStart {
+    horizon: Horizon,
+    data: FitData,
+    /// The model in the steps that it is searched with.
+    model: Model,
+    fit: Fit,
+}
+
+impl SearchStart {
+    /// Over the first of these horizons that the model follows, or the last; at least one.
+    fn new(model: &Model, whole: &FitData, horizons: &[Horizon], few: bool, seed: u64) -> Self {
+        let start = |horizon: Horizon| {
+            let data = whole.recut(horizon);
+            let model = coarsened(model, &data);
+            let fit = base_fit(&model, &data, few, seed);
+            SearchStart {
+                horizon,
+                data,
+                model,
+                fit,
+            }
+        };
+        let mut first = start(horizons[0]);
+        for &horizon in &horizons[1..] {
+            if is_followed(&first.fit, &first.data) {
+                break;
+            }
+            first = start(horizon);
+        }
+        first
     }
 }
 

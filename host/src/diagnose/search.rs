@@ -128,7 +128,11 @@ impl Evaluator<'_> {
         let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
         for size in 2..=self.most_effects {
-            if self.at_noise_floor(best.as_ref().unwrap_or(&self.base)) {
+            let explained = match &best {
+                Some(best) => self.is_explained_by(best),
+                None => self.at_noise_floor(&self.base),
+            };
+            if explained {
                 break;
             }
             let done = steps_up_to(size - 1, self.candidates.len());
@@ -141,16 +145,9 @@ impl Evaluator<'_> {
             self.settle_horizon(&mut sizes);
             let before = best.as_ref().map(|best| best.set.len());
             best = self.pruned(&mut sizes, &mut taken_apart);
-            let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
-            if let Some(stuck) = stuck.filter(|stuck| !self.at_noise_floor(stuck)) {
-                // Where the smaller sets do not pay either, from the one that leaves least.
-                let smaller = match stuck.set.len() + 1 == size {
-                    true => Some(stuck),
-                    false => sizes[size - 2].first().cloned(),
-                };
-                if let Some(smaller) = smaller {
-                    self.grow_afresh(&smaller, &mut sizes[size - 1]);
-                }
+            if !best.as_ref().is_some_and(|best| self.is_explained_by(best)) {
+                let (smaller, larger) = sizes.split_at_mut(size - 1);
+                self.grow_afresh(&smaller[size - 2], &mut larger[0]);
                 best = self.pruned(&mut sizes, &mut taken_apart);
             }
             // Where one more gains nothing two more may still, if there is much to gain.
@@ -161,6 +158,12 @@ impl Evaluator<'_> {
             }
         }
         (best, sizes.into_iter().flatten().collect())
+    }
+
+    /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
+    /// was searched on: these may be longer, and show what shorter ones do not.
+    fn is_explained_by(&self, set: &Hypothesis) -> bool {
+        self.at_noise_floor(set) && set.follows_windows()
     }
 
     /// The smallest set that pays: one more effect must bring something over the best of fewer.
@@ -206,14 +209,24 @@ impl Evaluator<'_> {
         put_among(fewer, rests.collect());
     }
 
-    /// Looks for a partner of a set by what every candidate changes in that set's own prediction,
-    /// and puts what it finds among the sets that are `larger` by one: where the base model is far
-    /// off, its prediction says little of what is missing beside the set.
-    fn grow_afresh(&mut self, set: &Hypothesis, larger: &mut Vec<Hypothesis>) {
-        let afresh = every_change(set, &self.candidates, &self.search);
-        let of_base = std::mem::replace(&mut self.changes, afresh);
-        put_among(larger, self.grow(std::slice::from_ref(set)));
-        self.changes = of_base;
+    /// Tries every candidate on top of the sets that lead, one in the windows of the search and one
+    /// where it counts, by what it changes in their own predictions, and puts what it finds among
+    /// the `larger` sets: where the base model is far off, its prediction says little of what is
+    /// missing beside a set.
+    fn grow_afresh(&self, smaller: &[Hypothesis], larger: &mut Vec<Hypothesis>) {
+        let first = smaller.iter().min_by(|a, b| Hypothesis::by_error(a, b));
+        let mut leading: Vec<&Hypothesis> = first.into_iter().chain(leader(smaller)).collect();
+        leading.dedup_by(|a, b| a.adds(&b.set));
+        let found = leading.into_iter().flat_map(|set| {
+            let apart = self.candidates.iter().filter(|candidate| {
+                let mut kept = set.set.iter();
+                kept.all(|kept| !kept.overlaps(**candidate, &self.start))
+            });
+            let apart: Vec<Candidate> = apart.copied().collect();
+            self.first_look(set, &every_change(set, &apart, &self.search), 1)
+        });
+        let found = self.successive_halving(found.collect());
+        put_among(larger, self.swapped(self.evaluated(found)));
     }
 
     fn singles(&mut self) -> Vec<Hypothesis> {
@@ -306,13 +319,18 @@ fn put_among(tried: &mut Vec<Hypothesis>, found: Vec<Hypothesis>) {
     }
 }
 
+/// The one that leaves least where it counts.
+fn leader(of_size: &[Hypothesis]) -> Option<&Hypothesis> {
+    let by_error =
+        |a: &&Hypothesis, b: &&Hypothesis| a.deciding_mean().total_cmp(&b.deciding_mean());
+    of_size.iter().min_by(by_error)
+}
+
 /// The best of every size, the largest first, that leaves less than all of fewer effects do.
 fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
     let mut least = f64::INFINITY;
     let leaders = sizes.iter().filter_map(move |of_size| {
-        let by_error =
-            |a: &&Hypothesis, b: &&Hypothesis| a.deciding_mean().total_cmp(&b.deciding_mean());
-        let leader = of_size.iter().min_by(by_error)?;
+        let leader = leader(of_size)?;
         let leads = leader.deciding_mean() < least;
         least = least.min(leader.deciding_mean());
         leads.then_some(leader)

@@ -126,7 +126,7 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     };
     let by_base = evaluator.grow(std::slice::from_ref(&alone));
     let mut afresh = Vec::new();
-    evaluator.grow_afresh(&alone, &mut afresh);
+    evaluator.grow_afresh(std::slice::from_ref(&alone), &mut afresh);
     assert!(leaves_rad(&by_base) > 0.005);
     assert!(leaves_rad(&afresh) < 0.002);
 }
