@@ -7,8 +7,8 @@ use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
 use super::longer_runs::longer_runs;
+use super::stability;
 use super::values::{compared, contradicted};
-use super::verdict::MOST_RAISED;
 use super::words;
 use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
 use crate::model::MeasuredSignal;
@@ -106,18 +106,7 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
                 .to_string(),
         );
     }
-    let lost = evidence.folds.iter().filter(|fold| !fold.gains).count();
-    if lost > 0 {
-        let raised = evidence.worst_fold();
-        let much = match raised > MOST_RAISED {
-            true => format!(", and raises the error up to {raised:.1} times"),
-            false => String::new(),
-        };
-        warnings.push(format!(
-            "with other motions held out the explanation gains nothing in {lost} of {} cases{much}",
-            evidence.folds.len()
-        ));
-    }
+    warnings.extend(stability::warning(&evidence.folds));
     if evidence.values_vary() {
         warnings.push(format!(
             "values that fit one motion do not fit another: each by itself would leave {} less of the squared error",

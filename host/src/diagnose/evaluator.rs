@@ -6,7 +6,7 @@ use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::horizon::{is_followed, search_horizons};
 use super::hypothesis::{Evaluation, Hypothesis};
-use super::initial_guess::{PredictionChange, changes};
+use super::initial_guess::{PredictionChange, Sizes, changes};
 use super::measured_value::is_ruled_out;
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
@@ -17,6 +17,15 @@ use crate::fitting::{Candidate, Fit, FitData, FitOptions, Horizon, coarsened};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
+
+/// How far a search reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// Windows of a second; to larger sets the candidates that promise most.
+    Promising,
+    /// Windows that the base model follows; to larger sets every candidate.
+    Everything,
+}
 
 /// What every hypothesis is fitted to and judged by.
 pub(super) struct Evaluator<'a> {
@@ -49,6 +58,7 @@ pub(super) struct Evaluator<'a> {
     pub tolerance_rad: Option<f64>,
     /// Most effects named together.
     pub most_effects: usize,
+    pub reach: Reach,
     pub steps: StepCounter<'a>,
 }
 
@@ -58,6 +68,7 @@ impl<'a> Evaluator<'a> {
         training: Vec<Motion>,
         held_out: Vec<Motion>,
         options: &DiagnoseOptions,
+        reach: Reach,
         progress: &'a (dyn Fn(Progress) + Sync),
     ) -> Evaluator<'a> {
         let all = [training.as_slice(), held_out.as_slice()].concat();
@@ -73,7 +84,10 @@ impl<'a> Evaluator<'a> {
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let file_step_s = model.step_s;
-        let horizons = search_horizons(&whole, longest, few);
+        let mut horizons = search_horizons(&whole, longest, few);
+        if reach == Reach::Promising {
+            horizons.truncate(1);
+        }
         let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
         let (search_horizon, search) = (start.horizon, start.data);
         let model = &start.model;
@@ -112,6 +126,7 @@ impl<'a> Evaluator<'a> {
             known: options.known.clone(),
             seed: options.seed,
             most_effects,
+            reach,
             steps,
         }
     }
@@ -254,6 +269,6 @@ pub(super) fn every_change(
 ) -> Vec<Vec<PredictionChange>> {
     let candidates = candidates.par_iter();
     candidates
-        .map(|&candidate| changes(&base.search, candidate, data))
+        .map(|&candidate| changes(&base.search, candidate, Sizes::Both, data))
         .collect()
 }

@@ -4,6 +4,7 @@ use super::evaluator::Evaluator;
 use super::findings::{Fold, ResidualStructure, Verdict};
 use super::hypothesis::Hypothesis;
 use super::measured_value::values_behind;
+use super::stability::most_raised;
 use super::verdict::{Kind, Signs};
 
 /// Every explanation that was tried.
@@ -204,16 +205,6 @@ impl<'a> VerdictEvidence<'a> {
         self.signs(false).values_vary()
     }
 
-    /// Largest factor by which the explanation raises the error of motions held out in turn; 1 where
-    /// it raises none.
-    pub fn worst_fold(&self) -> f64 {
-        let raised = self
-            .folds
-            .iter()
-            .map(|fold| fold.after_rad / fold.before_rad);
-        raised.fold(1.0, f64::max)
-    }
-
     /// Whether chance alone gains a fair part of what the best set gains, counted in factors of the
     /// error.
     pub fn placebo_ranks(&self) -> bool {
@@ -257,7 +248,7 @@ impl<'a> VerdictEvidence<'a> {
             free_form_share: structure.map_or(0.0, |s| s.explainable_share),
             free_form_low: structure.map_or(0.0, |s| s.explainable_low),
             per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
-            worst_fold: self.worst_fold(),
+            worst_fold: most_raised(&self.folds),
             placebo_ranks: kind == Kind::Effects && self.placebo_ranks(),
             rivals,
         }

@@ -21,30 +21,41 @@ pub(super) struct PredictionChange {
     windows: Vec<Vec<f64>>,
 }
 
-/// What each start of a candidate, as it is and small, changes in the prediction of a fitted model:
-/// one simulation each.
-pub(super) fn changes(from: &Fit, candidate: Candidate, data: &FitData) -> Vec<PredictionChange> {
-    simulated(from, candidate, &both(candidate, starts(candidate)), data)
+/// In which sizes starts are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sizes {
+    /// As they are.
+    Whole,
+    /// Small.
+    Small,
+    Both,
 }
 
-/// The same of the starts as they are.
-pub(super) fn whole_changes(
-    from: &Fit,
-    candidate: Candidate,
-    data: &FitData,
-) -> Vec<PredictionChange> {
-    simulated(from, candidate, &starts(candidate), data)
+impl Sizes {
+    /// The starts in these sizes.
+    fn of(self, candidate: Candidate, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let sized = |start: Vec<f64>| {
+            let small = (self != Sizes::Whole).then(|| small(candidate, &start));
+            let whole = (self != Sizes::Small).then_some(start);
+            [whole, small].into_iter().flatten()
+        };
+        starts.into_iter().flat_map(sized).collect()
+    }
 }
 
-/// The same of the small ones.
-pub(super) fn small_changes(
+/// What each start of a candidate changes in the prediction of a fitted model: one simulation each.
+pub(super) fn changes(
     from: &Fit,
     candidate: Candidate,
+    sizes: Sizes,
     data: &FitData,
 ) -> Vec<PredictionChange> {
-    let starts = starts(candidate);
-    let small: Vec<Vec<f64>> = starts.iter().map(|start| small(candidate, start)).collect();
-    simulated(from, candidate, &small, data)
+    simulated(
+        from,
+        candidate,
+        &sizes.of(candidate, starts(candidate)),
+        data,
+    )
 }
 
 /// The starts of a candidate. Where an effect comes in many shapes, as a ripple does, each is tried
@@ -70,17 +81,8 @@ pub(super) fn changes_like(
     let wanted = shape(like.candidate, &like.start);
     let mut starts = like.candidate.starts();
     starts.retain(|start| shape(like.candidate, start) == wanted);
-    simulated(from, like.candidate, &both(like.candidate, starts), data)
-}
-
-/// Each start as it is, and small.
-fn both(candidate: Candidate, starts: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let starts = starts.into_iter();
-    let both = starts.flat_map(|start| {
-        let small = small(candidate, &start);
-        [start, small]
-    });
-    both.collect()
+    let starts = Sizes::Both.of(like.candidate, starts);
+    simulated(from, like.candidate, &starts, data)
 }
 
 fn simulated(

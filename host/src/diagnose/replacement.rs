@@ -2,7 +2,7 @@
 
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{PredictionChange, ProjectedResidual, small_changes, whole_changes};
+use super::initial_guess::{PredictionChange, ProjectedResidual, Sizes, changes};
 use super::values::kinds_of_values;
 use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
 use crate::model::{Model, ParameterPath};
@@ -67,9 +67,10 @@ impl Evaluator<'_> {
         };
         let by_effect = |&candidate: &Candidate| {
             // What it would change in the base model, which may be far off, says little of it.
-            let in_place = target.promise(&whole_changes(rest, candidate, &self.search), 1.0)?;
+            let in_place =
+                target.promise(&changes(rest, candidate, Sizes::Whole, &self.search), 1.0)?;
             let on_top = || {
-                let changes = small_changes(&local.fit, candidate, &self.search);
+                let changes = changes(&local.fit, candidate, Sizes::Small, &self.search);
                 little.promise(&changes, all)
             };
             let (values, share) = match in_place.1 < LEAST_SHARE {

@@ -12,7 +12,7 @@ use super::budget::{
 };
 use super::conclusion::conclude;
 use super::consistency::OwnFits;
-use super::evaluator::{Evaluator, every_change};
+use super::evaluator::{Evaluator, Reach, every_change};
 use super::explanation::{Explanation, Tried, VerdictEvidence};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
@@ -46,17 +46,22 @@ pub fn diagnose(
 ) -> Diagnosis {
     let mut model = model.clone();
     model.free.retain(|path| !options.known.contains(path));
-    let mut evaluator = Evaluator::new(&model, training, held_out, options, progress);
-    let (best, hypotheses) = evaluator.search();
-    let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
-    evaluator.steps.begin(STRUCTURE, all);
-    let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
-    let mut tried = Tried {
-        values: evaluator.try_values(Some(least)),
-        values_refitted: evaluator.try_values_refitted(Some(least)),
-        hypotheses,
-        best,
+    let searched = |reach| {
+        let (training, held_out) = (training.clone(), held_out.clone());
+        let evaluator = Evaluator::new(&model, training, held_out, options, reach, progress);
+        Searched::by(evaluator)
     };
+    let mut found = searched(Reach::Promising);
+    if !found.is_explained() && found.evaluator.most_effects > 1 {
+        let further = searched(Reach::Everything);
+        if further.is_explained() {
+            found = further;
+        }
+    }
+    let Searched {
+        evaluator,
+        mut tried,
+    } = found;
     let own_fits = evaluator.tell_motions_apart(&mut tried);
     let explanation = tried.explanation(&evaluator);
     let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
@@ -84,6 +89,36 @@ pub fn diagnose(
     let diagnosis = conclude(&evidence);
     evaluator.steps.step(STRUCTURE_STEPS);
     diagnosis
+}
+
+/// A search that was done, and what it tried.
+struct Searched<'a> {
+    evaluator: Evaluator<'a>,
+    tried: Tried,
+}
+
+impl<'a> Searched<'a> {
+    fn by(mut evaluator: Evaluator<'a>) -> Self {
+        let (best, hypotheses) = evaluator.search();
+        let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
+        evaluator.steps.begin(STRUCTURE, all);
+        let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
+        let tried = Tried {
+            values: evaluator.try_values(Some(least)),
+            values_refitted: evaluator.try_values_refitted(Some(least)),
+            hypotheses,
+            best,
+        };
+        Searched { evaluator, tried }
+    }
+
+    /// Whether what it found leaves nothing to explain.
+    fn is_explained(&self) -> bool {
+        match self.tried.explanation(&self.evaluator) {
+            Explanation::Effects(set) => self.evaluator.is_explained_by(set),
+            other => self.evaluator.at_noise_floor(other.hypothesis()),
+        }
+    }
 }
 
 impl Evaluator<'_> {
@@ -128,11 +163,11 @@ impl Evaluator<'_> {
         let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
         for size in 2..=self.most_effects {
-            let explained = match &best {
-                Some(best) => self.is_explained_by(best),
-                None => self.at_noise_floor(&self.base),
+            let ends = match (&best, self.reach) {
+                (Some(best), Reach::Everything) => self.is_explained_by(best),
+                (best, _) => self.at_noise_floor(best.as_ref().unwrap_or(&self.base)),
             };
-            if explained {
+            if ends {
                 break;
             }
             let done = steps_up_to(size - 1, self.candidates.len());
@@ -145,11 +180,29 @@ impl Evaluator<'_> {
             self.settle_horizon(&mut sizes);
             let before = best.as_ref().map(|best| best.set.len());
             best = self.pruned(&mut sizes, &mut taken_apart);
-            if !best.as_ref().is_some_and(|best| self.is_explained_by(best)) {
-                let (smaller, larger) = sizes.split_at_mut(size - 1);
-                self.grow_afresh(&smaller[size - 2], &mut larger[0]);
-                best = self.pruned(&mut sizes, &mut taken_apart);
+            let (smaller, larger) = sizes.split_at_mut(size - 1);
+            let (smaller, larger) = (&smaller[size - 2], &mut larger[0]);
+            match self.reach {
+                Reach::Promising => {
+                    let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
+                    if let Some(stuck) = stuck.filter(|stuck| !self.at_noise_floor(stuck)) {
+                        // Where the smaller sets do not pay either, from the one that leaves least.
+                        let smaller = match stuck.set.len() + 1 == size {
+                            true => Some(stuck),
+                            false => smaller.first().cloned(),
+                        };
+                        if let Some(smaller) = smaller {
+                            self.grow_afresh(&smaller, larger);
+                        }
+                    }
+                }
+                Reach::Everything => {
+                    if !best.as_ref().is_some_and(|best| self.is_explained_by(best)) {
+                        self.try_all_beside(smaller, larger);
+                    }
+                }
             }
+            best = self.pruned(&mut sizes, &mut taken_apart);
             // Where one more gains nothing two more may still, if there is much to gain.
             let now = best.as_ref().map(|best| best.set.len());
             let excused = best.as_ref().is_some_and(|b| b.deciding_mean() < FAR_OFF);
@@ -209,11 +262,20 @@ impl Evaluator<'_> {
         put_among(fewer, rests.collect());
     }
 
+    /// Looks for a partner of a set by what every candidate changes in that set's own prediction,
+    /// and puts what it finds among the sets that are `larger` by one: where the base model is far
+    /// off, its prediction says little of what is missing beside the set.
+    fn grow_afresh(&mut self, set: &Hypothesis, larger: &mut Vec<Hypothesis>) {
+        let afresh = every_change(set, &self.candidates, &self.search);
+        let of_base = std::mem::replace(&mut self.changes, afresh);
+        put_among(larger, self.grow(std::slice::from_ref(set)));
+        self.changes = of_base;
+    }
+
     /// Tries every candidate on top of the sets that lead, one in the windows of the search and one
     /// where it counts, by what it changes in their own predictions, and puts what it finds among
-    /// the `larger` sets: where the base model is far off, its prediction says little of what is
-    /// missing beside a set.
-    fn grow_afresh(&self, smaller: &[Hypothesis], larger: &mut Vec<Hypothesis>) {
+    /// the `larger` sets: what promises little beside a set that is not the whole may be the rest.
+    fn try_all_beside(&self, smaller: &[Hypothesis], larger: &mut Vec<Hypothesis>) {
         let first = smaller.iter().min_by(|a, b| Hypothesis::by_error(a, b));
         let mut leading: Vec<&Hypothesis> = first.into_iter().chain(leader(smaller)).collect();
         leading.dedup_by(|a, b| a.adds(&b.set));

@@ -9,6 +9,7 @@ use super::budget::EVALUATE;
 use super::evaluator::Evaluator;
 use super::findings::Fold;
 use super::hypothesis::Hypothesis;
+use super::verdict::MOST_RAISED;
 use crate::fitting::{FitData, FitOptions, fit, fit_start_states};
 use rayon::prelude::*;
 
@@ -50,9 +51,63 @@ pub(super) fn folds(evaluator: &Evaluator, before: &Hypothesis, after: &Hypothes
     (0..count).into_par_iter().map(fold).collect()
 }
 
+/// Largest factor by which an explanation raises the error of motions held out in turn; 1 where it
+/// raises none.
+pub(super) fn most_raised(folds: &[Fold]) -> f64 {
+    let raised = folds.iter().map(|fold| fold.after_rad / fold.before_rad);
+    raised.fold(1.0, f64::max)
+}
+
+/// That an explanation gains nothing on some of the motions held out in turn.
+pub(super) fn warning(folds: &[Fold]) -> Option<String> {
+    let lost = folds.iter().filter(|fold| !fold.gains).count();
+    let raised = most_raised(folds);
+    let much = match raised > MOST_RAISED {
+        true => format!(", and raises the error up to {raised:.1} times"),
+        false => String::new(),
+    };
+    (lost > 0).then(|| {
+        format!(
+            "with other motions held out the explanation gains nothing in {lost} of {} cases{much}",
+            folds.len()
+        )
+    })
+}
+
 fn names(data: &FitData) -> Vec<String> {
     data.motions
         .iter()
         .map(|motion| motion.name.clone())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fold(before_rad: f64, after_rad: f64) -> Fold {
+        Fold {
+            held_out: Vec::new(),
+            before_rad,
+            after_rad,
+            gains: after_rad < before_rad,
+        }
+    }
+
+    #[test]
+    fn the_fold_that_is_raised_most_counts_and_is_told() {
+        let good = [fold(0.1, 0.01), fold(0.1, 0.02)];
+        assert_eq!(most_raised(&good), 1.0);
+        assert_eq!(warning(&good), None);
+        let mixed = [fold(0.1, 0.01), fold(0.02, 0.025), fold(0.02, 0.024)];
+        assert_eq!(most_raised(&mixed), 0.025 / 0.02);
+        let told = warning(&mixed).unwrap();
+        assert!(told.ends_with("gains nothing in 2 of 3 cases"), "{told}");
+        let spoiled = [fold(0.1, 0.01), fold(0.02, 0.06)];
+        let told = warning(&spoiled).unwrap();
+        assert!(
+            told.ends_with("1 of 2 cases, and raises the error up to 3.0 times"),
+            "{told}"
+        );
+    }
 }

@@ -5,6 +5,8 @@ use crate::fitting::Horizon;
 use crate::log::{LogRequest, read};
 use std::path::Path;
 
+const REACH: Reach = Reach::Promising;
+
 /// The model of a virtual arm that hides effects, and its motions to fit and held out.
 fn arm(seed: u64, kinds: &[&'static str]) -> (Model, Vec<Motion>, Vec<Motion>) {
     let bench = bench(Motions::Arm, seed, kinds).unwrap();
@@ -76,7 +78,7 @@ fn all_but(kinds: &[&str]) -> Vec<String> {
 fn a_placebo_is_evaluated_beside_what_gains_as_little() {
     let (model, training, held_out) = arm(1, &["viscous"]);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
     let alone = |id, values: &[f64]| {
         let candidate = candidate(&evaluator, id);
@@ -93,7 +95,7 @@ fn a_placebo_is_evaluated_beside_what_gains_as_little() {
 fn an_effect_that_is_not_needed_leaves_the_set() {
     let (model, training, held_out) = arm(1, &["viscous"]);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
     let viscous = candidate(&evaluator, "viscous");
     let needed = evaluator.base.with(viscous, &[0.02], search, finish);
@@ -115,7 +117,7 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
 fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     let (model, training, held_out) = arm(12, &["cogging", "torque_offset"]);
     let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     let offset = candidate(&evaluator, "torque_offset");
     let finish = FitOptions::iterations(FINISH);
     let alone = (evaluator.base).with(offset, &[-0.04], &evaluator.search, finish);
@@ -126,9 +128,47 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     };
     let by_base = evaluator.grow(std::slice::from_ref(&alone));
     let mut afresh = Vec::new();
-    evaluator.grow_afresh(std::slice::from_ref(&alone), &mut afresh);
+    evaluator.grow_afresh(&alone, &mut afresh);
     assert!(leaves_rad(&by_base) > 0.005);
     assert!(leaves_rad(&afresh) < 0.002);
+    // Every other effect is tried, not those alone that promise most.
+    let beside: Vec<_> = afresh
+        .iter()
+        .filter(|set| set.set.contains(&offset))
+        .collect();
+    assert!(beside.len() > 30, "{}", beside.len());
+}
+
+/// Short windows may hide what longer ones that it was searched on show.
+#[test]
+fn a_set_that_loses_the_windows_of_the_search_is_not_the_end() {
+    let (model, training, held_out) = arm(1, &[]);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let mut set = evaluator.base.clone();
+    assert!(evaluator.is_explained_by(&set));
+    set.search_mean = 2.0;
+    assert!(!evaluator.is_explained_by(&set));
+}
+
+/// An arm that its owner believes ten times too light: over a second its swing is lost.
+#[test]
+fn the_search_takes_windows_that_the_model_follows() {
+    let (model, training, _) = arm(1, &[]);
+    let options = DiagnoseOptions::default();
+    let horizon = |model: &Model, reach| {
+        let all = training.clone();
+        let evaluator = Evaluator::new(model, all, Vec::new(), &options, reach, &|_| ());
+        evaluator.search_horizon
+    };
+    assert_eq!(horizon(&model, Reach::Everything), Horizon::Seconds(1.0));
+    let mut light = model.clone();
+    light.links[0].mass_kg *= 0.1;
+    light.links[0].inertia_kg_m2 *= 0.1;
+    assert_eq!(horizon(&light, Reach::Promising), Horizon::Seconds(1.0));
+    // Forty samples at least.
+    let shorter = horizon(&light, Reach::Everything).seconds().unwrap();
+    assert!((0.39..0.41).contains(&shorter), "{shorter}");
 }
 
 /// An arm whose gap is open where most short windows begin: what its readings say there is not
@@ -138,7 +178,7 @@ fn a_set_that_follows_longer_runs_is_judged_over_them() {
     let kinds = ["backlash", "encoder_scale", "encoder_zero"];
     let (model, training, held_out) = arm(7, &kinds);
     let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     evaluator.recut(Horizon::Seconds(0.25));
     let mut set = fitted(&evaluator, &kinds, [&[0.08], &[0.96], &[-0.03]]);
     evaluator.evaluate(&mut set);
@@ -181,7 +221,7 @@ fn an_effect_whose_shape_nothing_tells_counts() {
     let kinds = ["torque_saturation", "position_friction", "encoder_scale"];
     let (model, training, held_out) = arm(10, &kinds);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     let mut set = fitted(&evaluator, &kinds, [&[0.36], &[0.1, 0.003, 2.0], &[1.05]]);
     evaluator.evaluate(&mut set);
     let fit = &set.evaluation.as_ref().unwrap().fit;
@@ -198,7 +238,7 @@ fn a_set_that_only_shorter_runs_follow_is_judged_over_them() {
     let kinds = ["coulomb", "dead_zone", "stribeck"];
     let (model, training, held_out) = arm(6, &kinds);
     let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     evaluator.recut(Horizon::Seconds(4.0));
     let mut set = fitted(
         &evaluator,
@@ -220,7 +260,7 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
     let kinds = ["coulomb", "dead_zone", "stribeck"];
     let (model, training, held_out) = arm(6, &kinds);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
     let set = fitted(
         &evaluator,
         &kinds,
@@ -238,7 +278,7 @@ fn a_hopeless_value_is_given_up_and_a_wrong_one_is_not() {
     let tried = |kinds: &[&'static str]| {
         let (model, training, held_out) = arm(1, kinds);
         let options = DiagnoseOptions::default();
-        let evaluator = Evaluator::new(&model, training, held_out, &options, &|_| ());
+        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
         let tried = |least: Option<f64>| {
             let values = evaluator.try_values_refitted(least);
             let simulations: usize = values.iter().map(|v| v.search.simulations).sum();
