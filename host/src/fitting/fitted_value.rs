@@ -4,8 +4,10 @@ use super::covariance::{Interval, intervals};
 use super::data::FitData;
 use super::fit::Fit;
 use super::profile::profile_intervals;
+use crate::output::number::measured;
 use nalgebra::DMatrix;
 use serde::Serialize;
+use std::fmt;
 
 /// A value with its 95 % interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,6 +26,13 @@ pub struct FittedValue {
     pub high: f64,
     /// Whether the value lies on a bound: a warning, not a result.
     pub on_bound: bool,
+}
+
+/// "0.0821 N m (0.0794 to 0.0851)".
+impl fmt::Display for FittedValue {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&measured(self.value, self.low, self.high, &self.unit))
+    }
 }
 
 /// The fitted values with intervals by profile likelihood, and their correlation matrix. Where the

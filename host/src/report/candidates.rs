@@ -1,7 +1,7 @@
 //! The explanations that were tried, with the evidence for and against each.
 
 use super::page::{Section, table};
-use super::words::{in_columns, in_milli, set_name, sorted, with_interval};
+use super::words::{in_columns, in_milli, set_name, sorted};
 use super::{AFTER, BEFORE, Report};
 use crate::diagnose::words::{SHOWN, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
@@ -40,7 +40,7 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Marku
                 b { (explained_by(&alternative.effects, &alternative.wrong_values)) }
                 ": error " (in_milli(alternative.error_rad, quantity))
                 @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
-                    span.note { "; " (fitted.key) " = " (with_interval(fitted)) }
+                    span.note { "; " (fitted.key) " = " (fitted) }
                 }
             }
         }

@@ -2,7 +2,6 @@
 
 use super::words::{
     in_columns, in_milli, measured_on, reduction, sentences, sorted, verdict_word, with_ends,
-    with_interval,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
@@ -152,7 +151,7 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Optio
             .flat_map(|effect| &effect.parameters);
         let wrong = alternative.wrong_values.iter().map(|wrong| &wrong.fitted);
         let values = values.chain(wrong);
-        let values = values.map(|fitted| format!("{} = {}", fitted.key, with_interval(fitted)));
+        let values = values.map(|fitted| format!("{} = {fitted}", fitted.key));
         let effects = explained_by(&alternative.effects, &alternative.wrong_values);
         let error = in_milli(alternative.error_rad, quantity);
         format!(

@@ -4,9 +4,9 @@ use crate::diagnose::names::{at_joint, listed};
 use crate::diagnose::words::headline;
 use crate::diagnose::{BudgetShare, Diagnosis, RuledOut, Verdict};
 use crate::effects::named;
-use crate::fitting::{ErrorReduction, FittedValue};
+use crate::fitting::ErrorReduction;
 use crate::model::MeasuredSignal;
-use crate::output::number::{measured, mrad, percent};
+use crate::output::number::{mrad, percent};
 
 /// One word for a verdict, as in JSON.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
@@ -90,11 +90,6 @@ pub(super) fn in_columns<const N: usize>(
 /// "41.2 mrad", or in thousandths of what else the quantity is measured in.
 pub(super) fn in_milli(value: f64, quantity: MeasuredSignal) -> String {
     format!("{} {}", mrad(value), quantity.milli())
-}
-
-/// "0.0821 N m (0.0794 to 0.0851)".
-pub(super) fn with_interval(fitted: &FittedValue) -> String {
-    measured(fitted.value, fitted.low, fitted.high, &fitted.unit)
 }
 
 /// What the summary says beside the headline, which the writers set apart.

@@ -241,17 +241,8 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
 /// The effects with their values, a line for each value; then the sets that do as well.
 fn effects(diagnosis: &Diagnosis) -> String {
     let values = diagnosis.effects.iter().flat_map(|effect| {
-        effect.parameters.iter().map(move |value| {
-            format!(
-                "{}.{} = {:.3e} {} ({:.3e} to {:.3e})",
-                effect.address(),
-                value.key,
-                value.value,
-                value.unit,
-                value.low,
-                value.high
-            )
-        })
+        let values = effect.parameters.iter();
+        values.map(move |value| format!("{}.{} = {value}", effect.address(), value.key))
     });
     let rivals = diagnosis.alternatives.iter().map(|rival| {
         let names: Vec<String> = rival.effects.iter().map(FittedEffect::address).collect();
