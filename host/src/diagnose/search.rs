@@ -4,7 +4,7 @@
 //! A forward-greedy search stops where no single effect helps although two together would; so sets
 //! grow from a beam of several, not from one, and members of the best set are swapped. Within a
 //! size, successive halving spends the iterations: all get a look, many a second, few are fitted to
-//! the end.
+//! the end. Where that explains nothing a second search spares no candidate.
 
 use super::budget::{
     BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, SECOND_LOOKS, STRUCTURE_STEPS,
@@ -163,11 +163,7 @@ impl Evaluator<'_> {
         let mut taken_apart = Vec::new();
         let mut best = self.smallest_that_pays(&sizes);
         for size in 2..=self.most_effects {
-            let ends = match (&best, self.reach) {
-                (Some(best), Reach::Everything) => self.is_explained_by(best),
-                (best, _) => self.at_noise_floor(best.as_ref().unwrap_or(&self.base)),
-            };
-            if ends {
+            if self.is_done(best.as_ref()) {
                 break;
             }
             let done = steps_up_to(size - 1, self.candidates.len());
@@ -180,29 +176,10 @@ impl Evaluator<'_> {
             self.settle_horizon(&mut sizes);
             let before = best.as_ref().map(|best| best.set.len());
             best = self.pruned(&mut sizes, &mut taken_apart);
-            let (smaller, larger) = sizes.split_at_mut(size - 1);
-            let (smaller, larger) = (&smaller[size - 2], &mut larger[0]);
-            match self.reach {
-                Reach::Promising => {
-                    let stuck = best.clone().filter(|best| Some(best.set.len()) == before);
-                    if let Some(stuck) = stuck.filter(|stuck| !self.at_noise_floor(stuck)) {
-                        // Where the smaller sets do not pay either, from the one that leaves least.
-                        let smaller = match stuck.set.len() + 1 == size {
-                            true => Some(stuck),
-                            false => smaller.first().cloned(),
-                        };
-                        if let Some(smaller) = smaller {
-                            self.grow_afresh(&smaller, larger);
-                        }
-                    }
-                }
-                Reach::Everything => {
-                    if !best.as_ref().is_some_and(|best| self.is_explained_by(best)) {
-                        self.try_all_beside(smaller, larger);
-                    }
-                }
+            if !self.is_done(best.as_ref()) {
+                self.grow_further(best.as_ref(), before, &mut sizes);
+                best = self.pruned(&mut sizes, &mut taken_apart);
             }
-            best = self.pruned(&mut sizes, &mut taken_apart);
             // Where one more gains nothing two more may still, if there is much to gain.
             let now = best.as_ref().map(|best| best.set.len());
             let excused = best.as_ref().is_some_and(|b| b.deciding_mean() < FAR_OFF);
@@ -211,6 +188,14 @@ impl Evaluator<'_> {
             }
         }
         (best, sizes.into_iter().flatten().collect())
+    }
+
+    /// Whether there is nothing left to look for beside the best set, or the base model.
+    fn is_done(&self, best: Option<&Hypothesis>) -> bool {
+        match (best, self.reach) {
+            (Some(best), Reach::Everything) => self.is_explained_by(best),
+            (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
+        }
     }
 
     /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
@@ -260,6 +245,39 @@ impl Evaluator<'_> {
             rest
         });
         put_among(fewer, rests.collect());
+    }
+
+    /// Looks further for sets of the largest size, where `best` leaves something to explain: every
+    /// candidate, or, where sets of that size bring nothing over the `before` effects of the best
+    /// smaller one, those that promise most beside it.
+    fn grow_further(
+        &mut self,
+        best: Option<&Hypothesis>,
+        before: Option<usize>,
+        sizes: &mut [Vec<Hypothesis>],
+    ) {
+        let [.., smaller, larger] = sizes else {
+            return;
+        };
+        if self.reach == Reach::Everything {
+            self.try_all_beside(smaller, larger);
+            return;
+        }
+        let Some(stuck) = best.filter(|best| Some(best.set.len()) == before) else {
+            return;
+        };
+        // Where the smaller sets do not pay either, from the one that leaves least.
+        let from_stuck = larger
+            .first()
+            .is_some_and(|l| stuck.set.len() + 1 == l.set.len());
+        let from = if from_stuck {
+            Some(stuck)
+        } else {
+            smaller.first()
+        };
+        if let Some(from) = from {
+            self.grow_afresh(&from.clone(), larger);
+        }
     }
 
     /// Looks for a partner of a set by what every candidate changes in that set's own prediction,
@@ -357,8 +375,8 @@ impl Evaluator<'_> {
     }
 }
 
-/// The sets that larger ones grow from: the best of the short windows, and the one that leaves least
-/// where it counts, which may lie behind five of the first that are nearly the same.
+/// The sets that larger ones grow from: the best of the short windows, and the one that leaves
+/// least where it counts, which may lie behind five of the first that are nearly the same.
 fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     let (first, behind) = sorted.split_at(BEAM.min(sorted.len()));
     let mean = Hypothesis::deciding_mean;
