@@ -15,11 +15,17 @@ fn main() {
 /// Version of the project, with the commit where one is known, asked again when a source that is
 /// built into the measuring program or the commit changes.
 fn version() -> String {
-    for sources in ["src", "../host/src", "../shared/src", "../firmware/src"] {
+    for sources in [
+        "src",
+        "../host/src",
+        "../host/cm5-sim/src",
+        "../shared/src",
+        "../firmware/src",
+    ] {
         println!("cargo::rerun-if-changed={sources}");
     }
     let moves = git(&["rev-parse", "--git-path", "logs/HEAD"]);
-    // What is named and not there would build anew every time.
+    // What is named and not there would be built again every time.
     if let Some(moves) = moves.filter(|moves| Path::new(moves).exists()) {
         println!("cargo::rerun-if-changed={moves}");
     }

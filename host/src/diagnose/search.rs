@@ -298,12 +298,9 @@ impl Evaluator<'_> {
         let mut leading: Vec<&Hypothesis> = first.into_iter().chain(leader(smaller)).collect();
         leading.dedup_by(|a, b| a.adds(&b.set));
         let found = leading.into_iter().flat_map(|set| {
-            let apart = self.candidates.iter().filter(|candidate| {
-                let mut kept = set.set.iter();
-                kept.all(|kept| !kept.overlaps(**candidate, &self.start))
-            });
-            let apart: Vec<Candidate> = apart.copied().collect();
-            self.first_look(set, &every_change(set, &apart, &self.search), 1)
+            let mut beside = self.candidates.clone();
+            beside.retain(|candidate| self.is_new(set, *candidate, &[]));
+            self.first_look(set, &every_change(set, &beside, &self.search), 1)
         });
         let found = self.successive_halving(found.collect());
         put_among(larger, self.swapped(self.evaluated(found)));

@@ -75,8 +75,8 @@ const RIGS: &[Rig] = &[
         why: Some(
             "the servo's gain, which nobody publishes, trails by itself; a delay set to 0, 30, 60, 100 ms and the rest \
              refitted leaves 15.6, 14.1, 20.1, 31.0 mrad held out: at most some 30 ms of the lag are a delay, and they \
-             gain less than the readings scatter; a cable spring and a friction that changes with the angle come closest, \
-             and make one motion in three, held out in turn, four times worse",
+             gain less than the readings scatter; a cable spring and a friction that changes with \
+             the angle come closest, and make one motion in three, held out in turn, four times worse",
         ),
     },
     Rig {
@@ -93,7 +93,8 @@ const RIGS: &[Rig] = &[
         expected: "ambiguous with drag, <= 6.5 mrad",
         why: Some(
             "in windows of 1 s an offset of the angle explains most (tilt, zero, scale and angle of the centre of mass are \
-             alike there); over whole motions (--horizon whole) drag and Coulomb friction beside it leave 2.1 mrad of 25.4",
+             alike there); over whole motions (--horizon whole) drag and Coulomb friction beside \
+             it leave 2.1 mrad of 25.4",
         ),
     },
     Rig {
@@ -121,8 +122,8 @@ const RIGS: &[Rig] = &[
         expected: "coulomb only, 25 % below",
         why: Some(
             "held out, the second link goes over the top (9.0 rad, 22 rad/s; trained on 1.4 rad and 13 rad/s), so small \
-             errors of inertia grow; a constant torque or a friction that differs by direction at joint 1 beside it leave \
-             7.8 mrad, which these two motions do not prove",
+             errors of inertia grow; a constant torque or a friction that differs by direction at \
+             joint 1 beside it leave 7.8 mrad, which these two motions do not prove",
         ),
     },
 ];

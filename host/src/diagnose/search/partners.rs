@@ -39,7 +39,12 @@ impl Evaluator<'_> {
     }
 
     /// Whether a candidate makes a set on top of a hypothesis that was not tried yet.
-    fn is_new(&self, from: &Hypothesis, candidate: Candidate, tried: &[Hypothesis]) -> bool {
+    pub(super) fn is_new(
+        &self,
+        from: &Hypothesis,
+        candidate: Candidate,
+        tried: &[Hypothesis],
+    ) -> bool {
         let set = from.set_with(candidate);
         let mut kept = from.set.iter();
         kept.all(|kept| !kept.overlaps(candidate, &self.start))
