@@ -22,7 +22,7 @@ use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
 use super::stability::folds;
 use super::verdict::FAR_OFF;
 use crate::effects::{CONTROLS, PLACEBO};
-use crate::fitting::{Candidate, FitOptions};
+use crate::fitting::{Candidate, FitOptions, settle};
 use crate::log::Motion;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -63,6 +63,7 @@ pub fn diagnose(
         mut tried,
     } = found;
     let own_fits = evaluator.tell_motions_apart(&mut tried);
+    evaluator.settle(&mut tried);
     let explanation = tried.explanation(&evaluator);
     let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
     let mut evidence = VerdictEvidence {
@@ -135,6 +136,16 @@ impl Evaluator<'_> {
             tried.best = Some(best);
         }
         Some(own)
+    }
+
+    /// Fits the values of the best set, where it is the explanation, as exactly as these are stated.
+    fn settle(&self, tried: &mut Tried) {
+        if let Explanation::Effects(best) = tried.explanation(self) {
+            let mut best = best.clone();
+            let settled = settle(best.fit().clone(), &self.training);
+            best.judge(settled, &self.training, self.held_out.as_ref());
+            tried.best = Some(best);
+        }
     }
 
     /// A placebo regressor at each joint, fitted and evaluated like a candidate; those that gain

@@ -125,7 +125,7 @@ impl LevenbergMarquardt<'_> {
         let (fit, path) = (&self.fit, &self.fit.free[parameter]);
         let value = path.get(&fit.model).unwrap_or(0.0);
         let (_, high) = path.bounds(&fit.model);
-        let size = difference(path) * value.abs().max(scale(path));
+        let size = difference(path, value);
         let delta = if value + size > high { -size } else { size };
         let mut model = fit.model.clone();
         let known = path.set(&mut model, value + delta);
@@ -177,7 +177,18 @@ const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 /// Step of the difference in a share of what something hidden can be displaced by.
 const SHARE_DIFFERENCE: f64 = 0.02;
 
-/// A value's natural size, for the step of a finite difference where the value itself is zero.
+/// Step of the finite difference of a value.
+pub(super) fn difference(path: &ParameterPath, value: f64) -> f64 {
+    let share = match path {
+        ParameterPath::Effect { id, .. } => {
+            crate::effects::named(id).map_or(2e-4, |effect| effect.difference())
+        }
+        _ => 2e-4,
+    };
+    share * value.abs().max(scale(path))
+}
+
+/// A value's natural size, where the value itself is zero.
 fn scale(path: &ParameterPath) -> f64 {
     match path {
         ParameterPath::Effect { .. } => path
@@ -185,15 +196,5 @@ fn scale(path: &ParameterPath) -> f64 {
             .and_then(|parameter| parameter.starts.first())
             .map_or(1e-3, |start| start.abs().max(1e-6)),
         _ => 1e-9,
-    }
-}
-
-/// Step of a finite difference, in shares of the value.
-fn difference(path: &ParameterPath) -> f64 {
-    match path {
-        ParameterPath::Effect { id, .. } => {
-            crate::effects::named(id).map_or(2e-4, |effect| effect.difference())
-        }
-        _ => 2e-4,
     }
 }

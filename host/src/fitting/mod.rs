@@ -60,7 +60,7 @@ pub use horizon::{Horizon, Window};
 pub use information::Information;
 pub use node::Node;
 pub use noise::{estimated_resolution, noise};
-pub(crate) use polish::polish;
+pub(crate) use polish::{polish, settle};
 pub use profile::profile_intervals;
 pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};

@@ -12,6 +12,7 @@ use super::fit::Fit;
 use super::node::Node;
 use super::normal::NormalEquations;
 use super::residual::residuals;
+use super::stairs;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
 
 /// The intervals, each end moved out to the farthest value at which the squared error is no larger
 /// than a smooth one would be at the end. The other values and the start states go along as they
-/// would if all were straight.
+/// would if all were straight, or, where a law jumps, are fitted there.
 pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> Vec<Interval> {
     let count = fit.free.len();
     let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;
@@ -33,19 +34,24 @@ pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> V
     };
     let steps = NormalEquations::assemble(count, &fit.jacobian, 0.0);
     let least = fit.residuals.cost();
+    let jumps = fit.free.iter().any(stairs::jumps);
     intervals
         .par_iter()
         .enumerate()
         .map(|(i, interval)| {
             let value = fit.values()[i];
             let (low, high) = fit.free[i].bounds(&fit.model);
+            let straight = inverse.column(i) / inverse[(i, i)];
             let end = |reach: f64| {
                 let allowed = least + reach * reach / inverse[(i, i)];
-                let along = inverse.column(i) / inverse[(i, i)];
+                let holding = |moved: f64| fit.holding(i, value + moved, data);
+                let is_allowed = |moved: f64| {
+                    cost(fit, data, &steps, &(&straight * moved)) <= allowed
+                        || jumps && holding(moved).is_some_and(|f| f.residuals.cost() <= allowed)
+                };
                 let farthest = REACHES.iter().rev().find(|times| {
                     let moved = *times * reach;
-                    (low..=high).contains(&(value + moved))
-                        && cost(fit, data, &steps, &(&along * moved)) <= allowed
+                    (low..=high).contains(&(value + moved)) && is_allowed(moved)
                 });
                 value + farthest.unwrap_or(&1.0) * reach
             };
@@ -67,11 +73,7 @@ fn cost(fit: &Fit, data: &FitData, steps: &NormalEquations, by: &DVector<f64>) -
 
 /// The model with its values moved and the start states that go along; none where a value leaves
 /// its bounds.
-pub(super) fn moved(
-    fit: &Fit,
-    steps: &NormalEquations,
-    by: &DVector<f64>,
-) -> Option<(Model, Vec<Node>)> {
+fn moved(fit: &Fit, steps: &NormalEquations, by: &DVector<f64>) -> Option<(Model, Vec<Node>)> {
     let mut model = fit.model.clone();
     for (path, by) in fit.free.iter().zip(by.iter()) {
         let value = path.get(&fit.model)? + by;

@@ -10,7 +10,7 @@ use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
 use super::mixture::untold_mixture;
-use super::polish::polish;
+use super::polish::{polish, settle};
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
@@ -198,6 +198,7 @@ fn finish(
     split: &Split,
     horizon: Horizon,
 ) -> Result<Refitted, Undetermined> {
+    let found = settle(found, data);
     let (values, Some(_)) = fitted_values(&found, data) else {
         let blind = blind(&found, data);
         return Err(Undetermined {

@@ -1,11 +1,17 @@
 //! The calls that start a fit, or go on with one.
 
+use super::covariance::inverse;
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::node::{Node, StartGuess};
-use super::residual::residuals;
+use super::normal::NormalEquations;
+use super::residual::{Residuals, residuals};
 use crate::model::{Model, ParameterPath};
+use nalgebra::DVector;
+
+/// Iterations of a fit with one value held, from the best one without.
+const HOLDING: usize = 2;
 
 impl Fit {
     /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it
@@ -23,6 +29,39 @@ impl Fit {
             ..options
         };
         LevenbergMarquardt::new(self.clone(), data, guesses(data)).run(options)
+    }
+
+    /// The fit with one value held at a place, all others led there by the derivatives at hand;
+    /// `None` where the value may not be there.
+    pub(super) fn holding(&self, value: usize, at: f64, data: &FitData) -> Option<Fit> {
+        let mut start = self.clone();
+        let path = start.free.remove(value);
+        let (low, high) = path.bounds(&self.model);
+        let is_possible = (low..=high).contains(&at) && path.set(&mut start.model, at);
+        is_possible.then_some(())?;
+        start.residuals = residuals(&start.model, data, &start.nodes);
+        for (window, residual) in start.jacobian.iter_mut().zip(&start.residuals.windows) {
+            window.parameters = window.parameters.clone().remove_column(value);
+            window.residual.copy_from_slice(residual);
+        }
+        (start.converged, start.fresh) = (false, false);
+        let options = FitOptions::iterations(HOLDING).glance();
+        Some(LevenbergMarquardt::new(start, data, guesses(data)).run(options))
+    }
+
+    /// How far the values would move to what left these residuals at them, were all straight; not
+    /// at all where the derivatives do not determine them.
+    pub(super) fn moved_by(&self, other: &Residuals) -> DVector<f64> {
+        let count = self.free.len();
+        let mut windows = self.jacobian.clone();
+        for (window, residual) in windows.iter_mut().zip(&other.windows) {
+            window.residual.copy_from_slice(residual);
+        }
+        let [before, after] = [&self.jacobian, &windows]
+            .map(|windows| NormalEquations::assemble(count, windows, 0.0));
+        inverse(&before.matrix).map_or(DVector::zeros(count), |inverse| {
+            inverse * (after.gradient - before.gradient)
+        })
     }
 
     /// Fits more parameters of `model`, which holds this fit's values and a start for the new ones.

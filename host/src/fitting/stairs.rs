@@ -7,79 +7,141 @@
 use super::covariance::inverse;
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
+use super::jacobian::difference;
 use super::node::Node;
 use super::normal::NormalEquations;
-use super::profile::moved;
 use super::residual::residuals;
 use super::solve::fit;
 use crate::effects::{SMOOTH_DIFFERENCE, named};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
-/// Where the squared error is looked up, in standard errors.
-const ERRORS: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
-/// Share of the squared error that a place must be lower by, and a fit from there.
-const LOWER: f64 = 0.005;
-/// Most times that it goes down.
-const TIMES: usize = 4;
+/// Places looked up on either side of a value.
+const PLACES: i32 = 24;
+/// Between two of them lies a part of the difference that its derivative is taken over, across
+/// stairs, or of the standard error that this gives.
+const OF_DIFFERENCE: f64 = 1.0 / 64.0;
+const OF_ERROR: f64 = 0.5;
+/// Where that many of them lie lowest all else is fitted.
+const FITTED: usize = 4;
+/// Places whose squared errors are closer than this, in variances of a residual, lie on one stair.
+const ONE_STAIR: f64 = 1e-3;
 
-/// The fit, or one that is lower down: from places along those of its values that belong to laws
-/// that jump. The fit must have its derivatives.
-pub(crate) fn down_the_stairs(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
-    for _ in 0..TIMES {
-        let Some((model, nodes)) = lowest(&found, data) else {
-            break;
-        };
-        let lower = fit(&model, &found.free, data, Some(&nodes), options);
-        if !is_lower(lower.residuals.cost(), &found) {
-            break;
+/// How far down the stairs a fit goes.
+#[derive(Debug, Clone, Copy)]
+struct Descent {
+    /// Share of the squared error that a fit from a place must be lower by.
+    share: f64,
+    /// The same in variances of a residual: twice the logarithm of the likelihood.
+    variances: f64,
+    /// Most times that it goes down.
+    times: usize,
+}
+
+/// Far enough to compare explanations.
+const COMPARED: Descent = Descent {
+    share: 0.005,
+    variances: 0.0,
+    times: 4,
+};
+/// Far enough to state values: what a stair that is left out would move them by, intervals allow.
+const STATED: Descent = Descent {
+    share: 0.0,
+    variances: 1.0,
+    times: 5,
+};
+
+/// The fit, or one that is lower down by what tells explanations apart. The fit must have its
+/// derivatives.
+pub(crate) fn down_the_stairs(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    COMPARED.from(found, data, options)
+}
+
+/// The fit, or one that is lower down by what counts where its values are stated. The fit must have
+/// its derivatives.
+pub(crate) fn down_the_last_stairs(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    STATED.from(found, data, options)
+}
+
+impl Descent {
+    /// From places along those values that belong to laws that jump.
+    fn from(self, mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
+        for _ in 0..self.times {
+            let Some((model, nodes)) = self.lowest(&found, data) else {
+                break;
+            };
+            let lower = fit(&model, &found.free, data, Some(&nodes), options);
+            if !self.is_lower(lower.residuals.cost(), &found) {
+                break;
+            }
+            found = Fit {
+                simulations: found.simulations + lower.simulations,
+                ..lower
+            };
         }
-        found = Fit {
-            simulations: found.simulations + lower.simulations,
-            ..lower
-        };
+        found
     }
-    found
+
+    fn is_lower(self, cost: f64, than: &Fit) -> bool {
+        let by = self.share * than.residuals.cost() + self.variances * variance(than);
+        cost < than.residuals.cost() - by
+    }
+
+    /// The lowest place along those values, all else fitted, if it is lower than the fit.
+    fn lowest(self, found: &Fit, data: &FitData) -> Option<(Model, Vec<Node>)> {
+        let free = found.free.iter().enumerate();
+        let jumping: Vec<usize> = free
+            .filter(|(_, path)| jumps(path))
+            .map(|(i, _)| i)
+            .collect();
+        if jumping.is_empty() {
+            return None;
+        }
+        let steps = NormalEquations::assemble(found.free.len(), &found.jacobian, 0.0);
+        let inverse = inverse(&steps.matrix)?;
+        let places = jumping.par_iter().flat_map(|&value| {
+            let error = (variance(found) * inverse[(value, value)]).sqrt();
+            let lowest = lowest_alone(found, data, value, error).into_par_iter();
+            lowest.filter_map(move |at| found.holding(value, at, data))
+        });
+        let cost = |place: &Fit| place.residuals.cost();
+        let lowest = places.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let is_lower = self.is_lower(cost(&lowest), found);
+        is_lower.then_some((lowest.model, lowest.nodes))
+    }
+}
+
+/// Where a value that is moved alone, by parts of its standard error, leaves least of those places
+/// that lie on other stairs than the fit.
+fn lowest_alone(found: &Fit, data: &FitData, value: usize, error: f64) -> Vec<f64> {
+    let (path, from) = (found.free[value], found.values()[value]);
+    let (low, high) = path.bounds(&found.model);
+    let between = (OF_ERROR * error).max(OF_DIFFERENCE * difference(&path, from));
+    let (cost, one_stair) = (found.residuals.cost(), ONE_STAIR * variance(found));
+    let places = (-PLACES..=PLACES).into_par_iter().filter_map(|place| {
+        let at = from + f64::from(place) * between;
+        let mut model = found.model.clone();
+        let is_possible = (low..=high).contains(&at) && path.set(&mut model, at);
+        is_possible.then_some(())?;
+        let moved = residuals(&model, data, &found.nodes).cost();
+        ((moved - cost).abs() > one_stair).then_some((moved, at))
+    });
+    let mut places: Vec<(f64, f64)> = places.collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    places.dedup_by(|a, b| (a.0 - b.0).abs() <= one_stair);
+    let lowest = places.into_iter().take(FITTED);
+    lowest.map(|(_, at)| at).collect()
+}
+
+/// Variance of a weighted residual: less than the noise is left of a prediction without any.
+fn variance(found: &Fit) -> f64 {
+    found.residuals.mean_square().max(1.0)
 }
 
 /// Whether a value belongs to an effect whose law jumps.
-fn jumps(path: &ParameterPath) -> bool {
+pub(super) fn jumps(path: &ParameterPath) -> bool {
     let ParameterPath::Effect { id, .. } = path else {
         return false;
     };
     named(id).is_some_and(|effect| effect.difference() > SMOOTH_DIFFERENCE)
-}
-
-fn is_lower(cost: f64, than: &Fit) -> bool {
-    cost < (1.0 - LOWER) * than.residuals.cost()
-}
-
-/// The lowest place along those values, if it is lower than the fit; the other values and the start
-/// states go along as they would if all were straight.
-fn lowest(found: &Fit, data: &FitData) -> Option<(Model, Vec<Node>)> {
-    let free = found.free.iter().enumerate();
-    let jumping: Vec<usize> = free
-        .filter(|(_, path)| jumps(path))
-        .map(|(i, _)| i)
-        .collect();
-    if jumping.is_empty() {
-        return None;
-    }
-    let steps = NormalEquations::assemble(found.free.len(), &found.jacobian, 0.0);
-    let inverse = inverse(&steps.matrix)?;
-    // Less than the noise is left of a prediction without any.
-    let variance = found.residuals.mean_square().max(1.0);
-    let places = jumping.par_iter().flat_map_iter(|&value| {
-        let error = (variance * inverse[(value, value)]).sqrt();
-        let along = inverse.column(value) / inverse[(value, value)];
-        let ways = ERRORS.iter().flat_map(|errors| [-*errors, *errors]);
-        let places = ways.filter_map(|errors| {
-            let (model, nodes) = moved(found, &steps, &(&along * (errors * error)))?;
-            let cost = residuals(&model, data, &nodes).cost();
-            Some((cost, model, nodes))
-        });
-        places.collect::<Vec<_>>()
-    });
-    let lowest = places.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    is_lower(lowest.0, found).then_some((lowest.1, lowest.2))
 }

@@ -1,6 +1,7 @@
 //! The integration step, chosen from the data: as coarse as the measurement allows to search with,
 //! as fine as a found explanation needs to be judged by.
 
+use super::covariance::intervals;
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::node::Node;
@@ -18,6 +19,13 @@ const LONGEST_S: f64 = 0.0051;
 
 /// Share of what a fit leaves that its steps may account for: 2 % of the error.
 const SHARE: f64 = 0.2;
+
+/// Share of the squared error by which shorter steps may leave more: a fit that is lost in a motion
+/// finds other valleys.
+const HIGHER: f64 = 0.005;
+
+/// Share of a value's standard error that its steps may account for.
+const OF_ERROR: f64 = 0.25;
 
 /// Most halvings: an eighth of the step.
 const HALVINGS: usize = 3;
@@ -74,6 +82,39 @@ pub(crate) fn in_fine_steps(mut found: Fit, data: &FitData, options: FitOptions)
         };
     }
     found
+}
+
+/// The fit, or one in steps so short that half of them would move none of its values by a share of
+/// the standard error that counts. The fit must have its derivatives.
+pub(crate) fn in_steps_for_values(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    for _ in 0..HALVINGS {
+        let half_s = 0.5 * found.model.step_s.min(shortest_period_s(data));
+        let fine = with_step(&found.model, half_s);
+        if !STEP_S.allow(half_s) || !moves_values(&found, &fine, data) {
+            break;
+        }
+        let refitted = fit(&fine, &found.free, data, Some(&found.nodes), options);
+        if refitted.residuals.cost() > (1.0 + HIGHER) * found.residuals.cost() {
+            break;
+        }
+        found = Fit {
+            simulations: found.simulations + refitted.simulations + 1,
+            ..refitted
+        };
+    }
+    found
+}
+
+/// Whether a fit of this other model, which differs in its steps, would have other values; as far
+/// as the derivatives tell.
+fn moves_values(found: &Fit, other: &Model, data: &FitData) -> bool {
+    let Some((intervals, _)) = intervals(found, data) else {
+        return false;
+    };
+    let after = residuals(other, data, &found.nodes);
+    let moved = found.moved_by(&after);
+    let mut values = moved.iter().zip(&intervals);
+    values.any(|(moved, interval)| moved.abs() > OF_ERROR * interval.standard_error)
 }
 
 fn with_step(model: &Model, step_s: f64) -> Model {
