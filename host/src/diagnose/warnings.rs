@@ -71,12 +71,12 @@ pub(super) fn pairs(diagnosis: &Diagnosis) -> Vec<String> {
     lines
 }
 
-/// That the explanation was judged in shorter integration steps than the file's.
+/// That the explanation was fitted in shorter integration steps than the file's.
 pub(super) fn shorter_steps(diagnosis: &Diagnosis) -> Option<String> {
     let step_s = diagnosis.shorter_step_s?;
     Some(format!(
-        "the integration steps of the file are too long for this explanation: it was judged with \
-         step_s = {}, which `add` and `fit` write",
+        "the integration steps of the file are too long for this explanation: its values were \
+         fitted with step_s = {}, which `add` and `fit` write",
         short(step_s)
     ))
 }
