@@ -2,8 +2,8 @@
 
 use super::findings::Diagnosis;
 use super::options::DiagnoseOptions;
+use super::pipeline::diagnose;
 use super::progress::Progress;
-use super::search::diagnose;
 use super::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;

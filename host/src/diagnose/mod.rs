@@ -24,6 +24,7 @@ mod measured_value;
 mod multistart;
 pub(crate) mod names;
 mod options;
+mod pipeline;
 mod progress;
 mod replacement;
 mod residual_structure;
@@ -47,6 +48,6 @@ pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcome
 pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
+pub use pipeline::diagnose;
 pub use progress::Progress;
-pub use search::diagnose;
 pub(crate) use selection::independent_share;

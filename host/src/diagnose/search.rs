@@ -4,171 +4,24 @@
 //! A forward-greedy search stops where no single effect helps although two together would; so sets
 //! grow from a beam of several, not from one, and members of the best set are swapped. Within a
 //! size, successive halving spends the iterations: all get a look, many a second, few are fitted to
-//! the end. Where that explains nothing a second search spares no candidate.
+//! the end.
 
 use super::budget::{
-    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, SECOND_LOOKS, STRUCTURE_STEPS,
-    steps_up_to,
+    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, SECOND_LOOKS, steps_up_to,
 };
-use super::conclusion::conclude;
-use super::consistency::OwnFits;
 use super::evaluator::{Evaluator, Reach, every_change};
-use super::explanation::{Explanation, Tried, VerdictEvidence};
-use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
-use super::options::DiagnoseOptions;
-use super::progress::{ALONE, LARGER, Progress, STRUCTURE};
-use super::stability::folds;
+use super::progress::{ALONE, LARGER};
 use super::verdict::FAR_OFF;
-use crate::effects::{CONTROLS, PLACEBO};
-use crate::fitting::{Candidate, FitOptions, settle};
-use crate::log::Motion;
-use crate::model::Model;
+use crate::fitting::{Candidate, FitOptions};
 use rayon::prelude::*;
 
 mod partners;
 
-/// A placebo that gains this share of what the chosen set does on the short windows, both in
-/// factors of the error, is evaluated: half of the share that would make it rank.
-const RANKING: f64 = 0.25;
-
-/// Searches for the effects a model is missing.
-///
-/// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training
-/// motions decide, and the diagnosis says so.
-pub fn diagnose(
-    model: &Model,
-    training: Vec<Motion>,
-    held_out: Vec<Motion>,
-    options: &DiagnoseOptions,
-    progress: &(dyn Fn(Progress) + Sync),
-) -> Diagnosis {
-    let mut model = model.clone();
-    model.free.retain(|path| !options.known.contains(path));
-    let searched = |reach| {
-        let (training, held_out) = (training.clone(), held_out.clone());
-        let evaluator = Evaluator::new(&model, training, held_out, options, reach, progress);
-        Searched::by(evaluator)
-    };
-    let mut found = searched(Reach::Promising);
-    if !found.is_explained() && found.evaluator.most_effects > 1 {
-        let further = searched(Reach::Everything);
-        if further.is_explained() {
-            found = further;
-        }
-    }
-    let Searched {
-        evaluator,
-        mut tried,
-    } = found;
-    let own_fits = evaluator.tell_motions_apart(&mut tried);
-    evaluator.settle(&mut tried);
-    let explanation = tried.explanation(&evaluator);
-    let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
-    let mut evidence = VerdictEvidence {
-        evaluator: &evaluator,
-        tried: &tried,
-        explanation,
-        equivalents: &equivalents,
-        placebos: match explanation {
-            Explanation::Effects(chosen) => evaluator.try_placebos(chosen),
-            _ => Vec::new(),
-        },
-        residual_structure: None,
-        per_motion_reduction: None,
-        folds: Vec::new(),
-        seed: options.seed,
-    };
-    evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
-    if !matches!(evidence.explanation, Explanation::Given(_)) {
-        evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
-    }
-    evidence.per_motion_reduction = own_fits
-        .as_ref()
-        .and_then(|own| own.reduction(evidence.chosen()));
-    let diagnosis = conclude(&evidence);
-    evaluator.steps.step(STRUCTURE_STEPS);
-    diagnosis
-}
-
-/// A search that was done, and what it tried.
-struct Searched<'a> {
-    evaluator: Evaluator<'a>,
-    tried: Tried,
-}
-
-impl<'a> Searched<'a> {
-    fn by(mut evaluator: Evaluator<'a>) -> Self {
-        let (best, hypotheses) = evaluator.search();
-        let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
-        evaluator.steps.begin(STRUCTURE, all);
-        let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
-        let tried = Tried {
-            values: evaluator.try_values(Some(least)),
-            values_refitted: evaluator.try_values_refitted(Some(least)),
-            hypotheses,
-            best,
-        };
-        Searched { evaluator, tried }
-    }
-
-    /// Whether what it found leaves nothing to explain.
-    fn is_explained(&self) -> bool {
-        match self.tried.explanation(&self.evaluator) {
-            Explanation::Effects(set) => self.evaluator.is_explained_by(set),
-            other => self.evaluator.at_noise_floor(other.hypothesis()),
-        }
-    }
-}
-
 impl Evaluator<'_> {
-    /// Fits of the explanation to each motion by itself. Where values that one motion found suit
-    /// all of them better than those found for all, the best set takes these.
-    fn tell_motions_apart(&self, tried: &mut Tried) -> Option<OwnFits> {
-        let explanation = tried.explanation(self);
-        let own = OwnFits::of(explanation.hypothesis(), &self.training)?;
-        if let Explanation::Effects(best) = explanation
-            && let Some(fit) = own.fit_to_all(best, &self.training)
-        {
-            let mut best = best.clone();
-            best.judge(fit, &self.training, self.held_out.as_ref());
-            tried.best = Some(best);
-        }
-        Some(own)
-    }
-
-    /// Fits the values of the best set, where it is the explanation, as exactly as these are stated.
-    fn settle(&self, tried: &mut Tried) {
-        if let Explanation::Effects(best) = tried.explanation(self) {
-            let mut best = best.clone();
-            let settled = settle(best.fit().clone(), &self.training);
-            best.judge(settled, &self.training, self.held_out.as_ref());
-            tried.best = Some(best);
-        }
-    }
-
-    /// A placebo regressor at each joint, fitted and evaluated like a candidate; those that gain
-    /// next to nothing on the short windows are not evaluated.
-    fn try_placebos(&self, chosen: &Hypothesis) -> Vec<Hypothesis> {
-        let placebo = CONTROLS.iter().filter(|e| e.info().id == PLACEBO);
-        let at_joints = |&effect| {
-            let joints = (0..self.start.link_count()).map(Some);
-            joints.map(move |joint| Candidate { effect, joint })
-        };
-        let placebos: Vec<Candidate> = placebo.flat_map(at_joints).collect();
-        let changes = every_change(&self.base, &placebos, &self.search);
-        let mut placebos = self.first_look(&self.base, &changes, 1);
-        let gain = |h: &Hypothesis| (self.base.search_mean / h.search_mean).ln();
-        placebos.retain(|placebo| gain(placebo) > RANKING * gain(chosen));
-        for placebo in &mut placebos {
-            self.evaluate(placebo);
-        }
-        placebos
-    }
-
     /// The smallest set that pays, if any does, and every set that was tried.
-    fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
+    pub fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
         self.steps.begin(ALONE, BASE_STEPS);
         let mut sizes = vec![self.singles()];
         let mut taken_apart = Vec::new();
@@ -211,7 +64,7 @@ impl Evaluator<'_> {
 
     /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
     /// was searched on: these may be longer, and show what shorter ones do not.
-    fn is_explained_by(&self, set: &Hypothesis) -> bool {
+    pub fn is_explained_by(&self, set: &Hypothesis) -> bool {
         self.at_noise_floor(set) && set.follows_windows()
     }
 

@@ -1,8 +1,10 @@
 use super::*;
 use crate::challenge::{Motions, bench};
-use crate::diagnose::Verdict;
-use crate::fitting::Horizon;
-use crate::log::{LogRequest, read};
+use crate::diagnose::pipeline::Searched;
+use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
+use crate::fitting::{Horizon, settle};
+use crate::log::{LogRequest, Motion, read};
+use crate::model::Model;
 use std::path::Path;
 
 const REACH: Reach = Reach::Promising;
