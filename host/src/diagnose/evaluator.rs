@@ -79,7 +79,8 @@ impl<'a> Evaluator<'a> {
             true => 1,
             false => options.most_effects,
         };
-        let steps = StepCounter::new(planned_steps(candidates.len(), most_effects), progress);
+        let planned = planned_steps(candidates.len(), most_effects);
+        let steps = StepCounter::new(planned, reach == Reach::Everything, progress);
         let whole = FitData::new(model, training, Horizon::Whole);
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;

@@ -21,6 +21,14 @@ const STAGES: [&str; 5] = [
     "larger sets",
     "residual structure",
 ];
+/// The same where the first search explained nothing.
+const STAGES_AGAIN: [&str; 5] = [
+    "second search: the model as it is",
+    "second search: every effect alone",
+    "second search: pairs and swaps",
+    "second search: larger sets",
+    "second search: residual structure",
+];
 /// The stage of sets of one effect; the stage of pairs is 2.
 pub(super) const ALONE: usize = 1;
 /// The stage of three effects and more.
@@ -33,16 +41,18 @@ pub(super) struct StepCounter<'a> {
     heard: &'a (dyn Fn(Progress) + Sync),
     done: AtomicUsize,
     stage: AtomicUsize,
+    stages: [&'static str; 5],
     total: usize,
 }
 
 impl<'a> StepCounter<'a> {
-    /// None done yet of `total`.
-    pub fn new(total: usize, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
+    /// None done yet of `total`, in the first search or again.
+    pub fn new(total: usize, again: bool, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
         let steps = StepCounter {
             heard,
             done: AtomicUsize::new(0),
             stage: AtomicUsize::new(0),
+            stages: if again { STAGES_AGAIN } else { STAGES },
             total,
         };
         steps.step(0);
@@ -52,11 +62,14 @@ impl<'a> StepCounter<'a> {
     /// `count` more steps are done.
     pub fn step(&self, count: usize) {
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
-        let stage = self.stage.load(Ordering::Relaxed).min(STAGES.len() - 1);
+        let stage = self
+            .stage
+            .load(Ordering::Relaxed)
+            .min(self.stages.len() - 1);
         (self.heard)(Progress {
             done: done.min(self.total),
             total: self.total,
-            what: STAGES[stage],
+            what: self.stages[stage],
         });
     }
 
@@ -77,7 +90,7 @@ mod tests {
     fn steps_never_pass_the_total() {
         let told = Mutex::new(Vec::new());
         let heard = |progress: Progress| told.lock().unwrap().push((progress.done, progress.what));
-        let steps = StepCounter::new(4, &heard);
+        let steps = StepCounter::new(4, false, &heard);
         steps.step(3);
         steps.step(3);
         steps.begin(STRUCTURE, 4);

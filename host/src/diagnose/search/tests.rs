@@ -6,6 +6,7 @@ use crate::fitting::{Horizon, settle};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const REACH: Reach = Reach::Promising;
 
@@ -312,7 +313,11 @@ fn a_second_search_explains_what_the_first_does_not() {
         Searched::by(evaluator)
     };
     assert!(!first.is_explained());
-    let diagnosis = diagnose(&model, training, held_out, &options, &|_| ());
+    let again = AtomicBool::new(false);
+    let diagnosis = diagnose(&model, training, held_out, &options, &|progress| {
+        again.fetch_or(progress.what.starts_with("second"), Ordering::Relaxed);
+    });
+    assert!(again.into_inner());
     assert_eq!(diagnosis.effects.len(), 3);
     let error = &diagnosis.error;
     assert!(error.after_rad < 1.1 * error.floor_rad, "{error:?}");
