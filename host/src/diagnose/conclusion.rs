@@ -49,6 +49,7 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         summary: Vec::new(),
         next: Vec::new(),
         warnings: warnings(evidence, correlation.is_some()),
+        search_horizon_s: evaluator.search_horizon.seconds(),
         horizon_s: evaluator.horizon.seconds(),
         shorter_step_s: (step_s < evaluator.file_step_s).then_some(step_s),
         windows: windows(evaluator),

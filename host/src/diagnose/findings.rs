@@ -180,6 +180,8 @@ pub struct Diagnosis {
     pub next: Vec<String>,
     /// Things to be wary of: values on bounds, placebos that rank, data warnings.
     pub warnings: Vec<String>,
+    /// Seconds of the windows in which effects were searched for; absent for whole motions.
+    pub search_horizon_s: Option<f64>,
     /// Seconds of the longest windows on which the judgement may rest; absent for whole motions.
     pub horizon_s: Option<f64>,
     /// The integration step of the explanation, s, where it needs a shorter one than the file has.
@@ -277,6 +279,7 @@ impl Diagnosis {
                 .collect(),
             next,
             warnings: Vec::new(),
+            search_horizon_s: None,
             horizon_s: None,
             shorter_step_s: None,
             windows: Vec::new(),

@@ -9,7 +9,7 @@ use crate::effects;
 use crate::fitting::{FittedValue, in_windows};
 use crate::model::MeasuredSignal;
 use crate::output::number::unit;
-use crate::output::number::{NONE, interval, mrad, percent, short};
+use crate::output::number::{NONE, given, interval, mrad, percent, short};
 use crate::output::table::{TableColumn, plain_table, table_of};
 use comfy_table::{CellAlignment, Table};
 
@@ -99,7 +99,8 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
             mrad(error.floor_rad)
         ),
         format!(
-            "RMS {}, on {}.",
+            "Searched {}; RMS {}, on {}.",
+            searched(diagnosis.search_horizon_s),
             in_windows(&diagnosis.windows),
             measured_on(error)
         ),
@@ -111,6 +112,13 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
     );
     lines.extend(folds(&diagnosis.folds, unit));
     error.before_rad.is_finite().then(|| lines.join("\n"))
+}
+
+/// "in windows of 1 s"
+fn searched(horizon_s: Option<f64>) -> String {
+    horizon_s.map_or("over whole motions".to_string(), |seconds| {
+        format!("in windows of {} s", given(seconds))
+    })
 }
 
 /// "With other motions held out: 41.0 -> 6.2, 39.5 -> 6.4 mrad."

@@ -55,6 +55,7 @@ fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffe
         summary: Vec::new(),
         next: Vec::new(),
         warnings: Vec::new(),
+        search_horizon_s: Some(1.0),
         horizon_s: None,
         shorter_step_s: None,
         windows: Vec::new(),

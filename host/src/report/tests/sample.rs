@@ -251,6 +251,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
         ],
         next: vec!["Add the effect: handstand add coulomb@1 --torque_nm 0.0821.".into()],
         warnings: vec!["backlash@1.gap_rad lies on its bound.".into()],
+        search_horizon_s: Some(1.0),
         horizon_s: None,
         shorter_step_s: None,
         windows: Vec::new(),
