@@ -40,6 +40,8 @@ const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// window before left, in whose course errors have grown; and by which share of all it can be.
 const HIDDEN_DEVIATIONS: f64 = 6.0;
 const SHARE_DEVIATION: f64 = 0.5;
+/// How much of the first input may not have been there before the log begins: all or nothing.
+const BEFORE_DEVIATION: f64 = 1.0;
 /// Half the span of the samples that determine a window's start.
 pub(super) const REACH_S: f64 = 0.06;
 /// Standard deviation of a speed of which nothing is known, rad/s.
@@ -106,6 +108,7 @@ impl StartGuess {
                     let deviation = (doubt(0) / scale).min(SHARE_DEVIATION);
                     (left.clamp(-1.0, 1.0), deviation, (-1.0, 1.0))
                 }
+                HiddenQuantity::Before => (0.0, BEFORE_DEVIATION, (-1.0, 1.0)),
                 HiddenQuantity::Rate => {
                     let reach = REACH_DEVIATIONS * doubt(1);
                     let middle = left.clamp(-reach, reach);

@@ -1,5 +1,6 @@
 //! Unknowns of a stretch's beginning that no reading tells: where in its play a joint is and how
-//! fast it crosses it, how far dry friction is bent before it slides.
+//! fast it crosses it, how far dry friction is bent before it slides, what a late drive was told
+//! before the log begins.
 //!
 //! A stretch takes over what the one before came to remember. That is as wrong at its end as the
 //! errors of its start have grown by then, and in an unstable motion they grow fast. How far a gear
@@ -32,6 +33,9 @@ pub enum HiddenQuantity {
     },
     /// How fast that changes, rad/s (m/s).
     Rate,
+    /// By how much more than the first input of the log the one before it was, as a share of it:
+    /// -1 where the log begins with the first command.
+    Before,
 }
 
 /// Where it is remembered, by the cell there.
@@ -39,6 +43,7 @@ pub enum HiddenQuantity {
 enum Place {
     Sensor(usize),
     Effect(usize),
+    Input,
 }
 
 impl HiddenUnknown {
@@ -67,6 +72,9 @@ impl HiddenUnknown {
                     add(Place::Effect(cell), share(scale));
                 }
             }
+            if plan.is_late {
+                add(Place::Input, HiddenQuantity::Before);
+            }
         }
         all
     }
@@ -83,6 +91,7 @@ impl HiddenUnknown {
             HiddenQuantity::Share { scale } if scale > 0.0 => displacement / scale,
             HiddenQuantity::Share { .. } => 0.0,
             HiddenQuantity::Rate => rate,
+            HiddenQuantity::Before => 0.0,
         }
     }
 
@@ -91,11 +100,23 @@ impl HiddenUnknown {
         match self.quantity {
             HiddenQuantity::Share { scale } => at[0] = scale * value,
             HiddenQuantity::Rate => at[1] = value,
+            HiddenQuantity::Before => {}
         }
     }
 }
 
 impl Plant {
+    /// What late drives were told before the log begins, as a share of its first input, with these
+    /// values of what is hidden, in the order of [`Plant::hidden`].
+    pub(super) fn put_before(&self, values: &[f64], share: &mut [f64]) {
+        share.fill(1.0);
+        for (unknown, value) in self.hidden.iter().zip(values) {
+            if unknown.place == Place::Input {
+                share[unknown.joint] = 1.0 + value;
+            }
+        }
+    }
+
     /// What no reading tells of where a stretch begins.
     pub fn hidden(&self) -> &[HiddenUnknown] {
         &self.hidden
@@ -125,6 +146,7 @@ impl Memory {
                         .map(|(m, e)| e.effect.slipped(m))
                 }
                 Place::Effect(cell) => self.effects.0.get(cell).copied(),
+                Place::Input => None,
             };
             at.map(|at| unknown.of(at))
                 .filter(|value| value.is_finite())

@@ -37,6 +37,8 @@ pub(super) struct JointPlan {
     /// Whether the drive's torque follows from its input alone.
     pub follows_input: bool,
     pub delay_s: f64,
+    /// Whether anything may delay the input, by nothing too.
+    pub is_late: bool,
     pub command: Vec<ActiveEffect>,
     pub torque: Vec<ActiveEffect>,
     pub friction: Vec<ActiveEffect>,
@@ -64,6 +66,7 @@ impl JointPlan {
             full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
             follows_input: false,
             delay_s: 0.0,
+            is_late: false,
             command: Vec::new(),
             torque: Vec::new(),
             friction: Vec::new(),
@@ -169,7 +172,10 @@ impl JointPlan {
         };
         active.values[..values.len()].copy_from_slice(values);
         match effect.info().site {
-            Site::Timing => self.delay_s += effect.delay_s(values),
+            Site::Timing => {
+                self.delay_s += effect.delay_s(values);
+                self.is_late = true;
+            }
             Site::Command => self.command.push(active),
             Site::Drive => self.output.push(active),
             Site::Gear => self.add_gear(effect, values),

@@ -3,7 +3,7 @@
 mod time_offset;
 
 use super::drive::DriveInput;
-use super::input::held_mean;
+use super::input::{held_mean, share_before};
 use super::memory::Memory;
 use super::plant::Plant;
 use super::rows::{Few, Many, Rows};
@@ -75,6 +75,7 @@ fn predicted<R: Rows>(
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
     let effects = run.stepper.memory();
     effects.put_hidden(plant, &start.angle_rad, &hidden);
+    plant.put_before(&hidden, &mut run.before);
     if plant.has_offsets && samples > 0 {
         return run.record_offset(stretch, memory, readings);
     }
@@ -123,6 +124,8 @@ struct Run<'a, R: Rows> {
     sensors: SensorState,
     inputs: Vec<DriveInput>,
     cursors: Vec<usize>,
+    /// What each drive was told before the log begins, as a share of the first input.
+    before: Vec<f64>,
 }
 
 impl<'a, R: Rows> Run<'a, R> {
@@ -141,6 +144,7 @@ impl<'a, R: Rows> Run<'a, R> {
             sensors,
             inputs: vec![DriveInput::ZERO; plant.len()],
             cursors: vec![0; plant.len()],
+            before: vec![1.0; plant.len()],
         }
     }
 
@@ -185,8 +189,11 @@ impl<'a, R: Rows> Run<'a, R> {
         for step in 0..steps {
             let begin = from + step as f64 * h;
             let span = begin..begin + h;
-            let cursors = &mut self.cursors;
-            set_inputs(plant, motion, k, span, cursors, &mut self.inputs);
+            let late = LateInputs {
+                cursors: &mut self.cursors,
+                before: &self.before,
+            };
+            set_inputs(plant, motion, k, span, late, &mut self.inputs);
             self.stepper.advance(plant, &self.inputs, h);
             if plant.senses {
                 self.sensors.step(plant, self.stepper.state(), h);
@@ -220,13 +227,19 @@ impl<'a, R: Rows> Run<'a, R> {
     }
 }
 
+/// What inputs are late by: where in the log each is, and what was before it.
+struct LateInputs<'a> {
+    cursors: &'a mut [usize],
+    before: &'a [f64],
+}
+
 /// Sets every drive's input over one integration step, s.
 fn set_inputs(
     plant: &Plant,
     motion: &Motion,
     sample: usize,
     span_s: Range<f64>,
-    cursors: &mut [usize],
+    late: LateInputs,
     inputs: &mut [DriveInput],
 ) {
     for (joint, plan) in plant.joints.iter().enumerate() {
@@ -241,13 +254,10 @@ fn set_inputs(
             at.input = if plan.delay_s == 0.0 {
                 input[sample]
             } else {
-                held_mean(
-                    &motion.time_s,
-                    input,
-                    span_s.start - plan.delay_s,
-                    span_s.end - plan.delay_s,
-                    &mut cursors[joint],
-                )
+                let span_s = span_s.start - plan.delay_s..span_s.end - plan.delay_s;
+                let before = share_before(&motion.time_s, &span_s) * (late.before[joint] - 1.0);
+                let held = held_mean(&motion.time_s, input, span_s, &mut late.cursors[joint]);
+                held + before * input[0]
             };
         }
         let nominal = plan.drive.motor().and_then(|m| m.nominal_supply_v);

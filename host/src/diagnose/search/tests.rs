@@ -350,3 +350,14 @@ fn stated_values_are_those_of_shorter_steps() {
     assert!(stated.0 < evaluated.0, "{stated:?} {evaluated:?}");
     assert!(stated.1 < evaluated.1, "{stated:?} {evaluated:?}");
 }
+
+/// An arm at rest whose logs begin with the first command: the late drive was told nothing before.
+#[test]
+fn a_delay_is_found_where_logs_begin_with_the_first_command() {
+    let (model, training, held_out) = arm(11, &["delay"]);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let mut set = fitted(&evaluator, &["delay"], [&[0.03]]);
+    evaluator.evaluate(&mut set);
+    assert!(evaluator.at_noise_floor(&set));
+}
