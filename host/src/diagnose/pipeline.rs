@@ -128,7 +128,7 @@ impl Evaluator<'_> {
         Some(own)
     }
 
-    /// Fits the values of the best set, where it is the explanation, as exactly as these are stated.
+    /// Fits the best set, where it is the explanation, as exactly as its values are stated.
     fn settle(&self, tried: &mut Tried) {
         if let Explanation::Effects(best) = tried.explanation(self) {
             let mut best = best.clone();

@@ -110,9 +110,10 @@ const RIGS: &[Rig] = &[
         ],
         expected: "coulomb 0.184 N m, 17.5 -> 2.6 mrad",
         why: Some(
-            "dry friction, and these swings do not tell how it begins: over windows of 0.25 s pre-sliding friction leaves \
-             1.48 mrad, Coulomb friction alone 1.58, and the interval of its level ends just below the published value; \
-             the mass comes to 0.76 kg, given as 0.5",
+            "dry friction, and these swings do not tell how it begins: over windows of 0.25 s \
+             pre-sliding friction leaves 1.48 mrad, Coulomb friction alone 1.58, and the interval \
+             of its level ends just below the published value; the mass comes to 0.76 kg, given as \
+             0.5",
         ),
     },
     Rig {
