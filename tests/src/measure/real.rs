@@ -76,7 +76,8 @@ const RIGS: &[Rig] = &[
             "the servo's gain, which nobody publishes, trails by itself; a delay set to 0, 30, 60, 100 ms and the rest \
              refitted leaves 15.6, 14.1, 20.1, 31.0 mrad held out: at most some 30 ms of the lag are a delay, and they \
              gain less than the readings scatter; a cable spring and a friction that changes with \
-             the angle come closest, and make one motion in three, held out in turn, four times worse",
+             the angle come closest, and make one motion in three, held out in turn, four times \
+             worse",
         ),
     },
     Rig {
