@@ -58,43 +58,45 @@ pub(crate) fn coarsened(model: &Model, data: &FitData) -> Model {
 ///
 /// A law with corners needs shorter steps than the model it was added to: a dead zone, a limit, a
 /// grip that slips.
-pub(crate) fn in_fine_steps(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
-    for _ in 0..HALVINGS {
+pub(crate) fn in_fine_steps(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    halved_while(found, data, options, |found, fine| {
         let left = found.residuals.mean_square();
+        let halved = residuals(fine, data, &found.nodes);
+        let changed = difference(&found.residuals, &halved).powi(2);
+        let counts = changed >= SHARE * SHARE * left;
+        counts.then(|| left - 0.5 * changed.min(left))
+    })
+}
+
+/// The fit, or one in steps so short that half of them would move none of its values by a share of
+/// the standard error that counts. The fit must have its derivatives.
+pub(crate) fn in_steps_for_values(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    halved_while(found, data, options, |found, fine| {
+        let most_left = (1.0 + HIGHER) * found.residuals.mean_square();
+        moves_values(found, fine, data).then_some(most_left)
+    })
+}
+
+/// The fit, or one in steps halved and refitted for as long as `most_left`, told the fit and its
+/// model in half the steps, has a mean square that the refit must not exceed, and it does not.
+fn halved_while(
+    mut found: Fit,
+    data: &FitData,
+    options: FitOptions,
+    most_left: impl Fn(&Fit, &Model) -> Option<f64>,
+) -> Fit {
+    for _ in 0..HALVINGS {
         // No step is longer than what lies between two samples.
         let half_s = 0.5 * found.model.step_s.min(shortest_period_s(data));
         if !STEP_S.allow(half_s) {
             break;
         }
         let fine = with_step(&found.model, half_s);
-        let halved = residuals(&fine, data, &found.nodes);
-        let changed = difference(&found.residuals, &halved).powi(2);
-        if changed < SHARE * SHARE * left {
+        let Some(most_left) = most_left(&found, &fine) else {
             break;
-        }
-        let refitted = fit(&fine, &found.free, data, Some(&found.nodes), options);
-        if refitted.residuals.mean_square() > left - 0.5 * changed.min(left) {
-            break;
-        }
-        found = Fit {
-            simulations: found.simulations + refitted.simulations + 1,
-            ..refitted
         };
-    }
-    found
-}
-
-/// The fit, or one in steps so short that half of them would move none of its values by a share of
-/// the standard error that counts. The fit must have its derivatives.
-pub(crate) fn in_steps_for_values(mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
-    for _ in 0..HALVINGS {
-        let half_s = 0.5 * found.model.step_s.min(shortest_period_s(data));
-        let fine = with_step(&found.model, half_s);
-        if !STEP_S.allow(half_s) || !moves_values(&found, &fine, data) {
-            break;
-        }
         let refitted = fit(&fine, &found.free, data, Some(&found.nodes), options);
-        if refitted.residuals.cost() > (1.0 + HIGHER) * found.residuals.cost() {
+        if refitted.residuals.mean_square() > most_left {
             break;
         }
         found = Fit {
