@@ -8,7 +8,7 @@ use crate::work;
 use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
-use handstand::fitting::{Horizon, effect_named, free_parameters};
+use handstand::fitting::{Horizon, Progress, effect_named, free_parameters};
 use handstand::log::{Split, split};
 use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
 use pyo3::prelude::*;
@@ -63,8 +63,7 @@ pub fn diagnose(
     };
     let logs = learned_and_held_out(logs, hold_out, &model)?;
     let found = work::run(py, progress, move |report| {
-        let tell = |p: handstand::diagnose::Progress| report.tell(p.what, p.done, p.total);
-        found(model, logs, &options, &tell)
+        found(model, logs, &options, &|progress| report.tell(progress))
     })?;
     found.map_err(exception)
 }
@@ -73,7 +72,7 @@ fn found(
     model: Model,
     logs: Learned,
     options: &DiagnoseOptions,
-    tell: &(dyn Fn(handstand::diagnose::Progress) + Sync),
+    tell: &(dyn Fn(Progress) + Sync),
 ) -> handstand::Result<Diagnosis> {
     let LogDiagnosis { diagnosis, split } = match logs {
         Learned::Files(set) => {

@@ -5,6 +5,7 @@ use crate::errors::{HandstandError, exception, usage};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
+use handstand::fitting::Progress;
 use handstand::report::gains_json;
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
@@ -97,7 +98,11 @@ fn designed(
     let (total, done) = (verification_steps(&left_out), Cell::new(0));
     let tell = || {
         done.set(done.get() + 1);
-        report.tell("simulations of the loop", done.get(), total);
+        report.tell(Progress {
+            done: done.get(),
+            total,
+            what: "simulations of the loop".into(),
+        });
     };
     let verification = verify(model, &design, request, &left_out, &tell)?;
     Ok((design, verification))

@@ -42,9 +42,8 @@ pub fn add(
     let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
     let (text, path) = (model.text, model.path.clone());
-    let what = format!("starts of {}", names.join(", "));
     let added = work::run(py, progress, move |report: &WorkReport| {
-        let tell = |done: usize, total: usize| report.tell(&what, done, total);
+        let tell = |progress| report.tell(progress);
         add_effects(&text, &path, &candidates, &split, horizon, &tell)
     })?;
     match added.map_err(exception)? {
@@ -64,7 +63,7 @@ pub fn add(
 /// Fits values of a model to logs: those that it frees, or those of `free` (`"link1.com_m"`,
 /// `"coulomb@1.torque_nm"`).
 #[pyfunction]
-#[pyo3(signature = (model, logs, *, free=None, hold_out=None, horizon_s=None))]
+#[pyo3(signature = (model, logs, *, free=None, hold_out=None, horizon_s=None, progress=None))]
 pub fn fit(
     py: Python<'_>,
     model: &Bound<'_, Model>,
@@ -72,6 +71,7 @@ pub fn fit(
     free: Option<&Bound<'_, PyAny>>,
     hold_out: Option<&Bound<'_, PyAny>>,
     horizon_s: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Refit> {
     let model = model.get().clone();
     let named = free.map(names).transpose()?.unwrap_or_default();
@@ -79,11 +79,10 @@ pub fn fit(
     let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
     let path = model.path.clone();
-    let fitted = work::run(py, None, move |_| {
-        let refitted = match refit(&model.inner, &free, &split, horizon) {
-            Ok(refitted) => refitted,
-            Err(why) => return Err(undetermined(&why)),
-        };
+    let fitted = work::run(py, progress, move |report| -> PyResult<_> {
+        let tell = |progress| report.tell(progress);
+        let refitted = refit(&model.inner, &free, &split, horizon, &tell);
+        let refitted = refitted.map_err(|why| undetermined(&why))?;
         let text = with_refitted(&model.text, &model.path, &model.inner, &refitted, &split);
         Ok((text.map_err(exception)?, refitted))
     })?;

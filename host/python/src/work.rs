@@ -1,6 +1,7 @@
 //! Work on a thread of its own, so that Python goes on: progress is told, Ctrl-C ends it.
 
 use crate::errors::HandstandError;
+use handstand::fitting::Progress;
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -11,31 +12,23 @@ use std::time::Duration;
 /// How long the interpreter waits before it looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// A step of the work.
-struct Step {
-    what: String,
-    done: usize,
-    total: usize,
-}
-
 /// What unwinds work that is to stop.
 struct Stopped;
 
 /// Tells how far the work is, and ends it where that was asked.
 pub struct WorkReport {
-    steps: Sender<Step>,
+    steps: Sender<Progress>,
     stop: Arc<AtomicBool>,
 }
 
 impl WorkReport {
     /// Tells. Where the work is to stop it does not return: it unwinds to the end of its thread.
-    pub fn tell(&self, what: &str, done: usize, total: usize) {
+    pub fn tell(&self, progress: Progress) {
         if self.stop.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));
         }
-        let what = what.to_string();
         // Who no longer listens has stopped the work.
-        let _ = self.steps.send(Step { what, done, total });
+        let _ = self.steps.send(progress);
     }
 }
 
@@ -73,7 +66,7 @@ pub fn run<T: Send + 'static>(
 fn watch(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    told: Receiver<Step>,
+    told: Receiver<Progress>,
 ) -> PyResult<()> {
     // Only one thread may hold the receiving end: it moves in and out of the waiting.
     let mut told = told;

@@ -61,7 +61,14 @@ def test_an_effect_that_does_not_help_is_refused(
 
 def test_fit_finds_the_value(truth: hs.Model, motions: list[hs.Motion]) -> None:
     wrong = hs.Model.parse(truth.toml.replace("torque_nm = 0.05", "torque_nm = 0.02"))
-    fitted = hs.fit(wrong, motions, free="coulomb@1.torque_nm")
+    steps: list[str] = []
+    fitted = hs.fit(
+        wrong,
+        motions,
+        free="coulomb@1.torque_nm",
+        progress=lambda what, done, total: steps.append(f"{what} {done}/{total}"),
+    )
+    assert steps == ["fit 0/2", "exact values 1/2"]
     value, low, high = fitted.values["coulomb@1.torque_nm"]
     assert low < 0.05 < high or abs(value - 0.05) < 2e-4
     assert f"{value:.6f}"[:5] in fitted.model.toml

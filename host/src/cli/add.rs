@@ -46,15 +46,10 @@ pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let split = args.fit.motions(&model, &args.logs)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
-    let bar = talk
-        .bar(0)
-        .with_message(format!("starts of {}", names.join(", ")));
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
-    let added = add_effects(&text, &args.model, &candidates, &split, horizon, &progress)?;
-    drop(bar);
+    let (path, progress) = (&args.model, talk.progress());
+    let added = add_effects(&text, path, &candidates, &split, horizon, &progress)?;
+    // Nothing is printed beside the bar.
+    drop(progress);
     match added {
         Addition::Added { text, refitted } => {
             let before = "for the model refitted without";

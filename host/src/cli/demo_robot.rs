@@ -1,6 +1,7 @@
 //! `handstand demo --robot`: the whole circle on a virtual robot behind the CM-5's firmware.
 
 use super::show::{or_dash, table_of};
+use super::talk::show;
 use super::{ExitStatus, Talk};
 use handstand::challenge::robot_demo::{
     BalanceAttempt, DemoStep, RobotDemo, ScoredEffect, run as circle,
@@ -19,11 +20,7 @@ pub fn run(seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
     std::fs::create_dir_all(output).map_err(refused)?;
     let bar = talk.bar(0);
     let demo = circle(seed, output, &|step| match step {
-        DemoStep::Diagnosing(progress) => {
-            bar.set_length(progress.total as u64);
-            bar.set_position(progress.done as u64);
-            bar.set_message(progress.what);
-        }
+        DemoStep::Diagnosing(progress) => show(&bar, progress),
         step => bar.suspend(|| talk.say(&words(&step))),
     })?;
     drop(bar);

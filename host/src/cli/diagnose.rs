@@ -129,18 +129,13 @@ fn options(model: &Model, args: &DiagnoseArgs) -> Result<DiagnoseOptions> {
 
 fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnosis> {
     let options = options(model, args)?;
-    let bar = talk.bar(0);
     let logs = args.log_set();
     let text = input::text(&args.model)?;
     let file = ModelFile {
         path: &args.model,
         text: &text,
     };
-    diagnose_logs(model, file, &logs, &options, &|progress| {
-        bar.set_length(progress.total as u64);
-        bar.set_position(progress.done as u64);
-        bar.set_message(progress.what);
-    })
+    diagnose_logs(model, file, &logs, &options, &talk.progress())
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.

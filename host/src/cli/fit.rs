@@ -41,7 +41,9 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
     let split = args.fit.motions(&model, &args.logs)?;
-    let refitted = match refit(&model, &free, &split, args.fit.judging.run.horizon) {
+    let horizon = args.fit.judging.run.horizon;
+    let refitted = refit(&model, &free, &split, horizon, &talk.progress());
+    let refitted = match refitted {
         Ok(refitted) => refitted,
         Err(why) => return refuse(&why, talk),
     };

@@ -187,17 +187,12 @@ impl NextArgs {
             trust_log: self.trust_log,
             ..DiagnoseOptions::default()
         };
-        let bar = talk.bar(0);
         let text = input::text(&self.model)?;
         let file = ModelFile {
             path: &self.model,
             text: &text,
         };
-        let found = diagnose_logs(model, file, logs, &options, &|progress| {
-            bar.set_length(progress.total as u64);
-            bar.set_position(progress.done as u64);
-            bar.set_message(progress.what);
-        })?;
+        let found = diagnose_logs(model, file, logs, &options, &talk.progress())?;
         Ok(found.diagnosis)
     }
 

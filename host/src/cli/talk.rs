@@ -1,5 +1,6 @@
 //! Console output: data to stdout, messages to stderr, progress only to a terminal.
 
+use handstand::fitting::Progress;
 use handstand::output::write_new;
 use handstand::{Error, Result};
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
@@ -112,6 +113,12 @@ impl Talk {
             .with_finish(ProgressFinish::AndClear)
     }
 
+    /// A bar that shows how far a fit or a diagnosis has come, and what hears that.
+    pub fn progress(&self) -> impl Fn(Progress) + Sync {
+        let bar = self.bar(0);
+        move |progress| show(&bar, progress)
+    }
+
     /// A place for lines that are written over again and again; shows only on a terminal, and no
     /// longer than it lives.
     pub fn live(&self) -> ProgressBar {
@@ -129,4 +136,11 @@ impl Talk {
         }));
         let _ = write!(std::io::stderr(), "{:?}", miette::Report::new(error));
     }
+}
+
+/// Lets a bar show how far a fit or a diagnosis has come.
+pub fn show(bar: &ProgressBar, progress: Progress) {
+    bar.set_length(progress.total as u64);
+    bar.set_position(progress.done as u64);
+    bar.set_message(progress.what);
 }

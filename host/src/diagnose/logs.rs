@@ -3,10 +3,10 @@
 use super::findings::Diagnosis;
 use super::options::DiagnoseOptions;
 use super::pipeline::diagnose;
-use super::progress::Progress;
 use super::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
+use crate::fitting::Progress;
 use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, split};
 use crate::model::Model;
 use std::path::Path;

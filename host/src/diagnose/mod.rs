@@ -49,5 +49,4 @@ pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
 pub use pipeline::diagnose;
-pub use progress::Progress;
 pub(crate) use selection::independent_share;

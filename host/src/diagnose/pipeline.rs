@@ -12,10 +12,10 @@ use super::explanation::{Explanation, Tried, VerdictEvidence};
 use super::findings::Diagnosis;
 use super::hypothesis::Hypothesis;
 use super::options::DiagnoseOptions;
-use super::progress::{Progress, STRUCTURE};
+use super::progress::STRUCTURE;
 use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
-use crate::fitting::{Candidate, settle};
+use crate::fitting::{Candidate, Progress, settle};
 use crate::log::Motion;
 use crate::model::Model;
 

@@ -1,17 +1,7 @@
 //! How far a diagnosis has come, in steps of about the same length.
 
+use crate::fitting::Progress;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// How far a diagnosis has come.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Progress {
-    /// Steps done.
-    pub done: usize,
-    /// Steps in all, unless the search ends early.
-    pub total: usize,
-    /// What is being done.
-    pub what: &'static str,
-}
 
 /// What is done, one after the other.
 const STAGES: [&str; 5] = [
@@ -20,14 +10,6 @@ const STAGES: [&str; 5] = [
     "pairs and swaps",
     "larger sets",
     "residual structure",
-];
-/// The same where the first search explained nothing.
-const STAGES_AGAIN: [&str; 5] = [
-    "second search: the model as it is",
-    "second search: every effect alone",
-    "second search: pairs and swaps",
-    "second search: larger sets",
-    "second search: residual structure",
 ];
 /// The stage of sets of one effect; the stage of pairs is 2.
 pub(super) const ALONE: usize = 1;
@@ -41,7 +23,7 @@ pub(super) struct StepCounter<'a> {
     heard: &'a (dyn Fn(Progress) + Sync),
     done: AtomicUsize,
     stage: AtomicUsize,
-    stages: [&'static str; 5],
+    again: bool,
     total: usize,
 }
 
@@ -52,7 +34,7 @@ impl<'a> StepCounter<'a> {
             heard,
             done: AtomicUsize::new(0),
             stage: AtomicUsize::new(0),
-            stages: if again { STAGES_AGAIN } else { STAGES },
+            again,
             total,
         };
         steps.step(0);
@@ -62,14 +44,15 @@ impl<'a> StepCounter<'a> {
     /// `count` more steps are done.
     pub fn step(&self, count: usize) {
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
-        let stage = self
-            .stage
-            .load(Ordering::Relaxed)
-            .min(self.stages.len() - 1);
+        let stage = self.stage.load(Ordering::Relaxed);
+        let what = STAGES[stage.min(STAGES.len() - 1)];
         (self.heard)(Progress {
             done: done.min(self.total),
             total: self.total,
-            what: self.stages[stage],
+            what: match self.again {
+                true => format!("second search: {what}").into(),
+                false => what.into(),
+            },
         });
     }
 
@@ -89,13 +72,17 @@ mod tests {
     #[test]
     fn steps_never_pass_the_total() {
         let told = Mutex::new(Vec::new());
-        let heard = |progress: Progress| told.lock().unwrap().push((progress.done, progress.what));
+        let heard = |progress: Progress| {
+            let what = progress.what.to_string();
+            told.lock().unwrap().push((progress.done, what));
+        };
         let steps = StepCounter::new(4, false, &heard);
         steps.step(3);
         steps.step(3);
         steps.begin(STRUCTURE, 4);
         let told = told.lock().unwrap();
+        let told: Vec<(usize, &str)> = told.iter().map(|(done, what)| (*done, &**what)).collect();
         let [model, structure] = [STAGES[0], STAGES[STRUCTURE]];
-        assert_eq!(*told, [(0, model), (3, model), (4, model), (4, structure)]);
+        assert_eq!(told, [(0, model), (3, model), (4, model), (4, structure)]);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, CandidateError};
 use super::horizon::Horizon;
+use super::progress::Progress;
 use super::refit::{Refitted, Undetermined, refit_with};
 use crate::error::Result;
 use crate::log::{Motion, Split};
@@ -42,7 +43,7 @@ pub fn candidates_named(names: &[String], model: &Model) -> Result<Vec<Candidate
 }
 
 /// Adds the candidates to the model that `text` describes, and refits its free values;
-/// `path` names the text in errors, `progress` hears of starts done and starts in all.
+/// `path` names the text in errors, `progress` hears what is being done.
 ///
 /// # Errors
 /// A text that is no model, or a value that it cannot hold.
@@ -52,7 +53,7 @@ pub fn add_effects(
     candidates: &[Candidate],
     split: &Split,
     horizon: Option<Horizon>,
-    progress: &dyn Fn(usize, usize),
+    progress: &dyn Fn(Progress),
 ) -> Result<Addition> {
     let model = Model::parse(text, path)?;
     let refitted = match refit_with(&model, candidates, split, horizon, progress) {

@@ -87,7 +87,7 @@ fn friction(columns: &str, motions: Vec<Motion>) -> Refitted {
         training: motions,
         held_out: Vec::new(),
     };
-    refit(&pendulum(columns, 0.003), &[path], &split, None).unwrap()
+    refit(&pendulum(columns, 0.003), &[path], &split, None, &|_| {}).unwrap()
 }
 
 fn assert_found(refitted: &Refitted, share: f64) {
@@ -155,7 +155,9 @@ fn sampling_from_1_to_500_hz_tells_the_same() {
             held_out: Vec::new(),
         };
         let path: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
-        let value = &refit(&rig(0.003), &[path], &split, None).unwrap().values[0];
+        let value = &refit(&rig(0.003), &[path], &split, None, &|_| {})
+            .unwrap()
+            .values[0];
         assert!(
             (value.value / 0.006 - 1.0).abs() < 0.03,
             "{hz} Hz: {value:?}"
@@ -233,7 +235,7 @@ fn what_acts_on_a_joint_without_any_column_shows_in_the_other() {
             training: vec![motion],
             held_out: Vec::new(),
         };
-        let refitted = refit(&double(0.003, first), &[path], &split, None).unwrap();
+        let refitted = refit(&double(0.003, first), &[path], &split, None, &|_| {}).unwrap();
         let value = &refitted.values[0];
         assert!(
             (value.value / 0.006 - 1.0).abs() < share,
@@ -266,7 +268,7 @@ fn a_rate_alone_tells_its_sensor_s_bias_and_lag() {
                 held_out: Vec::new(),
             };
             let path: ParameterPath = format!("{id}@1.{key}").parse().unwrap();
-            let refitted = refit(&with(0.1 * hidden), &[path], &split, None).unwrap();
+            let refitted = refit(&with(0.1 * hidden), &[path], &split, None, &|_| {}).unwrap();
             let value = &refitted.values[0];
             assert!((value.value / hidden - 1.0).abs() < 0.03, "{value:?}");
             let error = &refitted.error;

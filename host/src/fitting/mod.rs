@@ -32,6 +32,7 @@ mod noise;
 mod normal;
 mod polish;
 mod profile;
+mod progress;
 mod projector;
 #[cfg(test)]
 mod rate_tests;
@@ -62,6 +63,7 @@ pub use node::Node;
 pub use noise::{estimated_resolution, noise};
 pub(crate) use polish::{polish, settle};
 pub use profile::profile_intervals;
+pub use progress::Progress;
 pub use projector::Projector;
 pub use refit::{Refitted, Undetermined, refit, refit_with};
 pub use residual::{Residuals, predicted, residuals};

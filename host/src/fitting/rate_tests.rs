@@ -32,7 +32,7 @@ fn refitted(model: &Model, path: &str, motion: Motion) -> Refitted {
         held_out: Vec::new(),
     };
     let path: ParameterPath = path.parse().unwrap();
-    refit(model, &[path], &split, None).unwrap()
+    refit(model, &[path], &split, None, &|_| {}).unwrap()
 }
 
 #[test]

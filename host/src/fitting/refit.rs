@@ -11,6 +11,7 @@ use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
 use super::mixture::untold_mixture;
 use super::polish::{polish, settle};
+use super::progress::{Progress, RefitSteps};
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
@@ -118,7 +119,8 @@ impl Refitted {
     }
 }
 
-/// Fits `free` to the training motions. The error before is that of the model as it is.
+/// Fits `free` to the training motions. The error before is that of the model as it is. `progress`
+/// hears what is being done.
 ///
 /// # Errors
 /// The motions do not determine the values.
@@ -127,12 +129,16 @@ pub fn refit(
     free: &[ParameterPath],
     split: &Split,
     horizon: Option<Horizon>,
+    progress: &dyn Fn(Progress),
 ) -> Result<Refitted, Undetermined> {
+    let steps = RefitSteps::with_starts(0);
+    progress(steps.fitting());
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let found = fit_staged(model, free, &data);
     let found = polish(found, &data, FitOptions::default());
     told_apart(&found)?;
+    progress(steps.settling());
     finish(model, found, &data, split, horizon)
 }
 
@@ -150,7 +156,7 @@ pub(super) fn told_apart(found: &Fit) -> Result<(), Undetermined> {
 
 /// Adds the candidates, one after the other, and fits their values along with the model's free
 /// ones, from every start value of each effect. The error before is that of the model refitted
-/// without them. `progress` hears of starts done and starts in all.
+/// without them. `progress` hears what is being done.
 ///
 /// # Errors
 /// The motions do not determine the values.
@@ -159,21 +165,19 @@ pub fn refit_with(
     candidates: &[Candidate],
     split: &Split,
     horizon: Option<Horizon>,
-    progress: &dyn Fn(usize, usize),
+    progress: &dyn Fn(Progress),
 ) -> Result<Refitted, Undetermined> {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let base = fit_staged(model, &model.free, &data);
     let short = data.recut(horizon.shorter(Horizon::Seconds(SCREENING_S)));
-    let all: usize = candidates
-        .iter()
-        .map(|candidate| candidate.starts().len())
-        .sum();
+    let starts = candidates.iter().map(|candidate| candidate.starts().len());
+    let steps = RefitSteps::with_starts(starts.sum());
     let (mut done, mut with, mut free) = (0, base.model.clone(), model.free.clone());
     for candidate in candidates {
         free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
         let screened = candidate.starts().into_iter().map(|start| {
-            progress(done, all);
+            progress(steps.tried(done));
             done += 1;
             let mut started = with.clone();
             started.effects.push(candidate.instance(&start));
@@ -183,11 +187,12 @@ pub fn refit_with(
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)));
         with = best.map_or(with.clone(), |best| best.model);
     }
-    progress(all, all);
+    progress(steps.fitting());
     // Whoever goes on with this model refits the new values too.
     with.free.clone_from(&free);
     let found = fit_staged(&with, &free, &data);
     let found = polish(found, &data, FitOptions::default());
+    progress(steps.settling());
     finish(&base.model, found, &data, split, horizon)
 }
 

@@ -182,6 +182,7 @@ def fit(
     free: str | Sequence[str] | None = None,
     hold_out: _Logs | None = None,
     horizon_s: _Horizon | None = None,
+    progress: _Progress | None = None,
 ) -> Refit: ...
 def simulate(
     model: Model,

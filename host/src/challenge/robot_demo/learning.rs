@@ -2,10 +2,10 @@
 
 use crate::deploy::{self, Board, BoardLaw};
 use crate::diagnose::conventions::ModelFile;
-use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Progress, diagnose_logs};
+use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose_logs};
 use crate::effects::EFFECTS;
 use crate::error::{Error, Result};
-use crate::fitting::{Addition, Candidate, Horizon, add_effects, candidates_named};
+use crate::fitting::{Addition, Candidate, Horizon, Progress, add_effects, candidates_named};
 use crate::log::LogSet;
 use crate::model::edit::{add_effect, set_step};
 use crate::model::{EffectInstance, Model};
@@ -70,7 +70,7 @@ impl Learned {
                 let candidates = candidates_named(&added, &model)?;
                 let horizon = Some(HORIZON);
                 let addition =
-                    add_effects(text, file, &candidates, &found.split, horizon, &|_, _| {})?;
+                    add_effects(text, file, &candidates, &found.split, horizon, &|_| {})?;
                 match addition {
                     Addition::Added { text, .. } => text,
                     Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,

@@ -87,14 +87,7 @@ fn an_added_effect_gets_its_true_value_and_new_motions_are_predicted() {
     let mut truth = pendulum();
     truth.effects.push(candidate("coulomb").instance(&[0.004]));
     let split = swings(&truth);
-    let refitted = refit_with(
-        &pendulum(),
-        &[candidate("coulomb")],
-        &split,
-        None,
-        &|_, _| {},
-    )
-    .unwrap();
+    let refitted = refit_with(&pendulum(), &[candidate("coulomb")], &split, None, &|_| {}).unwrap();
     let value = &refitted.values[0];
     assert_eq!(value.path, "coulomb@1.torque_nm");
     assert_eq!(refitted.model.free, refitted.free);
@@ -115,7 +108,7 @@ fn a_value_that_nothing_shows_is_refused() {
         .effects
         .push(candidate("stribeck").instance(&[0.0, 0.1]));
     let speed: ParameterPath = "stribeck@1.speed_rad_s".parse().unwrap();
-    let error = refit(&model, &[speed], &split, None).unwrap_err();
+    let error = refit(&model, &[speed], &split, None, &|_| {}).unwrap_err();
     assert_eq!(error.blind, ["stribeck@1.speed_rad_s"]);
 }
 
@@ -127,12 +120,12 @@ fn values_that_a_free_swing_tells_only_together_are_refused_by_name() {
     // A pendulum swings by the ratio of the two.
     let free = ["link1.mass_kg", "link1.inertia_kg_m2"];
     let paths = free.map(|path| path.parse::<ParameterPath>().unwrap());
-    let error = refit(&pendulum(), &paths, &split, None).unwrap_err();
+    let error = refit(&pendulum(), &paths, &split, None, &|_| {}).unwrap_err();
     assert_eq!(error.mixed, free);
     assert!(error.to_string().contains("mixtures"), "{error}");
     // Each by itself is told.
     for path in paths {
-        assert!(refit(&pendulum(), &[path], &split, None).is_ok());
+        assert!(refit(&pendulum(), &[path], &split, None, &|_| {}).is_ok());
     }
 }
 
@@ -141,7 +134,7 @@ fn a_refit_finds_a_mass_moved_outwards() {
     let mut truth = pendulum();
     truth.links[0].com_m = 0.12;
     let com: ParameterPath = "link1.com_m".parse().unwrap();
-    let refitted = refit(&pendulum(), &[com], &swings(&truth), None).unwrap();
+    let refitted = refit(&pendulum(), &[com], &swings(&truth), None, &|_| {}).unwrap();
     assert!((refitted.values[0].value - 0.12).abs() < 1e-4);
     assert!(refitted.error.after_rad < 0.1 * refitted.error.before_rad);
 }
@@ -161,7 +154,7 @@ fn steps_that_are_too_long_for_what_is_found_are_shortened() {
     let split = swings(&truth);
     let added = |model: &Model| {
         let viscous = [candidate("viscous")];
-        refit_with(model, &viscous, &split, None, &|_, _| {}).unwrap()
+        refit_with(model, &viscous, &split, None, &|_| {}).unwrap()
     };
     // Samples are 10 ms apart: longer steps are none.
     for step_s in [0.01, 0.1] {

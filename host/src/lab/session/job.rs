@@ -1,6 +1,7 @@
 //! Long work of a session: one at a time, watched and stopped from any page.
 
 use crate::error::Error;
+use crate::fitting::Progress;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -79,6 +80,11 @@ impl JobReport {
             done,
             total,
         });
+    }
+
+    /// Tells what a fit or a diagnosis does.
+    pub fn hear(&self, progress: Progress) {
+        self.tell(&progress.what, progress.done, progress.total);
     }
 }
 

@@ -31,8 +31,7 @@ impl LabSession {
             path: &path,
             text: self.toml(&begun)?,
         };
-        let progress = |p: crate::diagnose::Progress| report.tell(p.what, p.done, p.total);
-        let found = diagnose_logs(&model, file, &logs, &options, &progress)?;
+        let found = diagnose_logs(&model, file, &logs, &options, &|p| report.hear(p))?;
         let mut said = SavedDiagnosis::of(&found.diagnosis, begun.current);
         for line in said.summary.iter_mut().chain(&mut said.warnings) {
             *line = self.shortened(line);
@@ -59,14 +58,13 @@ impl LabSession {
         let (text, file) = (self.toml(&begun)?, model_file(begun.current));
         let split = self.log_set(&begun).read(&model.log)?;
         let horizon = begun.horizon();
-        let what = format!("starts of {}", names.join(", "));
         let added = add_effects(
             text,
             &file,
             &candidates,
             &split,
             Some(horizon),
-            &|done, all| report.tell(&what, done, all),
+            &|progress| report.hear(progress),
         )?;
         let toml = match added {
             Addition::Added { text, .. } => text,
@@ -99,10 +97,9 @@ impl LabSession {
         let model = self.model_at(&begun)?;
         let free = free_parameters(&model, values)?;
         let split = self.log_set(&begun).read(&model.log)?;
-        report.tell("fit of the model's values", 0, 0);
-        let refitted = refit(&model, &free, &split, Some(begun.horizon()))
+        let horizon = Some(begun.horizon());
+        let refitted = refit(&model, &free, &split, horizon, &|p| report.hear(p))
             .map_err(|why| undetermined(&why))?;
-        report.tell("fit of the model's values", 1, 1);
         let file = model_file(begun.current);
         let toml = with_refitted(self.toml(&begun)?, &file, &model, &refitted, &split)?;
         let names: Vec<String> = free.iter().map(ToString::to_string).collect();
