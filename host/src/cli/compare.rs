@@ -23,8 +23,8 @@
 
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
-use handstand::log::{LogRequest, Split, read};
-use handstand::report::{Report, file_name, html, json};
+use handstand::log::{LogFinding, LogRequest, Split, read_with_findings};
+use handstand::report::{Report, file_names, html, json};
 use handstand::{Model, Result, compare};
 use std::path::PathBuf;
 
@@ -53,14 +53,20 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
     let files: Vec<&PathBuf> = std::iter::once(&args.model).chain(&args.others).collect();
     let mut models = Vec::new();
     let mut closed_loops = Vec::new();
-    for file in &files {
+    let mut findings = Vec::new();
+    for (file, name) in files.iter().zip(file_names(&files)) {
         let model = Model::load(file)?;
         // Each model names columns and zeros its own way.
-        let motions = read(&args.logs, &model.log)?;
+        let (motions, found) = read_with_findings(&args.logs, &model.log)?;
+        let new = |finding: &LogFinding| !findings.contains(finding);
+        let new: Vec<LogFinding> = found.into_iter().filter(new).collect();
+        findings.extend(new);
+        args.run.of(&model, &motions)?;
         let plan = args.plan.load(&model)?;
         closed_loops.push(input::closed_loop(&model, plan.as_ref(), &motions)?);
-        models.push((file_name(file), model, motions));
+        models.push((name, model, motions));
     }
+    input::warn(&findings, talk);
     let compared = models
         .iter()
         .map(|(name, model, motions)| (name.as_str(), model, motions.as_slice()));

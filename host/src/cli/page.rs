@@ -2,7 +2,7 @@
 
 use super::Talk;
 use handstand::log::Split;
-use handstand::report::{HashedModel, ReportProvenance, file_name};
+use handstand::report::{HashedModel, ReportProvenance, file_name, file_names};
 use handstand::{Error, Result, output};
 use std::path::{Path, PathBuf};
 
@@ -54,7 +54,9 @@ impl PageFile {
 /// # Errors
 /// A model file that cannot be read again.
 pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<ReportProvenance> {
-    let model_files: Result<Vec<HashedModel>> = models.iter().map(|file| hashed(file)).collect();
+    let named = models.iter().zip(file_names(models));
+    let model_files: Result<Vec<HashedModel>> =
+        named.map(|(file, name)| hashed_as(name, file)).collect();
     Ok(ReportProvenance::new(model_files?, split, &talk.command))
 }
 
@@ -63,6 +65,10 @@ pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<Rep
 /// # Errors
 /// [`Error::File`] if it cannot be read.
 pub fn hashed(file: &Path) -> Result<HashedModel> {
+    hashed_as(file_name(file), file)
+}
+
+fn hashed_as(name: String, file: &Path) -> Result<HashedModel> {
     let bytes = std::fs::read(file).map_err(|error| Error::file(file, "read", error))?;
-    Ok(HashedModel::of(file_name(file), &bytes))
+    Ok(HashedModel::of(name, &bytes))
 }

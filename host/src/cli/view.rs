@@ -15,7 +15,7 @@
 use super::{ExitStatus, Talk, input};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
-use handstand::report::file_name;
+use handstand::report::file_names;
 use handstand::report::playback::{Scene, html};
 use handstand::{Error, Model, Result, output};
 use std::path::PathBuf;
@@ -55,8 +55,9 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
             "a page shows measured angles: name the column of this one under [[log.joint]]",
         ));
     }
-    let mut scene = Scene::measured(&model, &read(&args.logs, &model.log)?);
-    for file in &args.others {
+    let motions = input::motions(&args.logs, &model.log, talk)?;
+    let mut scene = Scene::measured(&model, &motions);
+    for (file, name) in args.others.iter().zip(file_names(&args.others)) {
         let other = Model::load(file)?;
         if other.link_count() != model.link_count() {
             return Err(Error::usage(
@@ -70,11 +71,11 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
                 "draw models of one chain over each other",
             ));
         }
-        let name = file_name(file);
         let motions = read(&args.logs, &other.log)?;
-        scene.add_model(&other, &compare(&other, &name, &motions, args.run.horizon));
+        let horizon = args.run.of(&other, &motions)?;
+        scene.add_model(&other, &compare(&other, &name, &motions, horizon));
     }
-    scene.add_overlay(&model, &read(&args.overlay, &model.log)?);
+    scene.add_overlay(&model, &input::motions(&args.overlay, &model.log, talk)?);
     let page = html(&scene, &talk.command)
         .map_err(|error| Error::file(&args.output, "write", error.into()))?;
     talk.write(&args.output, &page, args.force)?;

@@ -108,6 +108,8 @@ pub struct Trace {
     pub quantity: MeasuredSignal,
     /// Root-mean-square error of this motion.
     pub rms: f64,
+    /// Where the model starts anew from a fitted state: the windows but the first, s.
+    pub restarts_s: Vec<f64>,
     /// Sample times, s.
     pub time_s: Vec<f64>,
     /// Measured.
@@ -150,6 +152,7 @@ impl Serialize for Trace {
         map.serialize_entry("motion", &self.motion)?;
         map.serialize_entry("joint", &self.joint)?;
         map.serialize_entry(&key("rms", self.quantity), &self.rms)?;
+        map.serialize_entry("restarts_s", &self.restarts_s)?;
         map.serialize_entry("time_s", &self.time_s)?;
         map.serialize_entry(&key("measured", self.quantity), &self.measured)?;
         map.serialize_entry(&key("predicted", self.quantity), &self.predicted)?;

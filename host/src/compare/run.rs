@@ -209,6 +209,10 @@ fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
     for (index, predicted) in predicted.iter().enumerate() {
         let motion = &data.motions[index];
         let stride = motion.len().div_ceil(DRAWN).max(1);
+        let later = data.windows_of(index).skip(1);
+        let restarts_s: Vec<f64> = later
+            .map(|(_, window)| motion.time_s[window.samples.start])
+            .collect();
         for (signal, predicted) in predicted.iter().enumerate() {
             if data.signals[signal] == MeasuredSignal::Nothing {
                 continue;
@@ -225,6 +229,7 @@ fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
                 joint: data.joint_of(signal) + 1,
                 quantity: data.signals[signal],
                 rms: rms(std::iter::once(&error)),
+                restarts_s: restarts_s.clone(),
                 time_s: pick(&motion.time_s),
                 measured: pick(measured),
                 predicted: pick(predicted),

@@ -197,6 +197,25 @@ fn missing_friction_shows_and_grows_with_the_run() {
 }
 
 #[test]
+fn a_trace_tells_where_the_model_starts_anew() {
+    let motions = [swing(0.8, 0.02, 500), swing(-0.5, 0.02, 300)];
+    let horizon = Horizon::Seconds(1.0);
+    let data = FitData::new(&pendulum(), motions.to_vec(), horizon);
+    let cut = compare(&pendulum(), "in windows", &motions, Some(horizon));
+    for (motion, trace) in cut.traces.iter().enumerate() {
+        let starts = data
+            .windows_of(motion)
+            .map(|(_, window)| window.samples.start);
+        let times: Vec<f64> = starts.map(|start| motions[motion].time_s[start]).collect();
+        assert_eq!(trace.restarts_s, times[1..]);
+    }
+    let counts: Vec<usize> = cut.traces.iter().map(|t| t.restarts_s.len()).collect();
+    assert_eq!(counts, [4, 2]);
+    let whole = compare(&pendulum(), "whole", &motions, Some(Horizon::Whole));
+    assert!(whole.traces.iter().all(|trace| trace.restarts_s.is_empty()));
+}
+
+#[test]
 fn text_sets_models_side_by_side_and_tells_the_last_in_full() {
     let motions = [swing(0.8, 0.02, 300)];
     let base = compare(&pendulum(), "base", &motions, None);

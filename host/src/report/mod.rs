@@ -4,6 +4,7 @@ mod candidates;
 mod closed_loop;
 pub mod effect_page;
 mod failures;
+mod file_names;
 mod headline;
 mod json;
 mod outcomes;
@@ -23,6 +24,7 @@ mod traces;
 mod waterfall;
 mod words;
 
+pub use file_names::{file_name, file_names};
 pub use json::{diagnosis_json, gains_json, json};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
@@ -39,7 +41,6 @@ use crate::output::number::hex;
 use crate::output::plot::Tone;
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
-use std::path::Path;
 
 /// Tone of what was measured.
 const MEASURED: Tone = Tone::Ink;
@@ -96,23 +97,19 @@ fn add_logs(logs: &mut Vec<LogFile>, motions: &[Motion], held_out: bool) {
         let name = file_name(&motion.source.path);
         let same = |log: &&mut LogFile| log.name == name && log.held_out == held_out;
         match logs.iter_mut().find(same) {
-            Some(log) => log.samples += motion.len(),
+            Some(log) => {
+                log.samples += motion.len();
+                log.motions.push(motion.name.clone());
+            }
             None => logs.push(LogFile {
                 name,
+                motions: vec![motion.name.clone()],
                 sha256: motion.source.sha256.clone(),
                 samples: motion.len(),
                 held_out,
             }),
         }
     }
-}
-
-/// The last part of a file's path.
-pub fn file_name(file: &Path) -> String {
-    file.file_name()
-        .unwrap_or(file.as_os_str())
-        .to_string_lossy()
-        .into_owned()
 }
 
 /// A model that was read.
@@ -139,6 +136,8 @@ impl HashedModel {
 pub struct LogFile {
     /// Its name.
     pub name: String,
+    /// The motions in it.
+    pub motions: Vec<String>,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
     /// Rows in it.
@@ -156,6 +155,17 @@ impl Report {
     /// The model at the end of the chain, if it has more than one.
     fn after(&self) -> Option<&Comparison> {
         self.comparisons.get(1..)?.last()
+    }
+
+    /// Whether a motion was held out; nothing where no motion was fitted. Of motions of one name
+    /// the one after `earlier` others.
+    fn is_held_out(&self, motion: &str, earlier: usize) -> Option<bool> {
+        let logs = &self.provenance.logs;
+        let is_fitted = self.diagnosis.is_some() || logs.iter().any(|log| log.held_out);
+        let logs = logs.iter().filter(|_| is_fitted);
+        let named = |log: &LogFile| log.motions.iter().filter(|own| *own == motion).count();
+        let mut roles = logs.flat_map(|log| std::iter::repeat_n(log.held_out, named(log)));
+        roles.nth(earlier)
     }
 }
 

@@ -118,6 +118,46 @@ fn effects_are_explained_to_people_and_programs() {
 }
 
 #[test]
+fn models_of_one_file_name_are_told_apart_by_their_folders() {
+    let bench = Bench::new();
+    let model = bench.get("model.toml");
+    for (folder, mass) in [("d1", "0.2"), ("d2", "0.25")] {
+        std::fs::create_dir(bench.path(folder)).unwrap();
+        let model = model.replace("mass_kg = 0.2", &format!("mass_kg = {mass}"));
+        bench.put(&format!("{folder}/model.toml"), model);
+    }
+    let line = "compare d1/model.toml a.csv --model d2/model.toml";
+    let said = bench.run(line).stdout.replace('\\', "/");
+    let heads = said.lines().next().unwrap();
+    let heads: Vec<&str> = heads.split('|').map(str::trim).collect();
+    assert_eq!(heads, ["", "", "d1/model.toml", "d2/model.toml", ""]);
+    for bar in ["\n  d1/model.toml  ", "\n  d2/model.toml  "] {
+        assert!(said.contains(bar), "{said}");
+    }
+    let report = bench
+        .run(&format!("{line} --json --report report.html"))
+        .json();
+    let told = |name: &serde_json::Value| name.as_str().unwrap().replace('\\', "/");
+    for (index, name) in ["d1/model.toml", "d2/model.toml"].into_iter().enumerate() {
+        assert_eq!(told(&report["comparisons"][index]["model"]), name);
+        assert_eq!(
+            told(&report["provenance"]["model_files"][index]["name"]),
+            name
+        );
+        assert!(
+            bench
+                .get("report.html")
+                .replace('\\', "/")
+                .contains(&format!("<td>{name}</td>"))
+        );
+    }
+    let twice = bench
+        .run("compare d1/model.toml a.csv --model d1/model.toml --json")
+        .json();
+    assert_eq!(twice["comparisons"][1]["model"], "model.toml (2)");
+}
+
+#[test]
 fn quiet_is_quiet_and_no_escape_sequences_reach_a_pipe() {
     let bench = Bench::new();
     let line = "add model.toml viscous --fit a.csv -o new.toml --force";

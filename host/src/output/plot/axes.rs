@@ -104,6 +104,15 @@ impl Axes {
         }
     }
 
+    /// Dotted lines from bottom to top, where something begins.
+    pub(crate) fn starts(&self, places: impl IntoIterator<Item = f64>) -> Markup {
+        let (bottom, top) = self.y.ends();
+        let places = places.into_iter().filter(|x| drawable(*x));
+        let line = |x| format!("M{} {}V{}", at(self.x.place(x)), at(bottom), at(top));
+        let lines: String = places.map(line).collect();
+        html! { @if !lines.is_empty() { path class="start" d=(lines) {} } }
+    }
+
     /// Points as dots of this radius, px.
     pub(super) fn dots(&self, points: &[(f64, f64)], radius: f64) -> Markup {
         html! {

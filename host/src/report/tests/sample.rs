@@ -15,6 +15,7 @@ use crate::report::{HashedModel, LogFile, Report, ReportProvenance};
 pub(in crate::report) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
         name: name.into(),
+        motions: vec![name.trim_end_matches(".csv").into()],
         sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
         samples: 6000,
         held_out,
@@ -156,6 +157,7 @@ fn trace(motion: &str, error_mrad: f64) -> Trace {
         joint: 1,
         quantity: MeasuredSignal::Angle,
         rms: 1e-3 * error_mrad,
+        restarts_s: Vec::new(),
         measured: time_s.iter().map(|t| reading(*t)).collect(),
         predicted: time_s.iter().map(|t| wrong(*t)).collect(),
         time_s,
